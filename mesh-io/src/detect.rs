@@ -1,15 +1,15 @@
 //! Tells which format a file is in, first by its content, then by its ending.
 
+use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
 use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
-use crate::mike;
-use crate::nastran;
-use crate::sink::Reader;
-use crate::source::{Source, file_name};
-use crate::syntax::Syntax;
-use crate::text::Cursor;
-use crate::token::integer;
-use crate::triangle_names::{Names, appended};
+use crate::formats::mike;
+use crate::formats::nastran;
+use crate::formats::triangle::names::{Names, appended};
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
+use crate::text::token::integer;
+use crate::visit::sink::Reader;
 use std::path::{Path, PathBuf};
 
 /// How a file is read.

@@ -1,12 +1,15 @@
 //! The table of formats: how each is recognized, and its reader.
 
+use crate::compress::packed;
+use crate::disk::source::file_name;
 use crate::format::Format;
-use crate::sink::{Reader, Walk};
-use crate::source::file_name;
-use crate::{
-    abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, medit, meditb,
-    mfem, mike, nastran, obj, off, packed, ply, selafin, sms, stl, su2, ugrid, vtk, vtu, xdmf,
+use crate::formats::vtk::{legacy, xml};
+use crate::formats::{
+    abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, mfem, mike,
+    nastran, obj, off, ply, selafin, sms, stl, ugrid, xdmf,
 };
+use crate::formats::{medit, su2};
+use crate::visit::sink::{Reader, Walk};
 use std::path::Path;
 
 const fn reader<W: Walk>() -> Option<Reader> {
@@ -101,17 +104,21 @@ const fn unread(
 pub(crate) static TRIANGLE: Family = family("Triangle .node/.ele", &[".node", ".ele"], &[], None);
 static GMSH: Family =
     family("gmsh", &[".msh"], &[b"$MeshFormat", b"$Comments"], reader::<gmsh::Gmsh>());
-static VTK: Family =
-    family("legacy VTK", &[".vtk"], &[b"# vtk DataFile", b"# VTK DataFile"], reader::<vtk::Vtk>());
+static VTK: Family = family(
+    "legacy VTK",
+    &[".vtk"],
+    &[b"# vtk DataFile", b"# VTK DataFile"],
+    reader::<legacy::Vtk>(),
+);
 static SU2: Family =
-    family("SU2", &[".su2"], &[b"NDIME", b"NZONE", b"IZONE", b"NELEM"], reader::<su2::Su2>());
+    family("SU2", &[".su2"], &[b"NDIME", b"NZONE", b"IZONE", b"NELEM"], reader::<su2::read::Su2>());
 static MEDIT: Family =
-    family("Medit", &[".mesh"], &[b"MeshVersionFormatted"], reader::<medit::Medit>());
+    family("Medit", &[".mesh"], &[b"MeshVersionFormatted"], reader::<medit::text::Medit>());
 static MEDIT_BINARY: Family = family(
     "binary Medit",
     &[".meshb"],
     &[&[1, 0, 0, 0], &[0, 0, 0, 1]],
-    reader::<meditb::MeditBinary>(),
+    reader::<medit::binary::MeditBinary>(),
 );
 static OBJ: Family = family(
     "Wavefront OBJ",
@@ -144,9 +151,9 @@ static SELAFIN: Family = family(
     reader::<selafin::Selafin>(),
 );
 static VTK_XML: Family =
-    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile"], reader::<vtu::Vtu>());
+    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile"], reader::<xml::Vtu>());
 static VTK_XML_POLYGONS: Family =
-    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile"], reader::<vtu::Vtu>());
+    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile"], reader::<xml::Vtu>());
 pub(crate) static STL: Family =
     family("STL", &[".stl"], &[b"solid ", b"solid\n", b"solid\r"], reader::<stl::Stl>());
 static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());

@@ -16,113 +16,42 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod abaqus;
-mod adcirc;
-#[cfg(test)]
-mod ahead_tests;
-mod assemble;
-mod beside;
 mod binary;
-mod card;
-mod centers;
-mod cgns;
-mod column;
-mod compare;
-mod constraints;
-mod container;
-mod continued;
+mod compress;
+mod content;
 mod convert;
 mod detect;
 mod disk;
+mod edit;
 mod error;
-mod exodus;
+mod export;
 mod families;
-#[cfg(test)]
-mod faults;
-mod field;
-mod field_text;
-mod fields;
 mod format;
-mod freefem;
-mod fvcom;
-mod gather;
-mod gmsh;
-mod group;
-mod group_table;
+mod formats;
 mod hdf5;
-mod heights;
-mod jigsaw;
-mod label;
-mod layout;
-mod med;
-mod medit;
-mod meditb;
 mod mesh_file;
-mod mfem;
-mod mike;
-mod named;
-mod nastran;
 mod netcdf;
-mod numbered_nodes;
-mod numbers;
-mod obj;
-mod off;
-mod packed;
 mod parallel;
-mod parallel_rows;
-mod parameters;
-mod parametric;
-mod parsed;
-mod place;
-mod ply;
-mod point_data;
 mod precision;
-mod read;
-mod records;
-mod regions;
-mod replace;
-mod rewrite;
-mod save;
-mod selafin;
-mod sink;
-mod sms;
-mod solution;
-mod source;
-mod stl;
-mod su2;
-mod su2_motions;
-mod syntax;
-mod tags;
 mod text;
-mod text_numbers;
-mod token;
-mod triangle;
-mod triangle_data;
-mod triangle_groups;
-mod triangle_names;
-mod ugrid;
-mod view;
-mod vtk;
-mod vtu;
-mod whole;
-mod xdmf;
+mod visit;
 
-pub use compare::Difference;
-pub use constraints::{Affine, Constraints, PeriodicPairs};
-pub use convert::Conversion;
-pub use error::{FieldError, GroupError, Location, ReadError, WriteError};
-pub use field::PointField;
-pub use format::Format;
-pub use group::{Group, Groups};
-pub use mesh_file::MeshFile;
-pub use place::Place;
-pub use precision::Precision;
-pub use solution::Solution;
-pub use view::View;
+pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs};
+pub use crate::content::group::{Group, Groups};
+pub use crate::convert::Conversion;
+pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
+pub use crate::format::Format;
+pub use crate::formats::side::solution::Solution;
+pub use crate::formats::side::view::View;
+pub use crate::mesh_file::compare::Difference;
+pub use crate::mesh_file::mesh::MeshFile;
+pub use crate::mesh_file::place::Place;
+pub use crate::precision::Precision;
+pub use crate::visit::field::PointField;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {
-    pub use crate::replace::{AbandonedWrites, abandon_writes, check, replace, same_file};
+    pub use crate::disk::replace::{AbandonedWrites, abandon_writes, check, replace, same_file};
 }
 
 /// Compiles the code of the README with the tests.

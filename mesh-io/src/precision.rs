@@ -1,6 +1,6 @@
 //! The precision in which coordinates are stored.
 
-use crate::field_text::{field_error, rounded_to_field};
+use crate::text::field_text::{field_error, rounded_to_field};
 
 /// The precision with which the coordinates of a mesh are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

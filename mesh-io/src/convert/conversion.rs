@@ -1,20 +1,21 @@
 //! Writes a mesh in another format than it was read in.
 
-use super::collector;
-use super::content::Content;
-use super::grids;
-use super::job::Job;
 use super::names;
 use super::targets::{TARGETS, Target, Write};
-use super::triangle_source;
+use crate::compress::packed::Packing;
 use crate::detect;
+use crate::disk::replace;
+use crate::disk::replace::Job as Replacement;
 use crate::error::{ReadError, WriteError};
+use crate::export::collector;
+use crate::export::content::Content;
+use crate::export::job::Job;
 use crate::families::Family;
 use crate::format::Format;
-use crate::mesh_file::MeshFile;
-use crate::packed::Packing;
-use crate::replace::{self, Job as Replacement};
-use crate::triangle_names::Names;
+use crate::formats::triangle::content;
+use crate::formats::triangle::names::Names;
+use crate::formats::write_grids;
+use crate::mesh_file::mesh::MeshFile;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -64,11 +65,11 @@ impl Conversion {
         let sources = file.sources();
         let mut content = match &Family::of(file.format()).reader {
             Some(reader) => collector::content(reader, &sources[0])?,
-            None => triangle_source::content(&sources[0], &sources[1], sources.get(2))?,
+            None => content::content(&sources[0], &sources[1], sources.get(2))?,
         };
         // The points as they were read, rounded to the precision of the file.
         content.points = file.points().to_vec();
-        grids::match_depths(&mut content, file.format(), to);
+        write_grids::match_depths(&mut content, file.format(), to);
         let lost = target.holds.lost(&content);
         let renamed = names::fit(&target.holds, &mut content);
         Ok(Some(Conversion { content, target, lost, renamed }))

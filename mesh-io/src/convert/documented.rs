@@ -3,9 +3,9 @@
 //! After a change, `UPDATE_DOCS=1 cargo test --lib documented` writes them anew.
 
 use super::tables;
+use crate::compress::packed::Packing;
 use crate::families::{FAMILIES, Family};
 use crate::format::Format;
-use crate::packed::Packing;
 use std::fmt::Write;
 use std::path::Path;
 

@@ -1,11 +1,11 @@
 //! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
 
-use super::content::{Content, Group};
-use super::holds::{Holds, first};
-use super::spelling::{Spelling, distinct};
-use super::tags::Tags;
-use super::ugrid;
-use crate::label::Label;
+use crate::content::label::Label;
+use crate::export::content::{Content, Group};
+use crate::export::holds::{Holds, first};
+use crate::export::spelling::{Spelling, distinct};
+use crate::export::tags::Tags;
+use crate::formats::ugrid;
 use std::collections::HashMap;
 
 /// Changes the names that the format holds to what it can hold. Names that were different stay so, and where the
@@ -69,7 +69,7 @@ fn data(holds: &Holds, content: &mut Content) -> Vec<String> {
     let mut taken: Vec<String> = match holds.spelling {
         // The coordinates are properties of vertices like data of one number.
         Spelling::Word => ["x", "y", "z"].map(String::from).to_vec(),
-        Spelling::Variable => ugrid::NAMES.map(String::from).to_vec(),
+        Spelling::Variable => ugrid::write::NAMES.map(String::from).to_vec(),
         _ => Vec::new(),
     };
     let mut changed = Vec::new();

@@ -1,7 +1,7 @@
 //! Makes the table of conversions in docs/formats.md from what each target holds.
 
-use super::holds::{Elements, Groups, Holds, Numbers};
 use super::targets::TARGETS;
+use crate::export::holds::{Elements, Groups, Holds, Numbers};
 use crate::families::Family;
 use crate::format::Format;
 use std::fmt::Write;

@@ -1,10 +1,12 @@
 //! The table of formats that meshes are converted to.
 
-use super::holds::{Elements, Groups, Holds, Numbers};
-use super::job::Job;
-use super::spelling::Spelling;
-use super::{abaqus, exodus, gmsh, grids, medit, ply, su2, surface, triangle, ugrid, vtk, xdmf};
+use crate::export::holds::{Elements, Groups, Holds, Numbers};
+use crate::export::job::Job;
+use crate::export::spelling::Spelling;
 use crate::format::Format;
+use crate::formats::{
+    abaqus, exodus, gmsh, medit, ply, su2, triangle, ugrid, vtk, write_grids, write_surface, xdmf,
+};
 use crate::precision::Precision;
 
 /// A format that meshes are converted to: a row of [`TARGETS`].
@@ -70,17 +72,32 @@ pub(crate) static TARGETS: [Target; 18] = [
         format: Format::Gmsh41,
         name: "gmsh41",
         holds: GMSH,
-        write: Write::One(gmsh::write_41),
+        write: Write::One(gmsh::write::write_41),
     },
     Target {
         format: Format::Gmsh22,
         name: "gmsh22",
         holds: GMSH,
-        write: Write::One(gmsh::write_22),
+        write: Write::One(gmsh::write::write_22),
     },
-    Target { format: Format::Vtu, name: "vtu", holds: VTK, write: Write::One(vtk::write_xml) },
-    Target { format: Format::Xdmf, name: "xdmf", holds: VTK, write: Write::One(xdmf::write_xdmf) },
-    Target { format: Format::Vtk, name: "vtk", holds: VTK, write: Write::One(vtk::write_legacy) },
+    Target {
+        format: Format::Vtu,
+        name: "vtu",
+        holds: VTK,
+        write: Write::One(vtk::write::write_xml),
+    },
+    Target {
+        format: Format::Xdmf,
+        name: "xdmf",
+        holds: VTK,
+        write: Write::One(xdmf::write::write_xdmf),
+    },
+    Target {
+        format: Format::Vtk,
+        name: "vtk",
+        holds: VTK,
+        write: Write::One(vtk::write::write_legacy),
+    },
     Target {
         format: Format::Ugrid,
         name: "ugrid",
@@ -92,7 +109,7 @@ pub(crate) static TARGETS: [Target; 18] = [
             cell_data: Numbers::All,
             ..Holds::TRIANGLES
         },
-        write: Write::Binary(ugrid::write_ugrid),
+        write: Write::Binary(ugrid::write::write_ugrid),
     },
     Target {
         format: Format::Exodus,
@@ -110,7 +127,7 @@ pub(crate) static TARGETS: [Target; 18] = [
             cell_data: Numbers::Scalars,
             ..Holds::TRIANGLES
         },
-        write: Write::Binary(exodus::write_exodus),
+        write: Write::Binary(exodus::write::write_exodus),
     },
     Target {
         format: Format::Su2,
@@ -123,19 +140,19 @@ pub(crate) static TARGETS: [Target; 18] = [
             spelling: Spelling::Word,
             ..Holds::TRIANGLES
         },
-        write: Write::One(su2::write),
+        write: Write::One(su2::write::write),
     },
     Target {
         format: Format::Medit,
         name: "medit",
         holds: MEDIT,
-        write: Write::One(medit::write_medit),
+        write: Write::One(medit::write::write_medit),
     },
     Target {
         format: Format::MeditBinary,
         name: "meshb",
         holds: MEDIT,
-        write: Write::Binary(medit::write_meshb),
+        write: Write::Binary(medit::write::write_meshb),
     },
     Target {
         format: Format::Triangle,
@@ -147,7 +164,7 @@ pub(crate) static TARGETS: [Target; 18] = [
             point_data: Numbers::Unnamed,
             ..Holds::TRIANGLES
         },
-        write: Write::Several(triangle::write),
+        write: Write::Several(triangle::write::write),
     },
     Target {
         format: Format::Obj,
@@ -163,13 +180,13 @@ pub(crate) static TARGETS: [Target; 18] = [
             spelling: Spelling::Word,
             ..Holds::TRIANGLES
         },
-        write: Write::One(surface::write_obj),
+        write: Write::One(write_surface::write_obj),
     },
     Target {
         format: Format::Off,
         name: "off",
         holds: Holds { quadrilaterals: true, heights: true, ..Holds::TRIANGLES },
-        write: Write::One(surface::write_off),
+        write: Write::One(write_surface::write_off),
     },
     Target {
         format: Format::Ply,
@@ -183,7 +200,7 @@ pub(crate) static TARGETS: [Target; 18] = [
             point_data: Numbers::Scalars,
             ..Holds::TRIANGLES
         },
-        write: Write::One(ply::write_ply),
+        write: Write::One(ply::write::write_ply),
     },
     Target {
         format: Format::Sms2dm,
@@ -198,7 +215,7 @@ pub(crate) static TARGETS: [Target; 18] = [
             spelling: Spelling::Quoted,
             ..Holds::TRIANGLES
         },
-        write: Write::One(grids::write_sms),
+        write: Write::One(write_grids::write_sms),
     },
     Target {
         format: Format::Adcirc,
@@ -212,7 +229,7 @@ pub(crate) static TARGETS: [Target; 18] = [
             point_data: Numbers::Only("depth"),
             ..Holds::TRIANGLES
         },
-        write: Write::One(grids::write_adcirc),
+        write: Write::One(write_grids::write_adcirc),
     },
     Target {
         format: Format::FreeFem,
@@ -223,7 +240,7 @@ pub(crate) static TARGETS: [Target; 18] = [
             vertex_groups: true,
             ..Holds::TRIANGLES
         },
-        write: Write::One(medit::write_freefem),
+        write: Write::One(medit::write::write_freefem),
     },
     Target {
         format: Format::Abaqus,
@@ -240,6 +257,6 @@ pub(crate) static TARGETS: [Target; 18] = [
             precision: Precision::Text20,
             ..Holds::TRIANGLES
         },
-        write: Write::One(abaqus::write_inp),
+        write: Write::One(abaqus::write::write_inp),
     },
 ];

@@ -1,6 +1,6 @@
 //! The bytes that the metadata of a file consist of.
 
-use crate::binary::Order;
+use crate::binary::order::Order;
 use std::ops::Range;
 
 /// What is wrong with a part of a file, or is not read of it.

@@ -6,7 +6,7 @@ use super::file::Hdf5;
 use super::filters;
 use super::raw::End;
 use super::sum::Sum;
-use crate::numbers::{Encoded, Splice};
+use crate::edit::numbers::{Encoded, Splice};
 use std::ops::Range;
 
 /// Datasets whose numbers may change, one after another. What is compressed anew and is no longer than before takes the place it

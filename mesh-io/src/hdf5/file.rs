@@ -4,13 +4,13 @@ use super::bytes::{DAMAGED, Fault};
 use super::groups::{self, Link, Target};
 use super::header::Header;
 use super::raw::{Raw, SIGNATURE};
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::source::Source;
 use std::collections::HashMap;
 
 /// A file with all its objects.
 pub(crate) struct Hdf5<'a> {
-    pub(super) source: &'a Source,
+    pub(crate) source: &'a Source,
     pub(super) raw: Raw<'a>,
     /// The root group is the first.
     objects: Vec<Object>,

@@ -4,7 +4,6 @@
 //! old style and of the new; datasets in the header, in one piece or in chunks; of filters deflate, shuffle and Fletcher's checksum.
 
 mod attribute;
-mod axes;
 mod btree;
 mod bytes;
 mod chunks;
@@ -25,7 +24,6 @@ mod sum;
 mod tests;
 mod types;
 
-pub(crate) use axes::Axes;
 pub(crate) use dataset::{Array, Dataset};
 pub(crate) use encoding::Encoding;
 pub(crate) use file::{Hdf5, Object};

@@ -1,7 +1,7 @@
 //! Checksums of metadata: Jenkins' lookup3.
 
 use super::bytes::{Bytes, Fault};
-use crate::numbers::Splice;
+use crate::edit::numbers::Splice;
 use std::ops::Range;
 
 /// A range of a file with a checksum, the four bytes after it.

@@ -1,9 +1,9 @@
 //! Files that other programs made, in `tests/formats/h5`.
 
 use super::{Encoding, Hdf5, Number};
-use crate::numbers::Encoded;
-use crate::rewrite::Rewrite;
-use crate::source::Source;
+use crate::disk::source::Source;
+use crate::edit::numbers::Encoded;
+use crate::edit::rewrite::Rewrite;
 use std::path::Path;
 
 const FILES: [&str; 10] = [

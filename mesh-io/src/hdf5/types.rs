@@ -1,7 +1,7 @@
 //! What a dataset consists of: its type and its lengths.
 
 use super::bytes::{Bytes, Fault};
-use crate::binary::Order;
+use crate::binary::order::Order;
 use crate::precision::Precision;
 
 /// The types of numbers that are told apart.

@@ -1,7 +1,7 @@
 //! Attributes of variables.
 
 use super::header::Number;
-use crate::binary::Order;
+use crate::binary::order::Order;
 
 /// An attribute: its name, and its content as it stands in the file.
 pub(super) struct Attribute {

@@ -5,11 +5,11 @@
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Number, Variable};
-use crate::binary::Order;
+use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::precision::Precision;
-use crate::source::Source;
-use crate::text::{CUT_OFF, Cursor};
+use crate::text::cursor::{CUT_OFF, Cursor};
 
 const ORDER: Order = Order::Big;
 

@@ -1,11 +1,11 @@
 //! What a netCDF file holds, whichever format it is in: dimensions and variables by name.
 
 use super::attribute::Attribute;
-use crate::binary::Order;
+use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Dataset, Hdf5};
 use crate::precision::Precision;
-use crate::source::Source;
 use std::borrow::Cow;
 use std::ops::Range;
 

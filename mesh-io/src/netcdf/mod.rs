@@ -1,19 +1,16 @@
 //! netCDF: dimensions and variables by name, in the classic formats and in netCDF-4, which is HDF5.
 
 mod attribute;
-mod axes;
 mod classic;
 mod header;
-mod points;
 mod version4;
+pub(crate) mod write;
 
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::SIGNATURE;
-use crate::source::Source;
 
-pub(crate) use axes::axes;
 pub(crate) use header::{Header, Items, Number, Variable};
-pub(crate) use points::{Parts, PointData};
 
 /// Reads the header of a file.
 ///

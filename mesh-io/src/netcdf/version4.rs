@@ -5,10 +5,10 @@
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Number, Variable};
-use crate::binary::Order;
+use crate::binary::order::Order;
+use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::{self, Hdf5};
-use crate::source::Source;
 
 /// What the name of a dimension starts with that is no variable of the same name.
 const NO_VARIABLE: &[u8] = b"This is a netCDF dimension but not a netCDF variable";

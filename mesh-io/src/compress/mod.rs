@@ -1,0 +1,3 @@
+//! Compressed files: what gzip and Zstandard hold, with limits on the size.
+
+pub(crate) mod packed;

@@ -1,0 +1,7 @@
+//! Parts of a mesh in memory, of no format: groups, regions, constraints on vertices, and numbers of nodes.
+
+pub(crate) mod constraints;
+pub(crate) mod group;
+pub(crate) mod label;
+pub(crate) mod regions;
+pub(crate) mod tags;

@@ -1,0 +1,7 @@
+//! Files on disk: the bytes of a mesh with its companion files, and the safe replacement of whole files.
+
+#[cfg(test)]
+mod faults;
+pub(crate) mod replace;
+pub(crate) mod source;
+pub(crate) mod system;

@@ -1,0 +1,138 @@
+//! The bytes of one file.
+
+use crate::compress::packed;
+use crate::compress::packed::{Packed, Unpackable};
+use crate::error::{Location, ReadError};
+use crate::parallel::map_parts;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// A file as it was read.
+pub(crate) struct Source {
+    pub(crate) path: PathBuf,
+    pub(crate) bytes: Vec<u8>,
+    /// The compressed bytes of the file, if it is compressed.
+    pub(crate) packed: Option<Packed>,
+    /// Whether corners at the same place become one vertex, for formats without vertices.
+    pub(crate) welds: bool,
+    /// The files that it names, in which numbers of the mesh stand.
+    pub(crate) beside: Vec<Beside>,
+}
+
+/// A file that a mesh has numbers in, beside the one that names it.
+pub(crate) struct Beside {
+    /// What it is called there, and where, ascending.
+    pub(crate) names: Vec<String>,
+    pub(crate) named_at: Vec<Range<usize>>,
+    pub(crate) source: Source,
+}
+
+/// Where a file names another one.
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) at: Range<usize>,
+}
+
+impl Source {
+    pub(crate) fn load(path: &Path) -> Result<Source, ReadError> {
+        match content(path) {
+            Ok(bytes) => Source::new(path, bytes),
+            Err(source) => {
+                let remedy = match source.kind() {
+                    ErrorKind::NotFound => "Check the name",
+                    ErrorKind::IsADirectory => "Name a mesh file, not a directory",
+                    ErrorKind::PermissionDenied => "Check its permissions",
+                    ErrorKind::OutOfMemory => "Use a machine with more memory",
+                    _ => "Check the disk, or copy the file elsewhere and try again",
+                };
+                Err(ReadError::Io { path: path.to_owned(), source, remedy: remedy.into() })
+            }
+        }
+    }
+
+    /// Makes a source of a file's bytes, and decompresses them if needed.
+    pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Source, ReadError> {
+        let source =
+            Source { path: path.to_owned(), bytes, packed: None, welds: false, beside: Vec::new() };
+        match packed::unpack(&source.bytes) {
+            Ok(None) => Ok(source),
+            Ok(Some((packing, content))) => {
+                let packed = Some(Packed { packing, bytes: source.bytes });
+                Ok(Source { bytes: content, packed, ..source })
+            }
+            Err(Unpackable { problem, remedy }) => Err(source.error(problem, remedy)),
+        }
+    }
+
+    #[cold]
+    pub(crate) fn error_at(
+        &self,
+        location: Location,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        let path = self.path.clone();
+        ReadError::Content { path, location, problem: problem.into(), remedy: remedy.into() }
+    }
+
+    #[cold]
+    pub(crate) fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> ReadError {
+        let path = self.path.clone();
+        ReadError::Format { path, problem: problem.into(), remedy: remedy.into() }
+    }
+
+    /// Returns the offset of the content, after a byte order mark if there is one.
+    pub(crate) fn begin(&self) -> usize {
+        if self.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 }
+    }
+
+    /// Returns the line of a byte, counted from 1.
+    pub(crate) fn line_of(&self, at: usize) -> usize {
+        1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
+    }
+
+    /// The file itself and those beside it.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = &Source> {
+        std::iter::once(self).chain(self.beside.iter().map(|beside| &beside.source))
+    }
+
+    /// The last part of the path, for messages.
+    pub(crate) fn name(&self) -> String {
+        file_name(&self.path)
+    }
+}
+
+/// Bytes that one thread reads at a time.
+const CHUNK: usize = 1 << 22;
+
+/// Reads a file. All threads read parts of a long one, as a single thread spends most of its time waiting for the
+/// system to provide memory.
+fn content(path: &Path) -> io::Result<Vec<u8>> {
+    let about = fs::metadata(path)?;
+    match usize::try_from(about.len()) {
+        Ok(length) if about.is_file() && length >= 2 * CHUNK => {
+            // If memory is short, this is an error, while the next line would end the process without a message.
+            Vec::<u8>::new().try_reserve_exact(length)?;
+            let mut bytes = vec![0; length];
+            let each = bytes.chunks_mut(CHUNK);
+            let read = map_parts(each, |index, chunk| {
+                let mut file = File::open(path)?;
+                file.seek(SeekFrom::Start((index * CHUNK) as u64))?;
+                file.read_exact(chunk)
+            });
+            let has_changed = fs::metadata(path)?.len() != about.len();
+            match read.iter().all(io::Result::is_ok) && !has_changed {
+                true => Ok(bytes),
+                false => fs::read(path),
+            }
+        }
+        _ => fs::read(path),
+    }
+}
+
+/// Returns the last part of a path, for messages.
+pub(crate) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}

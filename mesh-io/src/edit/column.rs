@@ -1,0 +1,135 @@
+//! Numbers of a file that may be replaced, with their new values.
+
+use crate::edit::numbers::{Form, Numbers, Places};
+use std::ops::Range;
+
+/// A list of numbers in the order in which they stand in the file, with their old and new values.
+pub(crate) struct Column<'a> {
+    at: At<'a>,
+    form: Form,
+    old: &'a [f64],
+    new: &'a [f64],
+    /// Item `i` is number `first + step * i` of `old` and `new`.
+    first: usize,
+    step: usize,
+    /// The `i` of each item, if several items have the same number.
+    owners: Option<&'a [u32]>,
+}
+
+/// Where the items of a column start.
+enum At<'a> {
+    /// Each item starts this many bytes after one of these places; before it, if that is negative.
+    After(&'a Places, isize),
+    /// Each item is two numbers: one at one of these places, and the next token after it.
+    Pairs(&'a Places),
+}
+
+/// A number to be replaced.
+pub(crate) struct Change {
+    pub(crate) range: Range<usize>,
+    pub(crate) value: f64,
+    pub(crate) form: Form,
+    /// How many characters the number must have at least, with blanks.
+    pub(crate) width: usize,
+}
+
+impl<'a> Column<'a> {
+    /// Makes columns for the coordinates of vertices, from the places of x. If a vertex has several places, `owners`
+    /// gives the vertex of each place.
+    pub(crate) fn of_points(
+        (x_at, owners): (&'a Places, Option<&'a [u32]>),
+        numbers: Numbers,
+        old: &'a [[f64; 2]],
+        new: &'a [[f64; 2]],
+    ) -> Vec<Column<'a>> {
+        let column = |at, first| {
+            let (old, new) = (old.as_flattened(), new.as_flattened());
+            Column { at, form: numbers.into(), old, new, first, step: 2, owners }
+        };
+        match numbers {
+            Numbers::Text { .. } | Numbers::Fields { .. } => {
+                vec![column(At::Pairs(x_at), 0)]
+            }
+            Numbers::Binary { y_after, .. } => {
+                vec![column(At::After(x_at, 0), 0), column(At::After(x_at, y_after), 1)]
+            }
+        }
+    }
+
+    /// Makes a column for the numbers of an array.
+    pub(crate) fn of_array(
+        places: &'a Places,
+        form: Form,
+        old: &'a [f64],
+        new: &'a [f64],
+    ) -> Column<'a> {
+        Column { at: At::After(places, 0), form, old, new, first: 0, step: 1, owners: None }
+    }
+
+    fn count(&self) -> usize {
+        match (self.places(), self.owners) {
+            (Places::List(list), _) => list.len(),
+            (Places::Regular { .. }, Some(owners)) => owners.len(),
+            (Places::Regular { .. }, None) => self.old.len() / self.step,
+        }
+    }
+
+    fn start(&self, item: usize) -> usize {
+        match self.at {
+            At::After(places, shift) => places.at(item).saturating_add_signed(shift),
+            At::Pairs(places) => places.at(item),
+        }
+    }
+
+    fn places(&self) -> &'a Places {
+        match self.at {
+            At::After(places, _) | At::Pairs(places) => places,
+        }
+    }
+
+    /// Returns the byte after an item.
+    pub(crate) fn end(&self, bytes: &[u8], item: usize) -> usize {
+        let (end, _) = self.form.extent(bytes, self.start(item));
+        match self.at {
+            At::Pairs(_) => self.form.extent(bytes, self.form.next(bytes, end)).0,
+            At::After(..) => end,
+        }
+    }
+
+    /// Returns the first item that starts at this byte or later.
+    pub(crate) fn first_from(&self, at: usize) -> usize {
+        let (mut low, mut high) = (0, self.count());
+        while low < high {
+            let middle = low + (high - low) / 2;
+            match self.start(middle) < at {
+                true => low = middle + 1,
+                false => high = middle,
+            }
+        }
+        low
+    }
+
+    /// Adds the numbers of some items that have changed, rounded to the precision of the file.
+    pub(crate) fn changes(&self, bytes: &[u8], items: Range<usize>, changes: &mut Vec<Change>) {
+        let form = self.form;
+        let mut add = |number: usize, start: usize, extent: Option<(usize, usize)>| {
+            let value = form.precision().rounded(self.new[number]);
+            if value.to_bits() != self.old[number].to_bits() {
+                let (end, width) = extent.unwrap_or_else(|| form.extent(bytes, start));
+                changes.push(Change { range: start..end, value, form, width });
+            }
+        };
+        for item in items {
+            let index = self.owners.map_or(item, |owners| owners[item] as usize);
+            let (start, number) = (self.start(item), self.first + self.step * index);
+            match self.at {
+                At::Pairs(_) => {
+                    let extent = form.extent(bytes, start);
+                    add(number, start, Some(extent));
+                    add(number + 1, form.next(bytes, extent.0), None);
+                }
+                _ => add(number, start, None),
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! How coordinates and other numbers are stored in a file.
+
+use crate::binary::order::Order;
+use crate::precision::{Precision, short_text};
+use crate::text::card;
+use crate::text::field_text::{ALL, field_text};
+use crate::text::token::{number_end, skip_to_number};
+use std::io::Write;
+use std::ops::Range;
+
+/// How the coordinates of a vertex are stored in its file, from the offset of x on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Numbers {
+    /// As text. y is the token after x. Programs that read the format may know only single precision.
+    Text { precision: Precision },
+    /// As text in the fields of a card of Nastran. y is in the field after that of x.
+    Fields { precision: Precision },
+    /// In binary. y is `y_after` bytes after x; before x, if that is negative.
+    Binary { order: Order, precision: Precision, y_after: isize },
+}
+
+impl Numbers {
+    /// Text of double precision.
+    pub(crate) const TEXT: Numbers = Numbers::Text { precision: Precision::Double };
+
+    /// Numbers in binary, with y right after x.
+    pub(crate) fn adjacent(order: Order, precision: Precision) -> Numbers {
+        Numbers::Binary { order, precision, y_after: precision.bytes() as isize }
+    }
+
+    pub(crate) fn precision(self) -> Precision {
+        match self {
+            Numbers::Text { precision }
+            | Numbers::Fields { precision }
+            | Numbers::Binary { precision, .. } => precision,
+        }
+    }
+}
+
+/// How a single number is stored in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// As a token of text. Programs that read the format may know only single precision.
+    Text(Precision),
+    /// As text in a field of a card of Nastran.
+    Field(Precision),
+    /// In binary.
+    Binary(Order, Precision),
+}
+
+impl Form {
+    pub(crate) fn precision(self) -> Precision {
+        match self {
+            Form::Text(precision) | Form::Field(precision) | Form::Binary(_, precision) => {
+                precision
+            }
+        }
+    }
+
+    /// Returns the end of a number, with the characters that stand for it, and how many its place must have if that is given.
+    pub(crate) fn extent(self, bytes: &[u8], at: usize) -> (usize, usize) {
+        match self {
+            Form::Text(_) => (number_end(bytes, at), 0),
+            Form::Field(_) => card::extent(bytes, at),
+            Form::Binary(_, precision) => (at + precision.bytes(), 0),
+        }
+    }
+
+    /// Returns where y starts, given where x ends. Of text only.
+    pub(crate) fn next(self, bytes: &[u8], end: usize) -> usize {
+        match self {
+            Form::Field(_) => card::next_field(bytes, end),
+            _ => skip_to_number(bytes, end),
+        }
+    }
+
+    /// Writes a number, which is rounded to the precision. Text has the fewest digits that parse back to the same bits.
+    pub(crate) fn write(self, value: f64, out: &mut Vec<u8>) {
+        match self {
+            Form::Field(precision) => {
+                let most = match precision {
+                    Precision::Text8 => 8,
+                    Precision::Text16 => 16,
+                    _ => ALL,
+                };
+                out.extend_from_slice(field_text(value, most).as_bytes());
+            }
+            Form::Text(Precision::Single) => {
+                write!(out, "{:?}", value as f32).expect("memory takes what is written to it");
+            }
+            Form::Text(Precision::Text20) => out.extend_from_slice(short_text(value).as_bytes()),
+            Form::Text(_) => {
+                write!(out, "{value:?}").expect("memory takes what is written to it");
+            }
+            Form::Binary(order, Precision::Single) => {
+                out.extend_from_slice(&order.single_bytes(value as f32));
+            }
+            Form::Binary(order, _) => out.extend_from_slice(&order.bytes(value)),
+        }
+    }
+}
+
+impl From<Numbers> for Form {
+    fn from(numbers: Numbers) -> Form {
+        match numbers {
+            Numbers::Text { precision } => Form::Text(precision),
+            Numbers::Fields { precision } => Form::Field(precision),
+            Numbers::Binary { order, precision, .. } => Form::Binary(order, precision),
+        }
+    }
+}
+
+/// The offsets of an array's numbers, ascending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Places {
+    /// An offset for each number.
+    List(Vec<usize>),
+    /// One number every `stride` bytes.
+    Regular { start: usize, stride: usize },
+}
+
+impl Places {
+    /// Returns the offset of the number with this index.
+    #[inline]
+    pub(crate) fn at(&self, index: usize) -> usize {
+        match self {
+            Places::List(list) => list[index],
+            Places::Regular { start, stride } => start + index * stride,
+        }
+    }
+}
+
+/// Collects the offsets of numbers as they are found. It needs memory only if they are not evenly spaced.
+#[derive(Default)]
+pub(crate) struct FoundPlaces {
+    start: usize,
+    stride: usize,
+    count: usize,
+    /// All offsets, if they are not evenly spaced.
+    list: Vec<usize>,
+    /// About how many offsets there will be.
+    expected: usize,
+}
+
+impl FoundPlaces {
+    pub(crate) fn expect(&mut self, more: usize) {
+        self.expected = self.count + more;
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, at: usize) {
+        if !self.list.is_empty() {
+            self.list.push(at);
+        } else if self.count > 1 && at == self.start + self.count * self.stride {
+            self.count += 1;
+        } else {
+            self.extend(at, 0, 1);
+        }
+    }
+
+    /// Adds `count` offsets that are `stride` bytes apart.
+    pub(crate) fn extend(&mut self, start: usize, stride: usize, count: usize) {
+        let follows = match (self.count, count) {
+            (_, 0) => return,
+            (0, _) => {
+                (self.start, self.stride) = (start, stride);
+                true
+            }
+            (1, 1) if start > self.start => {
+                self.stride = start - self.start;
+                true
+            }
+            (own, more) => {
+                self.list.is_empty()
+                    && start == self.start + own * self.stride
+                    && (more == 1 || stride == self.stride)
+            }
+        };
+        if !follows {
+            if self.list.is_empty() {
+                self.list.reserve_exact(self.expected.max(self.count + count));
+                self.list.extend((0..self.count).map(|index| self.start + index * self.stride));
+            }
+            self.list.extend((0..count).map(|index| start + index * stride));
+        }
+        self.count += count;
+    }
+
+    /// Returns the offset with this index.
+    pub(crate) fn at(&self, index: usize) -> usize {
+        match self.list.is_empty() {
+            true => self.start + index * self.stride,
+            false => self.list[index],
+        }
+    }
+
+    pub(crate) fn finish(self) -> Places {
+        match self.list.is_empty() {
+            true => Places::Regular { start: self.start, stride: self.stride },
+            false => Places::List(self.list),
+        }
+    }
+}
+
+/// Bytes that replace a range of a file.
+#[derive(Clone)]
+pub(crate) struct Splice {
+    pub(crate) range: Range<usize>,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// A number in a file that says how far from the start of the appended data an array stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Offset {
+    pub(crate) value: usize,
+    /// The offset of the array in the file.
+    pub(crate) array_at: usize,
+    /// Where the number stands in the file.
+    pub(crate) place: Range<usize>,
+}
+
+/// Arrays of numbers that are encoded in their file: in base64, or compressed.
+pub(crate) trait Encoded: Send + Sync {
+    /// Returns the decoded numbers in binary, as they were read.
+    fn bytes(&self) -> &[u8];
+    /// Returns the ranges of the file that hold the encoded arrays.
+    fn ranges(&self) -> Vec<Range<usize>>;
+    /// What of the file is replaced if these become the numbers. `end` is where the file ends, with what was put behind it so far; what
+    /// is put there is a splice at its end as it was read.
+    fn splices(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<Splice>;
+    /// What else is replaced in a file, once all is known that its arrays replace and where it ends then. What several arrays say
+    /// of one range is the same.
+    fn follow(&self, file: &[u8], splices: &[Splice], end: usize) -> Vec<Splice>;
+    /// Where that may be in a file of which nothing changes before this byte.
+    fn followers(&self, first: usize) -> Vec<Range<usize>>;
+    /// Whether everything else stays at its place in the file, whatever the lengths of the arrays.
+    fn keeps_places(&self) -> bool;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_of_numbers_are_kept_as_they_were_added() {
+        type Run = (usize, usize, usize);
+        let cases: [(&[Run], bool); 8] = [
+            (&[], true),
+            (&[(7, 0, 1)], true),
+            (&[(7, 0, 1), (10, 0, 1), (13, 0, 1), (16, 3, 4)], true),
+            (&[(7, 3, 4), (19, 0, 1), (22, 3, 2)], true),
+            (&[(7, 3, 4), (20, 0, 1), (21, 0, 1)], false),
+            (&[(7, 3, 4), (19, 4, 3)], false),
+            (&[(7, 0, 1), (10, 4, 3)], false),
+            (&[(7, 0, 1), (10, 0, 1), (14, 0, 1), (18, 5, 3), (40, 0, 0)], false),
+        ];
+        for (runs, is_regular) in cases {
+            let mut found = FoundPlaces::default();
+            let mut expected = Vec::new();
+            for &(start, stride, count) in runs {
+                match count {
+                    1 => found.push(start),
+                    _ => found.extend(start, stride, count),
+                }
+                expected.extend((0..count).map(|index| start + index * stride));
+            }
+            let all: Vec<usize> = (0..expected.len()).map(|index| found.at(index)).collect();
+            assert_eq!(all, expected, "{runs:?}");
+            let places = found.finish();
+            assert_eq!(matches!(places, Places::Regular { .. }), is_regular, "{runs:?}");
+            let all: Vec<usize> = (0..expected.len()).map(|index| places.at(index)).collect();
+            assert_eq!(all, expected, "{runs:?}");
+        }
+    }
+}

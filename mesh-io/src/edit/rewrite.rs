@@ -1,0 +1,223 @@
+//! Writes a file again with some of its numbers replaced.
+
+use crate::edit::column::{Change, Column};
+use crate::edit::numbers::Splice;
+use crate::parallel::map_parts;
+use std::io::{self, Write};
+use std::ops::Range;
+
+/// Bytes that one thread rewrites at a time.
+const BLOCK: usize = 1 << 17;
+
+/// A file's content, with the numbers that may be replaced.
+pub(crate) struct Rewrite<'a> {
+    /// The content as it was read.
+    pub(crate) bytes: &'a [u8],
+    /// The numbers in the content that may be replaced.
+    pub(crate) columns: &'a [Column<'a>],
+    /// Replacements of whole ranges, ascending. The ranges hold no number of the columns.
+    pub(crate) splices: &'a [Splice],
+}
+
+impl Rewrite<'_> {
+    /// Writes the content to `out`, with changed numbers and splices replaced.
+    pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
+        let mut at = 0;
+        for splice in self.splices {
+            self.write_range(at..splice.range.start, out)?;
+            out.write_all(&splice.bytes)?;
+            at = splice.range.end;
+        }
+        self.write_range(at..self.bytes.len(), out)
+    }
+
+    fn write_range(&self, range: Range<usize>, out: &mut (dyn Write + Send)) -> io::Result<()> {
+        if self.columns.is_empty() {
+            return out.write_all(&self.bytes[range]);
+        }
+        let count = range.len().div_ceil(BLOCK);
+        let cut = |block: usize| range.end.min(self.cut(range.start + block * BLOCK));
+        write_blocks(out, count, |block| {
+            // The first block starts where the range starts, even within a number.
+            let start = if block == 0 { range.start } else { cut(block) };
+            self.block(start..cut(block + 1).max(start))
+        })
+    }
+
+    /// Returns the first offset from `at` on that is not within a number.
+    fn cut(&self, mut at: usize) -> usize {
+        loop {
+            let before = at;
+            for column in self.columns {
+                let item = column.first_from(at);
+                if let Some(last) = item.checked_sub(1) {
+                    at = at.max(column.end(self.bytes, last));
+                }
+            }
+            if at == before {
+                return at;
+            }
+        }
+    }
+
+    /// Returns the new content of a range.
+    fn block(&self, range: Range<usize>) -> Vec<u8> {
+        let mut changes = Vec::new();
+        for column in self.columns {
+            let items = column.first_from(range.start)..column.first_from(range.end);
+            column.changes(self.bytes, items, &mut changes);
+        }
+        if self.columns.len() > 1 {
+            // The changes of each column ascend already, which makes a stable sort fast.
+            changes.sort_by_key(|change| change.range.start);
+        }
+        let mut out = Vec::with_capacity(range.len() + range.len() / 4);
+        let mut copied = range.start;
+        for Change { range, value, form, width } in changes {
+            out.extend_from_slice(&self.bytes[copied..range.start]);
+            let start = out.len();
+            form.write(value, &mut out);
+            let blanks = std::iter::repeat_n(b' ', (start + width).saturating_sub(out.len()));
+            // What stood at the end of its field stays there.
+            let is_right = width > 0 && self.bytes[..range.end].last().is_some_and(|&b| b > b' ');
+            match is_right {
+                true => drop(out.splice(start..start, blanks)),
+                false => out.extend(blanks),
+            }
+            copied = range.end;
+        }
+        out.extend_from_slice(&self.bytes[copied..range.end]);
+        out
+    }
+}
+
+/// Writes blocks of a file in their order. While one thread writes blocks, the others make the next ones.
+fn write_blocks(
+    out: &mut (dyn Write + Send),
+    count: usize,
+    make: impl Fn(usize) -> Vec<u8> + Sync,
+) -> io::Result<()> {
+    let at_once = 2 * rayon::current_num_threads();
+    let mut made: Vec<Vec<u8>> = Vec::new();
+    for start in (0..count).step_by(at_once) {
+        let next = start..count.min(start + at_once);
+        let (written, next) = rayon::join(
+            || made.iter().try_for_each(|block| out.write_all(block)),
+            || map_parts(next, |_, block| make(block)),
+        );
+        written?;
+        made = next;
+    }
+    made.iter().try_for_each(|block| out.write_all(block))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::binary::order::Order;
+    use crate::edit::numbers::{Form, Numbers, Places};
+    use crate::precision::Precision;
+
+    fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
+        let places = Places::List(x_at.to_vec());
+        let columns = Column::of_points((&places, None), Numbers::TEXT, old, new);
+        let mut out = Vec::new();
+        Rewrite { bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
+        out
+    }
+
+    #[test]
+    fn written_numbers_parse_back_to_the_same_bits() {
+        let values = [
+            -0.0,
+            0.0,
+            1e-7,
+            1e16,
+            -1.0 / 3.0,
+            f64::MIN_POSITIVE,
+            f64::from_bits(1),
+            f64::MAX,
+            123_456_789.123_456_79,
+            1e15,
+            0.1 + 0.2,
+        ];
+        for value in values {
+            let out = rewritten(b"1 7 8 9", &[2], &[[7.0, 8.0]], &[[value, 8.0]]);
+            let token = out[2..].split(|&b| b == b' ').next().unwrap();
+            let token = str::from_utf8(token).unwrap().parse();
+            assert_eq!(token.map(f64::to_bits), Ok(value.to_bits()));
+            assert!(out.ends_with(b" 8 9"));
+        }
+    }
+
+    /// The result must equal a plain replacement row by row. The rows fill several rounds of blocks.
+    #[test]
+    fn rewriting_in_blocks_equals_rewriting_row_by_row() {
+        for vertices in [0, 1, 4000, 4001, 200_017] {
+            let (mut bytes, mut expected) = (b"head\r\n".to_vec(), b"head\r\n".to_vec());
+            let (mut x_at, mut old, mut new) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut z_at, mut z_old, mut z_new) = (Vec::new(), Vec::new(), Vec::new());
+            for v in 0..vertices {
+                let [x, y] = [v as f64 * 0.37, v as f64];
+                let to = [x + f64::from(u8::from(v % 3 == 0)), if v % 5 == 0 { -y } else { y }];
+                let end = if v % 7 == 0 { " # moved\r\n\n" } else { "\r\n" };
+                write!(bytes, "{v}  ").unwrap();
+                x_at.push(bytes.len());
+                write!(bytes, "{x:?}\t{y:?} ").unwrap();
+                z_at.push(bytes.len());
+                write!(bytes, "7{end}").unwrap();
+                let z = if v % 4 == 0 { 0.25 } else { 7.0 };
+                let text = if v % 4 == 0 { "0.25" } else { "7" };
+                write!(expected, "{v}  {:?}\t{:?} {text}{end}", to[0], to[1]).unwrap();
+                old.push([x, y]);
+                new.push(to);
+                z_old.push(7.0);
+                z_new.push(z);
+            }
+            bytes.extend_from_slice(b"tail 1 2 3");
+            expected.extend_from_slice(b"tail 1 2 3");
+            assert!(rewritten(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
+            let x_at = Places::List(x_at);
+            let mut columns = Column::of_points((&x_at, None), Numbers::TEXT, &old, &new);
+            let places = Places::List(z_at);
+            let form = Form::Text(Precision::Double);
+            columns.push(Column::of_array(&places, form, &z_old, &z_new));
+            let mut out = Vec::new();
+            Rewrite { bytes: &bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
+            assert!(out == expected, "{vertices} vertices");
+        }
+    }
+
+    /// Binary numbers of several arrays, interleaved and separate, beside ranges that are replaced.
+    #[test]
+    fn numbers_in_binary_are_replaced_where_they_stand() {
+        let count = 40_000;
+        let order = Order::Big;
+        let row = |x: f64, y: f64, z: f32| {
+            [&order.bytes(x)[..], &order.bytes(y), &order.single_bytes(z)].concat()
+        };
+        let old: Vec<[f64; 2]> = (0..count).map(|v| [f64::from(v), 0.5]).collect();
+        let new: Vec<[f64; 2]> = old.iter().map(|[x, y]| [x * 3.0, y + 1.0]).collect();
+        let z_old = vec![2.0; old.len()];
+        let z_new: Vec<f64> = (0..count).map(|v| f64::from(v % 3)).collect();
+        let rows: Vec<u8> = old.iter().flat_map(|[x, y]| row(*x, *y, 2.0)).collect();
+        let bytes = [b"head", &rows[..], b"tail"].concat();
+        let x_at = Places::Regular { start: 4, stride: 20 };
+        let mut columns = Column::of_points(
+            (&x_at, None),
+            Numbers::adjacent(order, Precision::Double),
+            &old,
+            &new,
+        );
+        let places = Places::Regular { start: 20, stride: 20 };
+        let form = Form::Binary(order, Precision::Single);
+        columns.push(Column::of_array(&places, form, &z_old, &z_new));
+        let splices =
+            [Splice { range: 0..2, bytes: b"HHH".into() }, Splice { range: 3..4, bytes: vec![] }];
+        let mut out = Vec::new();
+        Rewrite { bytes: &bytes, columns: &columns, splices: &splices }.write(&mut out).unwrap();
+        let rows: Vec<u8> =
+            new.iter().zip(&z_new).flat_map(|([x, y], z)| row(*x, *y, *z as f32)).collect();
+        assert!(out == [b"HHHa", &rows[..], b"tail"].concat());
+    }
+}

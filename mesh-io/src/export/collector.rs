@@ -1,0 +1,365 @@
+//! Makes a description of a mesh from what a reader hands on.
+
+use super::content::{Content, Data, Group};
+use crate::content::label::Label;
+use crate::content::tags::TagMap;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
+use std::collections::HashMap;
+
+/// Reads the description of a mesh, from a file that was read before.
+pub(crate) fn content(reader: &Reader, source: &Source) -> Result<Content, ReadError> {
+    let mut collector = Collector::default();
+    (reader.walk)(source, &mut collector)?;
+    Ok(collector.finish())
+}
+
+/// Collects all that a reader hands on.
+#[derive(Default)]
+pub(crate) struct Collector {
+    content: Content,
+    map: Option<TagMap>,
+    columns: Vec<Column>,
+    /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
+    within: Vec<(String, Label, Option<u8>)>,
+    numbers: HashMap<(String, u8, Label), u32>,
+    sets: HashMap<Vec<u32>, u32>,
+    /// The last set of cells of a dimension and region, as long as the groups they stand within are the same.
+    last: HashMap<(u8, [i64; 2]), u32>,
+    names: HashMap<(String, Option<u8>, i64), String>,
+    vertex_numbers: HashMap<(String, i64), usize>,
+    /// The array that was announced last.
+    announced: Option<Announced>,
+    /// How many data have the same name, for names with more than one.
+    steps: HashMap<String, usize>,
+    /// The last vertex of a line that may be continued.
+    open_end: Option<u32>,
+    /// Data of cells, with the tags of their elements.
+    by_tag: Vec<(Data, Option<Vec<u64>>)>,
+}
+
+/// What data are called that have no name.
+const UNNAMED: &str = "unnamed";
+
+struct Announced {
+    name: String,
+    components: usize,
+    is_real: bool,
+    is_height: bool,
+}
+
+/// Returns the common name for a kind of group, which formats call differently.
+fn common(what: &str) -> String {
+    let small = what.to_ascii_lowercase();
+    let common = match small.as_str() {
+        "gmsh:physical" => "physical",
+        "gmsh:geometrical" => "entity",
+        "medit:ref" => "reference",
+        "materialids" | "material_id" | "materials" => "material",
+        _ => what,
+    };
+    common.to_owned()
+}
+
+impl Collector {
+    /// Returns the description after all was handed on.
+    pub(crate) fn finish(self) -> Content {
+        let Self { mut content, names, by_tag, .. } = self;
+        for group in &mut content.groups {
+            let Label::Tag(tag) = group.label else { continue };
+            let of = |dimension| names.get(&(group.what.clone(), dimension, tag)).cloned();
+            group.name = of(Some(group.dimension)).or_else(|| of(None));
+        }
+        for (group, _) in &mut content.vertex_groups {
+            let Label::Tag(tag) = group.label else { continue };
+            let of = |dimension| names.get(&(group.what.clone(), dimension, tag)).cloned();
+            group.name = of(Some(0)).or_else(|| of(None));
+        }
+        let first = content.heights.first().copied();
+        if content.heights.iter().all(|&z| Some(z) == first) {
+            content.height = first.unwrap_or(0.0);
+            content.heights.clear();
+        }
+        let (count, left_out) = (content.points.len(), &mut content.left_out);
+        content.point_data.retain(|data| {
+            let fits = data.components > 0
+                && Some(data.values.len()) == count.checked_mul(data.components);
+            if !fits {
+                left_out.push(format!("{}, which has not a tuple for each vertex", data.name));
+            }
+            fits
+        });
+        // An element may have become several cells, and data may be given for some cells only.
+        for (data, tags) in by_tag.into_iter().filter(|(data, _)| data.components > 0) {
+            let rows: HashMap<u64, usize> = match tags {
+                Some(tags) => tags.into_iter().zip(0..).collect(),
+                None => (0..).zip(0..data.values.len() / data.components.max(1)).collect(),
+            };
+            let each = data.components;
+            let mut values = Vec::with_capacity(content.cells.len() * each);
+            for tag in &content.cells.tags {
+                match rows.get(tag).and_then(|row| data.values.get(row * each..(row + 1) * each)) {
+                    Some(own) => values.extend_from_slice(own),
+                    None => values.resize(values.len() + each, f64::NAN),
+                }
+            }
+            content.cell_data.push(Data { values, ..data });
+        }
+        // Data that tell regions are kept as groups.
+        let groups = &content.groups;
+        let is_group = |data: &Data| groups.iter().any(|group| group.what == common(&data.name));
+        content.cell_data.retain(|data| !is_group(data));
+        content
+    }
+
+    fn group(&mut self, what: &str, dimension: u8, label: Label) -> u32 {
+        let what = common(what);
+        let next = self.content.groups.len() as u32;
+        let number = *self.numbers.entry((what.clone(), dimension, label.clone())).or_insert(next);
+        if number == next {
+            self.content.groups.push(Group { what, dimension, label, name: None });
+        }
+        number
+    }
+
+    /// Returns the number of the set of groups that an element belongs to.
+    fn set(&mut self, dimension: u8, region: [i64; 2]) -> u32 {
+        if let Some(&set) = self.last.get(&(dimension, region)) {
+            return set;
+        }
+        let mut groups = Vec::new();
+        let of_columns = self.columns.iter().zip(region).filter_map(|(column, number)| {
+            let label = (column.label)(number).filter(|_| dimension >= column.from_dimension)?;
+            Some((column.what.clone(), dimension, label))
+        });
+        // Each dimension has groups of its own here, even if the format has not.
+        let within = self.within.iter();
+        let within = within.map(|(what, label, _)| (what.clone(), dimension, label.clone()));
+        for (what, dimension, label) in of_columns.chain(within).collect::<Vec<_>>() {
+            let group = self.group(&what, dimension, label);
+            if !groups.contains(&group) {
+                groups.push(group);
+            }
+        }
+        let next = self.content.sets.len() as u32;
+        let set = *self.sets.entry(groups.clone()).or_insert(next);
+        if set == next {
+            self.content.sets.push(groups);
+        }
+        self.last.insert((dimension, region), set);
+        set
+    }
+
+    fn vertices(&self, nodes: &[u64]) -> Vec<u32> {
+        let map = self.map.as_ref();
+        nodes.iter().filter_map(|&node| map.and_then(|map| map.index(node))).collect()
+    }
+}
+
+impl Sink for Collector {
+    fn takes_ahead(&self) -> bool {
+        true
+    }
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, at: [f64; 2]) {
+        self.content.labels.push(tag);
+        self.content.points.push(at);
+    }
+
+    fn end_nodes(&mut self, _: &Cursor<'_>) -> Result<(), ReadError> {
+        // There is no error to report, as the file was read before without one.
+        self.map = TagMap::new(&self.content.labels).ok();
+        Ok(())
+    }
+
+    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        let &Element { tag, kind, region, nodes } = element;
+        self.open_end = None;
+        if kind == Kind::Corner {
+            // The corners of required triangles, which are listed a second time.
+            self.leaves_out("the list of required triangles");
+            return Ok(());
+        }
+        let set = self.set(kind.dimension(), region);
+        let vertices = self.vertices(&nodes[..kind.nodes()]);
+        self.content.cells.push(kind, &vertices, set, tag);
+        Ok(())
+    }
+
+    fn polygon(
+        &mut self,
+        _: &Cursor<'_>,
+        (tag, region): (u64, [i64; 2]),
+        corners: &[u64],
+    ) -> Result<(), ReadError> {
+        let set = self.set(2, region);
+        let vertices = self.vertices(corners);
+        self.content.cells.push(Kind::Corner, &vertices, set, tag);
+        Ok(())
+    }
+
+    fn polyline(
+        &mut self,
+        _: &Cursor<'_>,
+        (tag, region): (u64, [i64; 2]),
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        let set = self.set(1, region);
+        let vertices = self.vertices(nodes);
+        let goes_on = self.within.iter().any(|(_, _, dimension)| *dimension == Some(1));
+        let before = self.open_end.take().filter(|_| goes_on);
+        let all: Vec<u32> = before.into_iter().chain(vertices).collect();
+        for ends in all.windows(2) {
+            self.content.cells.push(Kind::Line, ends, set, tag);
+        }
+        self.open_end = all.last().copied();
+        Ok(())
+    }
+
+    fn asks_for_groups(&self) -> bool {
+        true
+    }
+
+    fn asks_for_data(&self) -> bool {
+        true
+    }
+
+    fn columns(&mut self, columns: Vec<Column>) {
+        self.columns = columns;
+        self.last.clear();
+    }
+
+    fn within(&mut self, groups: &[Within<'_>]) {
+        let owned =
+            |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+        let within: Vec<_> = groups.iter().map(owned).collect();
+        // A line is continued only within the same group. Calls without groups in between do not end it.
+        if !within.is_empty() && within != self.within {
+            let same = self.content.cells.sets.last().is_some_and(|&set| {
+                let set = &self.content.sets[set as usize];
+                set.iter().any(|&group| {
+                    let group = &self.content.groups[group as usize];
+                    within
+                        .iter()
+                        .any(|(what, label, _)| common(what) == group.what && *label == group.label)
+                })
+            });
+            if !same {
+                self.open_end = None;
+            }
+        }
+        self.within = within;
+        self.last.clear();
+    }
+
+    fn node_within(&mut self, node: u32, what: &str, tag: i64) {
+        let groups = &mut self.content.vertex_groups;
+        let number = *self.vertex_numbers.entry((what.to_owned(), tag)).or_insert(groups.len());
+        if number == groups.len() {
+            let (what, label) = (common(what), Label::Tag(tag));
+            groups.push((Group { what, dimension: 0, label, name: None }, Vec::new()));
+        }
+        groups[number].1.push(node);
+    }
+
+    fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+        let name = String::from_utf8_lossy(name).into_owned();
+        self.names.insert((common(what), dimension, tag), name);
+    }
+
+    fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
+        // Most formats take no data without a name.
+        let name = match name.trim_ascii() {
+            b"" => UNNAMED.to_owned(),
+            _ => String::from_utf8_lossy(name).into_owned(),
+        };
+        let components = usize::try_from(components).unwrap_or(usize::MAX);
+        self.announced = Some(Announced { name, components, is_real, is_height: false });
+        true
+    }
+
+    fn height_array(&mut self, name: &[u8]) -> bool {
+        self.point_array(name, 1, true);
+        // Depths are positive downwards, so they are not third coordinates.
+        self.announced.iter_mut().for_each(|array| array.is_height = name == b"z");
+        true
+    }
+
+    fn point_numbers(&mut self, numbers: PointNumbers) {
+        let Some(Announced { name, components, is_real, is_height }) = self.announced.take() else {
+            return;
+        };
+        let PointNumbers { numbers, nodes, .. } = numbers;
+        if is_height {
+            self.content.heights = numbers;
+            return;
+        }
+        let values = match nodes {
+            None => numbers,
+            Some(nodes) => {
+                let map = TagMap::new(&self.content.labels).ok();
+                let count = self.content.points.len();
+                let mut values = vec![f64::NAN; count.saturating_mul(components)];
+                for (tuple, &node) in numbers.chunks(components.max(1)).zip(&nodes) {
+                    let vertex = map.as_ref().and_then(|map| map.index(node));
+                    let start = vertex.map_or(usize::MAX, |vertex| vertex as usize * components);
+                    let end = start.saturating_add(tuple.len());
+                    if let Some(own) = values.get_mut(start..end) {
+                        own.copy_from_slice(tuple);
+                    }
+                }
+                values
+            }
+        };
+        // Each part of a mesh may have its own values.
+        let same = |data: &&mut Data| data.name == name && data.components == components;
+        if let Some(data) = self.content.point_data.iter_mut().find(same)
+            && data.values.len() == values.len()
+            && data.values.iter().zip(&values).all(|(a, b)| a.is_nan() || b.is_nan())
+        {
+            for (own, value) in data.values.iter_mut().zip(&values) {
+                *own = if own.is_nan() { *value } else { *own };
+            }
+            return;
+        }
+        // Time steps of a result have one name.
+        let others = self.content.point_data.iter();
+        let name = match others.filter(|data| data.name == name).count() {
+            0 => name,
+            _ => {
+                let step = self.steps.entry(name.clone()).or_insert(1);
+                *step += 1;
+                format!("{name} {step}")
+            }
+        };
+        self.content.point_data.push(Data { name, components, is_real, values });
+    }
+
+    fn cell_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
+        self.point_array(name, components, is_real)
+    }
+
+    fn cell_numbers(&mut self, values: Vec<f64>, tags: Option<Vec<u64>>) {
+        if let Some(Announced { name, components, is_real, .. }) = self.announced.take() {
+            // Each part of a mesh may have its own values.
+            let before = self.by_tag.iter_mut().find(|(data, _)| data.name == name);
+            if let (Some((data, Some(known))), Some(tags)) = (before, &tags)
+                && data.components == components
+                && known.last() < tags.first()
+            {
+                data.values.extend(values);
+                known.extend(tags);
+                return;
+            }
+            self.by_tag.push((Data { name, components, is_real, values }, tags));
+        }
+    }
+
+    fn leaves_out(&mut self, what: &str) {
+        if !self.content.left_out.iter().any(|known| known == what) {
+            self.content.left_out.push(what.to_owned());
+        }
+    }
+}

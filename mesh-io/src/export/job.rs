@@ -1,0 +1,116 @@
+//! The mesh that a writer is given.
+
+use super::content::{Content, Data, Group};
+use super::holds::Holds;
+use super::tags::Tags;
+use crate::content::label::Label;
+use crate::visit::sink::Kind;
+
+/// A mesh to be written, with what the format holds of it.
+pub(crate) struct Job<'a> {
+    pub(crate) content: &'a Content,
+    pub(crate) holds: Holds,
+    pub(crate) tags: Tags,
+    /// The number of each vertex, if none is 0.
+    numbers: Option<&'a [u64]>,
+}
+
+impl<'a> Job<'a> {
+    pub(crate) fn new(content: &'a Content, holds: Holds) -> Job<'a> {
+        let numbers = (!content.labels.contains(&0)).then_some(content.labels.as_slice());
+        Job { content, holds, tags: Tags::new(content, holds.negative), numbers }
+    }
+
+    /// Lists the cells that the format holds, in the order of the file.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
+        let content = self.content;
+        (0..content.cells.len()).filter(|&cell| self.holds.holds(content, &self.tags, cell))
+    }
+
+    /// Lists the cells of a kind that the format holds.
+    pub(crate) fn all(&self, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+        self.cells().filter(move |&cell| self.content.cells.kinds[cell] == kind)
+    }
+
+    pub(crate) fn count(&self, kind: Kind) -> usize {
+        self.all(kind).count()
+    }
+
+    /// Returns the file's number of a vertex. If some vertex has number 0, returns its position counted from 1.
+    pub(crate) fn number(&self, vertex: usize) -> u64 {
+        self.numbers.map_or(vertex as u64 + 1, |numbers| numbers[vertex])
+    }
+
+    /// Returns the [numbers](Self::number) of a cell's vertices, separated by blanks.
+    pub(crate) fn numbers(&self, cell: usize) -> String {
+        self.joined(cell, |vertex| self.number(vertex))
+    }
+
+    /// Returns the positions of a cell's vertices, counted from `first` and separated by blanks.
+    pub(crate) fn places(&self, cell: usize, first: u64) -> String {
+        self.joined(cell, |vertex| vertex as u64 + first)
+    }
+
+    fn joined(&self, cell: usize, number: impl Fn(usize) -> u64) -> String {
+        let vertices = self.content.cells.of(cell).iter();
+        let numbers: Vec<String> = vertices.map(|&v| number(v as usize).to_string()).collect();
+        numbers.join(" ")
+    }
+
+    /// Returns x and y of a vertex as text.
+    pub(crate) fn plane(&self, vertex: usize) -> String {
+        let [x, y] = self.content.points[vertex];
+        format!("{x:?} {y:?}")
+    }
+
+    /// Returns x, y and z of a vertex as text.
+    pub(crate) fn space(&self, vertex: usize) -> String {
+        format!("{} {:?}", self.plane(vertex), self.content.z(vertex))
+    }
+
+    /// Returns the number of the most important group of a cell, or 0.
+    pub(crate) fn tag(&self, cell: usize) -> i64 {
+        self.tags.tag(self.content, cell)
+    }
+
+    /// Returns the most important group of a cell.
+    pub(crate) fn group(&self, cell: usize) -> Option<&'a Group> {
+        let group = self.tags.group(self.content, cell)?;
+        Some(&self.content.groups[group as usize])
+    }
+
+    /// Returns the name of a group, or its number.
+    pub(crate) fn word(&self, group: u32) -> String {
+        let name = self.content.groups[group as usize].name().map(str::to_owned);
+        name.unwrap_or_else(|| self.tags.number(group).to_string())
+    }
+
+    /// Returns for each vertex the number of its group of vertices, or 0.
+    pub(crate) fn vertex_tags(&self) -> Vec<i64> {
+        let mut tags = vec![0; self.content.points.len()];
+        for (group, vertices) in self.content.vertex_groups.iter().rev() {
+            if let Label::Tag(tag) = group.label {
+                vertices.iter().for_each(|&vertex| tags[vertex as usize] = tag);
+            }
+        }
+        tags
+    }
+
+    /// Lists the data of vertices that the format holds.
+    pub(crate) fn point_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
+        self.content.point_data.iter().filter(|data| self.holds.point_data.holds(data))
+    }
+
+    /// Lists the data of elements that the format holds.
+    pub(crate) fn cell_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
+        self.content.cell_data.iter().filter(|data| self.holds.cell_data.holds(data))
+    }
+}
+
+/// Formats a value of some data, without a fraction if the data are whole numbers.
+pub(crate) fn text_of(data: &Data, value: f64) -> String {
+    match data.is_real {
+        true => format!("{value:?}"),
+        false => format!("{}", value as i64),
+    }
+}

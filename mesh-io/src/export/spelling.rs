@@ -1,0 +1,159 @@
+//! How a format spells names, and names that differ.
+
+use std::collections::HashMap;
+
+/// How a format spells names.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Spelling {
+    /// As they are.
+    Any,
+    /// Between quotation marks, so that a name has none of its own. Groups have numbers besides.
+    Quoted,
+    /// As one word, which alone tells what it names from others.
+    Word,
+    /// As the name of a variable of netCDF: a word without slashes that starts with a letter, a digit or an underscore.
+    Variable,
+    /// As a word of letters without accents, digits, underscores and hyphens that starts with a letter. Capital and small letters
+    /// are the same.
+    Label,
+}
+
+impl Spelling {
+    /// Whether names alone tell what they name.
+    pub(crate) fn is_word(self) -> bool {
+        matches!(self, Spelling::Word | Spelling::Variable | Spelling::Label)
+    }
+
+    /// Returns what is the same for two names that the format does not tell apart.
+    fn key(self, name: &str) -> String {
+        if self == Spelling::Label { name.to_ascii_lowercase() } else { name.to_owned() }
+    }
+
+    /// Spells a name as the format can hold it.
+    pub(crate) fn of(self, name: &str) -> String {
+        match self {
+            Spelling::Any => name.to_owned(),
+            Spelling::Quoted => {
+                let held = |c: char| match c {
+                    '"' => '\'',
+                    c if c.is_control() => ' ',
+                    c => c,
+                };
+                name.chars().map(held).collect()
+            }
+            Spelling::Word => {
+                // A percent sign starts a comment in SU2.
+                let is_blank = |c: char| c.is_whitespace() || c.is_control() || c == '%';
+                let words: Vec<&str> =
+                    name.split(is_blank).filter(|word| !word.is_empty()).collect();
+                words.join("_")
+            }
+            Spelling::Variable => {
+                let is_blank = |c: char| c.is_whitespace() || c.is_control() || c == '/';
+                let words: Vec<&str> =
+                    name.split(is_blank).filter(|word| !word.is_empty()).collect();
+                let word = words.join("_");
+                match word.starts_with(|c: char| c.is_alphanumeric() || c == '_') || word.is_empty()
+                {
+                    true => word,
+                    false => format!("_{word}"),
+                }
+            }
+            Spelling::Label => {
+                let is_held = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+                let word: String = name.chars().map(|c| if is_held(c) { c } else { '_' }).collect();
+                match word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+                    || word.is_empty()
+                {
+                    true => word,
+                    false => format!("set{word}"),
+                }
+            }
+        }
+    }
+}
+
+/// Spells names as a format can hold them. A name that has to be changed gets one that no other has, nor any of `taken`;
+/// so does the later of two equal ones if the format tells by names alone. `spare` is the name in place of one of which
+/// nothing is left.
+pub(crate) fn distinct(
+    names: &[&str],
+    spelling: Spelling,
+    taken: &[&str],
+    spare: impl Fn(usize) -> String,
+) -> Vec<String> {
+    // Each name that is given, with the number that the next one of that name ends in.
+    let key = |name: &str| spelling.key(name);
+    let mut given: HashMap<String, usize> = taken.iter().map(|&name| (key(name), 2)).collect();
+    let mut spelled: Vec<Option<String>> = Vec::with_capacity(names.len());
+    for &name in names {
+        let stays = spelling.of(name) == name && !name.is_empty();
+        let is_new = stays && given.insert(key(name), 2).is_none();
+        let keeps = is_new || (stays && !spelling.is_word());
+        spelled.push(keeps.then(|| name.to_owned()));
+    }
+    let name = |(at, kept): (usize, Option<String>)| {
+        kept.unwrap_or_else(|| {
+            let new = match spelling.of(names[at]) {
+                new if new.trim().is_empty() => spare(at),
+                new => new,
+            };
+            let Some(next) = given.get(&key(&new)).copied() else {
+                given.insert(key(&new), 2);
+                return new;
+            };
+            let free = (next..).find(|end| !given.contains_key(&key(&format!("{new}_{end}"))));
+            let end = free.unwrap_or(next);
+            let other = format!("{new}_{end}");
+            given.insert(key(&new), end + 1);
+            given.insert(key(&other), 2);
+            other
+        })
+    };
+    spelled.into_iter().enumerate().map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spelled(names: &[&str], spelling: Spelling) -> Vec<String> {
+        distinct(names, spelling, &["x"], |at| at.to_string())
+    }
+
+    #[test]
+    fn names_that_can_stay_do_and_all_others_differ_from_them() {
+        let names = ["a b", "a_b", "a\tb", "wall", "wall", "a_b_2", "50%", "", " ", "x"];
+        let words = ["a_b_3", "a_b", "a_b_4", "wall", "wall_2", "a_b_2", "50", "7", "8", "x_2"];
+        assert_eq!(spelled(&names, Spelling::Word), words);
+    }
+
+    #[test]
+    fn variables_have_no_slash_and_start_with_a_letter_or_digit() {
+        let names = ["a/b", "a_b", "/", "-x", "7", "h\u{f6}he", "T (K)", "x", ""];
+        let words = ["a_b_2", "a_b", "2", "_-x", "7", "h\u{f6}he", "T_(K)", "x_2", "8"];
+        assert_eq!(spelled(&names, Spelling::Variable), words);
+    }
+
+    #[test]
+    fn labels_are_plain_words_whatever_their_capitals() {
+        let names = ["Wall", "wall", "a b", "a,b", "7", "-x", "_5", "h\u{f6}he", "", "x"];
+        let labels = ["Wall", "wall_2", "a_b", "a_b_2", "set7", "set-x", "_5", "h_he", "8", "x_2"];
+        assert_eq!(spelled(&names, Spelling::Label), labels);
+    }
+
+    /// Names between quotation marks are given numbers besides, so equal ones stay.
+    #[test]
+    fn only_quotation_marks_are_changed_between_them() {
+        let names = ["a\"b", "a'b", "wall", "wall", "in let", "a\nb"];
+        let quoted = ["a'b_2", "a'b", "wall", "wall", "in let", "a b"];
+        assert_eq!(spelled(&names, Spelling::Quoted), quoted);
+    }
+
+    #[test]
+    fn many_groups_of_one_name_differ() {
+        let names = vec!["wall"; 100_000];
+        let words = spelled(&names, Spelling::Word);
+        assert_eq!(words[99_999], "wall_100000");
+    }
+}

@@ -1,0 +1,86 @@
+//! One group and number for each element, for formats that hold no more.
+
+use super::content::{Content, Group};
+use crate::content::label::Label;
+use std::collections::{HashMap, HashSet};
+
+/// The most important group of each element, and a number for each group.
+pub(crate) struct Tags {
+    /// For each dimension, the most important group of each cell.
+    columns: [Vec<Option<u32>>; 3],
+    /// The number of each group. Only a group that has number 0 itself gets it.
+    numbers: Vec<i64>,
+}
+
+impl Tags {
+    /// Chooses the groups and numbers. `negative` says whether numbers may be negative.
+    pub(crate) fn new(content: &Content, negative: bool) -> Tags {
+        let column = |dimension| match content.whats(dimension).first() {
+            Some(what) => content.column(what),
+            None => Vec::new(),
+        };
+        Tags { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
+    }
+
+    /// Returns the most important group of a cell.
+    pub(crate) fn group(&self, content: &Content, cell: usize) -> Option<u32> {
+        let dimension = usize::from(content.cells.kinds[cell].dimension());
+        self.columns[dimension].get(cell).copied().flatten()
+    }
+
+    /// Returns the number of the most important group of a cell, or 0.
+    pub(crate) fn tag(&self, content: &Content, cell: usize) -> i64 {
+        self.group(content, cell).map_or(0, |group| self.numbers[group as usize])
+    }
+
+    /// Returns the number of a group.
+    pub(crate) fn number(&self, group: u32) -> i64 {
+        self.numbers[group as usize]
+    }
+}
+
+/// Gives each group a number that no other group of its kind and dimension has. It is the group's own tag if possible,
+/// else a number that no tag has.
+fn numbers(groups: &[Group], negative: bool) -> Vec<i64> {
+    let is_fit = |tag: i64| i32::try_from(tag).is_ok_and(|tag| negative || tag >= 0);
+    let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();
+    for group in groups {
+        if let Label::Tag(tag) = group.label {
+            taken.insert((&group.what, group.dimension, tag));
+        }
+    }
+    let mut next: HashMap<(&str, u8), i64> = HashMap::new();
+    let number = |group: &'_ Group| -> i64 {
+        match group.label {
+            Label::Tag(tag) if is_fit(tag) => tag,
+            _ => {
+                let (what, dimension) = (groups_what(groups, group), group.dimension);
+                let next = next.entry((what, dimension)).or_insert(1);
+                while taken.contains(&(what, dimension, *next)) {
+                    *next += 1;
+                }
+                *next += 1;
+                *next - 1
+            }
+        }
+    };
+    groups.iter().map(number).collect()
+}
+
+fn groups_what<'g>(groups: &'g [Group], group: &Group) -> &'g str {
+    groups.iter().find(|own| own.what == group.what).map_or("", |own| &own.what)
+}
+
+/// Whether an element's group of the kind `main` determines its group of the kind `other`. Then only numbers are lost
+/// if `other` is not written.
+pub(crate) fn decides(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
+    let named = |group: &Group| group.dimension == dimension && group.name().is_some();
+    if content.groups.iter().any(|group| group.what == other && named(group)) {
+        return false;
+    }
+    let (main, other) = (content.column(main), content.column(other));
+    let mut told: HashMap<Option<u32>, Option<u32>> = HashMap::new();
+    let cells =
+        (0..content.cells.len()).filter(|&cell| content.cells.kinds[cell].dimension() == dimension);
+    cells.into_iter().all(|cell| *told.entry(main[cell]).or_insert(other[cell]) == other[cell])
+}

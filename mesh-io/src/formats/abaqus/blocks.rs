@@ -1,0 +1,152 @@
+//! The keywords of an input file, each with its parameters and the lines of data below it.
+
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::text::token::line_end;
+use std::ops::Range;
+
+/// A keyword with what belongs to it.
+pub(super) struct Block<'a> {
+    /// In capital letters and without blanks, as neither means anything there.
+    pub(super) keyword: Vec<u8>,
+    /// Names, spelled as the keyword is, and values, which are empty if there is none.
+    parameters: Vec<(Vec<u8>, &'a [u8])>,
+    /// Where its asterisk stands.
+    pub(super) at: usize,
+    /// The lines of data, from the end of the keyword's last line on.
+    pub(super) data: Range<usize>,
+}
+
+impl<'a> Block<'a> {
+    pub(super) fn is(&self, keyword: &str) -> bool {
+        self.keyword == keyword.as_bytes()
+    }
+
+    /// Returns the value of a parameter; an empty one if it has none.
+    pub(super) fn parameter(&self, name: &str) -> Option<&'a [u8]> {
+        let own = self.parameters.iter().find(|(own, _)| own == name.as_bytes());
+        own.map(|&(_, value)| value)
+    }
+
+    /// Returns what a parameter names, if it names anything.
+    pub(super) fn name(&self, parameter: &str) -> Option<&'a [u8]> {
+        self.parameter(parameter).filter(|name| !name.is_empty())
+    }
+
+    /// Makes an error at the keyword.
+    #[cold]
+    pub(super) fn error(
+        &self,
+        source: &Source,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        Cursor::standing_at(source, self.at).error(problem, remedy)
+    }
+
+    /// Lists the items of the lines of data, each without blanks around it, with whether it is the last one of its line.
+    pub(super) fn items(&self, source: &'a Source) -> impl Iterator<Item = (&'a [u8], bool)> {
+        let lines = source.bytes[self.data.clone()].split(|&byte| byte == b'\n');
+        let lines = lines.filter(|line| !line.trim_ascii_start().starts_with(b"*"));
+        lines.flat_map(|line| {
+            let mut items = split(line).peekable();
+            std::iter::from_fn(move || {
+                let item = items.next()?;
+                Some((item, items.peek().is_none()))
+            })
+        })
+    }
+}
+
+/// Finds all keywords of a file. Comments, which start with two asterisks, are none.
+pub(super) fn blocks(source: &Source) -> Vec<Block<'_>> {
+    let (bytes, begin) = (&source.bytes[..], source.begin());
+    let opens = |&at: &usize| {
+        let before = bytes[begin..at].iter().rev().find(|byte| !matches!(byte, b' ' | b'\t'));
+        bytes.get(at + 1) != Some(&b'*') && before.is_none_or(|&byte| byte == b'\n')
+    };
+    let mut blocks: Vec<Block<'_>> = Vec::new();
+    for at in memchr::memchr_iter(b'*', &bytes[begin..]).map(|at| at + begin).filter(opens) {
+        if let Some(last) = blocks.last_mut() {
+            last.data.end = at;
+        }
+        blocks.push(block(bytes, at));
+    }
+    blocks
+}
+
+/// Reads the lines of a keyword. One that ends in a comma continues in the next line.
+fn block(bytes: &[u8], at: usize) -> Block<'_> {
+    let mut end = line_end(bytes, at);
+    let mut lines = vec![&bytes[at + 1..end]];
+    while end < bytes.len() && lines[lines.len() - 1].trim_ascii_end().ends_with(b",") {
+        let next = line_end(bytes, end);
+        let line = bytes[end..next].trim_ascii_start();
+        match line.starts_with(b"**") {
+            true => {}
+            false if line.starts_with(b"*") => break,
+            false => lines.push(&bytes[end..next]),
+        }
+        end = next;
+    }
+    let mut pieces = lines.into_iter().flat_map(split);
+    let keyword = pieces.next().map(plain).unwrap_or_default();
+    let parameters =
+        pieces.filter(|piece| !piece.is_empty()).map(|piece| match memchr::memchr(b'=', piece) {
+            Some(equals) => (plain(&piece[..equals]), unquoted(&piece[equals + 1..])),
+            None => (plain(piece), &piece[..0]),
+        });
+    let parameters = parameters.collect();
+    let start = end - usize::from(bytes[..end].ends_with(b"\n"));
+    Block { keyword, parameters, at, data: start..bytes.len() }
+}
+
+/// Splits a line at its commas, but those between quotation marks. Items are without blanks around them.
+fn split(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut is_quoted = false;
+    let pieces = line.split(move |&byte| {
+        is_quoted ^= byte == b'"';
+        byte == b',' && !is_quoted
+    });
+    pieces.map(<[u8]>::trim_ascii)
+}
+
+/// Removes blanks, and makes letters capital.
+fn plain(word: &[u8]) -> Vec<u8> {
+    let letters = word.iter().filter(|byte| !byte.is_ascii_whitespace());
+    letters.map(u8::to_ascii_uppercase).collect()
+}
+
+/// Removes the quotation marks around a name.
+pub(super) fn unquoted(name: &[u8]) -> &[u8] {
+    let name = name.trim_ascii();
+    let inner = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
+    inner.unwrap_or(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn keywords_are_found_with_parameters_and_data() {
+        let text = b"** *NODE\n 1, 2\n\t*Node , nset = \"A, b\" ,\n** between\n system=R\r\n1, 0.\n** 2\n*Solid Section\n\
+            *element,\ttype=CPS3,\n*END";
+        let source = Source::new(Path::new("a.inp"), text.to_vec()).unwrap();
+        let all = blocks(&source);
+        let keywords: Vec<_> = all.iter().map(|block| &block.keyword[..]).collect();
+        assert_eq!(keywords, [&b"NODE"[..], b"SOLIDSECTION", b"ELEMENT", b"END"]);
+        assert_eq!(all[0].parameter("NSET"), Some(&b"A, b"[..]));
+        assert_eq!(all[0].parameter("SYSTEM"), Some(&b"R"[..]));
+        assert_eq!(
+            (all[0].parameter("INPUT"), all[2].parameter("TYPE")),
+            (None, Some(&b"CPS3"[..]))
+        );
+        let data: Vec<_> = all.iter().map(|block| &text[block.data.clone()]).collect();
+        assert_eq!(data, [&b"\n1, 0.\n** 2\n"[..], b"\n", b"\n", b""]);
+        let items: Vec<_> = all[0].items(&source).filter(|(item, _)| !item.is_empty()).collect();
+        assert_eq!(items, [(&b"1"[..], false), (b"0.", true)]);
+    }
+}

@@ -1,0 +1,237 @@
+//! Which of an input file's blocks are of the mesh: those of the model itself, or of the one part that has elements.
+
+use super::blocks::{self, Block};
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::token::quoted;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// The keywords of a file, and where each stands.
+pub(super) struct Deck<'a> {
+    /// Each block with its scope.
+    pub(super) blocks: Vec<(Block<'a>, usize)>,
+    /// The scope that has the elements.
+    pub(super) mesh: usize,
+    /// Which instances are those of the mesh, by their names.
+    instances: HashMap<Vec<u8>, bool>,
+    /// Remarks for the user.
+    pub(super) notes: Vec<String>,
+}
+
+/// The scope of what is in no part. Each part and each instance has one of its own, from [`ASSEMBLY`] on.
+const MODEL: usize = 0;
+/// The scope of an assembly.
+pub(super) const ASSEMBLY: usize = 1;
+
+/// Keywords that make nodes or elements which have no row.
+const GENERATORS: [&str; 8] =
+    ["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SYMMETRICMODELGENERATION"];
+/// How deep files may include others.
+const DEPTH: u32 = 8;
+
+impl<'a> Deck<'a> {
+    pub(super) fn read(source: &'a Source) -> Result<Deck<'a>, ReadError> {
+        let blocks = blocks::blocks(source);
+        let mut deck =
+            Deck { blocks: Vec::new(), mesh: MODEL, instances: HashMap::new(), notes: Vec::new() };
+        // The names of the scopes of parts and instances, for messages.
+        let mut names = vec!["the model".to_owned(), "the assembly".to_owned()];
+        let mut with_elements: Option<usize> = None;
+        // The name of each instance, of its part, and its own scope.
+        let mut instances = Vec::new();
+        let mut part_names = HashMap::new();
+        let mut scope = MODEL;
+        let mut first = None;
+        for block in blocks {
+            let name = |parameter| block.name(parameter).unwrap_or_default();
+            match &block.keyword[..] {
+                b"PART" | b"INSTANCE" => {
+                    let (what, own) =
+                        (if block.is("PART") { "part" } else { "instance" }, names.len());
+                    names.push(format!("{what} {}", quoted(name("NAME"))));
+                    let key = name("NAME").to_ascii_uppercase();
+                    match block.is("PART") {
+                        true => drop(part_names.insert(key, own)),
+                        false => instances.push((key, name("PART").to_ascii_uppercase(), own)),
+                    }
+                    scope = own;
+                }
+                b"ENDPART" | b"ENDASSEMBLY" => scope = MODEL,
+                b"ASSEMBLY" | b"ENDINSTANCE" => scope = ASSEMBLY,
+                b"ELEMENT" if scope != ASSEMBLY => match with_elements {
+                    Some(other) if other != scope => {
+                        let [a, b] = [other, scope].map(|scope| &names[scope]);
+                        let problem =
+                            format!("{b} has elements beside {a}, each with numbers of its own");
+                        let remedy = "Write the input file without parts and assemblies, or one part at a time";
+                        return Err(block.error(source, problem, remedy));
+                    }
+                    _ => with_elements = Some(scope),
+                },
+                b"NODE" => first = first.or(Some(scope)),
+                _ => {}
+            }
+            check(source, &block)?;
+            deck.blocks.push((block, scope));
+        }
+        deck.mesh = with_elements.or(first).unwrap_or(MODEL);
+        for (name, part, own) in instances {
+            let is_of_mesh = own == deck.mesh || part_names.get(&part) == Some(&deck.mesh);
+            deck.instances.insert(name, is_of_mesh);
+        }
+        deck.check_included(source)?;
+        Ok(deck)
+    }
+
+    /// Lists the blocks of the mesh with this keyword.
+    pub(super) fn of_mesh(&self, keyword: &str) -> impl Iterator<Item = &Block<'a>> {
+        let own = self.blocks.iter().filter(move |(block, scope)| {
+            *scope == self.mesh && block.keyword == keyword.as_bytes()
+        });
+        own.map(|(block, _)| block)
+    }
+
+    /// Lists the blocks of the assembly with this keyword, if the mesh is a part of one.
+    pub(super) fn of_assembly(&self, keyword: &str) -> impl Iterator<Item = &Block<'a>> {
+        let own = self.blocks.iter().filter(move |(block, scope)| {
+            *scope == ASSEMBLY && block.keyword == keyword.as_bytes()
+        });
+        own.map(|(block, _)| block)
+    }
+
+    /// Whether an instance is one of the mesh.
+    pub(super) fn is_of_mesh(&self, instance: &[u8]) -> bool {
+        self.instances.get(&instance.to_ascii_uppercase()) == Some(&true)
+    }
+
+    /// Checks the files that this one includes.
+    fn check_included(&mut self, source: &Source) -> Result<(), ReadError> {
+        let mut seen = HashSet::new();
+        let (mut with_sets, mut unknown) = (Vec::new(), Vec::new());
+        for (at, (block, _)) in self.blocks.iter().enumerate() {
+            let Some(name) = block.name("INPUT").filter(|_| block.is("INCLUDE")) else { continue };
+            let before = at.checked_sub(1).map(|before| &self.blocks[before].0);
+            let continues = before.is_some_and(|before| before.is("NODE") || before.is("ELEMENT"));
+            match included(&source.path, (name, continues), &mut seen, DEPTH) {
+                Included::Mesh => {
+                    let shown = quoted(name);
+                    let problem =
+                        format!("{shown}, which is included here, holds nodes or elements");
+                    return Err(block.error(source, problem, "Put its text in place of this line"));
+                }
+                Included::Sets => with_sets.push(name),
+                Included::Unknown => unknown.push(name),
+                Included::Other => {}
+            }
+        }
+        let told = |names: &[&[u8]], one: &str, several: &str| {
+            let first = names.first().map(|name| quoted(name))?;
+            Some(match names.len() {
+                1 => format!("{first}, which is included, {one}"),
+                count => format!("{count} files such as {first}, which are included, {several}"),
+            })
+        };
+        const NONE: &str = "there: no part of the mesh is taken to be in";
+        self.notes.extend(told(
+            &with_sets,
+            "has sets, sections or surfaces: they are not read",
+            "have sets, sections or surfaces: they are not read",
+        ));
+        self.notes.extend(told(
+            &unknown,
+            &format!("is not {NONE} it"),
+            &format!("are not {NONE} them"),
+        ));
+        Ok(())
+    }
+}
+
+/// Checks that a block says itself what nodes and elements it has.
+fn check(source: &Source, block: &Block<'_>) -> Result<(), ReadError> {
+    let shown = String::from_utf8_lossy(&block.keyword).into_owned();
+    let has_data = || block.items(source).any(|(item, _)| !item.is_empty());
+    let is_generator = GENERATORS.iter().any(|keyword| block.is(keyword));
+    if is_generator && (!block.is("SYSTEM") || has_data()) {
+        let what = if block.is("SYSTEM") || block.is("NMAP") {
+            "moves nodes"
+        } else {
+            "makes nodes or elements"
+        };
+        let problem = format!("*{shown} {what}, so that not all stand where a row says");
+        return Err(block.error(
+            source,
+            problem,
+            "Write the mesh with a row for each node and element",
+        ));
+    }
+    let is_list = block.is("NODE") || block.is("ELEMENT");
+    if let Some(file) = block.parameter("INPUT").filter(|_| is_list) {
+        let problem = format!("the rows of *{shown} are in another file, {}", quoted(file));
+        return Err(block.error(source, problem, "Put its text below this line, without INPUT"));
+    }
+    if let Some(system) = block.name("SYSTEM").filter(|_| block.is("NODE"))
+        && !system.eq_ignore_ascii_case(b"R")
+    {
+        let problem = format!("nodes are in the coordinates of SYSTEM={}", quoted(system));
+        return Err(block.error(source, problem, "Write them in x and y (SYSTEM=R)"));
+    }
+    Ok(())
+}
+
+/// What an included file holds.
+#[derive(PartialEq, PartialOrd)]
+enum Included {
+    /// Nothing that matters to the mesh.
+    Other,
+    /// What cannot be told, as the file is not there.
+    Unknown,
+    /// Sets or sections.
+    Sets,
+    Mesh,
+}
+
+/// Looks into an included file, once. Its first rows are part of a list if the list `continues` there.
+fn included(
+    path: &Path,
+    (name, continues): (&[u8], bool),
+    seen: &mut HashSet<(PathBuf, bool)>,
+    depth: u32,
+) -> Included {
+    let name = String::from_utf8_lossy(name).into_owned();
+    let path = path.parent().unwrap_or(Path::new("")).join(name);
+    if !seen.insert((path.clone(), continues)) {
+        return Included::Other;
+    }
+    let is_file = std::fs::metadata(&path).is_ok_and(|about| about.is_file());
+    let loaded = if is_file && depth > 0 { Source::load(&path).ok() } else { None };
+    let Some(source) = loaded else { return Included::Unknown };
+    let blocks = blocks::blocks(&source);
+    let first = blocks.first().map_or(source.bytes.len(), |block| block.at);
+    let mut rows = source.bytes[source.begin()..first].split(|&byte| byte == b'\n');
+    if continues && rows.any(|row| !matches!(row.trim_ascii(), [] | [b'*', ..])) {
+        return Included::Mesh;
+    }
+    let mut found = Included::Other;
+    for block in &blocks {
+        let is_mesh =
+            ["NODE", "ELEMENT", "PART", "INSTANCE"].iter().any(|keyword| block.is(keyword))
+                || GENERATORS.iter().any(|keyword| block.is(keyword));
+        let is_set = ["ELSET", "NSET", "SURFACE"].iter().any(|keyword| block.is(keyword));
+        let own = match block.name("INPUT").filter(|_| block.is("INCLUDE")) {
+            Some(name) => included(&path, (name, false), seen, depth - 1),
+            None if is_mesh => return Included::Mesh,
+            None if is_set || is_section(block) => Included::Sets,
+            None => Included::Other,
+        };
+        if own > found {
+            found = own;
+        }
+    }
+    found
+}
+
+/// Whether a block gives elements a material.
+pub(super) fn is_section(block: &Block<'_>) -> bool {
+    block.keyword.ends_with(b"SECTION") && block.name("ELSET").is_some()
+}

@@ -1,0 +1,261 @@
+//! The elements of a mesh, with the sections, sets and surfaces that they are of.
+
+use super::List;
+use super::blocks::Block;
+use super::deck::Deck;
+use super::sets::{Effort, Numbered, Sets};
+use super::{rows, types};
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::text::token::quoted;
+use crate::visit::parsed::fixed_note;
+use crate::visit::sink::{Element, Kind, Sink, Within};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// What is found out of elements before they are handed on. All lists are empty if they are not needed.
+#[derive(Default)]
+pub(super) struct Found {
+    /// The number of the section of each element, or of the sets that it is in, counted from 1.
+    sections: Vec<u32>,
+    /// The names of the sets that are groups.
+    names: Vec<Vec<u8>>,
+    /// Elements and which of these sets they are in, ascending.
+    within: Vec<(u32, u32)>,
+    /// The names of surfaces, and where they stand.
+    surfaces: Vec<(Vec<u8>, usize)>,
+    /// Elements, the surface that each has a side in, and the label of the side, ascending.
+    sides: Vec<(u32, u32, [u8; 2])>,
+}
+
+impl Found {
+    pub(super) fn new(
+        (source, deck): (&Source, &Deck<'_>),
+        cursor: &Cursor<'_>,
+        (lists, mut sets, sections): (&[List<'_, '_>], Sets, &[&Block<'_>]),
+        sink: &mut dyn Sink,
+    ) -> Result<Found, ReadError> {
+        let mut found = Found::default();
+        let names = |keyword| -> HashSet<Vec<u8>> {
+            let names = deck.of_mesh(keyword).filter_map(|block| block.name("ELSET"));
+            names.map(<[u8]>::to_ascii_uppercase).collect()
+        };
+        let (listed, of_lists) = (names("ELSET"), names("ELEMENT"));
+        let of_sections = sections.iter().filter_map(|block| block.name("ELSET"));
+        let of_sections: Vec<Vec<u8>> = of_sections.map(<[u8]>::to_ascii_uppercase).collect();
+        if let Some(name) =
+            of_sections.iter().find(|&n| !listed.contains(n) && !of_lists.contains(n))
+        {
+            let name = quoted(name);
+            sink.note(&format!("a section is of the set {name}, which is not here: vertices at its ends are not held"));
+        }
+        // Sections of lists of elements need no look at the elements: the lists' sets tell them apart.
+        let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));
+        // Where nothing else tells regions apart, sets do.
+        let by_members = sections.is_empty() && of_lists.is_empty() && !listed.is_empty();
+        let has_surfaces =
+            deck.of_mesh("SURFACE").chain(deck.of_assembly("SURFACE")).next().is_some();
+        let has_groups = sink.asks_for_groups();
+        if !by_sets && !by_members && !has_surfaces && !has_groups {
+            return Ok(found);
+        }
+        let mut tags = Vec::new();
+        let mut cursor = cursor.clone();
+        for List { block, kind, .. } in lists {
+            let before = tags.len() as u32;
+            let Some(kind) = *kind else { continue };
+            let rows = &mut rows::of(&mut cursor, block);
+            rows::each_element(rows, kind, sink.takes_ahead(), |_, tag, _| {
+                tags.push(tag);
+                Ok(())
+            })?;
+            if let Some(name) = block.name("ELSET") {
+                sets.add(name, before..tags.len() as u32);
+            }
+        }
+        sets.read(source, deck, "ELSET");
+        let all = &Numbered::new(&tags);
+        let effort = &mut Effort::of(source);
+        if by_sets {
+            found.sections = vec![0; tags.len()];
+            for (block, section) in sections.iter().zip(1..) {
+                let set = block.name("ELSET").and_then(|name| sets.find(deck, false, name));
+                let Some(set) = set else { continue };
+                for element in sets.members(set, all, (source, effort))? {
+                    found.sections[element as usize] = section;
+                }
+            }
+        }
+        if has_groups || by_members {
+            for (number, name) in sets.named() {
+                let group = found.names.len() as u32;
+                let members = sets.members(number, all, (source, effort))?;
+                found.within.extend(members.into_iter().map(|element| (element, group)));
+                found.names.push(name);
+            }
+            found.within.sort_unstable();
+        }
+        if by_members {
+            found.sections = vec![0; tags.len()];
+            let mut numbers: HashMap<Vec<u32>, u32> = HashMap::new();
+            for of_element in found.within.chunk_by(|a, b| a.0 == b.0) {
+                let groups = of_element.iter().map(|&(_, group)| group).collect();
+                let next = numbers.len() as u32 + 1;
+                let number = *numbers.entry(groups).or_insert(next);
+                found.sections[of_element[0].0 as usize] = number;
+            }
+        }
+        if !has_groups {
+            found.within.clear();
+        }
+        found.find_sides((source, deck), &sets, all, effort)?;
+        Ok(found)
+    }
+
+    /// Finds which sides of elements are in surfaces.
+    fn find_sides(
+        &mut self,
+        (source, deck): (&Source, &Deck<'_>),
+        sets: &Sets,
+        all: &Numbered,
+        effort: &mut Effort,
+    ) -> Result<(), ReadError> {
+        let own = deck.of_mesh("SURFACE").map(|block| (block, false));
+        for (block, of_assembly) in
+            own.chain(deck.of_assembly("SURFACE").map(|block| (block, true)))
+        {
+            let of_elements =
+                block.name("TYPE").is_none_or(|of| of.eq_ignore_ascii_case(b"ELEMENT"));
+            let Some(name) = block.name("NAME").filter(|_| of_elements) else { continue };
+            let surface = self.surfaces.len() as u32;
+            self.surfaces.push((name.to_vec(), block.at));
+            let mut row = Vec::new();
+            for (item, is_last) in block.items(source) {
+                row.push(item);
+                if !is_last {
+                    continue;
+                }
+                if let [of, label, ..] = row[..]
+                    && let Ok(label) = <[u8; 2]>::try_from(label)
+                {
+                    let members = match sets.find(deck, of_assembly, of) {
+                        Some(set) => sets.members(set, all, (source, effort))?,
+                        None => all.of_word(of).collect(),
+                    };
+                    let side = |element| (element, surface, label);
+                    self.sides.extend(members.into_iter().map(side));
+                }
+                row.clear();
+            }
+        }
+        self.sides.sort_unstable();
+        Ok(())
+    }
+
+    /// Hands on all elements, and then the sides that are in surfaces.
+    pub(super) fn send(
+        self,
+        deck: &Deck<'_>,
+        cursor: &Cursor<'_>,
+        lists: &[List<'_, '_>],
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
+        let mut cursor = cursor.clone();
+        // The place of the next element, and what is left of the lists by places.
+        let (mut place, mut within, mut sides) = (0, &self.within[..], &self.sides[..]);
+        // The groups that the sink was told of last.
+        let mut told: &[(u32, u32)] = &[];
+        let mut lines: Vec<(u32, [u64; 2])> = Vec::new();
+        // How many elements hold their nodes, and the types of these.
+        let (mut holding, mut types_of) = (0, BTreeSet::new());
+        for List { block, of, kind, set, of_assembly } in lists {
+            let rows = &mut rows::of(&mut cursor, block);
+            let Some(kind) = *kind else {
+                tell(&self.names, &mut told, &[], sink);
+                let count = held(rows, Some(deck).filter(|_| *of_assembly), sink)?;
+                if count > 0 {
+                    holding += count;
+                    types_of.insert(of);
+                }
+                continue;
+            };
+            let ahead = sink.takes_ahead();
+            rows::each_element(rows, kind, ahead, |cursor, tag, nodes| {
+                let own = within.partition_point(|&(element, _)| element <= place);
+                tell(&self.names, &mut told, &within[..own], sink);
+                let section = self.sections.get(place as usize).copied().unwrap_or(0);
+                let region = [*set, i64::from(section)];
+                sink.element(cursor, &Element { tag, kind, region, nodes })?;
+                within = &within[own..];
+                while let [(element, surface, label), rest @ ..] = sides
+                    && *element == place
+                {
+                    let corners = kind.nodes();
+                    if let Some(side) =
+                        types::side(of, label).filter(|&side| side < corners && corners > 2)
+                    {
+                        lines.push((*surface, [nodes[side], nodes[(side + 1) % corners]]));
+                    }
+                    sides = rest;
+                }
+                place += 1;
+                Ok(())
+            })?;
+        }
+        if let Some(first) = types_of.first() {
+            let word = if types_of.len() == 1 { "the type" } else { "types such as" };
+            sink.note(&fixed_note(holding, "element", &format!(" of {word} {}", quoted(first))));
+        }
+        lines.sort_by_key(|&(surface, _)| surface);
+        for of_surface in lines.chunk_by(|a, b| a.0 == b.0) {
+            let (name, at) = &self.surfaces[of_surface[0].0 as usize];
+            cursor.go_to(*at);
+            sink.within(&[Within {
+                what: "surface",
+                label: Label::name(name),
+                dimension: Some(1),
+            }]);
+            for &(_, [a, b]) in of_surface {
+                let (kind, nodes) = (Kind::Line, [a, b, 0, 0]);
+                sink.element(&cursor, &Element { tag: 0, kind, region: [0; 2], nodes })?;
+            }
+        }
+        sink.within(&[]);
+        Ok(())
+    }
+}
+
+/// Tells the sink the groups of the next element, if they differ from those before.
+fn tell<'f>(
+    names: &[Vec<u8>],
+    told: &mut &'f [(u32, u32)],
+    now: &'f [(u32, u32)],
+    sink: &mut dyn Sink,
+) {
+    let groups = |all: &'f [(u32, u32)]| all.iter().map(|&(_, group)| group);
+    if !groups(told).eq(groups(now)) {
+        let within = |group: u32| {
+            let label = Label::name(&names[group as usize]);
+            Within { what: "elset", label, dimension: None }
+        };
+        sink.within(&groups(now).map(within).collect::<Vec<_>>());
+    }
+    *told = now;
+}
+
+/// Hands on the nodes of elements that hold them, and counts the elements. `assembly` is given for elements of an assembly.
+fn held(
+    rows: &mut Cursor<'_>,
+    assembly: Option<&Deck<'_>>,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let (mut count, mut last) = (0, None);
+    rows::each_held(rows, assembly, |cursor, tag, node| {
+        let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
+        sink.element(cursor, &Element { tag, kind, region: [0; 2], nodes })?;
+        count += u64::from(last.replace(tag) != Some(tag));
+        Ok(())
+    })?;
+    Ok(count)
+}

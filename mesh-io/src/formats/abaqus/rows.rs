@@ -1,0 +1,160 @@
+//! The rows of nodes and elements.
+
+use super::blocks::Block;
+use super::deck::Deck;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::text::parallel_rows::take_rows;
+use crate::text::token::integer;
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Kind, Sink, all_rows, nodes};
+
+/// Moves the cursor on to the lines of data of a block. Returns one that does not read beyond them.
+pub(super) fn of<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
+    cursor.go_to(block.data.start);
+    let mut rows = cursor.clone();
+    rows.bytes = &rows.bytes[..block.data.end];
+    rows
+}
+
+/// How many nodes there are, and how many of them have a number of more characters than are read of it.
+#[derive(Default)]
+pub(super) struct Counted {
+    pub(super) all: u64,
+    pub(super) long: u64,
+}
+
+/// Hands on the nodes of a block, and counts them.
+pub(super) fn send_nodes(
+    cursor: &mut Cursor<'_>,
+    sink: &mut dyn Sink,
+    heights: &mut Heights,
+    tags: &mut Option<Vec<u64>>,
+    counted: &mut Counted,
+) -> Result<(), ReadError> {
+    all_rows(cursor, sink, node, |cursor, sink, (tag, (x_at, is_long), at, z)| {
+        sink.node(cursor, tag, 2, x_at, at);
+        heights.see(z);
+        tags.iter_mut().for_each(|tags| tags.push(tag));
+        counted.all += 1;
+        counted.long += u64::from(is_long);
+        Ok(())
+    })
+}
+
+/// A node: its number, the offset of x, whether a number is long, x and y, and z with its offset.
+type Node = (u64, (usize, bool), [f64; 2], (usize, f64));
+
+/// How many characters of a number are read by Abaqus and CalculiX.
+const MOST: usize = 20;
+
+#[inline]
+fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
+    let tag = cursor.integer("the number of a node")?;
+    let x_at = cursor.at();
+    let (mut at, mut is_long) = ([0.0; 2], false);
+    for (axis, x) in ['x', 'y'].into_iter().zip(&mut at) {
+        if cursor.is_at_end() {
+            let problem = format!("{axis} of node {tag} is left out, which stands for 0");
+            return Err(
+                cursor.error(problem, "Write the 0, as there is no place for another value")
+            );
+        }
+        let start = cursor.at();
+        *x = cursor.coordinate(axis, format_args!("node {tag}"))?;
+        is_long |= cursor.at - start > MOST;
+    }
+    Ok((tag, (x_at, is_long), at, cursor.height_if_any(format_args!("node {tag}"))?))
+}
+
+/// Reads the elements of a block, each with its number and nodes, long lists on all threads if `ahead`. A call of `take` that
+/// fails must leave all unchanged.
+pub(super) fn each_element<'a>(
+    cursor: &mut Cursor<'a>,
+    kind: Kind,
+    ahead: bool,
+    mut take: impl FnMut(&Cursor<'a>, u64, [u64; 4]) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    if ahead && cursor.is_long() {
+        let nowhere = &Cursor::new(cursor.source);
+        let plain = |cursor: &mut Cursor<'a>| {
+            let tag = cursor.integer(NUMBER)?;
+            let nodes = nodes(cursor, kind)?;
+            ended(cursor, kind, tag)?;
+            Ok((tag, nodes))
+        };
+        take_rows(cursor, u64::MAX, plain, |(tag, nodes)| take(nowhere, tag, nodes).is_ok());
+    }
+    while cursor.next_row() {
+        let tag = cursor.integer(NUMBER)?;
+        let mut nodes = [0; 4];
+        for node in &mut nodes[..kind.nodes()] {
+            go_on(cursor);
+            *node = cursor.integer(format_args!("a vertex of a {}", kind.name()))?;
+        }
+        ended(cursor, kind, tag)?;
+        take(cursor, tag, nodes)?;
+    }
+    Ok(())
+}
+
+/// Reads elements of any number of nodes, each with its number. In an assembly the nodes of the mesh are those with the name of one
+/// of its instances, `Part-1-1.7`; all others are left out. `assembly` is given for elements of one.
+pub(super) fn each_held<'a>(
+    cursor: &mut Cursor<'a>,
+    assembly: Option<&Deck<'_>>,
+    mut take: impl FnMut(&Cursor<'a>, u64, u64) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    while cursor.next_row() {
+        let tag = cursor.integer(NUMBER)?;
+        loop {
+            go_on(cursor);
+            if cursor.is_at(b',') {
+                // Between two commas stands no node.
+                cursor.at = cursor.at();
+                continue;
+            }
+            if cursor.is_at_end() {
+                break;
+            }
+            let Some(deck) = assembly else {
+                let node = cursor.integer("a node of an element")?;
+                take(cursor, tag, node)?;
+                continue;
+            };
+            let word = cursor.token().unwrap_or_default();
+            if let Some(point) =
+                memchr::memchr(b'.', word).filter(|&at| deck.is_of_mesh(&word[..at]))
+                && let Some(node) = integer(&word[point + 1..])
+            {
+                take(cursor, tag, node)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+const NUMBER: &str = "the number of an element";
+
+/// Moves to the next row if this one has ended in a comma.
+fn go_on(cursor: &mut Cursor<'_>) {
+    let at = cursor.at();
+    let is_at_end = cursor.bytes.get(at).is_none_or(|&byte| byte == b'\n');
+    if is_at_end && cursor.bytes[..at].trim_ascii_end().ends_with(b",") {
+        let here = cursor.clone();
+        if !cursor.next_row() {
+            *cursor = here;
+        }
+    }
+}
+
+/// Checks that no node is left in a row. Beams may have another one, which tells their direction.
+#[inline]
+fn ended(cursor: &Cursor<'_>, kind: Kind, tag: u64) -> Result<(), ReadError> {
+    if kind == Kind::Line || cursor.is_at_end() {
+        return Ok(());
+    }
+    let (kind, nodes) = (kind.name(), kind.nodes());
+    let problem = format!("{kind} {tag} has more nodes than {nodes}");
+    Err(cursor.error(problem, "Correct the row, or the TYPE of its *ELEMENT"))
+}

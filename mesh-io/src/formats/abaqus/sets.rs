@@ -1,0 +1,222 @@
+//! Sets of elements or nodes: those of `*ELSET` and `*NSET`, and those that lists of elements and nodes name.
+
+use super::blocks::{Block, unquoted};
+use super::deck::Deck;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::token::integer;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+/// All sets of one kind.
+#[derive(Default)]
+pub(super) struct Sets {
+    sets: Vec<Set>,
+    numbers: HashMap<Key, usize>,
+}
+
+/// Whether a set is of the assembly, and its name in capital letters, as these make no difference.
+type Key = (bool, Vec<u8>);
+
+struct Set {
+    key: Key,
+    /// The name as it is first written.
+    name: Vec<u8>,
+    /// Whether a program made it for itself.
+    is_internal: bool,
+    items: Vec<Item>,
+}
+
+/// Members of a set.
+enum Item {
+    /// Every so manyth number from the first to the last one.
+    Numbers {
+        first: u64,
+        last: u64,
+        step: u64,
+    },
+    /// By their places in the file.
+    Places(Range<u32>),
+    Set(Key),
+}
+
+/// The numbers of all elements or nodes, ascending, each with its place in the file.
+pub(super) struct Numbered(Vec<(u64, u32)>);
+
+impl Numbered {
+    pub(super) fn new(tags: &[u64]) -> Numbered {
+        let mut all: Vec<(u64, u32)> = tags.iter().copied().zip(0..).collect();
+        if !all.is_sorted() {
+            all.sort_unstable();
+        }
+        Numbered(all)
+    }
+
+    /// Returns all with numbers in a range, its ends included.
+    fn within(&self, first: u64, last: u64) -> &[(u64, u32)] {
+        let start = self.0.partition_point(|&(tag, _)| tag < first);
+        let end = self.0.partition_point(|&(tag, _)| tag <= last);
+        &self.0[start..end.max(start)]
+    }
+
+    /// Returns the places of those with the number that a word stands for.
+    pub(super) fn of_word(&self, word: &[u8]) -> impl Iterator<Item = u32> {
+        let found = integer(word).map(|number| self.within(number, number));
+        found.unwrap_or_default().iter().map(|&(_, place)| place)
+    }
+}
+
+/// How much may still be done to list members of sets, so that a damaged file does not take forever.
+pub(super) struct Effort(usize);
+
+impl Effort {
+    pub(super) fn of(source: &Source) -> Effort {
+        Effort(source.bytes.len().saturating_mul(8).max(1 << 20))
+    }
+
+    fn spend(&mut self, source: &Source, steps: usize) -> Result<(), ReadError> {
+        match self.0.checked_sub(steps) {
+            Some(left) => {
+                self.0 = left;
+                Ok(())
+            }
+            None => {
+                let problem = "its sets have more members than any mesh of this size";
+                Err(source.error(problem, "Write the mesh again, with fewer sets"))
+            }
+        }
+    }
+}
+
+impl Sets {
+    /// Returns the number of a set, after adding it if it is new.
+    pub(super) fn number(&mut self, of_assembly: bool, name: &[u8]) -> usize {
+        let key = (of_assembly, name.to_ascii_uppercase());
+        let next = self.sets.len();
+        let number = *self.numbers.entry(key.clone()).or_insert(next);
+        if number == next {
+            let name = name.to_vec();
+            self.sets.push(Set { key, name, is_internal: false, items: Vec::new() });
+        }
+        number
+    }
+
+    /// Adds members by their places.
+    pub(super) fn add(&mut self, name: &[u8], places: Range<u32>) {
+        let number = self.number(false, name);
+        self.sets[number].items.push(Item::Places(places));
+    }
+
+    /// Reads the sets of blocks of this keyword, those of the mesh and those of the assembly.
+    pub(super) fn read(&mut self, source: &Source, deck: &Deck<'_>, keyword: &str) {
+        let own = deck.of_mesh(keyword).map(|block| (block, false));
+        for (block, of_assembly) in own.chain(deck.of_assembly(keyword).map(|block| (block, true)))
+        {
+            if let Some(name) = block.name(keyword) {
+                let number = self.number(of_assembly, name);
+                let items = items(source, deck, (block, of_assembly));
+                self.sets[number].is_internal |= block.parameter("INTERNAL").is_some();
+                self.sets[number].items.extend(items);
+            }
+        }
+    }
+
+    /// Finds a set by its name: in a part the part's, in an assembly its own, or with the name of an instance that of its part.
+    pub(super) fn find(&self, deck: &Deck<'_>, of_assembly: bool, name: &[u8]) -> Option<usize> {
+        let by =
+            |of_assembly, name: &[u8]| self.numbers.get(&(of_assembly, name.to_ascii_uppercase()));
+        let of_instance = || {
+            let point = memchr::memchr(b'.', name)?;
+            by(false, &name[point + 1..]).filter(|_| deck.is_of_mesh(&name[..point]))
+        };
+        by(of_assembly, name).or_else(of_instance).copied()
+    }
+
+    /// Lists the members of a set by their places, ascending.
+    pub(super) fn members(
+        &self,
+        number: usize,
+        all: &Numbered,
+        (source, effort): (&Source, &mut Effort),
+    ) -> Result<Vec<u32>, ReadError> {
+        let mut members = Vec::new();
+        let (mut seen, mut open) = (HashSet::from([number]), vec![number]);
+        while let Some(number) = open.pop() {
+            for item in &self.sets[number].items {
+                let before = members.len();
+                let mut passed = 1;
+                match item {
+                    &Item::Numbers { first, last, step } => {
+                        let within = all.within(first, last);
+                        passed += within.len();
+                        let is_hit = |&&(tag, _): &&(u64, u32)| (tag - first).is_multiple_of(step);
+                        members.extend(within.iter().filter(is_hit).map(|&(_, place)| place));
+                    }
+                    Item::Places(places) => members.extend(places.clone()),
+                    Item::Set(key) => {
+                        open.extend(self.numbers.get(key).filter(|&&other| seen.insert(other)));
+                    }
+                }
+                effort.spend(source, passed.max(members.len() - before))?;
+            }
+        }
+        members.sort_unstable();
+        members.dedup();
+        Ok(members)
+    }
+
+    /// Lists the sets that have a name for users, with their numbers. Of two that are called the same, that of the part is called
+    /// after the mesh too.
+    pub(super) fn named(&self) -> impl Iterator<Item = (usize, Vec<u8>)> {
+        let own = self.sets.iter().enumerate().filter(|(_, set)| !set.is_internal);
+        own.map(|(number, set)| {
+            let (of_assembly, key) = &set.key;
+            let has_namesake = !of_assembly && self.numbers.contains_key(&(true, key.clone()));
+            let name =
+                if has_namesake { [&b"part."[..], &set.name].concat() } else { set.name.clone() };
+            (number, name)
+        })
+    }
+}
+
+/// Reads the members that a block lists.
+fn items(source: &Source, deck: &Deck<'_>, (block, of_assembly): (&Block<'_>, bool)) -> Vec<Item> {
+    // In an assembly, plain numbers are those of an instance, or of nodes and elements of the assembly itself.
+    let of_instance = block.name("INSTANCE").is_some_and(|name| deck.is_of_mesh(name));
+    let is_plain = !of_assembly || of_instance;
+    let mut items = Vec::new();
+    if block.parameter("GENERATE").is_some() {
+        let mut row = Vec::new();
+        for (item, is_last) in block.items(source) {
+            row.push(integer(item));
+            if is_last {
+                if let [Some(first), Some(last), rest @ ..] = &row[..]
+                    && is_plain
+                {
+                    let step = rest.first().copied().flatten().unwrap_or(1).max(1);
+                    items.push(Item::Numbers { first: *first, last: *last, step });
+                }
+                row.clear();
+            }
+        }
+        return items;
+    }
+    let one = |number| Item::Numbers { first: number, last: number, step: 1 };
+    for (item, _) in block.items(source).filter(|(item, _)| !item.is_empty()) {
+        let item = unquoted(item);
+        match (integer(item), memchr::memchr(b'.', item)) {
+            (Some(number), _) if is_plain => items.push(one(number)),
+            (Some(_), _) => {}
+            // Of an instance: `Part-1-1.7` or `Part-1-1.inlet`.
+            (None, Some(point)) if of_assembly && deck.is_of_mesh(&item[..point]) => {
+                let rest = &item[point + 1..];
+                items.push(match integer(rest) {
+                    Some(number) => one(number),
+                    None => Item::Set((false, rest.to_ascii_uppercase())),
+                });
+            }
+            _ => items.push(Item::Set((of_assembly && !of_instance, item.to_ascii_uppercase()))),
+        }
+    }
+    items
+}

@@ -1,0 +1,102 @@
+//! The grid of ADCIRC (`fort.14`) and SCHISM (`.gr3`).
+//!
+//! The format: <https://adcirc.org/home/documentation/users-manual-v53/input-file-descriptions/adcirc-grid-and-boundary-information-file-fort-14/>.
+//! Programs read it as Fortran reads lists: numbers may have commas between them, and an item may go on in the next line.
+//! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
+//! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
+
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::numbered_nodes::numbered_nodes;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
+
+pub(crate) struct Adcirc;
+
+impl Walk for Adcirc {
+    const VERTICES: &'static str = "the list of nodes";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source).of(Syntax::FORTRAN);
+        // The first line is a title of any text, or of none.
+        cursor.line();
+        cursor.row(0, 1, "lines of counts")?;
+        let counts = |cursor: &mut Cursor<'_>| {
+            Ok((cursor.integer("the number of elements")?, cursor.vertex_count()?))
+        };
+        let (elements, count) = cursor.item(counts, &mut None)?;
+        let depths = numbered_nodes(cursor, count, false, sink)?;
+        sink.end_nodes(cursor)?;
+        depths.send("depth", Numbers::TEXT.into(), sink);
+        sink.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));
+        each_row(
+            cursor,
+            elements,
+            "elements",
+            sink,
+            |cursor| {
+                let tag = cursor.integer("the number of an element")?;
+                let corners = cursor.integer(format_args!("how many nodes element {tag} has"))?;
+                let Some(kind) = Kind::of_polygon(corners).filter(|kind| kind.nodes() > 2) else {
+                    let problem = format!("element {tag} has {corners} nodes");
+                    return Err(cursor.error(problem, "Elements of three and four nodes are read"));
+                };
+                Ok(Element { tag, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
+            },
+            |cursor, sink, _, element| sink.element(cursor, &element),
+        )?;
+        if sink.asks_for_groups() {
+            boundaries(cursor, sink);
+        }
+        Ok(Layout::in_place(Format::Adcirc, Numbers::TEXT))
+    }
+}
+
+/// Hands on the boundaries as lines: open ones, then those of land, whose islands are called `island`. Damaged lists
+/// end the search without an error, as the mesh does not depend on them.
+fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
+    for is_open in [true, false] {
+        let Some(count) = number(cursor) else { return };
+        // The number of nodes of all boundaries together.
+        if !cursor.next_row() {
+            return;
+        }
+        for index in 1..=count {
+            let Some(length) = number(cursor) else { return };
+            let kind = if is_open { 0 } else { cursor.integer("a type").unwrap_or(0) };
+            let word = match (is_open, kind) {
+                (true, _) => "open",
+                // The boundary types of islands, whatever condition holds there.
+                (false, 1 | 11 | 21) => "island",
+                _ => "land",
+            };
+            if kind > 1 {
+                sink.leaves_out("types of boundaries, and what is told of weirs");
+            }
+            let mut nodes = Vec::new();
+            for _ in 0..length {
+                match number(cursor) {
+                    Some(node) => nodes.push(node),
+                    None => return,
+                }
+            }
+            let label = Label::Name(format!("{word}{index}"));
+            sink.within(&[Within { what: "boundary", label, dimension: Some(1) }]);
+            // A node that does not exist is no reason to refuse the mesh.
+            if sink.polyline(cursor, (0, [0; 2]), &nodes).is_err() {
+                return;
+            }
+            sink.within(&[]);
+        }
+    }
+}
+
+/// Reads the number at the start of the next row.
+fn number(cursor: &mut Cursor<'_>) -> Option<u64> {
+    cursor.next_row().then_some(())?;
+    cursor.integer("a number").ok()
+}

@@ -1,0 +1,102 @@
+//! Coordinates of which those of each axis stand by themselves.
+
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Encoded, Form, Numbers};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::hdf5::{Array, Encoding, Hdf5};
+use crate::precision::Precision;
+use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Home, Layout, Sink};
+use std::ops::Range;
+
+/// The coordinates of a mesh, axis by axis. There are at least two.
+pub(crate) struct Axes<'a> {
+    source: &'a Source,
+    form: (Order, Precision),
+    /// Where those of each axis are, in the file or among those that are encoded.
+    ranges: Vec<Range<usize>>,
+    encoded: Option<Encoding>,
+}
+
+impl<'a> Axes<'a> {
+    /// Of which those of each axis start at one of these bytes of the file, as many as `count`.
+    pub(crate) fn in_place(
+        source: &'a Source,
+        form: (Order, Precision),
+        starts: &[usize],
+        count: usize,
+    ) -> Axes<'a> {
+        let length = count * form.1.bytes();
+        let ranges = starts.iter().map(|&start| start..start + length).collect();
+        Axes { source, form, ranges, encoded: None }
+    }
+
+    /// Of datasets that have `axes` of them together, `count` to an axis, one axis after another.
+    pub(crate) fn of_arrays(
+        file: &Hdf5<'a>,
+        form: (Order, Precision),
+        arrays: Vec<Array<'_>>,
+        (axes, count): (usize, usize),
+    ) -> Axes<'a> {
+        let source = file.source;
+        let length = count * form.1.bytes();
+        let of_each = axes / arrays.len().max(1);
+        // In the file itself, if they stand there as they are; else as what is written anew.
+        let places: Option<Vec<usize>> = arrays.iter().map(Array::place).collect();
+        if let Some(places) = places {
+            let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
+            let starts: Vec<usize> = places.into_iter().flat_map(of).collect();
+            return Axes::in_place(source, form, &starts, count);
+        }
+        let ranges = (0..axes).map(|axis| axis * length..(axis + 1) * length).collect();
+        Axes { source, form, ranges, encoded: Some(Encoding::new(file, arrays)) }
+    }
+
+    /// Hands on the nodes, of which there are `count`, numbered from `first` on. Returns how the format has them.
+    pub(crate) fn send(
+        self,
+        format: Format,
+        (count, first): (usize, u64),
+        sink: &mut dyn Sink,
+    ) -> Result<Layout, ReadError> {
+        let Axes { source, form: (order, precision), ranges, encoded } = self;
+        let [x, y] = [0, 1].map(|axis| ranges.get(axis).cloned().unwrap_or_default());
+        let size = precision.bytes();
+        let bytes = encoded.as_ref().map_or(&source.bytes[..], Encoding::bytes);
+        let number = |at: usize| order.real(precision, &bytes[at..at + size]);
+        // Numbers that are encoded have no place of their own.
+        let place = |at: usize| match &encoded {
+            None => Cursor::at_byte_of(source, at),
+            Some(encoding) => Cursor::at_byte_of(source, encoding.byte_of(at)),
+        };
+        let y_after = y.start as isize - x.start as isize;
+        sink.expect_nodes(count);
+        let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), (size, size), order);
+        let (x_at, tags) = (x.start, Tags::From(first));
+        let records = NodeRecords { count, x: field(&x), y: field(&y), x_at, tags };
+        for index in sink.node_records(&records)..count {
+            let x_at = x.start + index * size;
+            let (tag, at) = (index as u64 + first, [x_at, y.start + index * size].map(number));
+            if !at.iter().all(|x| x.is_finite()) {
+                let problem = format!("a coordinate of node {tag} is not a finite number");
+                return Err(place(x_at).error(problem, "Write the mesh again"));
+            }
+            sink.node(&place(x_at), tag, 2, x_at, at);
+        }
+        sink.end_nodes(&place(x.start))?;
+        if let Some(z) = ranges.get(2) {
+            let mut heights = Heights::new(sink);
+            heights.see_all(field(z), z.len() / size, z.start);
+            let home = if encoded.is_some() { Home::Points } else { Home::File };
+            heights.send_from("z", Form::Binary(order, precision), (home, 0), sink);
+        }
+        let numbers = Numbers::Binary { order, precision, y_after };
+        let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);
+        Ok(Layout { encoded, ..Layout::in_place(format, numbers) })
+    }
+}

@@ -1,0 +1,120 @@
+//! Boundary conditions of a zone, and the families that these are of: groups of elements or of vertices.
+
+use super::{File, labeled};
+use crate::content::label::Label;
+use crate::hdf5::Object;
+use crate::visit::sink::{Sink, Within};
+use std::cell::RefCell;
+use std::collections::HashSet;
+use std::ops::RangeInclusive;
+
+/// The groups of elements by their numbers.
+#[derive(Default)]
+pub(super) struct Boundaries {
+    all: Vec<Boundary>,
+    /// Those of the element that was told last.
+    last: RefCell<Vec<usize>>,
+}
+
+struct Boundary {
+    /// What it is called: by itself, and as a family.
+    names: Vec<(&'static str, String)>,
+    elements: Elements,
+}
+
+enum Elements {
+    Range(RangeInclusive<i64>),
+    List(HashSet<i64>),
+}
+
+impl Elements {
+    fn has(&self, element: i64) -> bool {
+        match self {
+            Elements::Range(range) => range.contains(&element),
+            Elements::List(list) => list.contains(&element),
+        }
+    }
+}
+
+impl Boundaries {
+    /// Tells the groups of the element that follows, where they are not those of the one before.
+    pub(super) fn of_element(&self, tag: u64, sink: &mut dyn Sink) {
+        if self.all.is_empty() {
+            return;
+        }
+        let element = i64::try_from(tag).unwrap_or(-1);
+        let each = self.all.iter().enumerate();
+        let own: Vec<usize> =
+            each.filter(|(_, own)| own.elements.has(element)).map(|(number, _)| number).collect();
+        if *self.last.borrow() != own {
+            let names = own.iter().flat_map(|&number| &self.all[number].names);
+            let within = |(what, name): &'_ (&'static str, String)| Within {
+                what,
+                label: Label::Name(name.clone()),
+                dimension: None,
+            };
+            let groups: Vec<Within<'_>> = names.map(within).collect();
+            sink.within(&groups);
+            self.last.replace(own);
+        }
+    }
+}
+
+impl<'a> File<'a> {
+    /// Reads the boundary conditions. Hands on those of vertices, and returns those of elements. What is damaged is left out.
+    pub(super) fn boundaries(&self, vertices: usize, sink: &mut dyn Sink) -> Boundaries {
+        let mut boundaries = Boundaries::default();
+        let mut tag = 0;
+        for (_, all) in labeled(self.hdf5, self.zone, b"ZoneBC_t") {
+            for (name, node) in labeled(self.hdf5, all, b"BC_t") {
+                let names = self.names(name, node);
+                let child =
+                    |name: &[u8]| self.hdf5.child(node, name).and_then(|own| self.integers(own));
+                let location =
+                    self.hdf5.child(node, b"GridLocation").and_then(|own| self.text(own));
+                let is_of_vertices = location.is_none_or(|location| location == b"Vertex");
+                let range = |numbers: Option<Vec<i64>>| match numbers.as_deref() {
+                    Some(&[first, last]) => Some(Elements::Range(first..=last)),
+                    _ => None,
+                };
+                let list = |numbers: Option<Vec<i64>>| {
+                    Some(Elements::List(numbers?.into_iter().collect()))
+                };
+                let points = range(child(b"PointRange")).or_else(|| list(child(b"PointList")));
+                let elements =
+                    range(child(b"ElementRange")).or_else(|| list(child(b"ElementList")));
+                match (elements, points) {
+                    (Some(elements), _) => boundaries.all.push(Boundary { names, elements }),
+                    (None, Some(elements)) if !is_of_vertices => {
+                        boundaries.all.push(Boundary { names, elements });
+                    }
+                    (None, Some(points)) => {
+                        for (what, name) in &names {
+                            tag += 1;
+                            sink.name(what, Some(0), tag, name.as_bytes());
+                            for vertex in (1..=vertices).filter(|&v| points.has(v as i64)) {
+                                sink.node_within(vertex as u32 - 1, what, tag);
+                            }
+                        }
+                    }
+                    (None, None) => {}
+                }
+            }
+        }
+        boundaries
+    }
+
+    /// What a boundary condition is called, its family, and the names that this has.
+    fn names(&self, name: &[u8], node: &'a Object) -> Vec<(&'static str, String)> {
+        let text = |name: &[u8]| String::from_utf8_lossy(name).into_owned();
+        let mut names = vec![("boundary", text(name))];
+        let family = self.hdf5.child(node, b"FamilyName").and_then(|own| self.text(own));
+        let Some(family) = family else { return names };
+        let own = self.hdf5.child(self.base, &family);
+        let inner = own.map(|own| labeled(self.hdf5, own, b"FamilyName_t")).unwrap_or_default();
+        let inner = inner.into_iter().filter_map(|(_, own)| self.text(own));
+        names.extend(inner.map(|name| ("family", text(&name))));
+        names.push(("family", text(&family)));
+        names
+    }
+}

@@ -1,0 +1,181 @@
+//! CGNS in HDF5, with one unstructured zone.
+//!
+//! The format: <https://cgns.github.io/standard/SIDS/CGNS_SIDS.html>, and how it is laid out in HDF5:
+//! <https://cgns.github.io/standard/filemap/hdf5.html>. Each node is a group with a label, and a dataset called ` data`. Elements
+//! stand in sections, each with a range of numbers that all of them share.
+
+mod boundaries;
+mod sections;
+
+use crate::disk::source::Source;
+use crate::edit::numbers::{Encoded, Form, Places};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::axes::Axes;
+use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, Object, SIGNATURE};
+use crate::text::cursor::Cursor;
+use crate::visit::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
+use boundaries::Boundaries;
+use std::sync::Arc;
+
+pub(crate) struct Cgns;
+
+/// A file with its base and its one zone.
+struct File<'a> {
+    source: &'a Source,
+    hdf5: &'a Hdf5<'a>,
+    base: &'a Object,
+    zone: &'a Object,
+}
+
+/// Whether a file is CGNS in HDF5.
+pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
+    Ok(source.bytes.starts_with(SIGNATURE)
+        && Hdf5::open(source)?.find(b"CGNSLibraryVersion").is_some())
+}
+
+impl Walk for Cgns {
+    const VERTICES: &'static str = "the list of coordinates";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(sink))
+    }
+}
+
+impl<'a> File<'a> {
+    fn open(source: &'a Source, hdf5: &'a Hdf5<'a>) -> Result<File<'a>, ReadError> {
+        let refused = |problem: String, remedy| {
+            Err(Cursor::at_byte_of(source, hdf5.root().at).error(problem, remedy))
+        };
+        let bases = labeled(hdf5, hdf5.root(), b"CGNSBase_t");
+        let zones: Vec<_> = bases
+            .iter()
+            .flat_map(|&(_, base)| {
+                labeled(hdf5, base, b"Zone_t").into_iter().map(move |zone| (base, zone))
+            })
+            .collect();
+        let &[(base, (_, zone))] = &zones[..] else {
+            let problem = format!("a CGNS file of {} zones is not read", zones.len());
+            return refused(problem, "Save a mesh of one unstructured zone, or as gmsh or VTK");
+        };
+        let file = File { source, hdf5, base, zone };
+        let kind = labeled(hdf5, zone, b"ZoneType_t").first().and_then(|(_, kind)| file.text(kind));
+        if kind.is_some_and(|kind| kind != b"Unstructured") {
+            return refused("a structured zone is not read".into(), "Save an unstructured mesh");
+        }
+        Ok(file)
+    }
+
+    fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let (axes, count) = self.axes()?;
+        let layout = axes.send(Format::Cgns, (count, 1), sink)?;
+        let boundaries = match sink.asks_for_groups() {
+            true => self.boundaries(count, sink),
+            false => Boundaries::default(),
+        };
+        self.sections(&boundaries, sink)?;
+        self.solutions(count, sink);
+        Ok(layout)
+    }
+
+    fn cursor(&self, object: &Object) -> Cursor<'a> {
+        Cursor::at_byte_of(self.source, object.at)
+    }
+
+    /// The content of a node.
+    fn data(&self, node: &'a Object) -> Option<&'a Object> {
+        self.hdf5.child(node, b" data")
+    }
+
+    /// The whole numbers of a node; none if it has none.
+    fn integers(&self, node: &'a Object) -> Option<Vec<i64>> {
+        self.hdf5.integers(self.data(node)?)
+    }
+
+    /// The letters of a node.
+    fn text(&self, node: &'a Object) -> Option<Vec<u8>> {
+        let letters = self.integers(node)?;
+        let text: Vec<u8> = letters.into_iter().map(|letter| letter as u8).collect();
+        Some(text.trim_ascii().to_vec())
+    }
+
+    /// The real numbers of a node, and what they are.
+    fn reals(&self, node: &'a Object) -> Result<Option<(Dataset, Array<'a>)>, ReadError> {
+        let dataset = self.data(node).map(|data| self.hdf5.dataset(data)).transpose()?.flatten();
+        let dataset = dataset.filter(|dataset| matches!(dataset.number, Number::Real(..)));
+        dataset
+            .map(|dataset| Ok((self.hdf5.array(&dataset)?, dataset)).map(|(a, d)| (d, a)))
+            .transpose()
+    }
+
+    /// The coordinates, and how many vertices there are.
+    fn axes(&self) -> Result<(Axes<'a>, usize), ReadError> {
+        let grids = labeled(self.hdf5, self.zone, b"GridCoordinates_t");
+        let mut read = Vec::new();
+        for name in [b"CoordinateX", b"CoordinateY", b"CoordinateZ"] {
+            // The first grid is that of the mesh; others are those of later times.
+            let node = grids.first().and_then(|(_, grid)| self.hdf5.child(grid, name));
+            let Some(node) = node else { break };
+            read.extend(self.reals(node)?);
+        }
+        let first = read.first().map(|(dataset, array)| (dataset.number, array.bytes.len()));
+        let is_same = |(dataset, array): &(Dataset, Array<'_>)| {
+            Some((dataset.number, array.bytes.len())) == first
+        };
+        let (Some((Number::Real(precision, order), length)), 2..=3, true) =
+            (first, read.len(), read.iter().all(is_same))
+        else {
+            let problem = "the zone has no CoordinateX and CoordinateY of one type and length";
+            return Err(self.cursor(self.zone).error(problem, "Save a mesh of the plane"));
+        };
+        let count = length / precision.bytes();
+        self.cursor(self.zone).check_vertex_count(count as u64)?;
+        let (axes, form) = (read.len(), (order, precision));
+        let arrays = read.into_iter().map(|(_, array)| array).collect();
+        Ok((Axes::of_arrays(self.hdf5, form, arrays, (axes, count)), count))
+    }
+
+    /// Hands on data of vertices.
+    fn solutions(&self, vertices: usize, sink: &mut dyn Sink) {
+        for (_, solution) in labeled(self.hdf5, self.zone, b"FlowSolution_t") {
+            let location =
+                self.hdf5.child(solution, b"GridLocation").and_then(|own| self.text(own));
+            if location.is_some_and(|location| location != b"Vertex") {
+                if sink.asks_for_data() {
+                    sink.leaves_out("data of elements");
+                }
+                continue;
+            }
+            for (name, node) in labeled(self.hdf5, solution, b"DataArray_t") {
+                let dataset = self.data(node).and_then(|data| self.hdf5.dataset(data).ok()?);
+                let Some(Number::Real(precision, order)) = dataset.map(|own| own.number) else {
+                    continue;
+                };
+                if !sink.point_array(name, 1, true) {
+                    continue;
+                }
+                let Ok(Some((_, array))) = self.reals(node) else { continue };
+                let each = array.bytes.chunks_exact(precision.bytes()).take(vertices);
+                let numbers = each.map(|number| order.real(precision, number)).collect();
+                let (form, stride) = (Form::Binary(order, precision), precision.bytes());
+                let (start, home) = match array.place() {
+                    Some(start) => (start, Home::File),
+                    None => {
+                        let encoding = Encoding::new(self.hdf5, vec![array]);
+                        (0, Home::Encoded(Arc::new(encoding) as Arc<dyn Encoded>))
+                    }
+                };
+                let stored =
+                    Stored { places: Places::Regular { start, stride }, form, home, part: 0 };
+                sink.point_numbers(PointNumbers { numbers, nodes: None, stored: Some(stored) });
+            }
+        }
+    }
+}
+
+/// The nodes of a label in another, by name.
+fn labeled<'h>(file: &'h Hdf5<'_>, of: &'h Object, label: &[u8]) -> Vec<(&'h [u8], &'h Object)> {
+    let is =
+        |node: &Object| file.attribute(node, b"label").is_some_and(|own| own.text() == Some(label));
+    file.children(of).filter(|(_, node)| is(node)).collect()
+}

@@ -1,0 +1,159 @@
+//! The sections of elements of a zone.
+
+use super::boundaries::Boundaries;
+use super::{File, labeled};
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::content::label::Label;
+use crate::error::ReadError;
+use crate::hdf5::{Array, Number, Object};
+use crate::text::cursor::CORRECT;
+use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Column, Element, Kind, Sink, volume};
+
+/// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
+const MIXED: i64 = 20;
+
+/// The list of nodes of a section.
+struct Nodes<'a> {
+    array: Array<'a>,
+    size: usize,
+    order: Order,
+}
+
+impl Nodes<'_> {
+    fn at(&self, index: usize) -> Option<u64> {
+        let start = index.checked_mul(self.size)?;
+        Some(self.order.whole(self.array.bytes.get(start..start + self.size)?))
+    }
+}
+
+impl<'a> File<'a> {
+    /// Hands on the elements of all sections.
+    pub(super) fn sections(
+        &self,
+        boundaries: &Boundaries,
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
+        let label = |section| Some(Label::Tag(section));
+        sink.columns(vec![Column { what: "section".into(), from_dimension: 0, label }]);
+        let mut sections: Vec<_> = labeled(self.hdf5, self.zone, b"Elements_t")
+            .into_iter()
+            .map(|(name, section)| {
+                let range =
+                    self.hdf5.child(section, b"ElementRange").and_then(|own| self.integers(own));
+                (range.unwrap_or_default(), name, section)
+            })
+            .collect();
+        sections.sort_by_key(|(range, ..)| range.first().copied());
+        for ((range, name, section), number) in sections.into_iter().zip(1..) {
+            if sink.asks_for_groups() {
+                sink.name("section", None, number, name);
+            }
+            let &[first, last] = &range[..] else {
+                return Err(self.damaged(name, section));
+            };
+            let count = last.checked_sub(first).and_then(|more| usize::try_from(more).ok());
+            let first = u64::try_from(first).ok();
+            let (Some(first), Some(count)) = (first, count.map(|more| more.saturating_add(1)))
+            else {
+                return Err(self.damaged(name, section));
+            };
+            self.section((name, section), (number, first, count), boundaries, sink)?;
+        }
+        sink.within(&[]);
+        Ok(())
+    }
+
+    #[cold]
+    fn damaged(&self, name: &[u8], section: &'a Object) -> ReadError {
+        let problem =
+            format!("the section {} does not hold the elements that it announces", quoted(name));
+        self.cursor(section).error(problem, CORRECT)
+    }
+
+    fn section(
+        &self,
+        (name, section): (&[u8], &'a Object),
+        (number, first, count): (i64, u64, usize),
+        boundaries: &Boundaries,
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
+        let damaged = || self.damaged(name, section);
+        let own = self.hdf5.child(section, b"ElementConnectivity").and_then(|own| self.data(own));
+        let dataset =
+            own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten().ok_or_else(damaged)?;
+        let Number::Whole(size, order) = dataset.number else { return Err(damaged()) };
+        let array = self.hdf5.array(&dataset)?;
+        let nodes = Nodes { array, size, order };
+        let of_all = self.integers(section).and_then(|numbers| numbers.first().copied());
+        let of_all = of_all.ok_or_else(damaged)?;
+        let length = nodes.array.bytes.len() / size;
+        let mut taken = 0;
+        let uniform = match of_all {
+            MIXED => None,
+            of_all => Some(self.kind(of_all, section)?),
+        };
+        if let Some(kind) = uniform {
+            if count.checked_mul(kind.nodes()) != Some(length) {
+                return Err(damaged());
+            }
+            if kind == Kind::Triangle {
+                sink.expect_elements(count);
+                taken = sink.triangle_records(&TriangleRecords {
+                    count,
+                    corners: Field::new(Some(&nodes.array.bytes), (3 * size, size), order),
+                    first: 0,
+                    below: u64::MAX,
+                    regions: [Region::Same(number), Region::Same(0)],
+                    expected: &[],
+                });
+            }
+        }
+        let mut at = taken * 3;
+        for place in taken..count {
+            let start = at;
+            let kind = match uniform {
+                Some(kind) => kind,
+                None => {
+                    at += 1;
+                    let own = nodes.at(at - 1).ok_or_else(damaged)?;
+                    self.kind(i64::try_from(own).unwrap_or(0), section)?
+                }
+            };
+            let mut corners = [0; 4];
+            for corner in &mut corners[..kind.nodes()] {
+                *corner = nodes.at(at).ok_or_else(damaged)?;
+                at += 1;
+            }
+            let tag = first.saturating_add(place as u64);
+            boundaries.of_element(tag, sink);
+            let cursor = crate::text::cursor::Cursor::at_byte_of(
+                self.source,
+                nodes.array.byte_of(start * size),
+            );
+            sink.element(&cursor, &Element { tag, kind, region: [number, 0], nodes: corners })?;
+        }
+        match at == length {
+            true => Ok(()),
+            false => Err(damaged()),
+        }
+    }
+
+    fn kind(&self, number: i64, section: &'a Object) -> Result<Kind, ReadError> {
+        let cursor = self.cursor(section);
+        match number {
+            2 => Ok(Kind::Point),
+            3 => Ok(Kind::Line),
+            5 => Ok(Kind::Triangle),
+            7 => Ok(Kind::Quadrilateral),
+            10..=19 | 23 => Err(volume(&cursor, &format!("elements of the type {number}"))),
+            _ => {
+                let problem = format!("elements of the type {number} are not read");
+                let remedy = "Save triangles of three nodes (TRI_3), beside BAR_2 and QUAD_4";
+                Err(cursor.error(problem, remedy))
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! The blocks of elements of an Exodus file.
+
+use super::File;
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::error::ReadError;
+use crate::netcdf::{Items, Number, Variable};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink, volume};
+
+/// Elements of one type.
+pub(super) struct Block<'a> {
+    /// Its place among the blocks, counted from one.
+    pub(super) number: usize,
+    pub(super) kind: Kind,
+    /// Whether its first two sides are its faces, as those of shells are.
+    pub(super) is_shell: bool,
+    /// How many elements stand before it, and how many it has.
+    pub(super) before: u64,
+    pub(super) count: u64,
+    /// Its elements, how many bytes the number of a node has, and in which order.
+    items: Items<'a>,
+    width: usize,
+    order: Order,
+}
+
+impl Block<'_> {
+    /// The nodes of an element by its place in the block, and where it stands.
+    pub(super) fn element(&self, place: u64) -> ([u64; 4], usize) {
+        let at = self.items.range(0).start + place as usize * self.kind.nodes() * self.width;
+        let mut nodes = [0; 4];
+        for (corner, node) in nodes[..self.kind.nodes()].iter_mut().enumerate() {
+            let number = &self.items.bytes[at + corner * self.width..][..self.width];
+            *node = u64::try_from(self.order.signed(number)).unwrap_or(0);
+        }
+        (nodes, self.items.byte_of(at))
+    }
+}
+
+impl<'a> File<'a> {
+    /// Hands on the elements of all blocks.
+    pub(super) fn blocks(&self, sink: &mut dyn Sink) -> Result<Vec<Block<'a>>, ReadError> {
+        let ids = self.ids("eb_prop1");
+        let names = self.header.variable("eb_names").map(|names| self.header.texts(names));
+        let mut blocks = Vec::new();
+        let mut before = 0;
+        for (number, variable) in self.header.numbered("connect") {
+            let block = self.block(number, before, variable)?;
+            let id = self.id(&ids, number);
+            if let Some(name) = names.as_ref().and_then(|names| names.get(number - 1))
+                && sink.asks_for_groups()
+                && !name.is_empty()
+            {
+                sink.name("block", None, id, name);
+            }
+            let mut taken = 0;
+            if block.kind == Kind::Triangle {
+                sink.expect_elements(block.count as usize);
+                taken = sink.triangle_records(&TriangleRecords {
+                    count: block.count as usize,
+                    corners: Field::new(
+                        Some(block.items.own()),
+                        (3 * block.width, block.width),
+                        block.order,
+                    ),
+                    first: 0,
+                    below: u64::MAX,
+                    regions: [Region::Same(id), Region::Same(0)],
+                    expected: &[],
+                });
+            }
+            for place in taken as u64..block.count {
+                let (nodes, at) = block.element(place);
+                let (tag, kind) = (before + place + 1, block.kind);
+                let cursor = &Cursor::at_byte_of(self.source, at);
+                sink.element(cursor, &Element { tag, kind, region: [id, 0], nodes })?;
+            }
+            before += block.count;
+            blocks.push(block);
+        }
+        Ok(blocks)
+    }
+
+    fn block(
+        &self,
+        number: usize,
+        before: u64,
+        variable: &Variable,
+    ) -> Result<Block<'a>, ReadError> {
+        let start = self.header.place(variable);
+        let cursor = Cursor::at_byte_of(self.source, start);
+        let found = (&variable.shape[..], variable.number, variable.is_record);
+        let (&[count, corners], Number::Whole(width), false) = found else {
+            let problem = format!("connect{number} is not a table of whole numbers");
+            return Err(cursor.error(problem, CORRECT));
+        };
+        let given = variable.text("elem_type").unwrap_or_default();
+        let name = String::from_utf8_lossy(given).to_ascii_uppercase();
+        let is = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
+        let kind = match corners {
+            1 if is(&["SPHERE", "CIRCLE", "POINT", "PARTICLE"]) => Kind::Point,
+            2 if is(&["BAR", "BEAM", "TRUSS", "EDGE", "ROD", "LINE"]) => Kind::Line,
+            3 if is(&["TRI", "SHELL"]) => Kind::Triangle,
+            4 if is(&["QUAD", "SHELL"]) => Kind::Quadrilateral,
+            _ if is(&["TET", "HEX", "PYR", "WEDGE"]) => {
+                return Err(volume(&cursor, &format!("elements of the type {}", quoted(given))));
+            }
+            _ => {
+                let problem = format!(
+                    "elements of the type {} with {corners} nodes, as in block {number}, are not read",
+                    quoted(given)
+                );
+                let remedy = "Save triangles of three nodes (TRI3), beside QUAD4 and BAR2";
+                return Err(cursor.error(problem, remedy));
+            }
+        };
+        let is_shell = is(&["SHELL", "TRISHELL"]);
+        let items = self.header.items(variable)?;
+        let order = variable.order;
+        Ok(Block { number, kind, is_shell, before, count, items, width, order })
+    }
+
+    /// The numbers that are properties of blocks or sets, by their places.
+    pub(super) fn ids(&self, name: &str) -> Vec<i64> {
+        let variable = self.header.variable(name).filter(|variable| !variable.is_record);
+        variable.and_then(|ids| self.header.integers(ids)).unwrap_or_default()
+    }
+
+    /// The number of a block or set; its place if it has none.
+    pub(super) fn id(&self, ids: &[i64], number: usize) -> i64 {
+        ids.get(number - 1).copied().unwrap_or(number as i64)
+    }
+}

@@ -1,0 +1,131 @@
+//! The results in an Exodus file: numbers of nodes and elements in each time step.
+
+use super::File;
+use super::blocks::Block;
+use crate::formats::netcdf_points::{Parts, PointData};
+use crate::netcdf::Variable;
+use crate::visit::sink::Sink;
+
+impl File<'_> {
+    /// Hands on data of nodes and elements, and tells what is not handed on. The mesh does not depend on them: what has not
+    /// the lengths it should have is passed over.
+    pub(super) fn data(&self, blocks: &[Block<'_>], sink: &mut dyn Sink) {
+        self.of_nodes(sink);
+        if sink.asks_for_data() {
+            self.of_elements(blocks, sink);
+            self.left_out(sink);
+        }
+    }
+
+    fn names(&self, table: &str) -> Vec<Vec<u8>> {
+        let table = self.header.variable(table);
+        table.map(|names| self.header.texts(names)).unwrap_or_default()
+    }
+
+    fn of_nodes(&self, sink: &mut dyn Sink) {
+        let names = self.names("name_nod_var");
+        let nodes = self.nodes as u64;
+        let each = self.header.numbered("vals_nod_var");
+        let mut data = PointData::new(&self.header);
+        for (place, name) in names.iter().enumerate() {
+            if !sink.asks_for_data() {
+                sink.point_array(name, 1, true);
+                continue;
+            }
+            let own = each
+                .iter()
+                .find(|(number, variable)| *number == place + 1 && variable.shape == [nodes]);
+            // In older files one variable has the numbers of all of these.
+            let all = self.header.variable("vals_nod_var");
+            let all = all.filter(|all| all.shape == [names.len() as u64, nodes]);
+            let found = match (own, all) {
+                (Some(&(_, own)), _) => Some((own, Parts::WHOLE)),
+                (None, Some(all)) => {
+                    let parts =
+                        Parts { wanted: place..place + 1, all: names.len(), ..Parts::WHOLE };
+                    Some((all, parts))
+                }
+                (None, None) => None,
+            };
+            if let Some((variable, parts)) = found {
+                data.send(name, variable, &parts, None, sink);
+            }
+        }
+    }
+
+    fn of_elements(&self, blocks: &[Block<'_>], sink: &mut dyn Sink) {
+        for (place, name) in self.names("name_elem_var").iter().enumerate() {
+            let of = |block: &Block<'_>| {
+                let name = format!("vals_elem_var{}eb{}", place + 1, block.number);
+                let found = self.header.variable(&name);
+                found.filter(|variable| variable.shape == [block.count])
+            };
+            let parts: Vec<_> =
+                blocks.iter().filter_map(|block| Some((block, of(block)?))).collect();
+            let Some((_, first)) = parts.first() else { continue };
+            let mut read: Vec<Option<Vec<Vec<f64>>>> = parts.iter().map(|_| None).collect();
+            for step in 0..self.header.steps(first) {
+                if !sink.cell_array(name, 1, true) {
+                    continue;
+                }
+                let (mut numbers, mut tags) = (Vec::new(), Vec::new());
+                for ((block, variable), read) in parts.iter().zip(&mut read) {
+                    let steps = read.get_or_insert_with(|| self.steps(variable));
+                    let Some(own) = steps.get_mut(step) else { continue };
+                    numbers.append(own);
+                    tags.extend(block.before + 1..=block.before + block.count);
+                }
+                sink.cell_numbers(numbers, Some(tags));
+            }
+        }
+    }
+
+    /// The real numbers of a variable in each time step; none if they are others.
+    fn steps(&self, variable: &Variable) -> Vec<Vec<f64>> {
+        let Ok(items) = self.header.items(variable) else { return Vec::new() };
+        let steps = 0..self.header.steps(variable);
+        let own = |step| variable.reals(items.bytes.get(items.range(step)).unwrap_or_default());
+        steps.map(own).collect()
+    }
+
+    fn left_out(&self, sink: &mut dyn Sink) {
+        let starts_so =
+            |name: &str| self.header.variables.iter().any(|v| v.name.starts_with(name.as_bytes()));
+        for (name, what) in [
+            ("vals_glo_var", "global variables"),
+            ("vals_sset_var", "variables of side sets"),
+            ("vals_nset_var", "variables of node sets"),
+            ("attrib", "attributes of elements"),
+            ("qa_records", "records of quality assurance"),
+            ("info_records", "information records"),
+        ] {
+            if starts_so(name) {
+                sink.leaves_out(what);
+            }
+        }
+        // A single step at the time zero is what data without a time stand in.
+        let has_times = self.header.variable("time_whole").is_some_and(|times| {
+            let steps = self.steps(times);
+            steps.len() > 1 || steps.iter().flatten().any(|&time| time != 0.0)
+        });
+        if has_times {
+            sink.leaves_out("times of time steps");
+        }
+        let numbered = |name: &str| {
+            let map = self.ids(name);
+            !map.iter().copied().eq(1..=map.len() as i64)
+        };
+        if numbered("node_num_map") || numbered("elem_num_map") {
+            sink.leaves_out("numbers of nodes and elements in their maps");
+        }
+        let is_weighted = |(_, factors): &(usize, &Variable)| {
+            !factors.is_record && self.steps(factors).iter().flatten().any(|&factor| factor != 1.0)
+        };
+        if ["dist_fact_ss", "dist_fact_ns"]
+            .iter()
+            .any(|name| self.header.numbered(name).iter().any(is_weighted))
+        {
+            sink.leaves_out("distribution factors of sets");
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Exodus II, in netCDF's classic formats and in netCDF-4.
+//!
+//! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model". Elements stand in blocks, each of one type, and
+//! are numbered through all of them from one. A side set lists sides of elements, a node set nodes.
+
+mod blocks;
+mod data;
+mod sets;
+pub(crate) mod write;
+
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::axes::Axes;
+use crate::formats::netcdf_axes::axes;
+use crate::hdf5::Hdf5;
+use crate::netcdf::{self, Header, Number, Variable};
+use crate::text::cursor::Cursor;
+use crate::visit::sink::{Column, Layout, Sink, Walk};
+
+pub(crate) struct Exodus;
+
+/// A file with its header.
+struct File<'a> {
+    source: &'a Source,
+    header: Header<'a>,
+    /// How many nodes there are.
+    nodes: usize,
+}
+
+/// Stands for the block of what is in no block.
+const NO_BLOCK: i64 = i64::MIN;
+
+impl Walk for Exodus {
+    const VERTICES: &'static str = "the list of coordinates";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let header = netcdf::open(source)?;
+        let start = Cursor::at_byte_of(source, 0);
+        let Some(nodes) = header.dimension("num_nodes") else {
+            if header.hdf5.is_some() {
+                let problem = "HDF5 that holds no mesh of Exodus II, UGRID, MED or CGNS";
+                let remedy = "If it has the numbers of an XDMF, name the .xdmf";
+                return Err(start.error(problem, remedy));
+            }
+            let problem = "netCDF that holds no mesh of Exodus II (it has no dimension num_nodes) or UGRID (no variable with the cf_role mesh_topology)";
+            return Err(start.error(problem, "Save the mesh as one of these, or in another format"));
+        };
+        start.check_vertex_count(nodes)?;
+        if let Some(error) =
+            header.unread(|name| name.starts_with(b"coord") || name.starts_with(b"connect"))
+        {
+            return Err(error);
+        }
+        let file = File { source, header, nodes: nodes as usize };
+        let layout = file.axes()?.send(Format::Exodus, (file.nodes, 1), sink)?;
+        let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
+        sink.columns(vec![Column { what: "block".into(), from_dimension: 0, label }]);
+        let blocks = file.blocks(sink)?;
+        file.side_sets(&blocks, sink)?;
+        if sink.asks_for_groups() {
+            file.node_sets(sink)?;
+        }
+        file.data(&blocks, sink);
+        file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        Ok(layout)
+    }
+}
+
+impl<'a> File<'a> {
+    /// How the coordinates stand, of each axis by itself.
+    fn axes(&self) -> Result<Axes<'a>, ReadError> {
+        let header = &self.header;
+        let nodes = self.nodes as u64;
+        let each: Vec<_> =
+            ["coordx", "coordy", "coordz"].into_iter().map_while(|n| header.variable(n)).collect();
+        let all = header.variable("coord").filter(|_| each.is_empty());
+        let fits = |variable: &&Variable| match &variable.shape[..] {
+            &[own] => own == nodes && !variable.is_record,
+            _ => false,
+        };
+        // The coordinates of all axes in one table, or each in one of its own.
+        let (count, variables) = match all.map(|all| (all, &all.shape[..], all.is_record)) {
+            Some((all, &[count, own], false)) if own == nodes => (count as usize, vec![all]),
+            _ => {
+                let each: Vec<_> = each.into_iter().filter(fits).collect();
+                (each.len(), each)
+            }
+        };
+        let first = variables.first().map(|first| (first.number, first.order));
+        let is_same = |other: &&Variable| Some((other.number, other.order)) == first;
+        let (Some((Number::Real(precision), order)), 2..=3, true) =
+            (first, count, variables.iter().all(is_same))
+        else {
+            let problem =
+                format!("it has no coordinates in two or three axes of {} nodes", self.nodes);
+            let start = Cursor::at_byte_of(self.source, 0);
+            return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
+        };
+        axes(header, &variables, (order, precision), (count, self.nodes))
+    }
+}

@@ -1,0 +1,108 @@
+//! The side sets and node sets of an Exodus file.
+
+use super::blocks::Block;
+use super::{File, NO_BLOCK};
+use crate::content::label::Label;
+use crate::error::ReadError;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::sink::{Element, Kind, Sink, Within};
+
+impl File<'_> {
+    /// Hands on the sides of triangles and quadrilaterals in side sets as lines.
+    pub(super) fn side_sets(
+        &self,
+        blocks: &[Block<'_>],
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
+        let ids = self.named("sideset", ["ss_prop1", "ss_names"], 1, sink);
+        for (number, elements) in self.header.numbered("elem_ss") {
+            let sides = self.header.variable(&format!("side_ss{number}"));
+            let start = self.header.place(elements);
+            let cursor = Cursor::at_byte_of(self.source, start);
+            let found = sides.filter(|sides| !sides.is_record && !elements.is_record);
+            let lists = found.and_then(|sides| {
+                Some((self.header.integers(elements)?, self.header.integers(sides)?))
+            });
+            let Some((elements, sides)) = lists.filter(|(a, b)| a.len() == b.len()) else {
+                let problem =
+                    format!("side set {number} does not have one side for each of its elements");
+                return Err(cursor.error(problem, CORRECT));
+            };
+            let label = Label::Tag(self.id(&ids, number));
+            sink.within(&[Within { what: "sideset", label, dimension: Some(1) }]);
+            for (&element, &side) in elements.iter().zip(&sides) {
+                let Some(ends) = self.side(blocks, element, side) else {
+                    let problem = format!("side set {number} has side {side} of element {element}");
+                    return Err(cursor.error(problem, "There is no such side: correct the set"));
+                };
+                if let Some([a, b]) = ends {
+                    let (kind, nodes) = (Kind::Line, [a, b, 0, 0]);
+                    // Sides have no number of their own.
+                    let line = Element { tag: 0, kind, region: [NO_BLOCK, 0], nodes };
+                    sink.element(&cursor, &line)?;
+                }
+            }
+        }
+        sink.within(&[]);
+        Ok(())
+    }
+
+    /// The ends of a side; none if it is no line, such as the face of a shell. None at all if there is no such side.
+    fn side(&self, blocks: &[Block<'_>], element: i64, side: i64) -> Option<Option<[u64; 2]>> {
+        let place = u64::try_from(element).ok()?.checked_sub(1)?;
+        let block = &blocks[blocks.partition_point(|block| block.before + block.count <= place)..];
+        let block = block.first()?;
+        let mut side = usize::try_from(side).ok()?.checked_sub(1)?;
+        if block.is_shell {
+            match side.checked_sub(2) {
+                None => return Some(None),
+                Some(edge) => side = edge,
+            }
+        }
+        let corners = match block.kind {
+            Kind::Triangle | Kind::Quadrilateral => block.kind.nodes(),
+            _ => return Some(None),
+        };
+        let (nodes, _) = block.element(place - block.before);
+        (side < corners).then(|| Some([nodes[side], nodes[(side + 1) % corners]]))
+    }
+
+    /// Hands on which nodes are in which node sets.
+    pub(super) fn node_sets(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
+        let ids = self.named("nodeset", ["ns_prop1", "ns_names"], 0, sink);
+        for (number, variable) in self.header.numbered("node_ns") {
+            let header = &self.header;
+            let nodes = if variable.is_record { None } else { header.integers(variable) };
+            let id = self.id(&ids, number);
+            for node in nodes.unwrap_or_default() {
+                let index = u32::try_from(node - 1).ok().filter(|&i| (i as usize) < self.nodes);
+                let Some(index) = index else {
+                    let cursor = Cursor::at_byte_of(self.source, header.place(variable));
+                    let problem = format!("node set {number} has node {node}");
+                    return Err(cursor.error(problem, "There is no such node: correct the set"));
+                };
+                sink.node_within(index, "nodeset", id);
+            }
+        }
+        Ok(())
+    }
+
+    /// Hands on the names of sets of a dimension. Returns their numbers.
+    fn named(
+        &self,
+        what: &str,
+        [numbers, names]: [&str; 2],
+        dimension: u8,
+        sink: &mut dyn Sink,
+    ) -> Vec<i64> {
+        let ids = self.ids(numbers);
+        if let (true, Some(names)) = (sink.asks_for_groups(), self.header.variable(names)) {
+            for (name, &id) in self.header.texts(names).iter().zip(&ids) {
+                if !name.is_empty() {
+                    sink.name(what, Some(dimension), id, name);
+                }
+            }
+        }
+        ids
+    }
+}

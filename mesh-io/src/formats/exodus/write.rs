@@ -1,0 +1,276 @@
+//! Writes Exodus II: elements in blocks by kind and group, lines of groups as side sets, groups of vertices as node sets.
+//!
+//! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
+
+use crate::content::label::Label;
+use crate::export::content::Group;
+use crate::export::job::Job;
+use crate::export::sides::{pair, sides};
+use crate::netcdf::write::{NetCdf, Values};
+use crate::visit::sink::Kind;
+use std::collections::{HashMap, HashSet};
+
+/// The dimension of time steps.
+const RECORDS: &str = "time_step";
+
+/// Elements of one kind and group.
+struct Block {
+    kind: Kind,
+    group: Option<u32>,
+    cells: Vec<usize>,
+}
+
+/// The lines of one group, as sides of elements.
+struct SideSet {
+    group: u32,
+    elements: Vec<i32>,
+    sides: Vec<i32>,
+}
+
+/// Returns the Exodus name of a type of elements, and its number of nodes.
+fn type_of(kind: Kind) -> (&'static str, usize) {
+    let name = match kind {
+        Kind::Point | Kind::Corner => "SPHERE",
+        Kind::Line => "BAR2",
+        Kind::Triangle => "TRI3",
+        Kind::Quadrilateral => "QUAD4",
+    };
+    (name, kind.nodes())
+}
+
+/// Returns the group that names the block or side set of a cell.
+fn group_of(job: &Job<'_>, cell: usize) -> Option<u32> {
+    let of_any = || {
+        let set = &job.content.sets[job.content.cells.sets[cell] as usize];
+        set.iter().copied().find(|&group| job.content.groups[group as usize].what == "block")
+    };
+    job.tags.group(job.content, cell).or_else(of_any)
+}
+
+pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
+    let content = job.content;
+    let sides = sides(content, |cell| job.tags.group(content, cell));
+    let blocks = blocks(job, &sides);
+    let side_sets = side_sets(job, &blocks, &sides);
+    let names = || {
+        let groups = content.groups.iter().chain(content.vertex_groups.iter().map(|(g, _)| g));
+        let data = job.point_data().chain(job.cell_data());
+        groups.filter_map(Group::name).chain(data.map(|data| data.name.as_str()))
+    };
+    let longest = names().map(str::len).max().unwrap_or(0).max(32);
+    let mut out = NetCdf::default();
+    out.dimension(RECORDS, 0);
+    out.attribute("api_version", Values::Single(5.1));
+    out.attribute("version", Values::Single(5.1));
+    out.attribute("floating_point_word_size", Values::Whole(vec![8]));
+    out.attribute("file_size", Values::Whole(vec![1]));
+    out.attribute("maximum_name_length", Values::Whole(vec![longest as i32]));
+    out.attribute("title", Values::Text(b"written by gpu-smooth".to_vec()));
+    out.dimension("len_string", 33);
+    out.dimension("len_name", longest + 1);
+    out.dimension("four", 4);
+    let has_data = job.point_data().chain(job.cell_data()).next().is_some();
+    let times = if has_data { vec![0.0] } else { Vec::new() };
+    out.variable("time_whole", &[RECORDS], Vec::new(), Values::Real(times));
+    points(&mut out, job, longest + 1);
+    elements(&mut out, job, &blocks, longest + 1);
+    sets(&mut out, job, &side_sets, longest + 1);
+    data(&mut out, job, &blocks, longest + 1);
+    out.bytes()
+}
+
+/// Makes the blocks, in the order in which the file first has an element of each: first triangles and quadrilaterals,
+/// then lines, then points.
+fn blocks(job: &Job<'_>, sides: &HashSet<usize>) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    let mut places: HashMap<(u8, Option<u32>), usize> = HashMap::new();
+    for cell in job.cells().filter(|cell| !sides.contains(cell)) {
+        let (kind, group) = (job.content.cells.kinds[cell], group_of(job, cell));
+        let place = *places.entry((kind as u8, group)).or_insert(blocks.len());
+        if place == blocks.len() {
+            blocks.push(Block { kind, group, cells: Vec::new() });
+        }
+        blocks[place].cells.push(cell);
+    }
+    blocks.sort_by_key(|block| 2 - block.kind.dimension());
+    blocks
+}
+
+fn side_sets(job: &Job<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
+    let content = job.content;
+    let mut wanted: HashMap<(u32, u32), (i32, i32)> = HashMap::new();
+    for &line in sides {
+        if let &[a, b] = content.cells.of(line) {
+            wanted.insert(pair(a, b), (0, 0));
+        }
+    }
+    let mut element = 0;
+    for block in blocks {
+        for &cell in &block.cells {
+            element += 1;
+            if block.kind.dimension() < 2 {
+                continue;
+            }
+            let corners = content.cells.of(cell);
+            for (side, &a) in corners.iter().enumerate() {
+                let b = corners[(side + 1) % corners.len()];
+                if let Some(found) = wanted.get_mut(&pair(a, b)).filter(|found| found.0 == 0) {
+                    *found = (element, side as i32 + 1);
+                }
+            }
+        }
+    }
+    let mut sets: Vec<SideSet> = Vec::new();
+    let mut places: HashMap<u32, usize> = HashMap::new();
+    for line in content.cells.all(Kind::Line).filter(|line| sides.contains(line)) {
+        let (Some(group), &[a, b]) = (job.tags.group(content, line), content.cells.of(line)) else {
+            continue;
+        };
+        let place = *places.entry(group).or_insert(sets.len());
+        if place == sets.len() {
+            sets.push(SideSet { group, elements: Vec::new(), sides: Vec::new() });
+        }
+        let (element, side) = wanted[&pair(a, b)];
+        sets[place].elements.push(element);
+        sets[place].sides.push(side);
+    }
+    sets
+}
+
+/// Makes an attribute.
+fn text(name: &'static str, content: &str) -> (&'static str, Values) {
+    (name, Values::Text(content.as_bytes().to_vec()))
+}
+
+fn points(out: &mut NetCdf, job: &Job<'_>, width: usize) {
+    let content = job.content;
+    let count = content.points.len();
+    let is_flat = (0..count).all(|vertex| content.z(vertex) == 0.0);
+    let axes = if is_flat { 2 } else { 3 };
+    out.dimension("num_dim", axes);
+    out.dimension("num_nodes", count);
+    for (axis, name) in ["coordx", "coordy", "coordz"].into_iter().enumerate().take(axes) {
+        let of = |vertex: usize| match axis {
+            2 => content.z(vertex),
+            _ => content.points[vertex][axis],
+        };
+        out.variable(name, &["num_nodes"], Vec::new(), Values::Real((0..count).map(of).collect()));
+    }
+    let names = Values::names(["x", "y", "z"].into_iter().take(axes), width);
+    out.variable("coor_names", &["num_dim", "len_name"], Vec::new(), names);
+}
+
+/// Gives groups distinct numbers. A group keeps its own number unless an earlier group has it.
+fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
+    let wanted: Vec<Option<i32>> =
+        wanted.map(|own| own.and_then(|own| i32::try_from(own).ok())).collect();
+    let mut taken: HashSet<i32> = wanted.iter().flatten().copied().collect();
+    let (mut given, mut next) = (HashSet::new(), 1);
+    let number = |own: &Option<i32>| match own {
+        Some(own) if given.insert(*own) => *own,
+        _ => {
+            while !taken.insert(next) {
+                next += 1;
+            }
+            next
+        }
+    };
+    wanted.iter().map(number).collect()
+}
+
+/// Adds the status, numbers and names of blocks or sets.
+fn named(
+    out: &mut NetCdf,
+    [count, status, property, names]: [&str; 4],
+    (numbers, texts): (Vec<i32>, Vec<&str>),
+    width: usize,
+) {
+    out.dimension(count, numbers.len());
+    out.variable(status, &[count], Vec::new(), Values::Whole(vec![1; numbers.len()]));
+    out.variable(property, &[count], vec![text("name", "ID")], Values::Whole(numbers));
+    out.variable(names, &[count, "len_name"], Vec::new(), Values::names(texts, width));
+}
+
+fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
+    let content = job.content;
+    out.dimension("num_elem", blocks.iter().map(|block| block.cells.len()).sum());
+    let number = |block: &Block| block.group.map(|group| job.tags.number(group));
+    let name = |block: &Block| content.groups[block.group? as usize].name();
+    let names = blocks.iter().map(|block| name(block).unwrap_or("")).collect();
+    let told = ["num_el_blk", "eb_status", "eb_prop1", "eb_names"];
+    named(out, told, (numbers(blocks.iter().map(number)), names), width);
+    for (block, place) in blocks.iter().zip(1..) {
+        let (type_name, nodes) = type_of(block.kind);
+        let [count, each] = [format!("num_el_in_blk{place}"), format!("num_nod_per_el{place}")];
+        out.dimension(&count, block.cells.len());
+        out.dimension(&each, nodes);
+        let vertices = block.cells.iter().flat_map(|&cell| content.cells.of(cell));
+        let vertices = Values::Whole(vertices.map(|&vertex| vertex as i32 + 1).collect());
+        let kind = vec![text("elem_type", type_name)];
+        out.variable(format!("connect{place}"), &[&count, &each], kind, vertices);
+    }
+}
+
+fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
+    let content = job.content;
+    if !side_sets.is_empty() {
+        let own = numbers(side_sets.iter().map(|set| Some(job.tags.number(set.group))));
+        let name = |set: &SideSet| content.groups[set.group as usize].name().unwrap_or("");
+        let told = ["num_side_sets", "ss_status", "ss_prop1", "ss_names"];
+        named(out, told, (own, side_sets.iter().map(name).collect()), width);
+    }
+    for (set, place) in side_sets.iter().zip(1..) {
+        let count = format!("num_side_ss{place}");
+        out.dimension(&count, set.elements.len());
+        for (name, numbers) in [("elem_ss", &set.elements), ("side_ss", &set.sides)] {
+            let numbers = Values::Whole(numbers.clone());
+            out.variable(format!("{name}{place}"), &[&count], Vec::new(), numbers);
+        }
+    }
+    let groups = &content.vertex_groups;
+    if !groups.is_empty() {
+        let own = numbers(groups.iter().map(|(group, _)| match group.label {
+            Label::Tag(tag) => Some(tag),
+            Label::Name(_) => None,
+        }));
+        let names = groups.iter().map(|(group, _)| group.name().unwrap_or("")).collect();
+        let told = ["num_node_sets", "ns_status", "ns_prop1", "ns_names"];
+        named(out, told, (own, names), width);
+    }
+    for ((_, vertices), place) in groups.iter().zip(1..) {
+        let count = format!("num_nod_ns{place}");
+        out.dimension(&count, vertices.len());
+        let vertices = Values::Whole(vertices.iter().map(|&vertex| vertex as i32 + 1).collect());
+        out.variable(format!("node_ns{place}"), &[&count], Vec::new(), vertices);
+    }
+}
+
+fn data(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
+    let of_points: Vec<_> = job.point_data().collect();
+    if !of_points.is_empty() {
+        out.dimension("num_nod_var", of_points.len());
+        let names = Values::names(of_points.iter().map(|data| data.name.as_str()), width);
+        out.variable("name_nod_var", &["num_nod_var", "len_name"], Vec::new(), names);
+        for (data, place) in of_points.iter().zip(1..) {
+            let values = Values::Real(data.values.clone());
+            let name = format!("vals_nod_var{place}");
+            out.variable(name, &[RECORDS, "num_nodes"], Vec::new(), values);
+        }
+    }
+    let of_cells: Vec<_> = job.cell_data().collect();
+    if !of_cells.is_empty() {
+        out.dimension("num_elem_var", of_cells.len());
+        let names = Values::names(of_cells.iter().map(|data| data.name.as_str()), width);
+        out.variable("name_elem_var", &["num_elem_var", "len_name"], Vec::new(), names);
+        let all = Values::Whole(vec![1; blocks.len() * of_cells.len()]);
+        out.variable("elem_var_tab", &["num_el_blk", "num_elem_var"], Vec::new(), all);
+        for (data, place) in of_cells.iter().zip(1..) {
+            for (block, own) in blocks.iter().zip(1..) {
+                let values = block.cells.iter().map(|&cell| data.values[cell]).collect();
+                let name = format!("vals_elem_var{place}eb{own}");
+                let count = format!("num_el_in_blk{own}");
+                out.variable(name, &[RECORDS, &count], Vec::new(), Values::Real(values));
+            }
+        }
+    }
+}

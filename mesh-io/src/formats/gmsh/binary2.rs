@@ -1,0 +1,114 @@
+//! The sections of version 2.2 in binary. The counts are text. After them come the nodes one by one, and the elements
+//! in blocks of one kind.
+
+use super::kind::kind_of;
+use super::text2::columns;
+use super::words::Words;
+use super::{block_fits, row};
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink};
+
+/// Reads `$Nodes` or `$ParametricNodes` after its first line. Returns the number of nodes.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    (order, parametric): (Order, bool),
+    heights: &mut Heights,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    const TAG: usize = 4;
+    const NODE: usize = TAG + 24;
+    row(cursor, 0, 1, "counts")?;
+    let count = cursor.vertex_count()?;
+    sink.expect_nodes(cursor.capacity(count, NODE));
+    let mut taken = 0;
+    if let (false, Some((bytes, start))) = (parametric, cursor.ahead(count, NODE)) {
+        let field = |at: usize, width| Field::new(bytes.get(at..), (NODE, width), order);
+        let [x, y, z] = [0, 8, 16].map(|axis| field(TAG + axis, 8));
+        let (tags, x_at) = (Tags::Listed(field(0, 4)), start + TAG);
+        let count = count as usize;
+        if z.all_real(count, f64::is_finite) {
+            taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
+            heights.see_all(z, taken, start + TAG + 16);
+            cursor.take(taken * NODE);
+        }
+    }
+    for done in taken as u64..count {
+        let progress = (done, count, "nodes");
+        let words = &mut Words::take(cursor, order, NODE, progress)?;
+        let tag = words.natural(cursor, "a node tag")?;
+        let [x, y, z] = words.point(cursor, tag)?;
+        sink.node(cursor, tag, 2, cursor.taken() + TAG, [x, y]);
+        heights.see((cursor.taken() + TAG + 16, z));
+        if parametric {
+            // The dimension of the node's entity, the entity's tag, and one parameter for each dimension.
+            let entity = &mut Words::take(cursor, order, 8, progress)?;
+            let parameters = match entity.int() {
+                1 => 8,
+                2 => 16,
+                _ => 0,
+            };
+            Words::take(cursor, order, parameters, progress)?;
+        }
+    }
+    Ok(count)
+}
+
+/// Reads `$Elements` after its first line. Returns the number of elements.
+pub(super) fn elements(
+    cursor: &mut Cursor<'_>,
+    order: Order,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    const HEADER: usize = 12;
+    row(cursor, 0, 1, "counts")?;
+    let count = cursor.integer("the number of elements")?;
+    sink.expect_elements(cursor.capacity(count, 16));
+    sink.columns(columns());
+    let mut done = 0;
+    while done < count {
+        let words = &mut Words::take(cursor, order, HEADER, (done, count, "elements"))?;
+        let kind = words.natural(cursor, "the type of elements")?;
+        let kind = kind_of(cursor, kind)?;
+        let size = words.natural(cursor, "a number of elements")?;
+        block_fits(cursor, size, count - done, "elements")?;
+        let groups = words.natural(cursor, "the number of an element's tags")? as usize;
+        let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
+        let mut taken = 0;
+        if let (Kind::Triangle, Some((block, _))) = (kind, cursor.ahead(size, bytes)) {
+            let field = |at: usize| Field::new(block.get(4 * at..), (bytes, 4), order);
+            let region = |column: usize| match column < groups {
+                true => Region::Field(field(1 + column)),
+                false => Region::Same(0),
+            };
+            taken = sink.triangle_records(&TriangleRecords {
+                count: size as usize,
+                corners: field(1 + groups),
+                first: 0,
+                below: u64::MAX,
+                regions: [region(0), region(1)],
+                expected: &[(field(0), Expected::Natural)],
+            });
+            cursor.take(taken * bytes);
+        }
+        for at in taken as u64..size {
+            let words = &mut Words::take(cursor, order, bytes, (done + at, count, "elements"))?;
+            let tag = words.natural(cursor, "an element tag")?;
+            let mut region = [0; 2];
+            region[..groups.min(2)].fill_with(|| i64::from(words.int()));
+            // The tags after the second one are those of mesh partitions.
+            words.skip(4 * groups.saturating_sub(2));
+            let mut nodes = [0; 4];
+            for node in &mut nodes[..kind.nodes()] {
+                *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
+            }
+            sink.element(cursor, &Element { tag, kind, region, nodes })?;
+        }
+        done += size;
+    }
+    Ok(count)
+}

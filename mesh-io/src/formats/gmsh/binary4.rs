@@ -1,0 +1,148 @@
+//! The sections of version 4.1 in binary, and the elements of 4.0. There is a block for each entity of the model.
+
+use super::kind::kind_of;
+use super::model::Model;
+use super::words::Words;
+use super::{Version, all_in_blocks, block_fits};
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::edit::numbers::Places;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Element, Kind, PointNumbers, Sink, Stored};
+
+/// The size of a block's header in bytes: three `int`, and a `size_t` (an `unsigned long` in 4.0).
+pub(super) const BLOCK_HEADER: usize = 20;
+
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    order: Order,
+    heights: &mut Heights,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let [blocks, count] = counts(cursor, Version::V4, order)?;
+    cursor.check_vertex_count(count)?;
+    sink.expect_nodes(cursor.capacity(count, 32));
+    let mut done = 0;
+    for block in 0..blocks {
+        let words = &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "node blocks"))?;
+        let dimension = words.natural(cursor, "the dimension of a node block")?;
+        let entity = i64::from(words.int());
+        let parametric = words.int() != 0;
+        let wanted = parametric && dimension == 2 && super::has_parameters(sink, entity);
+        let size = words.size();
+        block_fits(cursor, size, count - done, "nodes")?;
+        let progress = (done, count, "nodes");
+        let tags = &mut Words::take(cursor, order, (size as usize).saturating_mul(8), progress)?;
+        let parameters = if parametric { dimension.min(3) as usize } else { 0 };
+        let (mut own, mut places, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+        let record = 8 * (3 + parameters);
+        let mut taken = 0;
+        if let (2.., false, Some((bytes, x_at))) = (dimension, wanted, cursor.ahead(size, record)) {
+            let [x, y, z] = [0, 8, 16].map(|at| Field::new(bytes.get(at..), (record, 8), order));
+            let count = size as usize;
+            if z.all_real(count, f64::is_finite) {
+                let tags = Tags::Listed(Field::new(Some(tags.left()), (8, 8), order));
+                taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
+                heights.see_all(z, taken, x_at + 16);
+            }
+            tags.skip(8 * taken);
+            cursor.take(taken * record);
+        }
+        for at in taken as u64..size {
+            let progress = (done + at, count, "nodes");
+            let words = &mut Words::take(cursor, order, record, progress)?;
+            let tag = tags.size();
+            let [x, y, z] = words.point(cursor, tag)?;
+            sink.node(cursor, tag, dimension, cursor.taken(), [x, y]);
+            heights.see((cursor.taken() + 16, z));
+            if wanted {
+                own.push(tag);
+                places.extend([24, 32].map(|after| cursor.taken() + after));
+                numbers.extend([words.double(), words.double()]);
+            }
+        }
+        if wanted {
+            let stored = Stored::in_place(Places::List(places), super::form(Some(order)));
+            sink.parameter_numbers(PointNumbers { numbers, nodes: Some(own), stored });
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "nodes")?;
+    Ok(count)
+}
+
+/// Reads `$Elements` of version 4.0 or 4.1 after its first line. Returns the number of elements.
+pub(super) fn elements(
+    cursor: &mut Cursor<'_>,
+    (version, order): (Version, Order),
+    model: &Model,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let [blocks, count] = counts(cursor, version, order)?;
+    let tag_bytes = if version == Version::V40 { 4 } else { 8 };
+    sink.expect_elements(cursor.capacity(count, 4 * tag_bytes));
+    let mut done = 0;
+    for block in 0..blocks {
+        let words =
+            &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "element blocks"))?;
+        // In 4.0 the entity's tag comes first, in 4.1 its dimension.
+        let [first, second] = [words.int(), words.int()];
+        let entity = if version == Version::V40 { first } else { second };
+        let region = [i64::from(entity), 0];
+        let kind = words.natural(cursor, "the type of an element block")?;
+        let kind = kind_of(cursor, kind)?;
+        sink.within(&model.groups_of(kind, region[0]));
+        let size = words.size();
+        block_fits(cursor, size, count - done, "elements")?;
+        let row = tag_bytes * (1 + kind.nodes());
+        let mut taken = 0;
+        if let (Kind::Triangle, Some((bytes, _))) = (kind, cursor.ahead(size, row)) {
+            let field = |at: usize| Field::new(bytes.get(at..), (row, tag_bytes), order);
+            let natural = [(field(0), Expected::Natural)];
+            taken = sink.triangle_records(&TriangleRecords {
+                count: size as usize,
+                corners: field(tag_bytes),
+                first: 0,
+                below: u64::MAX,
+                regions: region.map(Region::Same),
+                expected: if version == Version::V40 { &natural } else { &[] },
+            });
+            cursor.take(taken * row);
+        }
+        for at in taken as u64..size {
+            let words = &mut Words::take(cursor, order, row, (done + at, count, "elements"))?;
+            let mut nodes = [0; 4];
+            let tag = if version == Version::V40 {
+                let tag = words.natural(cursor, "an element tag")?;
+                for node in &mut nodes[..kind.nodes()] {
+                    *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
+                }
+                tag
+            } else {
+                let tag = words.size();
+                nodes[..kind.nodes()].fill_with(|| words.size());
+                tag
+            };
+            sink.element(cursor, &Element { tag, kind, region, nodes })?;
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "elements")?;
+    Ok(count)
+}
+
+/// Reads the number of blocks of a section, and the number of nodes or elements in all of them.
+pub(super) fn counts(
+    cursor: &mut Cursor<'_>,
+    version: Version,
+    order: Order,
+) -> Result<[u64; 2], ReadError> {
+    // In 4.1 the least and the greatest tag follow.
+    let bytes = if version == Version::V40 { 16 } else { 32 };
+    let words = &mut Words::take(cursor, order, bytes, (0, 1, "counts"))?;
+    Ok([words.size(), words.size()])
+}

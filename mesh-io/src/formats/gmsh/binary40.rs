@@ -1,0 +1,52 @@
+//! The nodes of version 4.0 in binary. There is a block for each entity of the model, and each node has a tag of four
+//! bytes before its coordinates.
+
+use super::binary4::{BLOCK_HEADER, counts};
+use super::words::Words;
+use super::{Version, all_in_blocks, block_fits};
+use crate::binary::order::Order;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::sink::Sink;
+
+/// The size of a tag in bytes.
+const TAG: usize = 4;
+
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    order: Order,
+    heights: &mut Heights,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let [blocks, count] = counts(cursor, Version::V40, order)?;
+    cursor.check_vertex_count(count)?;
+    sink.expect_nodes(cursor.capacity(count, TAG + 24));
+    let mut done = 0;
+    for block in 0..blocks {
+        let words = &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "node blocks"))?;
+        words.int(); // The entity's own tag.
+        let dimension = words.natural(cursor, "the dimension of a node block")?;
+        let parametric = words.int() != 0;
+        if parametric && dimension >= 2 {
+            super::note_parameters(sink);
+        }
+        let size = words.size();
+        block_fits(cursor, size, count - done, "nodes")?;
+        // Nodes of points and of volumes have no parameters.
+        let parameters = if parametric && dimension < 3 { dimension as usize } else { 0 };
+        for at in 0..size {
+            let progress = (done + at, count, "nodes");
+            let words = &mut Words::take(cursor, order, TAG + 8 * (3 + parameters), progress)?;
+            let tag = words.natural(cursor, "a node tag")?;
+            let [x, y, z] = words.point(cursor, tag)?;
+            let x_at = cursor.taken() + TAG;
+            sink.node(cursor, tag, dimension, x_at, [x, y]);
+            heights.see((x_at + 16, z));
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "nodes")?;
+    Ok(count)
+}

@@ -1,0 +1,48 @@
+//! The element types of gmsh that can be read.
+
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::sink::Kind;
+
+/// Returns the kind of an element by its number in gmsh, or an error on the current line.
+pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {
+    match number {
+        15 => Ok(Kind::Point),
+        1 => Ok(Kind::Line),
+        2 => Ok(Kind::Triangle),
+        3 => Ok(Kind::Quadrilateral),
+        _ => Err(refusal(cursor, number)),
+    }
+}
+
+#[cold]
+fn refusal(cursor: &Cursor<'_>, number: u64) -> ReadError {
+    match number {
+        4..=7 | 11..=14 | 17..=19 | 29..=33 | 35 => cursor.error(
+            format!("element type {number} makes this a volume mesh"),
+            "Save a mesh of the plane only (gmsh -2)",
+        ),
+        8..=10 | 16 | 20..=28 | 36..=66 => cursor.error(
+            format!("element type {number} is of higher order, and only corners are moved"),
+            "Make the mesh of first order (Mesh.ElementOrder=1)",
+        ),
+        _ => cursor.error(
+            format!("element type {number} is not known"),
+            "Save points, lines, triangles and quadrilaterals only",
+        ),
+    }
+}
+
+/// Reads the node tags at the end of an element's row, as many as the kind has. The other places of the array are 0.
+#[inline]
+pub(super) fn node_tags(
+    cursor: &mut Cursor<'_>,
+    kind: Kind,
+    tag: u64,
+) -> Result<[u64; 4], ReadError> {
+    let mut tags = [0; 4];
+    for node in &mut tags[..kind.nodes()] {
+        *node = cursor.integer(format_args!("a node of element {tag}"))?;
+    }
+    Ok(tags)
+}

@@ -1,0 +1,175 @@
+//! The nodes that belong together in pairs, from the section `$Periodic`.
+
+use super::{Encoding, Version};
+use crate::binary::order::Order;
+use crate::content::constraints::Affine;
+use crate::precision::Precision;
+use crate::text::cursor::Cursor;
+use crate::text::token::{float, integer};
+use crate::visit::sink::Pairs;
+
+/// The numbers of a motion of space: a matrix of four by four, row by row.
+const AFFINE: usize = 16;
+
+/// Reads a section after its first line. The cursor does not move. `None` if the section is not as gmsh writes it; the
+/// mesh does not depend on it.
+pub(super) fn read(
+    cursor: &Cursor<'_>,
+    Encoding { version, order }: Encoding,
+) -> Option<Vec<Pairs>> {
+    let cursor = &mut cursor.clone();
+    let found = match (version, order) {
+        // In version 2.2 this section is text in binary files, too.
+        (Version::V2, _) | (_, None) => text(cursor, version)?,
+        (_, Some(order)) => binary(cursor, version, order)?,
+    };
+    let is_end = cursor.next_row() && cursor.token() == Some(b"$EndPeriodic");
+    is_end.then_some(found)
+}
+
+/// Returns what a motion of space does in the plane, if it is complete.
+fn in_plane(numbers: &[f64]) -> Option<Affine> {
+    let all: &[f64; AFFINE] = numbers.try_into().ok()?;
+    Some([[all[0], all[1], all[3]], [all[4], all[5], all[7]]])
+}
+
+/// Makes pairs of nodes with their motion; `None` if there is no pair.
+fn pairs(motion: Option<Affine>, nodes: Vec<[u64; 2]>) -> Option<Pairs> {
+    (!nodes.is_empty()).then_some(Pairs { motion, nodes })
+}
+
+fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<Pairs>> {
+    fn number(cursor: &mut Cursor<'_>) -> Option<u64> {
+        integer(cursor.token()?)
+    }
+    cursor.next_row().then_some(())?;
+    let links = number(cursor)?;
+    let mut found = Vec::new();
+    for _ in 0..links {
+        // The row with the dimension and the tags of both entities.
+        (cursor.next_row() && !cursor.is_at(b'$')).then_some(())?;
+        cursor.next_row().then_some(())?;
+        let first = cursor.token()?;
+        // From 4.1 on, a row has the count of the motion's numbers and the numbers. Before, the row starts with
+        // `Affine`, or there is none.
+        let has_row = version == Version::V4 || first == b"Affine";
+        let mut numbers = Vec::new();
+        if has_row {
+            while let Some(token) = cursor.token() {
+                numbers.push(float(token)?);
+            }
+            cursor.next_row().then_some(())?;
+        }
+        let count = if has_row { number(cursor)? } else { integer(first)? };
+        let mut nodes = Vec::with_capacity(cursor.capacity(count, "1 2\n".len()));
+        for _ in 0..count {
+            (cursor.next_row() && !cursor.is_at(b'$')).then_some(())?;
+            let (image, of) = (number(cursor)?, number(cursor)?);
+            nodes.push([of, image]);
+        }
+        found.extend(pairs(in_plane(&numbers), nodes));
+    }
+    Some(found)
+}
+
+/// Takes `count` items of `size` bytes from the file.
+fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Option<&'a [u8]> {
+    cursor.take(usize::try_from(count).ok()?.checked_mul(size)?)
+}
+
+fn binary(cursor: &mut Cursor<'_>, version: Version, order: Order) -> Option<Vec<Pairs>> {
+    let is_40 = version == Version::V40;
+    let size = |cursor: &mut Cursor<'_>| Some(order.whole(cursor.take(8)?));
+    let links = match is_40 {
+        true => order.whole(cursor.take(4)?),
+        false => size(cursor)?,
+    };
+    let mut found = Vec::new();
+    for _ in 0..links {
+        take(cursor, 3, 4)?;
+        let mut count = size(cursor)?;
+        let mut numbers = Vec::new();
+        // From 4.1 on, this is the count of the motion's numbers. Before, it is negative if a motion follows.
+        if !is_40 || count > i64::MAX as u64 {
+            let has = if is_40 { AFFINE as u64 } else { count };
+            let real = |bytes: &[u8]| order.real(Precision::Double, bytes);
+            numbers = take(cursor, has, 8)?.chunks_exact(8).map(real).collect();
+            count = size(cursor)?;
+        }
+        let width = if is_40 { 4 } else { 8 };
+        let nodes = take(cursor, count, 2 * width)?.chunks_exact(2 * width);
+        let pair = |bytes: &[u8]| {
+            let (image, of) = bytes.split_at(width);
+            [order.whole(of), order.whole(image)]
+        };
+        found.extend(pairs(in_plane(&numbers), nodes.map(pair).collect()));
+    }
+    Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::disk::source::Source;
+
+    fn read_as(version: Version, order: Option<Order>, bytes: &[u8]) -> Option<Vec<Pairs>> {
+        let source = Source::new("m.msh".as_ref(), bytes.to_vec()).unwrap();
+        let mut cursor = Cursor::new(&source);
+        assert!(cursor.next_row());
+        read(&cursor, Encoding { version, order })
+    }
+
+    /// Version 4.0 in binary has narrower numbers than 4.1, and marks a motion by a negative count.
+    #[test]
+    fn binary_of_version_4_0_is_read_in_both_byte_orders() {
+        for order in [Order::Little, Order::Big] {
+            let turned = |mut bytes: Vec<u8>| {
+                if order == Order::Big {
+                    bytes.reverse();
+                }
+                bytes
+            };
+            let int = |x: i32| turned(x.to_le_bytes().to_vec());
+            let long = |x: i64| turned(x.to_le_bytes().to_vec());
+            let mut file = b"$Periodic\n".to_vec();
+            file.extend([2, 1, 2, 4].map(int).concat());
+            file.extend(long(-16));
+            let numbers = (0..16).map(f64::from).map(|x| turned(x.to_le_bytes().to_vec()));
+            file.extend(numbers.flatten());
+            file.extend(long(2));
+            file.extend([9, 1, 18, 10].map(int).concat());
+            file.extend([1, 3, 5].map(int).concat());
+            file.extend(long(1));
+            file.extend([7, 8].map(int).concat());
+            let cut = file.clone();
+            file.extend(b"\n$EndPeriodic\n");
+            let found = read_as(Version::V40, Some(order), &file).unwrap();
+            let motion = Some([[0.0, 1.0, 3.0], [4.0, 5.0, 7.0]]);
+            assert_eq!(found[0], Pairs { motion, nodes: vec![[1, 9], [10, 18]] });
+            assert_eq!(found[1], Pairs { motion: None, nodes: vec![[8, 7]] });
+            for length in 10..cut.len() {
+                assert_eq!(read_as(Version::V40, Some(order), &cut[..length]), None);
+            }
+        }
+    }
+
+    #[test]
+    fn text_that_is_not_of_pairs_is_not_read() {
+        let whole = "$Periodic\n1\n1 2 4\n2\n9 1\n18 10\n$EndPeriodic\n";
+        let pairs = vec![Pairs { motion: None, nodes: vec![[1, 9], [10, 18]] }];
+        assert_eq!(read_as(Version::V2, None, whole.as_bytes()), Some(pairs));
+        for (part, other) in [
+            ("1\n1 2", "x\n1 2"),
+            ("4\n2\n", "4\n3\n"),
+            ("4\n2\n", "4\n1\n"),
+            ("18 10", "18"),
+            ("18 10", "18 -1"),
+            ("1\n1 2 4", "99999999999999999\n1 2 4"),
+            ("4\n2\n", "4\n99999999999999999\n"),
+            ("$End", "$"),
+        ] {
+            let spoiled = whole.replacen(part, other, 1);
+            assert_eq!(read_as(Version::V2, None, spoiled.as_bytes()), None, "{other}");
+        }
+    }
+}

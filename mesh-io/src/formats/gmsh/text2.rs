@@ -1,0 +1,79 @@
+//! The sections of version 2.2 as text: one line for each node and element.
+
+use super::kind::{kind_of, node_tags};
+use super::{counts, each};
+use crate::error::ReadError;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Column, Element, Sink};
+
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    heights: &mut Heights,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let count = counts(cursor, Cursor::vertex_count, |count| count)?;
+    sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
+    let list = (count, 0, count, "nodes");
+    each(
+        cursor,
+        list,
+        sink,
+        |cursor, _| node(cursor),
+        |cursor, sink, _, (tag, (x_at, at), z)| {
+            sink.node(cursor, tag, 2, x_at, at);
+            heights.see(z);
+            Ok(())
+        },
+    )?;
+    Ok(count)
+}
+
+/// Returns the meaning of the first two tags of an element.
+pub(super) fn columns() -> Vec<Column> {
+    ["physical", "entity"].map(Column::tags_from_one).into()
+}
+
+/// Reads `$Elements` after its first line. Returns the number of elements.
+pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<u64, ReadError> {
+    let read = |cursor: &mut Cursor<'_>| cursor.integer("the number of elements");
+    let count = counts(cursor, read, |count| count)?;
+    sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
+    sink.columns(columns());
+    let list = (count, 0, count, "elements");
+    let read = |cursor: &mut Cursor<'_>, _| element(cursor);
+    each(cursor, list, sink, read, |cursor, sink, _, element| sink.element(cursor, &element))?;
+    Ok(count)
+}
+
+/// A node's tag, the offset of x with x and y, and the offset of z with z.
+type Node = (u64, (usize, [f64; 2]), (usize, f64));
+
+#[inline]
+fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
+    let tag = cursor.integer("a node tag")?;
+    let owner = format_args!("node {tag}");
+    let point = cursor.point(owner)?;
+    Ok((tag, point, cursor.height(owner)?))
+}
+
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
+    let tag = cursor.integer("an element tag")?;
+    let kind = cursor.integer(format_args!("the type of element {tag}"))?;
+    let kind = kind_of(cursor, kind)?;
+    let groups = cursor.integer(format_args!("the number of tags of element {tag}"))?;
+    let mut region = [0; 2];
+    for number in region.iter_mut().take(usize::try_from(groups).unwrap_or(usize::MAX)) {
+        *number = cursor.signed(format_args!("a tag of element {tag}"))?;
+    }
+    // The tags after the second one are those of mesh partitions.
+    for _ in 2..groups {
+        if cursor.token().is_none() {
+            let problem = format!("element {tag} announces {groups} tags, but its line has fewer");
+            return Err(cursor.error(problem, CORRECT));
+        }
+    }
+    Ok(Element { tag, kind, region, nodes: node_tags(cursor, kind, tag)? })
+}

@@ -1,0 +1,149 @@
+//! The sections of version 4.1 as text, and the elements of 4.0. There is a block for each entity of the model.
+
+use super::kind::{kind_of, node_tags};
+use super::model::Model;
+use super::{Version, all_in_blocks, block_fits, by_rows, counts, each, head, row};
+use crate::error::ReadError;
+use crate::precision::Precision;
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
+use crate::visit::heights::{Heights, TextNumbers};
+use crate::visit::sink::{Element, Sink};
+use std::fmt::Display;
+
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    heights: &mut Heights,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let read = |cursor: &mut Cursor<'_>| {
+        let blocks = cursor.integer("the number of node blocks")?;
+        let count = cursor.vertex_count()?;
+        pass_least_and_greatest(cursor);
+        Ok((blocks, count))
+    };
+    let rows = |(blocks, count): (u64, u64)| blocks.saturating_add(2 * count);
+    let (blocks, count) = counts(cursor, read, rows)?;
+    sink.expect_nodes(cursor.capacity(count, "1\n0 0 0\n".len()));
+    let mut done = 0;
+    let mut tags = Vec::new();
+    for block in 0..blocks {
+        let read = |cursor: &mut Cursor<'_>| {
+            let dimension = cursor.integer("the dimension of a node block")?;
+            let entity = cursor.signed("the entity of a node block").unwrap_or(0);
+            let parametric = cursor.integer("whether the nodes are parametric")? != 0;
+            let size = cursor.integer("the number of nodes of a block")?;
+            Ok((dimension, entity, parametric, size))
+        };
+        let head = head(cursor, (block, blocks, "node blocks"), read)?;
+        let (dimension, entity, parametric, size) = head;
+        let wanted = parametric && dimension == 2 && super::has_parameters(sink, entity);
+        block_fits(cursor, size, count - done, "nodes")?;
+        tags.clear();
+        tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
+        let read = |cursor: &mut Cursor<'_>, _| cursor.integer("a node tag");
+        each(cursor, (size, done, count, "node tags"), sink, read, |_, _, _, tag| {
+            tags.push(tag);
+            Ok(())
+        })?;
+        let before = cursor.clone();
+        let tag = |at: Option<u64>| {
+            at.and_then(|at| tags.get(usize::try_from(at).ok()?)).copied().unwrap_or(0)
+        };
+        let read = |cursor: &mut Cursor<'_>, at| point(cursor, format_args!("node {}", tag(at)));
+        by_rows(cursor, parametric, |cursor| {
+            let list = (size, done, count, "nodes");
+            each(cursor, list, sink, read, |cursor, sink, at, ((x_at, point), z)| {
+                sink.node(cursor, tag(Some(at)), dimension, x_at, point);
+                heights.see(z);
+                Ok(())
+            })
+        })?;
+        if wanted {
+            parameters(before, &tags, sink)?;
+        }
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "nodes")?;
+    Ok(count)
+}
+
+/// Skips the least and the greatest tag of a section, which are not needed.
+fn pass_least_and_greatest(cursor: &mut Cursor<'_>) {
+    cursor.token();
+    cursor.token();
+}
+
+/// Reads the parameters at the end of the rows of these nodes.
+#[cold]
+fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut dyn Sink) -> Result<(), ReadError> {
+    let mut numbers = TextNumbers::default();
+    cursor.syntax = Syntax::PLAIN;
+    for (done, _) in (0..).zip(tags) {
+        row(&mut cursor, done, tags.len() as u64, "nodes")?;
+        cursor.tokens(3);
+        numbers.read(&mut cursor)?;
+        numbers.read(&mut cursor)?;
+    }
+    sink.parameter_numbers(numbers.finish(Precision::Double, Some(tags.to_vec())));
+    Ok(())
+}
+
+/// Reads `$Elements` of version 4.0 or 4.1 after its first line. The two differ in the header of a block. Returns the
+/// number of elements.
+pub(super) fn elements(
+    cursor: &mut Cursor<'_>,
+    version: Version,
+    model: &Model,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let read = |cursor: &mut Cursor<'_>| {
+        let blocks = cursor.integer("the number of element blocks")?;
+        let count = cursor.integer("the number of elements")?;
+        if version == Version::V4 {
+            pass_least_and_greatest(cursor);
+        }
+        Ok((blocks, count))
+    };
+    let rows = |(blocks, count): (u64, u64)| blocks.saturating_add(count);
+    let (blocks, count) = counts(cursor, read, rows)?;
+    sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
+    let mut done = 0;
+    for block in 0..blocks {
+        let read = |cursor: &mut Cursor<'_>| {
+            // The entity's dimension is not needed. It stands before the tag in 4.1, and after it in 4.0.
+            if version == Version::V4 {
+                cursor.token();
+            }
+            let entity = cursor.signed("the entity of an element block")?;
+            if version == Version::V40 {
+                cursor.token();
+            }
+            let kind = cursor.integer("the type of an element block")?;
+            let kind = kind_of(cursor, kind)?;
+            Ok((entity, kind, cursor.integer("the number of elements of a block")?))
+        };
+        let (entity, kind, size) = head(cursor, (block, blocks, "element blocks"), read)?;
+        sink.within(&model.groups_of(kind, entity));
+        block_fits(cursor, size, count - done, "elements")?;
+        let read = |cursor: &mut Cursor<'_>, _| {
+            let tag = cursor.integer("an element tag")?;
+            Ok(Element { tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
+        };
+        let list = (size, done, count, "elements");
+        each(cursor, list, sink, read, |cursor, sink, _, element| sink.element(cursor, &element))?;
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "elements")?;
+    Ok(count)
+}
+
+/// The offset of x with x and y, and the offset of z with z.
+type Point = ((usize, [f64; 2]), (usize, f64));
+
+/// Reads a node's coordinates.
+#[inline]
+fn point(cursor: &mut Cursor<'_>, owner: impl Display + Copy) -> Result<Point, ReadError> {
+    Ok((cursor.point(owner)?, cursor.height(owner)?))
+}

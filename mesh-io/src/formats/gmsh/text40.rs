@@ -1,0 +1,53 @@
+//! The nodes of version 4.0 as text. There is a block for each entity of the model, and each node has its tag before
+//! its coordinates.
+
+use super::{all_in_blocks, block_fits, by_rows, counts, each, head};
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::heights::Heights;
+use crate::visit::sink::Sink;
+
+/// Reads `$Nodes` after its first line. Returns the number of nodes.
+pub(super) fn nodes(
+    cursor: &mut Cursor<'_>,
+    heights: &mut Heights,
+    sink: &mut dyn Sink,
+) -> Result<u64, ReadError> {
+    let read = |cursor: &mut Cursor<'_>| {
+        Ok((cursor.integer("the number of node blocks")?, cursor.vertex_count()?))
+    };
+    let (blocks, count) = counts(cursor, read, |(blocks, count)| blocks.saturating_add(count))?;
+    sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
+    let mut done = 0;
+    for block in 0..blocks {
+        let read = |cursor: &mut Cursor<'_>| {
+            cursor.token(); // The entity's own tag, which may be negative.
+            let dimension = cursor.integer("the dimension of a node block")?;
+            let parametric = cursor.integer("whether the nodes are parametric")? != 0;
+            Ok((dimension, parametric, cursor.integer("the number of nodes of a block")?))
+        };
+        let (dimension, parametric, size) = head(cursor, (block, blocks, "node blocks"), read)?;
+        if parametric && dimension >= 2 {
+            super::note_parameters(sink);
+        }
+        block_fits(cursor, size, count - done, "nodes")?;
+        let read = |cursor: &mut Cursor<'_>, _| {
+            let tag = cursor.integer("a node tag")?;
+            let owner = format_args!("node {tag}");
+            let point = cursor.point(owner)?;
+            Ok((tag, point, cursor.height(owner)?))
+        };
+        // Parameters follow at the end of the row.
+        by_rows(cursor, parametric, |cursor| {
+            let list = (size, done, count, "nodes");
+            each(cursor, list, sink, read, |cursor, sink, _, (tag, (x_at, at), z)| {
+                sink.node(cursor, tag, dimension, x_at, at);
+                heights.see(z);
+                Ok(())
+            })
+        })?;
+        done += size;
+    }
+    all_in_blocks(cursor, done, count, "nodes")?;
+    Ok(count)
+}

@@ -1,0 +1,108 @@
+//! The numbers of a binary file between its lines of text.
+
+use crate::binary::order::Order;
+use crate::error::ReadError;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use std::fmt::Display;
+
+/// The remedy for a number that makes no sense.
+const DAMAGED: &str = "The file is damaged: copy it again as binary, or save the mesh again";
+
+/// Bytes of a binary file that hold numbers, which are read one after the other.
+pub(super) struct Words<'a> {
+    order: Order,
+    bytes: &'a [u8],
+}
+
+impl<'a> Words<'a> {
+    /// Takes the next `size` bytes of the file, which hold the next of `count` items called `what`. `done` items were
+    /// read before.
+    #[inline]
+    pub(super) fn take(
+        cursor: &mut Cursor<'a>,
+        order: Order,
+        size: usize,
+        (done, count, what): (u64, u64, &str),
+    ) -> Result<Words<'a>, ReadError> {
+        match cursor.take(size) {
+            Some(bytes) => Ok(Words { order, bytes }),
+            None => {
+                let problem = format!("the file ends after {done} of {count} {what}");
+                Err(cursor.error(problem, CUT_OFF))
+            }
+        }
+    }
+
+    /// Returns the next bytes. There must be as many left, as the caller took all that it reads.
+    #[inline]
+    fn next<const N: usize>(&mut self) -> [u8; N] {
+        let (next, rest) = self.bytes.split_first_chunk().expect("as many words as were taken");
+        self.bytes = rest;
+        *next
+    }
+
+    /// Returns the bytes that were not read yet.
+    pub(super) fn left(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    pub(super) fn skip(&mut self, size: usize) {
+        self.bytes = &self.bytes[size..];
+    }
+
+    /// Reads gmsh's `int`.
+    #[inline]
+    pub(super) fn int(&mut self) -> i32 {
+        self.order.i32(self.next())
+    }
+
+    /// Reads an `int` that must not be negative, called `what` in messages.
+    #[inline]
+    pub(super) fn natural(
+        &mut self,
+        cursor: &Cursor<'_>,
+        what: impl Display,
+    ) -> Result<u64, ReadError> {
+        let number = self.int();
+        u64::try_from(number).map_err(|_| {
+            cursor.error(format!("{what} is {number}, not a whole number from 0"), DAMAGED)
+        })
+    }
+
+    /// Reads gmsh's `size_t`.
+    #[inline]
+    pub(super) fn size(&mut self) -> u64 {
+        self.order.u64(self.next())
+    }
+
+    /// Reads a number of double precision.
+    pub(super) fn double(&mut self) -> f64 {
+        self.order.f64(self.next())
+    }
+
+    /// Reads x, y and z of a node. z need not be finite.
+    #[inline]
+    pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 3], ReadError> {
+        let point: [f64; 3] = std::array::from_fn(|_| self.order.f64(self.next()));
+        for (axis, x) in "xy".chars().zip(point) {
+            if !x.is_finite() {
+                let problem = format!("{axis} of node {tag} is {x}, not a finite number");
+                return Err(cursor.error(problem, DAMAGED));
+            }
+        }
+        Ok(point)
+    }
+}
+
+/// Reads gmsh's mark of the byte order, the `int` 1.
+pub(super) fn byte_order(cursor: &mut Cursor<'_>) -> Result<Order, ReadError> {
+    match cursor.take(4) {
+        Some([1, 0, 0, 0]) => Ok(Order::Little),
+        Some([0, 0, 0, 1]) => Ok(Order::Big),
+        Some(_) => {
+            let problem = "the byte-order mark is not the number 1 in either byte order";
+            Err(cursor.error(problem, DAMAGED))
+        }
+        None => Err(cursor.error("the file ends before its byte-order mark", CUT_OFF)),
+    }
+}

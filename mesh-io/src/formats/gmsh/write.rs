@@ -1,0 +1,228 @@
+//! Writes gmsh's `.msh`, as text of the versions 2.2 and 4.1.
+
+use crate::export::content::Data;
+use crate::export::job::Job;
+use crate::export::put;
+use crate::visit::sink::Kind;
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+
+/// Returns gmsh's number for a kind of element.
+fn kind_of(kind: Kind) -> u32 {
+    match kind {
+        Kind::Point => 15,
+        Kind::Line => 1,
+        Kind::Triangle => 2,
+        Kind::Quadrilateral | Kind::Corner => 3,
+    }
+}
+
+pub(crate) fn write_22(job: &Job<'_>) -> String {
+    let mut out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_owned();
+    names(job, &mut out);
+    let points = job.content.points.len();
+    put!(out, "$Nodes\n{points}\n");
+    for vertex in 0..points {
+        put!(out, "{} {}\n", job.number(vertex), job.space(vertex));
+    }
+    put!(out, "$EndNodes\n$Elements\n{}\n", job.cells().count());
+    let entities = Entities::new(job);
+    for (cell, element) in job.cells().zip(1..) {
+        let kind = job.content.cells.kinds[cell];
+        let (physical, entity) = (physical(job, cell), entities.of(job, cell));
+        put!(out, "{element} {} 2 {physical} {entity} {}\n", kind_of(kind), job.numbers(cell));
+    }
+    out.push_str("$EndElements\n");
+    data(job, &mut out);
+    out
+}
+
+pub(crate) fn write_41(job: &Job<'_>) -> String {
+    let mut out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".to_owned();
+    names(job, &mut out);
+    let entities = Entities::new(job);
+    entities.write(job, &mut out);
+    let content = job.content;
+    let points = content.points.len();
+    let numbers = || (0..points).map(|vertex| job.number(vertex));
+    let (least, most) = (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0));
+    // All nodes are written as nodes of a surface. The line elements tell which nodes lie on curves.
+    let surface = entities.first_surface();
+    put!(out, "$Nodes\n1 {points} {least} {most}\n2 {surface} 0 {points}\n");
+    numbers().for_each(|number| put!(out, "{number}\n"));
+    (0..points).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    let cells: Vec<usize> = job.cells().collect();
+    let block = |cell: usize| (content.cells.kinds[cell], entities.of(job, cell));
+    let blocks: Vec<&[usize]> = cells.chunk_by(|&a, &b| block(a) == block(b)).collect();
+    put!(out, "$EndNodes\n$Elements\n{} {} 1 {}\n", blocks.len(), cells.len(), cells.len());
+    let mut element = 0;
+    for cells in blocks {
+        let (kind, entity) = block(cells[0]);
+        put!(out, "{} {entity} {} {}\n", kind.dimension(), kind_of(kind), cells.len());
+        for &cell in cells {
+            element += 1;
+            put!(out, "{element} {}\n", job.numbers(cell));
+        }
+    }
+    out.push_str("$EndElements\n");
+    data(job, &mut out);
+    out
+}
+
+/// Returns the physical group of a cell, or 0.
+fn physical(job: &Job<'_>, cell: usize) -> i64 {
+    match job.group(cell) {
+        Some(group) if group.what != "entity" => job.tag(cell),
+        _ => 0,
+    }
+}
+
+fn names(job: &Job<'_>, out: &mut String) {
+    let mut named: HashMap<u32, i64> = HashMap::new();
+    for cell in job.cells() {
+        if let Some(group) = job.tags.group(job.content, cell)
+            && job.content.groups[group as usize].what != "entity"
+        {
+            named.insert(group, job.tags.number(group));
+        }
+    }
+    let mut rows: Vec<(u8, i64, &str)> = named
+        .into_iter()
+        .filter_map(|(group, tag)| {
+            let group = &job.content.groups[group as usize];
+            Some((group.dimension, tag, group.name()?))
+        })
+        .collect();
+    rows.sort_unstable();
+    if !rows.is_empty() {
+        put!(out, "$PhysicalNames\n{}\n", rows.len());
+        for (dimension, tag, name) in rows {
+            put!(out, "{dimension} {tag} \"{name}\"\n");
+        }
+        out.push_str("$EndPhysicalNames\n");
+    }
+}
+
+/// The entities of the model that cells belong to. In each dimension there is one for each pair of an entity of the
+/// mesh and a physical group.
+struct Entities {
+    column: Vec<Option<u32>>,
+    /// The entity's number by its dimension, the entity of the mesh, and its physical group.
+    numbers: HashMap<(u8, Option<u32>, i64), i64>,
+}
+
+impl Entities {
+    fn new(job: &Job<'_>) -> Entities {
+        let column = job.content.column("entity");
+        let key = |cell: usize| {
+            let dimension = job.content.cells.kinds[cell].dimension();
+            (dimension, column[cell], physical(job, cell))
+        };
+        let mut numbers = HashMap::new();
+        let mut taken: HashSet<(u8, i64)> = HashSet::new();
+        let mut left = Vec::new();
+        for cell in job.cells() {
+            let (dimension, entity, physical) = key(cell);
+            if numbers.contains_key(&(dimension, entity, physical)) {
+                continue;
+            }
+            // The entity keeps its own number, or gets that of its physical group.
+            let wanted = entity.map_or(physical, |entity| job.tags.number(entity));
+            let number = if wanted > 0 && taken.insert((dimension, wanted)) { wanted } else { 0 };
+            numbers.insert((dimension, entity, physical), number);
+            if number == 0 {
+                left.push((dimension, entity, physical));
+            }
+        }
+        let mut next = 1;
+        for key in left {
+            while !taken.insert((key.0, next)) {
+                next += 1;
+            }
+            numbers.insert(key, next);
+        }
+        Entities { column, numbers }
+    }
+
+    fn of(&self, job: &Job<'_>, cell: usize) -> i64 {
+        let dimension = job.content.cells.kinds[cell].dimension();
+        let key = (dimension, self.column[cell], physical(job, cell));
+        self.numbers.get(&key).copied().unwrap_or(1)
+    }
+
+    fn first_surface(&self) -> i64 {
+        let surfaces = self.numbers.iter().filter(|((dimension, ..), _)| *dimension == 2);
+        surfaces.map(|(_, &number)| number).min().unwrap_or(1)
+    }
+
+    fn write(&self, job: &Job<'_>, out: &mut String) {
+        let mut rows: Vec<(u8, i64, i64)> = self
+            .numbers
+            .iter()
+            .map(|(&(dimension, _, physical), &number)| (dimension, number, physical))
+            .collect();
+        rows.sort_unstable();
+        let count = |of: u8| rows.iter().filter(|(dimension, ..)| *dimension == of).count();
+        put!(out, "$Entities\n{} {} {} 0\n", count(0), count(1), count(2));
+        let bounds = |axis: usize| {
+            let along = |v: usize| match axis {
+                2 => job.content.z(v),
+                axis => job.content.points[v][axis],
+            };
+            let all = (0..job.content.points.len()).map(along);
+            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)))
+        };
+        let [x, y, z] = [bounds(0), bounds(1), bounds(2)];
+        for (dimension, number, physical) in rows {
+            put!(out, "{number} {:?} {:?} {:?} ", x.0, y.0, z.0);
+            if dimension > 0 {
+                put!(out, "{:?} {:?} {:?} ", x.1, y.1, z.1);
+            }
+            match physical {
+                0 => out.push('0'),
+                physical => put!(out, "1 {physical}"),
+            }
+            // The bounding entities are not known.
+            out.push_str(if dimension > 0 { " 0\n" } else { "\n" });
+        }
+        out.push_str("$EndEntities\n");
+    }
+}
+
+/// Writes `$NodeData` and `$ElementData`.
+fn data(job: &Job<'_>, out: &mut String) {
+    for data in job.point_data() {
+        let numbers = (0..job.content.points.len()).map(|vertex| job.number(vertex));
+        section(data, "NodeData", numbers, (0..job.content.points.len()).collect(), out);
+    }
+    for data in job.cell_data() {
+        section(data, "ElementData", 1.., job.cells().collect(), out);
+    }
+}
+
+/// Writes the data of the items at these places. `numbers` are the items' numbers in the file.
+fn section(
+    data: &Data,
+    name: &str,
+    numbers: impl Iterator<Item = u64>,
+    places: Vec<usize>,
+    out: &mut String,
+) {
+    // gmsh shows data of one, three or nine numbers.
+    let each = data.components;
+    let padded = [1, 3, 9].into_iter().find(|&size| size >= each).unwrap_or(each);
+    let of = |place: usize| data.values.get(place * each..(place + 1) * each).unwrap_or_default();
+    let is_given = |place: &usize| !of(*place).iter().all(|value| value.is_nan());
+    let rows: Vec<(u64, usize)> =
+        numbers.zip(places).filter(|(_, place)| is_given(place)).collect();
+    let title = &data.name;
+    put!(out, "${name}\n1\n\"{title}\"\n1\n0.0\n3\n0\n{padded}\n{}\n", rows.len());
+    for (number, place) in rows {
+        put!(out, "{number}");
+        for index in 0..padded {
+            put!(out, " {:?}", of(place).get(index).copied().unwrap_or(0.0));
+        }
+        out.push('\n');
+    }
+    put!(out, "$End{name}\n");
+}

@@ -1,0 +1,181 @@
+//! JIGSAW's `.msh`.
+//!
+//! The format: the help of `loadmsh` and `savemsh` in JIGSAW's interfaces for MATLAB and Python. Lists start with a row
+//! `KEY=COUNT` and may stand in any order. Numbers are separated by semicolons, and points counted from zero. Each point and
+//! element ends in a tag.
+
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::numbered_nodes::counted_nodes;
+use crate::precision::Precision;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+
+pub(crate) struct Jigsaw;
+
+/// A list that is read after the points.
+struct List<'a> {
+    cursor: Cursor<'a>,
+    count: u64,
+}
+
+/// The lists of a file besides its points.
+#[derive(Default)]
+struct Lists<'a> {
+    elements: Vec<(Kind, List<'a>)>,
+    /// The last list of values, with the numbers in each row.
+    values: Option<(List<'a>, u64)>,
+}
+
+impl Walk for Jigsaw {
+    const VERTICES: &'static str = "POINT";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source).of(Syntax::SEMICOLONS);
+        let mut lists = Lists::default();
+        let (mut dimensions, mut points) = (2, None);
+        while cursor.next_row() {
+            // Rows of lists that are read later, or not at all.
+            if !cursor.is_at_letter() {
+                continue;
+            }
+            let row = cursor.rest();
+            let equals = memchr::memchr(b'=', row).unwrap_or(row.len());
+            let key = row[..equals].trim_ascii().to_ascii_uppercase();
+            let mut values = row.get(equals + 1..).unwrap_or_default().split(|&byte| byte == b';');
+            let first = values.next().unwrap_or_default().trim_ascii();
+            let second = values.next().unwrap_or_default().trim_ascii();
+            match key.as_slice() {
+                b"MSHID" => check_kind(cursor, second)?,
+                b"NDIMS" => dimensions = number(cursor, &key, first)?,
+                b"POINT" => {
+                    if points.is_some() {
+                        let problem = "this is the second list of POINT";
+                        return Err(cursor.error(problem, CORRECT));
+                    }
+                    let count = number(cursor, &key, first)?;
+                    cursor.check_vertex_count(count)?;
+                    let start = cursor.clone();
+                    let named = ("a point", "points");
+                    let heights = counted_nodes(cursor, (count, dimensions), named, sink)?;
+                    points = Some((List { cursor: start, count }, heights));
+                }
+                b"EDGE2" | b"TRIA3" | b"QUAD4" => {
+                    let kind = match key[0] {
+                        b'E' => Kind::Line,
+                        b'T' => Kind::Triangle,
+                        _ => Kind::Quadrilateral,
+                    };
+                    let count = number(cursor, &key, first)?;
+                    lists.elements.push((kind, List { cursor: cursor.clone(), count }));
+                }
+                b"TRIA4" | b"HEXA8" | b"PYRA5" | b"WEDG6" if number(cursor, &key, first)? > 0 => {
+                    return Err(volume(cursor, &quoted(&key)));
+                }
+                b"VALUE" => {
+                    let count = number(cursor, &key, first)?;
+                    let components = number(cursor, &key, second)?;
+                    lists.values = Some((List { cursor: cursor.clone(), count }, components));
+                }
+                _ if sink.asks_for_data() => {
+                    sink.leaves_out(&format!("what {}= is", quoted(&key)));
+                }
+                _ => {}
+            }
+        }
+        let Some((points, heights)) = points else {
+            return Err(source.error("it has no POINT", "Save the mesh again"));
+        };
+        if sink.asks_for_groups() {
+            tags(&points, dimensions, sink)?;
+        }
+        sink.end_nodes(cursor)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
+        if let Some((list, components)) = lists.values {
+            values(list, components, points.count, sink)?;
+        }
+        sink.columns(vec![Column::tags_from_one("tag")]);
+        for (kind, List { mut cursor, count }) in lists.elements {
+            sink.expect_elements(cursor.capacity(count, "0;1;2;0\n".len()));
+            each_row(
+                &mut cursor,
+                count,
+                "elements",
+                sink,
+                |cursor| Ok((nodes(cursor, kind)?, tag(cursor)?)),
+                |cursor, sink, done, (nodes, tag)| {
+                    let element = Element { tag: done, kind, region: [tag, 0], nodes };
+                    sink.element(cursor, &element)
+                },
+            )?;
+        }
+        Ok(Layout::in_place(Format::Jigsaw, Numbers::TEXT))
+    }
+}
+
+/// Fails for grids and for meshes on an ellipsoid.
+fn check_kind(cursor: &Cursor<'_>, kind: &[u8]) -> Result<(), ReadError> {
+    if kind.is_empty() || kind.eq_ignore_ascii_case(b"EUCLIDEAN-MESH") {
+        return Ok(());
+    }
+    let problem = format!("a mesh of the kind {} is not read", quoted(kind));
+    Err(cursor.error(problem, "Only triangles of the plane are smoothed: save a EUCLIDEAN-MESH"))
+}
+
+/// Returns a number in the row of a key.
+fn number(cursor: &Cursor<'_>, key: &[u8], value: &[u8]) -> Result<u64, ReadError> {
+    integer(value).ok_or_else(|| {
+        let (key, value) = (quoted(key), quoted(value));
+        cursor.error(format!("{key}= is followed by `{value}`, not a whole number"), CORRECT)
+    })
+}
+
+/// Hands on the tags of points that are not 0.
+fn tags(points: &List<'_>, dimensions: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    let cursor = &mut points.cursor.clone();
+    for point in 0..points.count {
+        cursor.row(point, points.count, "points")?;
+        cursor.tokens(dimensions);
+        match tag(cursor)? {
+            0 => {}
+            tag => sink.node_within(point as u32, "tag", tag),
+        }
+    }
+    Ok(())
+}
+
+/// Hands on the values of points, if there are some for each.
+fn values(
+    List { mut cursor, count }: List<'_>,
+    components: u64,
+    points: u64,
+    sink: &mut dyn Sink,
+) -> Result<(), ReadError> {
+    if count != points || components == 0 {
+        sink.leaves_out("values that are not those of points");
+        return Ok(());
+    }
+    if !sink.point_array(b"value", components, true) {
+        return Ok(());
+    }
+    let mut numbers = TextNumbers::default();
+    for done in 0..count {
+        cursor.row(done, count, "values")?;
+        for _ in 0..components {
+            numbers.read(&mut cursor)?;
+        }
+    }
+    sink.point_numbers(numbers.finish(Precision::Double, None));
+    Ok(())
+}
+
+/// Reads the tag at the end of a row. A row without one has the tag 0.
+#[inline]
+fn tag(cursor: &mut Cursor<'_>) -> Result<i64, ReadError> {
+    if cursor.is_at_end() { Ok(0) } else { cursor.signed("a tag") }
+}

@@ -1,0 +1,81 @@
+//! The families of a MED file, and the groups that each is of.
+
+use crate::content::label::Label;
+use crate::hdf5::{Hdf5, Object};
+use crate::visit::sink::{Sink, Within};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The groups of each family of a mesh.
+#[derive(Default)]
+pub(super) struct Families {
+    /// The numbers of its groups, by the number of the family.
+    groups: BTreeMap<i64, Vec<usize>>,
+    names: Vec<Vec<u8>>,
+}
+
+/// How many letters a name has.
+const LETTERS: usize = 80;
+
+impl Families {
+    /// Reads those of a mesh. What is damaged is left out.
+    pub(super) fn read(file: &Hdf5<'_>, mesh: &[u8]) -> Families {
+        let mut families = Families::default();
+        let path = [&b"FAS/"[..], mesh].concat();
+        let Some(all) = file.find(&path) else { return families };
+        for of in [&b"NOEUD"[..], b"ELEME"] {
+            let Some(group) = file.child(all, of) else { continue };
+            for (_, family) in file.children(group) {
+                families.add(file, family);
+            }
+        }
+        families
+    }
+
+    fn add(&mut self, file: &Hdf5<'_>, family: &Object) {
+        let number = file.attribute(family, b"NUM").and_then(|number| number.whole());
+        let names = file.child(family, b"GRO/NOM").and_then(|names| file.dataset(names).ok()?);
+        let array = names.and_then(|names| file.array(&names).ok());
+        let (Some(number), Some(array)) = (number, array) else { return };
+        for name in array.bytes.chunks_exact(LETTERS) {
+            let name = name.split(|&byte| byte == 0).next().unwrap_or_default().trim_ascii();
+            let known = self.names.iter().position(|own| own == name);
+            let group = known.unwrap_or_else(|| {
+                self.names.push(name.to_vec());
+                self.names.len() - 1
+            });
+            self.groups.entry(number).or_default().push(group);
+        }
+    }
+
+    fn of(&self, family: i64) -> &[usize] {
+        self.groups.get(&family).map(Vec::as_slice).unwrap_or_default()
+    }
+
+    /// Tells that the elements that follow are of a family.
+    pub(super) fn of_elements(&self, family: i64, sink: &mut dyn Sink) {
+        let within = |&group: &usize| Within {
+            what: "group",
+            label: Label::name(&self.names[group]),
+            dimension: None,
+        };
+        let groups: Vec<Within<'_>> = self.of(family).iter().map(within).collect();
+        sink.within(&groups);
+    }
+
+    /// Tells that a node is of a family.
+    pub(super) fn of_node(&self, node: u32, family: i64, sink: &mut dyn Sink) {
+        for &group in self.of(family) {
+            sink.node_within(node, "group", group as i64 + 1);
+        }
+    }
+
+    /// Tells the names of the groups that nodes of these families are of.
+    pub(super) fn names(&self, of_nodes: &[i64], sink: &mut dyn Sink) {
+        let families: BTreeSet<i64> = of_nodes.iter().copied().collect();
+        let groups: BTreeSet<usize> =
+            families.into_iter().flat_map(|family| self.of(family)).copied().collect();
+        for group in groups {
+            sink.name("group", Some(0), group as i64 + 1, &self.names[group]);
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! MED, the format of Salome and Code_Aster, versions 3 and 4, in HDF5.
+//!
+//! The format: <https://docs.salome-platform.org/latest/dev/MEDCoupling/developer/med-file.html>. Coordinates stand axis by axis,
+//! elements by their type, corner by corner. Each node and element is of one family, a number that stands for some groups.
+
+mod families;
+
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::axes::Axes;
+use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
+use families::Families;
+
+pub(crate) struct Med;
+
+/// A file, and the group of its one mesh at its one time.
+struct File<'a> {
+    source: &'a Source,
+    hdf5: &'a Hdf5<'a>,
+    mesh: &'a Object,
+    name: &'a [u8],
+    step: &'a Object,
+}
+
+/// Where the meshes of a file are.
+const MESHES: &[u8] = b"ENS_MAA";
+
+/// Whether a file is HDF5 with meshes of MED.
+pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
+    Ok(source.bytes.starts_with(SIGNATURE) && Hdf5::open(source)?.find(MESHES).is_some())
+}
+
+impl Walk for Med {
+    const VERTICES: &'static str = "the list of nodes";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(sink))
+    }
+}
+
+impl<'a> File<'a> {
+    fn open(source: &'a Source, hdf5: &'a Hdf5<'a>) -> Result<File<'a>, ReadError> {
+        let start = || Cursor::at_byte_of(source, 0);
+        let meshes = hdf5.find(MESHES).map(|all| hdf5.children(all).collect::<Vec<_>>());
+        let (name, mesh) = match meshes.as_deref() {
+            Some(&[one]) => one,
+            Some([]) | None => {
+                return Err(start().error("the file holds no mesh", "Save a mesh with it"));
+            }
+            Some(several) => {
+                let problem = format!("a MED file of {} meshes is not read", several.len());
+                return Err(start().error(problem, "Save each mesh to a file of its own"));
+            }
+        };
+        let whole = |name: &[u8]| hdf5.attribute(mesh, name).and_then(|a| a.whole());
+        let refused = |problem: &str, remedy| {
+            Err(Cursor::at_byte_of(source, mesh.at).error(problem.to_owned(), remedy))
+        };
+        if whole(b"TYP").is_some_and(|kind| kind != 0) {
+            return refused("a structured mesh is not read", "Save an unstructured mesh");
+        }
+        if whole(b"REP").is_some_and(|system| system != 0) {
+            return refused("its coordinates are not Cartesian", "Save Cartesian coordinates");
+        }
+        let steps: Vec<_> = hdf5
+            .children(mesh)
+            .filter(|(name, _)| {
+                name.first().is_some_and(|first| *first == b'-' || first.is_ascii_digit())
+            })
+            .collect();
+        match steps[..] {
+            [(_, step)] => Ok(File { source, hdf5, mesh, name, step }),
+            [] => refused(
+                "the mesh has no time step, as MED has since version 3",
+                "Save it again with a newer version of MED",
+            ),
+            _ => refused(
+                "a mesh of several time steps is not read",
+                "Save the mesh of one time step",
+            ),
+        }
+    }
+
+    fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let (axes, count) = self.nodes()?;
+        let layout = axes.send(Format::Med, (count, 1), sink)?;
+        let label = |family| (family != 0).then_some(Label::Tag(family));
+        sink.columns(vec![Column { what: "family".into(), from_dimension: 0, label }]);
+        let families = match sink.asks_for_groups() {
+            true => Families::read(self.hdf5, self.name),
+            false => Families::default(),
+        };
+        if sink.asks_for_groups() {
+            let of_nodes =
+                self.hdf5.child(self.step, b"NOE/FAM").and_then(|own| self.hdf5.integers(own));
+            let of_nodes = of_nodes.unwrap_or_default();
+            families.names(&of_nodes, sink);
+            for (node, &family) in of_nodes.iter().enumerate().take(count) {
+                families.of_node(node as u32, family, sink);
+            }
+        }
+        let Some(types) = self.hdf5.child(self.step, b"MAI") else {
+            return Err(self.cursor(self.mesh).error("the mesh has no elements", CORRECT));
+        };
+        for (name, object) in self.hdf5.children(types) {
+            self.elements(name, object, &families, sink)?;
+        }
+        sink.within(&[]);
+        if self.hdf5.find(b"CHA").is_some() {
+            sink.note(
+                "its fields (CHA) stay as they are: those at nodes no longer fit where these move",
+            );
+            if sink.asks_for_data() {
+                sink.leaves_out("fields");
+            }
+        }
+        Ok(layout)
+    }
+
+    fn cursor(&self, object: &Object) -> Cursor<'a> {
+        Cursor::at_byte_of(self.source, object.at)
+    }
+
+    /// The coordinates, and how many nodes there are.
+    fn nodes(&self) -> Result<(Axes<'a>, usize), ReadError> {
+        let object = self.hdf5.child(self.step, b"NOE/COO");
+        let dataset = object.map(|object| self.hdf5.dataset(object)).transpose()?.flatten();
+        let (Some(object), Some(dataset)) = (object, dataset) else {
+            return Err(self
+                .cursor(self.mesh)
+                .error("the mesh has no nodes", "Save the mesh again"));
+        };
+        let cursor = self.cursor(object);
+        let Number::Real(precision, order) = dataset.number else {
+            return Err(cursor.error("the coordinates are not real numbers", "Save the mesh again"));
+        };
+        let axes = self.hdf5.attribute(self.mesh, b"ESP").and_then(|axes| axes.whole());
+        let array = self.hdf5.array(&dataset)?;
+        let numbers = array.bytes.len() / precision.bytes();
+        let Some(axes @ 2..=3) =
+            axes.map(|axes| axes as usize).filter(|axes| numbers.is_multiple_of((*axes).max(1)))
+        else {
+            let problem = format!(
+                "the mesh has {numbers} coordinates, which are not two or three for each node"
+            );
+            return Err(cursor.error(problem, "Save a mesh of the plane"));
+        };
+        let count = numbers / axes;
+        cursor.check_vertex_count(count as u64)?;
+        Ok((Axes::of_arrays(self.hdf5, (order, precision), vec![array], (axes, count)), count))
+    }
+
+    /// Hands on the elements of a type.
+    fn elements(
+        &self,
+        name: &[u8],
+        object: &Object,
+        families: &Families,
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
+        let cursor = self.cursor(object);
+        let kind = match name {
+            b"PO1" => Kind::Point,
+            b"SE2" => Kind::Line,
+            b"TR3" => Kind::Triangle,
+            b"QU4" => Kind::Quadrilateral,
+            _ if [&b"TE"[..], b"HE", b"PE", b"PY", b"POE"]
+                .iter()
+                .any(|kind| name.starts_with(kind)) =>
+            {
+                return Err(volume(&cursor, &format!("elements of the type {}", quoted(name))));
+            }
+            _ => {
+                let problem = format!("elements of the type {} are not read", quoted(name));
+                let remedy = "Save triangles of three nodes (TR3), beside PO1, SE2 and QU4";
+                return Err(cursor.error(problem, remedy));
+            }
+        };
+        let of_families = self.hdf5.child(object, b"FAM").and_then(|own| self.hdf5.integers(own));
+        let of_families = of_families.unwrap_or_default();
+        let own = self.hdf5.child(object, b"NOD");
+        let dataset = own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten();
+        let Some((dataset, Number::Whole(size, order))) = dataset.map(|own| {
+            let number = own.number;
+            (own, number)
+        }) else {
+            let problem = format!("the type {} has no list of nodes", quoted(name));
+            return Err(cursor.error(problem, "Save the mesh again"));
+        };
+        let array = self.hdf5.array(&dataset)?;
+        let count = array.bytes.len() / size / kind.nodes();
+        if array.bytes.len() != count * kind.nodes() * size {
+            let problem =
+                format!("the type {} has a list of nodes that is cut short", quoted(name));
+            return Err(cursor.error(problem, CORRECT));
+        }
+        // All first corners stand before all second ones; the sink takes them side by side.
+        let corner = |element: usize, corner: usize| {
+            order.whole(&array.bytes[(corner * count + element) * size..][..size])
+        };
+        let mut taken = 0;
+        if kind == Kind::Triangle {
+            sink.expect_elements(count);
+            let each = (0..count).flat_map(|element| (0..3).map(move |k| (element, k)));
+            let wide = |(element, k)| corner(element, k).to_le_bytes();
+            let side_by_side: Vec<u8> = each.flat_map(wide).collect();
+            taken = sink.triangle_records(&TriangleRecords {
+                count,
+                corners: Field::new(Some(&side_by_side), (24, 8), Order::Little),
+                first: 0,
+                below: u64::MAX,
+                regions: [Region::List(&of_families), Region::Same(0)],
+                expected: &[],
+            });
+        }
+        let mut last = None;
+        for element in taken..count {
+            let family = of_families.get(element).copied().unwrap_or(0);
+            if sink.asks_for_groups() && last != Some(family) {
+                families.of_elements(family, sink);
+                last = Some(family);
+            }
+            let mut nodes = [0; 4];
+            for (k, node) in nodes[..kind.nodes()].iter_mut().enumerate() {
+                *node = corner(element, k);
+            }
+            let place = Cursor::at_byte_of(self.source, array.byte_of(element * size));
+            let tag = element as u64 + 1;
+            sink.element(&place, &Element { tag, kind, region: [family, 0], nodes })?;
+        }
+        Ok(())
+    }
+}

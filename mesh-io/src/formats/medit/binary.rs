@@ -1,0 +1,314 @@
+//! Medit's `.meshb`, versions 1 to 4, in either byte order.
+//!
+//! The format: libMeshb's handbook, "The Gamma Mesh Format". Lists are chained: after each keyword stands the offset of
+//! the next. Version 1 has coordinates in single precision. From version 3 on, offsets have 8 bytes, and in version 4
+//! all whole numbers have.
+
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::precision::Precision;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::visit::heights::Heights;
+use crate::visit::parsed::fixed_note;
+use crate::visit::records::{NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
+
+pub(crate) struct MeditBinary;
+
+/// The widths of numbers in a version of the format, in bytes.
+#[derive(Clone, Copy)]
+struct Widths {
+    order: Order,
+    precision: Precision,
+    place: usize,
+    integer: usize,
+}
+
+/// A list of elements that is read later, as it may stand before the vertices.
+struct List<'a> {
+    cursor: Cursor<'a>,
+    bytes: &'a [u8],
+    kind: Kind,
+    /// Whether each element has a reference after its vertices.
+    referred: bool,
+    /// The name of the list in text files.
+    name: &'static str,
+}
+
+const DIMENSION: i32 = 3;
+const VERTICES: i32 = 4;
+const REQUIRED_TRIANGLES: i32 = 17;
+const END: i32 = 54;
+
+impl Walk for MeditBinary {
+    const VERTICES: &'static str = "Vertices";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        let order = if source.bytes.first() == Some(&1) { Order::Little } else { Order::Big };
+        let small = Widths { order, precision: Precision::Single, place: 4, integer: 4 };
+        integer(cursor, small, 4, "the code")?;
+        let widths = match integer(cursor, small, 4, "the version")? {
+            1 => small,
+            2 => Widths { precision: Precision::Double, ..small },
+            3 => Widths { precision: Precision::Double, place: 8, ..small },
+            4 => Widths { precision: Precision::Double, place: 8, integer: 8, order },
+            other => {
+                let problem = format!("the version is {other}");
+                return Err(cursor.error(problem, "Versions 1 to 4 are read"));
+            }
+        };
+        let mut dimension = 0;
+        let mut lists: Vec<List<'_>> = Vec::new();
+        let mut required: Vec<u64> = Vec::new();
+        let mut vertices_seen = false;
+        loop {
+            let keyword = integer(cursor, widths, 4, "a keyword")?;
+            if keyword == i64::from(END) {
+                break;
+            }
+            let next = integer(cursor, widths, widths.place, "the place of the next list")?;
+            let list = Cursor::clone(cursor);
+            match i32::try_from(keyword).unwrap_or(-1) {
+                DIMENSION => {
+                    dimension = integer(cursor, widths, 4, "the dimension")?;
+                    if dimension != 2 && dimension != 3 {
+                        let problem = format!("the dimension is {dimension}");
+                        return Err(cursor.error(problem, "It is 2, or 3 with a third coordinate"));
+                    }
+                }
+                VERTICES if vertices_seen => {
+                    let problem = "this is the second list of Vertices";
+                    return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                }
+                VERTICES => {
+                    vertices_seen = true;
+                    vertices(cursor, widths, dimension, sink)?;
+                }
+                REQUIRED_TRIANGLES => {
+                    let count = integer(cursor, widths, widths.integer, "a count")?;
+                    let bytes = items(cursor, count, widths.integer, "required triangles")?;
+                    let numbers = bytes.chunks_exact(widths.integer);
+                    required.extend(numbers.map(|number| widths.order.whole(number)));
+                }
+                8..=10 | 30 | 33 | 49 | 86..=87 | 96..=103 => {
+                    if integer(cursor, widths, widths.integer, "a count")? > 0 {
+                        return Err(volume(cursor, "elements of a volume"));
+                    }
+                }
+                // Edges, triangles and quadrilaterals with nodes on their sides.
+                24..=25 | 27 | 88..=93 => {
+                    if integer(cursor, widths, widths.integer, "a count")? > 0 {
+                        let problem = format!(
+                            "elements of higher order (keyword {keyword}), of which only corners are moved"
+                        );
+                        return Err(cursor.error(problem, "Save linear elements (Triangles)"));
+                    }
+                }
+                keyword => {
+                    let of = match keyword {
+                        5 => Some((Kind::Line, true, "Edges")),
+                        6 => Some((Kind::Triangle, true, "Triangles")),
+                        7 => Some((Kind::Quadrilateral, true, "Quadrilaterals")),
+                        13 => Some((Kind::Point, false, "Corners")),
+                        15 => Some((Kind::Point, false, "RequiredVertices")),
+                        _ => None,
+                    };
+                    if of.is_none() && sink.asks_for_data() {
+                        sink.leaves_out(&format!("the list of keyword {keyword}"));
+                    }
+                    if let Some((kind, referred, name)) = of {
+                        let count = integer(cursor, widths, widths.integer, "a count")?;
+                        let size = (kind.nodes() + usize::from(referred)) * widths.integer;
+                        let bytes = items(cursor, count, size, "elements")?;
+                        lists.push(List { cursor: cursor.clone(), bytes, kind, referred, name });
+                    }
+                }
+            }
+            if next == 0 {
+                break;
+            }
+            // Lists that share bytes could not be rewritten one without the other.
+            let end = cursor.at_byte().max(list.at_byte() + 1);
+            let place = usize::try_from(next).ok().filter(|&place| place >= end);
+            match place {
+                Some(place) if place <= source.bytes.len() => {
+                    *cursor = list;
+                    cursor.pass(place - cursor.at_byte());
+                }
+                _ => {
+                    let problem = format!(
+                        "the next list is announced at byte {next}, which is not behind this one in the file"
+                    );
+                    return Err(list.error(problem, CUT_OFF));
+                }
+            }
+        }
+        if !vertices_seen {
+            return Err(source.error("it has no list of Vertices", "Save the mesh again"));
+        }
+        sink.end_nodes(cursor)?;
+        sink.columns(vec![Column::tags("reference", 1)]);
+        for list in &lists {
+            elements(list, widths, sink)?;
+        }
+        if !required.is_empty() {
+            hold_required(&lists, required, widths, sink)?;
+        }
+        let numbers = Numbers::adjacent(order, widths.precision);
+        Ok(Layout::in_place(Format::MeditBinary, numbers))
+    }
+}
+
+/// Takes a signed whole number of 4 or 8 bytes.
+fn integer(
+    cursor: &mut Cursor<'_>,
+    widths: Widths,
+    size: usize,
+    what: &str,
+) -> Result<i64, ReadError> {
+    let start = cursor.clone();
+    let bytes = cursor.take(size);
+    let bytes = bytes.ok_or_else(|| start.error(format!("the file ends before {what}"), CUT_OFF));
+    bytes.map(|bytes| widths.order.signed(bytes))
+}
+
+/// Takes `count` items of `size` bytes.
+fn items<'a>(
+    cursor: &mut Cursor<'a>,
+    count: i64,
+    size: usize,
+    what: &str,
+) -> Result<&'a [u8], ReadError> {
+    let start = cursor.clone();
+    let bytes = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
+    let bytes = bytes.and_then(|bytes| cursor.take(bytes));
+    bytes.ok_or_else(|| start.error(format!("the file ends before its {count} {what}"), CUT_OFF))
+}
+
+fn vertices(
+    cursor: &mut Cursor<'_>,
+    widths: Widths,
+    dimension: i64,
+    sink: &mut dyn Sink,
+) -> Result<(), ReadError> {
+    let count = integer(cursor, widths, widths.integer, "the number of vertices")?;
+    cursor.check_vertex_count(u64::try_from(count).unwrap_or(0))?;
+    if dimension == 0 {
+        return Err(cursor.error("Vertices stand before the Dimension", "Save the mesh again"));
+    }
+    let size = widths.precision.bytes();
+    let item = dimension as usize * size + widths.integer;
+    let bytes = items(cursor, count, item, "vertices")?;
+    let start = cursor.taken();
+    let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
+    let count = bytes.len() / item;
+    sink.expect_nodes(count);
+    let (x, y, tags) = (field(0), field(size), Tags::From(1));
+    let taken = sink.node_records(&NodeRecords { count, x, y, x_at: start, tags });
+    for (index, vertex) in bytes.chunks_exact(item).enumerate().skip(taken) {
+        let [x, y] = [0, 1].map(|axis| {
+            let bytes = &vertex[axis * size..][..size];
+            widths.order.real(widths.precision, bytes)
+        });
+        let tag = index as u64 + 1;
+        if !x.is_finite() || !y.is_finite() {
+            let problem = format!("a coordinate of vertex {tag} is not a finite number");
+            return Err(cursor.error(problem, "Write the mesh again"));
+        }
+        let place = &Cursor::at_byte_of(cursor.source, start + index * item);
+        sink.node(place, tag, 2, start + index * item, [x, y]);
+    }
+    if dimension == 3 {
+        let mut heights = Heights::new(sink);
+        heights.see_all(field(2 * size), count, start + 2 * size);
+        heights.send("z", Form::Binary(widths.order, widths.precision), sink);
+    }
+    if sink.asks_for_groups() {
+        for (index, vertex) in (0..).zip(bytes.chunks_exact(item)) {
+            let reference = widths.order.signed(&vertex[item - widths.integer..]);
+            // A vertex without a reference has the reference 0.
+            if reference != 0 {
+                sink.node_within(index, "reference", reference);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Hands on the corners of the required triangles, which are not to be changed. `required` are their numbers, counted
+/// from 1.
+fn hold_required(
+    lists: &[List<'_>],
+    mut required: Vec<u64>,
+    widths: Widths,
+    sink: &mut dyn Sink,
+) -> Result<(), ReadError> {
+    required.sort_unstable();
+    required.dedup();
+    sink.note(&fixed_note(required.len() as u64, "required triangle", ""));
+    let label = Label::name(b"RequiredTriangles");
+    sink.within(&[Within { what: "list", label, dimension: None }]);
+    let size = widths.integer;
+    let mut before = 0;
+    for List { cursor, bytes, .. } in lists.iter().filter(|list| list.kind == Kind::Triangle) {
+        let count = (bytes.len() / (4 * size)) as u64;
+        let own = required.iter().filter(|&&tag| tag > before && tag - before <= count);
+        for &tag in own {
+            let at = (tag - before - 1) as usize * 4 * size;
+            let number = |index: usize| widths.order.signed(&bytes[at + index * size..][..size]);
+            let (corners, region) = ([0, 1, 2].map(number), [number(3), 0]);
+            let place = &Cursor::at_byte_of(cursor.source, cursor.taken() + at);
+            for corner in corners {
+                let nodes = [u64::try_from(corner).unwrap_or(0), 0, 0, 0];
+                sink.element(place, &Element { tag, kind: Kind::Corner, region, nodes })?;
+            }
+        }
+        before += count;
+    }
+    Ok(())
+}
+
+fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    let List { cursor, bytes, kind, referred, name } = list;
+    // Points have no reference. The list they stand in is their group.
+    let within = Within { what: "list", label: Label::name(name.as_bytes()), dimension: None };
+    sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
+    let (kind, size) = (*kind, widths.integer);
+    let item = (kind.nodes() + usize::from(*referred)) * size;
+    let mut taken = 0;
+    if kind == Kind::Triangle {
+        let count = bytes.len() / item;
+        sink.expect_elements(count);
+        let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
+        let regions = [Region::Field(field(3 * size)), Region::Same(0)];
+        taken = sink.triangle_records(&TriangleRecords {
+            count,
+            corners: field(0),
+            first: 0,
+            below: u64::MAX,
+            regions,
+            expected: &[],
+        });
+    }
+    for (index, element) in bytes.chunks_exact(item).enumerate().skip(taken) {
+        let mut numbers = [0; 5];
+        for (value, bytes) in numbers.iter_mut().zip(element.chunks_exact(size)) {
+            *value = widths.order.signed(bytes);
+        }
+        let mut nodes = [0; 4];
+        for (node, &number) in nodes.iter_mut().zip(&numbers[..kind.nodes()]) {
+            *node = u64::try_from(number).unwrap_or(0);
+        }
+        let reference = if *referred { numbers[kind.nodes()] } else { 0 };
+        let element = Element { tag: index as u64 + 1, kind, region: [reference, 0], nodes };
+        let place = &Cursor::at_byte_of(cursor.source, cursor.taken() + index * item);
+        sink.element(place, &element)?;
+    }
+    Ok(())
+}

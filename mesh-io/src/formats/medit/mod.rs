@@ -1,0 +1,5 @@
+//! Medit meshes: `.mesh` files of text and `.meshb` files of binary numbers.
+
+pub(crate) mod binary;
+pub(crate) mod text;
+pub(crate) mod write;

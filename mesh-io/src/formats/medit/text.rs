@@ -1,0 +1,300 @@
+//! Medit's `.mesh`, as text.
+//!
+//! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and the documentation of
+//! mmg and libMeshb. Edges, corners, required vertices and the vertices of required triangles stay fixed. Required
+//! edges and ridges need no reading, as they are among the edges.
+
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{float, quoted};
+use crate::visit::heights::Heights;
+use crate::visit::parsed::fixed_note;
+use crate::visit::sink::{
+    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
+};
+
+pub(crate) struct Medit;
+
+/// The first letters of keywords for volume elements, of first or higher order.
+const VOLUMES: [&[u8]; 4] = [b"Tetrahedra", b"Hexahedra", b"Prisms", b"Pyramids"];
+
+/// A list of elements, which may stand before the vertices.
+#[derive(Clone)]
+struct List<'a> {
+    /// The cursor before the first element.
+    cursor: Cursor<'a>,
+    count: u64,
+    kind: Kind,
+    keyword: &'a [u8],
+}
+
+impl<'a> List<'a> {
+    /// Hands on the elements. Returns the cursor after them.
+    fn send(self, sink: &mut dyn Sink) -> Result<Cursor<'a>, ReadError> {
+        let List { mut cursor, count, kind, keyword } = self;
+        // Points have no reference. The list they stand in is their group.
+        let list = Within { what: "list", label: Label::name(keyword), dimension: None };
+        sink.within(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
+        if kind == Kind::Triangle {
+            sink.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
+        }
+        each_row(
+            &mut cursor,
+            count,
+            "elements",
+            sink,
+            |cursor| element(cursor, kind),
+            |cursor, sink, done, (nodes, reference)| {
+                let element = Element { tag: done + 1, kind, region: [reference, 0], nodes };
+                sink.element(cursor, &element)
+            },
+        )?;
+        Ok(cursor)
+    }
+}
+
+impl Walk for Medit {
+    const VERTICES: &'static str = "Vertices";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+        let mut lists: Vec<List<'_>> = Vec::new();
+        let mut required = Vec::new();
+        let mut dimension = 2;
+        let mut vertices_seen = false;
+        while cursor.next_word() {
+            let keyword = cursor.token().unwrap_or_default();
+            match keyword {
+                b"End" => break,
+                b"MeshVersionFormatted" => {
+                    value(cursor, "the version")?;
+                }
+                b"Dimension" => {
+                    dimension = value(cursor, "the dimension")?;
+                    if dimension != 2 && dimension != 3 {
+                        let problem = format!("the dimension is {dimension}");
+                        return Err(cursor.error(problem, "It is 2, or 3 with a third coordinate"));
+                    }
+                }
+                b"Vertices" => {
+                    if std::mem::replace(&mut vertices_seen, true) {
+                        let problem = "this is the second list of Vertices";
+                        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                    }
+                    vertices(cursor, dimension, sink)?;
+                    sink.end_nodes(cursor)?;
+                    sink.columns(vec![Column::tags("reference", 1)]);
+                    for list in &lists {
+                        list.clone().send(sink)?;
+                    }
+                }
+                volume_of if VOLUMES.iter().any(|name| volume_of.starts_with(name)) => {
+                    if value(cursor, "a count")? > 0 {
+                        return Err(volume(cursor, &quoted(keyword)));
+                    }
+                }
+                b"RequiredTriangles" => numbers(cursor, &mut required)?,
+                keyword if !is_keyword(keyword) => {
+                    let problem = format!("`{}` stands where a keyword should", quoted(keyword));
+                    let remedy = "Correct the count of the list before it, or write the mesh again";
+                    return Err(cursor.error(problem, remedy));
+                }
+                keyword if is_of_higher_order(keyword) => {
+                    if value(cursor, "a count")? > 0 {
+                        let problem = format!(
+                            "{} are of higher order, and only corners are moved",
+                            quoted(keyword)
+                        );
+                        return Err(cursor.error(problem, "Save linear elements (Triangles)"));
+                    }
+                }
+                keyword => {
+                    let kind = kind_of(keyword);
+                    if let Some(kind) = kind {
+                        let count = value(cursor, "the number of elements")?;
+                        lists.push(List { cursor: cursor.clone(), count, kind, keyword });
+                    } else if sink.asks_for_data() {
+                        sink.leaves_out(&format!("the list {}", quoted(keyword)));
+                    }
+                    match lists.last() {
+                        Some(list) if vertices_seen && kind.is_some() => {
+                            *cursor = list.clone().send(sink)?;
+                        }
+                        // The lists hold only numbers, so the next word that starts with a letter is a keyword.
+                        _ => skip_numbers(cursor),
+                    }
+                }
+            }
+        }
+        if !vertices_seen {
+            let problem = "it has no list of Vertices";
+            return Err(source.error(problem, "Save the mesh again"));
+        }
+        let triangles = lists.into_iter().filter(|list| list.kind == Kind::Triangle);
+        let triangles: Vec<_> = triangles.map(|list| (list.cursor, list.count)).collect();
+        if !required.is_empty() {
+            hold_required(triangles, required, sink)?;
+        }
+        Ok(Layout::in_place(Format::Medit, Numbers::TEXT))
+    }
+}
+
+/// Reads a list of numbers, one in each row.
+fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadError> {
+    let count = value(cursor, "the number of required triangles")?;
+    for done in 0..count {
+        cursor.row(done, count, "required triangles")?;
+        numbers.push(cursor.integer("the number of a triangle")?);
+    }
+    Ok(())
+}
+
+/// Hands on the corners of the required triangles, which are not to be changed. `required` are their numbers, counted
+/// from 1.
+fn hold_required(
+    triangles: Vec<(Cursor<'_>, u64)>,
+    mut required: Vec<u64>,
+    sink: &mut dyn Sink,
+) -> Result<(), ReadError> {
+    required.sort_unstable();
+    required.dedup();
+    sink.note(&fixed_note(required.len() as u64, "required triangle", ""));
+    let label = Label::name(b"RequiredTriangles");
+    sink.within(&[Within { what: "list", label, dimension: None }]);
+    let mut left = required.as_slice();
+    let mut before = 0;
+    for (mut cursor, count) in triangles {
+        let cursor = &mut cursor;
+        for done in 0..count {
+            cursor.row(done, count, "elements")?;
+            let triangle = |cursor: &mut Cursor<'_>| element(cursor, Kind::Triangle);
+            let (corners, reference) = cursor.item(triangle, &mut None)?;
+            let tag = before + done + 1;
+            if left.first() != Some(&tag) {
+                continue;
+            }
+            left = &left[1..];
+            let region = [reference, 0];
+            for &corner in &corners[..3] {
+                let (kind, nodes) = (Kind::Corner, [corner, 0, 0, 0]);
+                sink.element(cursor, &Element { tag, kind, region, nodes })?;
+            }
+        }
+        before += count;
+    }
+    Ok(())
+}
+
+/// Whether a list has elements with nodes on their sides, such as `TrianglesP2`.
+fn is_of_higher_order(keyword: &[u8]) -> bool {
+    let [elements @ .., b'P' | b'Q', b'2'..=b'9'] = keyword else { return false };
+    kind_of(elements).is_some()
+}
+
+fn kind_of(keyword: &[u8]) -> Option<Kind> {
+    match keyword {
+        b"Corners" | b"RequiredVertices" => Some(Kind::Point),
+        b"Edges" => Some(Kind::Line),
+        b"Triangles" => Some(Kind::Triangle),
+        b"Quadrilaterals" => Some(Kind::Quadrilateral),
+        _ => None,
+    }
+}
+
+/// Reads the number after a keyword, on the same row or the next.
+fn value(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
+    if !cursor.next_word() {
+        return Err(cursor.error(format!("the file ends before {what}"), CUT_OFF));
+    }
+    cursor.integer(what)
+}
+
+fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    if !cursor.next_word() {
+        return Err(cursor.error("the file ends before the number of vertices", CUT_OFF));
+    }
+    let count = cursor.vertex_count()?;
+    sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
+    let before = &mut cursor.clone();
+    let mut heights = Heights::new(sink);
+    each_row(
+        cursor,
+        count,
+        "vertices",
+        sink,
+        |cursor| {
+            let point = cursor.point("a vertex")?;
+            let z = match dimension {
+                3 => Some(cursor.height("a vertex")?),
+                _ => None,
+            };
+            cursor.signed("the reference of a vertex")?;
+            Ok((point, z))
+        },
+        |cursor, sink, done, ((x_at, at), z)| {
+            sink.node(cursor, done + 1, 2, x_at, at);
+            z.into_iter().for_each(|z| heights.see(z));
+            Ok(())
+        },
+    )?;
+    heights.send("z", Numbers::TEXT.into(), sink);
+    if sink.asks_for_groups() {
+        for vertex in 0..count {
+            before.row(vertex, count, "vertices")?;
+            let reference = |cursor: &mut Cursor<'_>| {
+                (0..dimension).for_each(|_| _ = cursor.token());
+                cursor.signed("the reference of a vertex")
+            };
+            let reference = before.item(reference, &mut None)?;
+            // A vertex without a reference has the reference 0.
+            if reference != 0 {
+                sink.node_within(vertex as u32, "reference", reference);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Reads the nodes and the reference of an element. Points have no reference.
+#[inline]
+fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<([u64; 4], i64), ReadError> {
+    let nodes = nodes(cursor, kind)?;
+    let reference = match kind {
+        Kind::Point => 0,
+        _ => cursor.signed("the reference of an element")?,
+    };
+    Ok((nodes, reference))
+}
+
+/// Moves past the last number before the next keyword.
+fn skip_numbers(cursor: &mut Cursor<'_>) {
+    loop {
+        while !cursor.is_at_end() {
+            let before = cursor.clone();
+            if cursor.token().is_none_or(is_keyword) {
+                *cursor = before;
+                return;
+            }
+        }
+        let mut next = cursor.clone();
+        if !next.next_row() {
+            return;
+        }
+        // Most rows are plain numbers, without letters.
+        let row = next.clone().rest();
+        if row.iter().fold(0, |most, &byte| byte.max(most)) < b'A' {
+            next.rest();
+        }
+        *cursor = next;
+    }
+}
+
+/// Whether a word is a keyword. Some numbers start with a letter too, such as NaN.
+fn is_keyword(word: &[u8]) -> bool {
+    word.first().is_some_and(u8::is_ascii_alphabetic) && float(word).is_none()
+}

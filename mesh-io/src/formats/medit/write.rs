@@ -1,0 +1,133 @@
+//! Writes Medit's `.mesh` and `.meshb`, and FreeFem's `.msh`.
+
+use crate::export::job::Job;
+use crate::export::put;
+use crate::visit::sink::Kind;
+use std::fmt::Write;
+
+/// A list of elements: its name, its keyword in binary files, how many numbers each element has, and the numbers.
+struct List {
+    name: &'static str,
+    keyword: i32,
+    width: usize,
+    numbers: Vec<i64>,
+}
+
+/// The content that text and binary files share.
+struct Medit {
+    dimension: usize,
+    /// The reference of each vertex.
+    references: Vec<i64>,
+    lists: Vec<List>,
+}
+
+impl Medit {
+    fn new(job: &Job<'_>) -> Medit {
+        let content = job.content;
+        let flat = content.heights.is_empty() && content.height == 0.0;
+        let mut references = job.vertex_tags();
+        // Points are written as references of their vertices, except those of the format's own lists.
+        let is_listed = |cell: usize| job.group(cell).is_some_and(|group| group.what == "list");
+        for cell in job.all(Kind::Point).filter(|&cell| !is_listed(cell)) {
+            references[content.cells.of(cell)[0] as usize] = job.tag(cell);
+        }
+        let places =
+            |cell: usize| content.cells.of(cell).iter().map(|&vertex| i64::from(vertex) + 1);
+        let mut lists = Vec::new();
+        for (name, keyword) in [("Corners", 13), ("RequiredVertices", 15)] {
+            let is_of = |cell: &usize| {
+                let own = job.group(*cell).and_then(|group| group.name());
+                is_listed(*cell) && own == Some(name)
+            };
+            let numbers = job.all(Kind::Point).filter(is_of).flat_map(places).collect();
+            lists.push(List { name, keyword, width: 1, numbers });
+        }
+        for (kind, name, keyword) in [
+            (Kind::Line, "Edges", 5),
+            (Kind::Triangle, "Triangles", 6),
+            (Kind::Quadrilateral, "Quadrilaterals", 7),
+        ] {
+            let numbers = job.all(kind).flat_map(|cell| places(cell).chain([job.tag(cell)]));
+            let (width, numbers) = (kind.nodes() + 1, numbers.collect());
+            lists.push(List { name, keyword, width, numbers });
+        }
+        lists.retain(|list| !list.numbers.is_empty());
+        Medit { dimension: if flat { 2 } else { 3 }, references, lists }
+    }
+}
+
+pub(crate) fn write_medit(job: &Job<'_>) -> String {
+    let Medit { dimension, references, lists } = Medit::new(job);
+    let mut out = format!("MeshVersionFormatted 2\nDimension {dimension}\n");
+    put!(out, "Vertices\n{}\n", references.len());
+    for (vertex, reference) in references.iter().enumerate() {
+        let at = if dimension == 2 { job.plane(vertex) } else { job.space(vertex) };
+        put!(out, "{at} {reference}\n");
+    }
+    for List { name, width, numbers, .. } in lists {
+        put!(out, "{name}\n{}\n", numbers.len() / width);
+        for row in numbers.chunks_exact(width) {
+            let words: Vec<String> = row.iter().map(i64::to_string).collect();
+            put!(out, "{}\n", words.join(" "));
+        }
+    }
+    out.push_str("End\n");
+    out
+}
+
+/// Offsets in files of version 2 have 4 bytes. Longer files are written as version 3, with 8 bytes.
+const LARGE: usize = 1 << 31;
+
+pub(crate) fn write_meshb(job: &Job<'_>) -> Vec<u8> {
+    let medit = Medit::new(job);
+    let small = meshb(job, &medit, 2);
+    if small.len() < LARGE { small } else { meshb(job, &medit, 3) }
+}
+
+fn meshb(job: &Job<'_>, medit: &Medit, version: i32) -> Vec<u8> {
+    let mut out = Vec::new();
+    let ints = |numbers: &[i64]| -> Vec<u8> {
+        numbers.iter().flat_map(|&number| (number as i32).to_le_bytes()).collect()
+    };
+    out.extend(ints(&[1, i64::from(version)]));
+    // Writes a keyword, the offset of the next one, and the content between.
+    let mut chain = |keyword: i32, content: &[u8]| {
+        out.extend(keyword.to_le_bytes());
+        let width = if version == 2 { 4 } else { 8 };
+        let is_last = keyword == 54;
+        let next = if is_last { 0 } else { (out.len() + width + content.len()) as u64 };
+        out.extend_from_slice(&next.to_le_bytes()[..width]);
+        out.extend_from_slice(content);
+    };
+    chain(3, &ints(&[medit.dimension as i64]));
+    let mut vertices = ints(&[medit.references.len() as i64]);
+    for (vertex, &reference) in medit.references.iter().enumerate() {
+        let [x, y] = job.content.points[vertex];
+        for coordinate in [x, y, job.content.z(vertex)].into_iter().take(medit.dimension) {
+            vertices.extend(coordinate.to_le_bytes());
+        }
+        vertices.extend(ints(&[reference]));
+    }
+    chain(4, &vertices);
+    for List { keyword, width, numbers, .. } in &medit.lists {
+        let count = (numbers.len() / width) as i64;
+        chain(*keyword, &[ints(&[count]), ints(numbers)].concat());
+    }
+    chain(54, &[]);
+    out
+}
+
+pub(crate) fn write_freefem(job: &Job<'_>) -> String {
+    let points = job.content.points.len();
+    let counts = [points, job.count(Kind::Triangle), job.count(Kind::Line)];
+    let mut out = format!("{} {} {}\n", counts[0], counts[1], counts[2]);
+    for (vertex, label) in job.vertex_tags().into_iter().enumerate() {
+        put!(out, "{} {label}\n", job.plane(vertex));
+    }
+    for kind in [Kind::Triangle, Kind::Line] {
+        for cell in job.all(kind) {
+            put!(out, "{} {}\n", job.places(cell, 1), job.tag(cell));
+        }
+    }
+    out
+}

@@ -1,0 +1,127 @@
+//! MFEM's `.mesh`, versions 1.0 to 1.3.
+//!
+//! The format: <https://mfem.org/mesh-format-v1.0/>. MFEM reads it word by word. Elements stand before the vertices, which are
+//! counted from zero. Curved meshes have their points in a finite element space instead, and are refused.
+
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::numbered_nodes::counted_nodes;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::quoted;
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+
+pub(crate) struct Mfem;
+
+/// A list of elements, which stands before the vertices.
+struct List<'a> {
+    cursor: Cursor<'a>,
+    count: u64,
+}
+
+impl Walk for Mfem {
+    const VERTICES: &'static str = "the list of vertices";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+        // The name of the format and its version.
+        cursor.next_row();
+        cursor.rest();
+        let mut lists = Vec::new();
+        loop {
+            if !cursor.next_word() {
+                return Err(source.error("it has no vertices", "Save the mesh again"));
+            }
+            let keyword = cursor.token().unwrap_or_default();
+            match keyword {
+                b"dimension" => {
+                    cursor.next_word();
+                    match cursor.integer("the dimension")? {
+                        2 => {}
+                        3 => return Err(volume(cursor, "three dimensions")),
+                        other => {
+                            let problem = format!("the dimension is {other}");
+                            return Err(cursor.error(problem, "Meshes of two dimensions are read"));
+                        }
+                    }
+                }
+                b"elements" | b"boundary" => {
+                    cursor.next_word();
+                    let count = cursor.integer("the number of elements")?;
+                    lists.push(List { cursor: cursor.clone(), count });
+                    each_row(cursor, count, "elements", sink, element, |_, _, _, _| Ok(()))?;
+                }
+                b"attribute_sets" | b"bdr_attribute_sets" => skip_sets(cursor),
+                b"vertices" => break,
+                other => {
+                    let problem = format!("a section `{}` is not read", quoted(other));
+                    let remedy = "Write the mesh with its elements, boundary and vertices alone";
+                    return Err(cursor.error(problem, remedy));
+                }
+            }
+        }
+        vertices(cursor, sink)?;
+        sink.columns(vec![Column::tags("attribute", 1)]);
+        for List { mut cursor, count } in lists {
+            sink.expect_elements(cursor.capacity(count, "1 2 0 1 2\n".len()));
+            each_row(&mut cursor, count, "elements", sink, element, |cursor, sink, done, read| {
+                let (kind, attribute, nodes) = read;
+                let region = [attribute, 0];
+                sink.element(cursor, &Element { tag: done, kind, region, nodes })
+            })?;
+        }
+        Ok(Layout::in_place(Format::Mfem, Numbers::TEXT))
+    }
+}
+
+/// Reads the vertices, of two or three coordinates each.
+fn vertices(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    cursor.next_word();
+    let count = cursor.vertex_count()?;
+    cursor.next_word();
+    if cursor.is_at_letter() {
+        let problem = "the points are those of a finite element space (nodes), as of a curved mesh";
+        return Err(cursor.error(problem, "Save it as VTK: Mesh::PrintVTK of MFEM"));
+    }
+    let dimensions = cursor.integer("the number of coordinates")?;
+    let named = ("a vertex", "vertices");
+    let heights = counted_nodes(cursor, (count, dimensions), named, sink)?;
+    sink.end_nodes(cursor)?;
+    heights.send("z", Numbers::TEXT.into(), sink);
+    Ok(())
+}
+
+/// Reads an element: its kind, attribute and vertices.
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, i64, [u64; 4]), ReadError> {
+    let attribute = cursor.signed("the attribute of an element")?;
+    let kind = match cursor.integer("the geometry of an element")? {
+        0 => Kind::Point,
+        1 => Kind::Line,
+        2 => Kind::Triangle,
+        3 => Kind::Quadrilateral,
+        4..=7 => return Err(volume(cursor, "elements of a volume")),
+        other => return Err(cursor.error(format!("{other} is no geometry"), CORRECT)),
+    };
+    Ok((kind, attribute, nodes(cursor, kind)?))
+}
+
+/// Skips the rows of named sets of attributes.
+fn skip_sets(cursor: &mut Cursor<'_>) {
+    loop {
+        let mut next = cursor.clone();
+        let is_section = !next.next_row()
+            || next.token().is_some_and(|word| {
+                [&b"boundary"[..], b"vertices", b"bdr_attribute_sets"].contains(&word)
+            });
+        if is_section {
+            // The next word is that of the section.
+            cursor.rest();
+            return;
+        }
+        *cursor = next;
+        cursor.rest();
+    }
+}

@@ -1,0 +1,95 @@
+//! The `.mesh` of MIKE (DHI).
+//!
+//! The format: "MIKE 21 & MIKE 3 Flow Model FM, Mesh File Specification" of DHI, and how DHI's own library `mikecore` reads it. The
+//! first row has the kind of data, its unit, the number of nodes and the projection; before 2012 only the latter two. A
+//! node has a height and a code: 0 inside, 1 at land, more at open boundaries.
+
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::numbered_nodes::numbered_nodes;
+use crate::text::cursor::Cursor;
+use crate::text::token::{float, integer};
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+
+pub(crate) struct Mike;
+
+impl Walk for Mike {
+    const VERTICES: &'static str = "the list of nodes";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        cursor.row(0, 1, "lines of counts")?;
+        let mut first = cursor.clone();
+        if is_of_2012(&mut first) {
+            cursor.tokens(2);
+        }
+        let count = cursor.vertex_count()?;
+        cursor.rest();
+        let before = &mut cursor.clone();
+        let heights = numbered_nodes(cursor, count, false, sink)?;
+        if sink.asks_for_groups() {
+            codes(before, count, sink)?;
+        }
+        sink.end_nodes(cursor)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
+        cursor.row(0, 1, "lines of the count of elements")?;
+        let elements = cursor.integer("the number of elements")?;
+        let most = cursor.integer("the largest number of nodes of an element")?;
+        if most > 4 {
+            let problem = format!("elements have up to {most} nodes");
+            return Err(cursor.error(problem, "Elements of three and four nodes are read"));
+        }
+        cursor.rest();
+        sink.expect_elements(cursor.capacity(elements, "1 1 2 3\n".len()));
+        each_row(cursor, elements, "elements", sink, element, |cursor, sink, _, element| {
+            sink.element(cursor, &element)
+        })?;
+        Ok(Layout::in_place(Format::Mike, Numbers::TEXT))
+    }
+}
+
+/// Reads an element. Among quadrilaterals, a triangle has 0 for a fourth node.
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
+    let tag = cursor.integer("the number of an element")?;
+    let mut nodes = nodes(cursor, Kind::Triangle)?;
+    if !cursor.is_at_end() {
+        nodes[3] = cursor.integer("a vertex of a quadrilateral")?;
+    }
+    let kind = if nodes[3] == 0 { Kind::Triangle } else { Kind::Quadrilateral };
+    Ok(Element { tag, kind, region: [0; 2], nodes })
+}
+
+/// Hands on the codes of nodes. They stand behind z, and inner nodes have the code 0.
+fn codes(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    for node in 0..count {
+        cursor.row(node, count, "nodes")?;
+        cursor.tokens(4);
+        let code = if cursor.is_at_end() { 0 } else { cursor.signed("the code of a node")? };
+        if code != 0 {
+            sink.node_within(node as u32, "code", code);
+        }
+    }
+    Ok(())
+}
+
+/// Whether the number of nodes is the third of the first row, as it is since 2012.
+fn is_of_2012(row: &mut Cursor<'_>) -> bool {
+    (0..3).all(|_| row.token().and_then(integer).is_some())
+}
+
+/// Whether the first two rows of a file may be those of such a mesh: numbers and a projection, then a node.
+pub(crate) fn opens(first: &[&[u8]], second: &[&[u8]]) -> bool {
+    let numbers = first.iter().take_while(|token| integer(token).is_some()).count();
+    let is_projection = |token: &&[u8]| token.first().is_some_and(u8::is_ascii_alphabetic);
+    let is_node = || {
+        let [tag, at @ .., code] = second else { return false };
+        at.len() == 3
+            && integer(tag).is_some()
+            && integer(code).is_some()
+            && at.iter().all(|token| float(token).is_some())
+    };
+    matches!(numbers, 1 | 3) && first.get(numbers).is_some_and(is_projection) && is_node()
+}

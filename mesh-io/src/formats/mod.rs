@@ -1,0 +1,34 @@
+//! Readers and writers of mesh file formats, with the parts that several formats share.
+
+pub(crate) mod abaqus;
+pub(crate) mod adcirc;
+pub(crate) mod axes;
+pub(crate) mod cgns;
+pub(crate) mod container;
+pub(crate) mod exodus;
+pub(crate) mod freefem;
+pub(crate) mod fvcom;
+pub(crate) mod gmsh;
+pub(crate) mod jigsaw;
+pub(crate) mod med;
+pub(crate) mod medit;
+pub(crate) mod mfem;
+pub(crate) mod mike;
+pub(crate) mod nastran;
+pub(crate) mod netcdf_axes;
+pub(crate) mod netcdf_points;
+pub(crate) mod numbered_nodes;
+pub(crate) mod obj;
+pub(crate) mod off;
+pub(crate) mod ply;
+pub(crate) mod selafin;
+pub(crate) mod side;
+pub(crate) mod sms;
+pub(crate) mod stl;
+pub(crate) mod su2;
+pub(crate) mod triangle;
+pub(crate) mod ugrid;
+pub(crate) mod vtk;
+pub(crate) mod write_grids;
+pub(crate) mod write_surface;
+pub(crate) mod xdmf;

@@ -1,0 +1,162 @@
+//! The elements, and the nodes that they hold.
+
+use super::nodes::whole;
+use super::types::{Class, Listed, class};
+use crate::error::ReadError;
+use crate::text::card;
+use crate::text::card::{Line, Name, letters};
+use crate::text::cursor::Cursor;
+use crate::text::token::{integer, quoted};
+use crate::visit::parsed::fixed_note;
+use crate::visit::sink::{Column, Element, Kind, Sink, all_rows, volume};
+use std::collections::{BTreeSet, HashSet};
+
+/// A card, as far as it is of elements.
+enum Card {
+    Element(Element),
+    /// The nodes that an element holds, and what it is called.
+    Holds(Name, Vec<u64>),
+    Node(u64),
+    Other(Name),
+}
+
+/// Hands on all elements.
+pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    sink.columns(vec![Column::tags_from_one("property")]);
+    let mut cursor = rows.clone();
+    // What elements hold, how many do, and what they are called.
+    let (mut held, mut holding, mut names) = (Vec::new(), 0, BTreeSet::new());
+    let (mut others, asks_for_data) = (BTreeSet::new(), sink.asks_for_data());
+    all_rows(&mut cursor, sink, card, |cursor, sink, card| {
+        match card {
+            Card::Element(element) => sink.element(cursor, &element)?,
+            Card::Holds(name, nodes) => {
+                held.extend(nodes);
+                holding += 1;
+                names.insert(name);
+            }
+            Card::Other(name) if asks_for_data => drop(others.insert(name)),
+            Card::Node(_) | Card::Other(_) => {}
+        }
+        Ok(())
+    })?;
+    if let Some(first) = names.first() {
+        let word = if names.len() == 1 { "called" } else { "such as" };
+        sink.note(&fixed_note(holding, "element", &format!(" {word} {}", quoted(letters(first)))));
+    }
+    others.retain(|name| !matches!(letters(name), b"" | b"GRDSET"));
+    if let Some(first) = others.first() {
+        let first = quoted(letters(first));
+        sink.leaves_out(&match others.len() - 1 {
+            0 => format!("what {first} says"),
+            more => format!("what {first} and {more} more kinds of cards say"),
+        });
+    }
+    hold(rows, held, sink)
+}
+
+/// Hands on the nodes that elements hold. Some may be scalar points, which are no part of the mesh.
+fn hold(rows: &Cursor<'_>, held: Vec<u64>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    if held.is_empty() {
+        return Ok(());
+    }
+    let held: HashSet<u64> = held.into_iter().collect();
+    let mut there = BTreeSet::new();
+    let cursor = &mut rows.clone();
+    all_rows(cursor, sink, node, |_, _, card| {
+        if let Card::Node(tag) = card
+            && held.contains(&tag)
+        {
+            there.insert(tag);
+        }
+        Ok(())
+    })?;
+    there.into_iter().try_for_each(|tag| {
+        let nodes = [tag, 0, 0, 0];
+        sink.element(cursor, &Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes })
+    })
+}
+
+/// Reads the number of a node.
+fn node(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
+    let line = Line::starting_at(cursor.bytes, cursor.row_range().start);
+    let name = line.name();
+    let tag = line.fields().next().filter(|_| letters(&name) == b"GRID");
+    let tag = tag.and_then(|field| integer(cursor.bytes[field].trim_ascii()));
+    Ok(tag.map_or(Card::Other(name), Card::Node))
+}
+
+/// Reads a card if it is one of elements.
+#[inline]
+fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
+    let row = cursor.row_range();
+    let name = Line::starting_at(cursor.bytes, row.start).name();
+    if letters(&name) == b"GRID" {
+        return Ok(Card::Node(0));
+    }
+    let Some(class) = class(&name) else { return Ok(Card::Other(name)) };
+    let shown = || quoted(letters(&name));
+    let mut words = card::words(cursor.bytes, row);
+    let mut next = || words.next().unwrap_or_default();
+    let (kind, has_property) = match class {
+        Class::Of(kind) => (kind, true),
+        Class::Line => (Kind::Line, false),
+        Class::Held(fields) => {
+            let words: Vec<&[u8]> = words.take(1 + fields[fields.len() - 1]).collect();
+            let node = |&field: &usize| words.get(field).and_then(|word| integer(word));
+            return Ok(Card::Holds(name, fields.iter().filter_map(node).collect()));
+        }
+        Class::Rigid(listed) => return Ok(Card::Holds(name, rigid(words, listed))),
+        Class::Volume => return Err(volume(cursor, &format!("{} elements", shown()))),
+        Class::SecondOrder => {
+            let problem = format!(
+                "{} elements may have nodes on their sides, which are not moved with them",
+                shown()
+            );
+            return Err(cursor.error(problem, "Save linear elements (CTRIA3, CQUAD4)"));
+        }
+    };
+    let tag = whole(cursor, next(), format_args!("the number of a {}", kind.name()))?;
+    let property = match has_property.then(&mut next) {
+        None => 0,
+        // It is called as the element is.
+        Some(b"") => tag,
+        Some(word) => whole(cursor, word, format_args!("the property of {} {tag}", kind.name()))?,
+    };
+    let mut nodes = [0; 4];
+    for node in &mut nodes[..kind.nodes()] {
+        *node = whole(cursor, next(), format_args!("a vertex of {} {tag}", kind.name()))?;
+    }
+    Ok(Card::Element(Element { tag, kind, region: [property.cast_signed(), 0], nodes }))
+}
+
+/// Lists the nodes of a rigid element.
+#[cold]
+fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: Listed) -> Vec<u64> {
+    let _number_of_element = words.next();
+    // The name of a part, such as `UM`, stands before it. At the end of RBE2 may be a real number.
+    let given = words.filter(|word| !word.is_empty());
+    let mut nodes = Vec::new();
+    // How many words until the next one is a node.
+    let mut until = 0;
+    let mut first = true;
+    for word in given {
+        match (integer(word), listed) {
+            (Some(node), _) if until == 0 => {
+                nodes.push(node);
+                until = match listed {
+                    Listed::Pairs => 1,
+                    Listed::Nodes | Listed::Weights => usize::from(first),
+                };
+                first = false;
+            }
+            (Some(_), _) => until -= 1,
+            // A weight, after which components come.
+            (None, Listed::Weights) if word.contains(&b'.') => until = 1,
+            // The nodes of what follows were named before.
+            (None, Listed::Nodes | Listed::Weights) => break,
+            (None, Listed::Pairs) => until = 0,
+        }
+    }
+    nodes
+}

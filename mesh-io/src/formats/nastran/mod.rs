@@ -1,0 +1,71 @@
+//! Bulk data of Nastran.
+//!
+//! The format: the Quick Reference Guides of MSC Nastran and Simcenter Nastran, on the format of bulk data entries, and the
+//! User's Manual of NASTRAN-95. A card is one or more lines of fields, see [`card`]. Lines,
+//! quadrilaterals, and nodes of masses, springs and rigid elements stay fixed. Regions are properties. Other cards, such as those of
+//! materials, constraints and loads, are not read.
+
+mod elements;
+mod names;
+mod nodes;
+mod section;
+mod types;
+
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::text::card;
+use crate::text::card::{Line, letters};
+use crate::text::cursor::Cursor;
+use crate::text::syntax::Syntax;
+use crate::text::token::integer;
+use crate::visit::sink::{Layout, Sink, Walk};
+use types::Class;
+
+pub(crate) struct Nastran;
+
+impl Walk for Nastran {
+    const VERTICES: &'static str = "GRID";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let rows = section::rows(source);
+        let numbers = nodes::send(&rows, sink)?;
+        elements::send(&rows, sink)?;
+        if sink.asks_for_groups() {
+            names::send(source, sink);
+        }
+        Ok(Layout::in_place(Format::Nastran, numbers))
+    }
+}
+
+/// How many rows are looked at to tell the format.
+const ROWS: usize = 1000;
+
+/// Whether the first rows of a file are those of Nastran: a statement that only its files have, or a card of a node or an element.
+pub(crate) fn opens(source: &Source) -> bool {
+    let mut cursor = Cursor::new(source).of(Syntax::CARDS);
+    (0..ROWS).any(|_| cursor.next_row() && is_of_nastran(&cursor))
+}
+
+fn is_of_nastran(cursor: &Cursor<'_>) -> bool {
+    let row = cursor.row_range();
+    let line = &cursor.bytes[row.clone()];
+    let name = Line::starting_at(cursor.bytes, row.start).name();
+    let mut words = card::words(cursor.bytes, row);
+    let mut next = || words.next().unwrap_or_default();
+    match (letters(&name), types::class(&name)) {
+        (b"BEGIN", _) => section::is_begin(line),
+        (b"CEND", _) => line.trim_ascii().len() == b"CEND".len(),
+        (b"GRID", _) => {
+            let is_numbered = integer(next()).is_some();
+            let _system = next();
+            let [x, y] = [next(), next()];
+            let is_point = [x, y].iter().all(|word| nodes::number(word).is_some());
+            is_numbered && is_point && !(x.is_empty() && y.is_empty())
+        }
+        (_, Some(Class::Of(_))) => {
+            [next(), next(), next()].iter().all(|&word| integer(word).is_some())
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,226 @@
+//! The nodes: GRID, with what GRDSET says of all of them.
+
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::precision::Precision;
+use crate::text::card;
+use crate::text::card::{Line, letters};
+use crate::text::cursor::Cursor;
+use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::text::token::{float, fortran_float, integer};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Sink, all_rows};
+use std::ops::Range;
+
+/// A card, as far as it is of nodes.
+enum Card {
+    Node(Node),
+    /// The coordinate system of nodes that name none, by GRDSET.
+    System(u64),
+    Other,
+}
+
+struct Node {
+    tag: u64,
+    /// The offset of x.
+    x_at: usize,
+    at: [f64; 2],
+    z: (usize, f64),
+    room: Room,
+    /// Whether it names no coordinate system.
+    is_of_default: bool,
+}
+
+/// How many characters the coordinates of a node have: in fixed fields as many as the field has, in free field as many as the longest.
+#[derive(Clone, Copy)]
+struct Room {
+    is_free: bool,
+    /// The first of [`ROOMS`] that is enough.
+    size: usize,
+}
+
+/// The precisions of coordinates of at most 8 characters, of at most 16, and of more.
+const ROOMS: [Precision; 3] = [Precision::Text8, Precision::Text16, Precision::Double];
+
+/// How many nodes have which room, in fixed fields and in free field.
+#[derive(Default)]
+struct Rooms([[u64; ROOMS.len()]; 2]);
+
+impl Rooms {
+    fn add(&mut self, Room { is_free, size }: Room) {
+        self.0[usize::from(is_free)][size] += 1;
+    }
+
+    /// Returns the precision that fits into all places: in fixed fields that of the smallest, in free field that of the longest
+    /// number there, as programs may read no more of it. Returns also how many nodes have longer numbers.
+    fn precision(&self) -> (Precision, u64) {
+        let [fixed, free] = &self.0;
+        let smallest = fixed.iter().position(|&count| count > 0);
+        let longest = free.iter().rposition(|&count| count > 0);
+        let size = smallest.into_iter().chain(longest).min().unwrap_or(ROOMS.len() - 1);
+        let longer = |counts: &[u64; 3]| counts[size + 1..].iter().sum::<u64>();
+        (ROOMS[size], longer(fixed) + longer(free))
+    }
+}
+
+/// Hands on all nodes. Returns how coordinates are stored.
+pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<Numbers, ReadError> {
+    let mut heights = Heights::new(sink);
+    let mut rooms = Rooms::default();
+    // Where the first node is that names no coordinate system, and the system of such nodes.
+    let (mut count, mut first_at, mut system) = (0, None, 0);
+    let cursor = &mut rows.clone();
+    all_rows(cursor, sink, card, |cursor, sink, card| {
+        match card {
+            Card::Node(Node { tag, x_at, at, z, room, is_of_default }) => {
+                sink.node(cursor, tag, 2, x_at, at);
+                heights.see(z);
+                rooms.add(room);
+                count += 1;
+                first_at = first_at.or(is_of_default.then_some((x_at, tag)));
+            }
+            Card::System(own) => system = own,
+            Card::Other => {}
+        }
+        Ok(())
+    })?;
+    if count == 0 {
+        let problem = "it has no GRID, so it is no mesh of Nastran";
+        return Err(cursor.source.error(problem, "Save the mesh with its nodes and elements"));
+    }
+    cursor.check_vertex_count(count)?;
+    if let (1.., Some((at, tag))) = (system, first_at) {
+        return Err(in_system(&Cursor::standing_at(cursor.source, at), tag, system));
+    }
+    sink.end_nodes(cursor)?;
+    let (precision, longer) = rooms.precision();
+    if longer > 0 {
+        let most = if precision == Precision::Text8 { 8 } else { 16 };
+        let (s, have) = if longer == 1 { ("", "has") } else { ("s", "have") };
+        let nodes = format!("{longer} node{s} {have} coordinates of more than {most} characters");
+        sink.note(&format!("{nodes}, beside fields of {most}: they count as rounded to {most}"));
+    }
+    let numbers = Numbers::Fields { precision };
+    heights.send("z", numbers.into(), sink);
+    Ok(numbers)
+}
+
+/// Reads a card if it is one of nodes.
+#[inline]
+fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
+    let row = cursor.row_range();
+    let line = Line::starting_at(cursor.bytes, row.start);
+    match letters(&line.name()) {
+        b"GRID" => node(cursor, line, row),
+        b"GRDSET" => default_system(cursor, line),
+        b"INCLUDE" => {
+            let problem = "INCLUDE names another file, which may hold a part of the mesh";
+            Err(cursor.error(problem, "Write all of the bulk data in one file"))
+        }
+        b"BEGIN" => {
+            let problem = "a second section of bulk data begins here, with numbers of its own";
+            Err(cursor.error(problem, "Write one section at a time"))
+        }
+        [b'=', ..] => {
+            let problem =
+                "a row repeats the one before it, so that nodes have no place of their own";
+            Err(cursor.error(problem, "Write out all cards, without `=`"))
+        }
+        _ => Ok(Card::Other),
+    }
+}
+
+#[inline]
+fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, ReadError> {
+    let bytes = cursor.bytes;
+    let mut fields = line.fields();
+    let mut next = || fields.next();
+    let word = |field: &Option<Range<usize>>| match field {
+        Some(field) => bytes[field.clone()].trim_ascii(),
+        None => &[],
+    };
+    let tag = whole(cursor, word(&next()), "the number of a node")?;
+    let system = next();
+    let system = match word(&system) {
+        b"" => None,
+        system => Some(whole(cursor, system, format_args!("the coordinate system of node {tag}"))?),
+    };
+    if let Some(system @ 1..) = system {
+        return Err(in_system(cursor, tag, system));
+    }
+    let (mut x_at, mut at, mut longest) = (0, [0.0; 2], 0);
+    for (axis, x) in ['x', 'y'].into_iter().zip(&mut at) {
+        let field = next();
+        let Some(start) = field.as_ref().map(|field| field.start) else {
+            let problem = format!(
+                "{axis} of node {tag} is left out at the end of its row, which stands for 0"
+            );
+            let remedy = "Write the 0, as there is no place for another value";
+            return Err(cursor.error(problem, remedy));
+        };
+        if axis == 'x' {
+            x_at = start;
+        }
+        let own = word(&field);
+        longest = longest.max(own.len());
+        *x = number(own).filter(|x| x.is_finite()).ok_or_else(|| {
+            let what = format_args!("{axis} of node {tag}");
+            cursor.unusable(Some(own), what, "a finite number")
+        })?;
+    }
+    // In large field it is mostly in the next line.
+    let in_next_line = || card::lines(bytes, row).nth(1).and_then(|line| line.fields().next());
+    let z = next().or_else(|| if line.is_large { in_next_line() } else { None });
+    let of_z = word(&z);
+    longest = longest.max(of_z.len());
+    let height = number(of_z)
+        .ok_or_else(|| cursor.unusable(Some(of_z), format_args!("z of node {tag}"), "a number"))?;
+    let z = z.map_or(NO_HEIGHT, |z| (z.start, height));
+    let given = if line.is_free { longest } else { 0 };
+    let size = match given {
+        17.. => 2,
+        9.. => 1,
+        _ => usize::from(line.is_large),
+    };
+    let room = Room { is_free: line.is_free, size };
+    Ok(Card::Node(Node { tag, x_at, at, z, room, is_of_default: system.is_none() }))
+}
+
+/// Reads the coordinate system that GRDSET names.
+#[cold]
+fn default_system(cursor: &Cursor<'_>, line: Line<'_>) -> Result<Card, ReadError> {
+    let field = line.fields().nth(1).unwrap_or(0..0);
+    let system = match cursor.bytes[field].trim_ascii() {
+        b"" => 0,
+        system => whole(cursor, system, "the coordinate system of nodes that name none")?,
+    };
+    Ok(Card::System(system))
+}
+
+#[cold]
+fn in_system(cursor: &Cursor<'_>, tag: u64, system: u64) -> ReadError {
+    let problem = format!("node {tag} is in the coordinate system {system}, not in the basic one");
+    cursor.error(problem, "Write the nodes in the basic system, with CP blank or 0")
+}
+
+/// Reads a whole number, called `what` in messages.
+#[inline]
+pub(super) fn whole(
+    cursor: &Cursor<'_>,
+    word: &[u8],
+    what: impl std::fmt::Display,
+) -> Result<u64, ReadError> {
+    integer(word).ok_or_else(|| {
+        let token = (!word.is_empty()).then_some(word);
+        cursor.unusable(token, what, "a whole number")
+    })
+}
+
+/// Returns the real number that a field stands for; a blank one stands for 0.
+#[inline]
+pub(super) fn number(word: &[u8]) -> Option<f64> {
+    if word.is_empty() {
+        return Some(0.0);
+    }
+    float(word).or_else(|| fortran_float(word))
+}

@@ -1,0 +1,30 @@
+//! Coordinates of nodes, in variables of a netCDF file.
+
+use crate::binary::order::Order;
+use crate::error::ReadError;
+use crate::formats::axes::Axes;
+use crate::netcdf::{Header, Items, Variable};
+use crate::precision::Precision;
+
+/// Finds the coordinates of `nodes` nodes, which these variables have: those of `axes` axes in all, one axis after another. All
+/// numbers have the same form.
+///
+/// # Errors
+/// If what a variable holds cannot be read.
+pub(crate) fn axes<'a>(
+    header: &Header<'a>,
+    variables: &[&Variable],
+    form: (Order, Precision),
+    (axes, nodes): (usize, usize),
+) -> Result<Axes<'a>, ReadError> {
+    let mut items = variables.iter().map(|own| header.items(own)).collect::<Result<Vec<_>, _>>()?;
+    let Some(file) = &header.hdf5 else {
+        let length = nodes * form.1.bytes();
+        let of_each = axes / items.len().max(1);
+        let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
+        let starts: Vec<usize> = items.iter().filter_map(Items::place).flat_map(of).collect();
+        return Ok(Axes::in_place(header.source, form, &starts, nodes));
+    };
+    let arrays = items.iter_mut().filter_map(Items::take_array).collect();
+    Ok(Axes::of_arrays(file, form, arrays, (axes, nodes)))
+}

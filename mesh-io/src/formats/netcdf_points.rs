@@ -1,0 +1,115 @@
+//! Data of nodes: variables whose numbers are handed on record by record.
+
+use crate::edit::numbers::{Encoded, Form, Places};
+use crate::hdf5::Encoding;
+use crate::netcdf::{Header, Items, Number, Variable};
+use crate::visit::sink::{Home, PointNumbers, Sink, Stored};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Which parts of each record of a variable are handed on, each with numbers for all nodes.
+#[derive(Clone)]
+pub(crate) struct Parts {
+    pub(crate) wanted: Range<usize>,
+    /// How many equal parts a record consists of.
+    pub(crate) all: usize,
+    /// How many numbers each node has in a part.
+    pub(crate) components: u64,
+}
+
+impl Parts {
+    /// A record has one number for each node.
+    pub(crate) const WHOLE: Parts = Parts { wanted: 0..1, all: 1, components: 1 };
+}
+
+/// Reads data of nodes or faces, and hands those of nodes on. What is encoded of a variable is shared by all of its parts and records.
+pub(crate) struct PointData<'h, 'a> {
+    header: &'h Header<'a>,
+    encoded: Vec<(&'h [u8], Arc<Encoding>)>,
+    /// The content of the variable that was read last.
+    last: Option<(&'h [u8], Items<'a>)>,
+}
+
+impl<'h, 'a> PointData<'h, 'a> {
+    pub(crate) fn new(header: &'h Header<'a>) -> PointData<'h, 'a> {
+        PointData { header, encoded: Vec::new(), last: None }
+    }
+
+    /// Hands on parts of each record of a variable, as point data of this name. Real numbers can be replaced. Numbers that are
+    /// equal to `missing` are not known.
+    pub(crate) fn send(
+        &mut self,
+        name: &[u8],
+        variable: &'h Variable,
+        parts: &Parts,
+        missing: Option<f64>,
+        sink: &mut dyn Sink,
+    ) {
+        let is_real = matches!(variable.number, Number::Real(_));
+        for record in 0..self.header.steps(variable) {
+            for part in parts.wanted.clone() {
+                if sink.point_array(name, parts.components, is_real)
+                    && let Some(numbers) = self.numbers(variable, (record, part), parts, missing)
+                {
+                    sink.point_numbers(numbers);
+                }
+            }
+        }
+    }
+
+    /// Reads one of the parts of one record. None if the variable has no numbers, or they cannot be read.
+    pub(crate) fn numbers(
+        &mut self,
+        variable: &'h Variable,
+        (record, part): (usize, usize),
+        parts: &Parts,
+        missing: Option<f64>,
+    ) -> Option<PointNumbers> {
+        let precision = match variable.number {
+            Number::Real(precision) => Some(precision),
+            Number::Whole(_) => None,
+            Number::Text | Number::Other(_) => return None,
+        };
+        if self.last.as_ref().is_none_or(|(name, _)| *name != variable.name) {
+            self.last = Some((&variable.name, self.items(variable)?));
+        }
+        let (_, items) = self.last.as_ref()?;
+        let encoding = self.encoding(variable);
+        let bytes = encoding.map_or(&items.bytes[..], |encoding| encoding.bytes());
+        let range = items.range(record);
+        let size = range.len() / parts.all.max(1);
+        let range = range.start + part * size..range.start + (part + 1) * size;
+        let (start, home) = match encoding {
+            None => (items.byte_of(range.start), Home::File),
+            Some(encoding) => {
+                (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
+            }
+        };
+        let mut numbers = variable.numbers(bytes.get(range).unwrap_or_default());
+        let is_missing = |number: &&mut f64| Some(**number) == missing;
+        numbers.iter_mut().filter(is_missing).for_each(|number| *number = f64::NAN);
+        let stored = precision.map(|precision| {
+            let places = Places::Regular { start, stride: precision.bytes() };
+            Stored { places, form: Form::Binary(variable.order, precision), home, part: 0 }
+        });
+        Some(PointNumbers { numbers, nodes: None, stored })
+    }
+
+    fn encoding(&self, variable: &Variable) -> Option<&Arc<Encoding>> {
+        let known = self.encoded.iter().find(|(known, _)| *known == variable.name);
+        known.map(|(_, encoding)| encoding)
+    }
+
+    /// The content of a variable, whose encoding is kept if the file does not have its numbers as they are.
+    fn items(&mut self, variable: &'h Variable) -> Option<Items<'a>> {
+        let mut items = self.header.items(variable).ok()?;
+        if items.place().is_none()
+            && self.encoding(variable).is_none()
+            && let (Some(file), Some(array)) = (&self.header.hdf5, items.take_array())
+        {
+            let encoding = Arc::new(Encoding::new(file, vec![array]));
+            self.encoded.push((&variable.name, encoding));
+        }
+        Some(items)
+    }
+}

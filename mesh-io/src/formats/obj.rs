@@ -1,0 +1,286 @@
+//! Wavefront's `.obj`, for a mesh in the plane.
+//!
+//! The format: <http://paulbourke.net/dataformats/obj/>. Vertices are numbered from 1 in their order. Faces and lines
+//! may also name them by negative numbers, counted back from the last vertex before. Texture coordinates and normals
+//! are not read.
+
+use crate::content::label::Label;
+use crate::content::regions::Numbering;
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
+
+pub(crate) struct Obj;
+
+/// A row of the file, as far as it is used.
+enum Row<'a> {
+    Vertex(usize, [f64; 2], (usize, f64)),
+    /// The vertices of a face.
+    Face(Corners),
+    /// The vertices of a line.
+    Line(Corners),
+    /// Vertices that are points.
+    Points(Corners),
+    /// The row that starts a group, object or material.
+    Name(&'a [u8]),
+    Other,
+}
+
+/// The vertices of an element. Up to four need no memory of their own, which would take long with millions of elements.
+enum Corners {
+    Few([i64; 4], usize),
+    Many(Vec<i64>),
+}
+
+impl Corners {
+    fn push(&mut self, corner: i64) {
+        match self {
+            Corners::Few(few, count) if *count < few.len() => {
+                few[*count] = corner;
+                *count += 1;
+            }
+            Corners::Few(few, _) => {
+                let mut many = few.to_vec();
+                many.push(corner);
+                *self = Corners::Many(many);
+            }
+            Corners::Many(many) => many.push(corner),
+        }
+    }
+
+    fn all(&self) -> &[i64] {
+        match self {
+            Corners::Few(few, count) => &few[..*count],
+            Corners::Many(many) => many,
+        }
+    }
+}
+
+impl Walk for Obj {
+    const VERTICES: &'static str = "the list of v rows";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let start = rows(source);
+        let cursor = &mut start.clone();
+        let mut count = 0;
+        let mut heights = Heights::new(sink);
+        all_rows(cursor, sink, vertex, |cursor, sink, row| {
+            if let Row::Vertex(x_at, at, z) = row {
+                count += 1;
+                sink.node(cursor, count, 2, x_at, at);
+                heights.see(z);
+            }
+            Ok(())
+        })?;
+        cursor.check_vertex_count(count)?;
+        sink.end_nodes(cursor)?;
+        if sink.asks_for_data() {
+            left_out(start.clone(), sink);
+        }
+        heights.send("z", Numbers::TEXT.into(), sink);
+        let cursor = &mut start.clone();
+        let (mut before, mut faces) = (0, 0);
+        let mut names = Numbering::default();
+        let mut region = [0; 2];
+        let mut named = Named::default();
+        all_rows(cursor, sink, element, |cursor, sink, row| {
+            match row {
+                Row::Vertex(..) => before += 1,
+                Row::Name(name) => {
+                    let number = i64::from(names.number(name.to_vec())) + 1;
+                    region[usize::from(!name.starts_with(b"usemtl"))] = number;
+                    if sink.asks_for_groups() {
+                        named.enter(name);
+                        sink.within(&named.groups());
+                    }
+                }
+                Row::Face(corners) => {
+                    let tag = faces + 1;
+                    match corners {
+                        Corners::Few([a, b, c, _], 3) if a > 0 && b > 0 && c > 0 => {
+                            let nodes = [a, b, c, 0].map(i64::unsigned_abs);
+                            let kind = Kind::Triangle;
+                            sink.element(cursor, &Element { tag, kind, region, nodes })?;
+                        }
+                        corners => {
+                            let nodes = counted(cursor, corners.all(), before)?;
+                            face(cursor, sink, tag, region, &nodes)?;
+                        }
+                    }
+                    faces = tag;
+                }
+                Row::Points(points) => {
+                    let nodes = counted(cursor, points.all(), before)?;
+                    for &node in &nodes {
+                        let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
+                        sink.element(cursor, &Element { tag: 0, kind, region, nodes })?;
+                    }
+                }
+                Row::Line(points) => {
+                    let nodes = counted(cursor, points.all(), before)?;
+                    sink.polyline(cursor, (0, region), &nodes)?;
+                }
+                Row::Other => {}
+            }
+            Ok(())
+        })?;
+        Ok(Layout::in_place(Format::Obj, Numbers::TEXT))
+    }
+}
+
+/// Returns a cursor before the first row. A line that ends in a backslash is joined to the next one.
+fn rows(source: &Source) -> Cursor<'_> {
+    let ends_line = |at: usize| matches!(source.bytes[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
+    match memchr::memchr_iter(b'\\', &source.bytes).any(ends_line) {
+        true => Cursor::new(source).of(Syntax::JOINED),
+        false => Cursor::new(source),
+    }
+}
+
+/// The material, object and groups of the current row.
+#[derive(Default)]
+struct Named<'a> {
+    material: Option<&'a [u8]>,
+    object: Option<&'a [u8]>,
+    /// The groups; a row may name several.
+    groups: Vec<&'a [u8]>,
+}
+
+impl<'a> Named<'a> {
+    /// Takes a row that names the material, the object or the groups of the elements after it.
+    fn enter(&mut self, row: &'a [u8]) {
+        let split = row.iter().position(|&byte| byte <= b' ').unwrap_or(row.len());
+        let name = row[split..].trim_ascii();
+        let one = (!name.is_empty()).then_some(name);
+        match &row[..split] {
+            b"usemtl" => self.material = one,
+            b"o" => self.object = one,
+            _ => {
+                let words = name.split(|&byte| byte <= b' ');
+                self.groups = words.filter(|word| !word.is_empty() && *word != b"\\").collect();
+            }
+        }
+    }
+
+    /// Returns the groups of the elements that follow, which may have elements of any kind.
+    fn groups(&self) -> Vec<Within<'static>> {
+        let of = |what, names: &[&[u8]]| -> Vec<_> {
+            let one = |name: &&[u8]| Within { what, label: Label::name(name), dimension: Some(2) };
+            names.iter().map(one).collect()
+        };
+        let (material, object) = (self.material.as_slice(), self.object.as_slice());
+        [of("material", material), of("object", object), of("group", &self.groups)].concat()
+    }
+}
+
+/// Returns the numbers of vertices counted from the first one. `before` is the number of vertices before the row.
+fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64>, ReadError> {
+    let number = |&vertex: &i64| {
+        let number = match vertex {
+            0.. => Some(vertex.unsigned_abs()),
+            _ => (before + 1).checked_sub(vertex.unsigned_abs()),
+        };
+        let problem =
+            || format!("vertex {vertex}, counted back from this row, is before the first one");
+        number.ok_or_else(|| cursor.error(problem(), CORRECT))
+    };
+    vertices.iter().map(number).collect()
+}
+
+/// Hands on a face. The vertices of polygons with more than four corners stay fixed.
+fn face(
+    cursor: &Cursor<'_>,
+    sink: &mut dyn Sink,
+    tag: u64,
+    region: [i64; 2],
+    corners: &[u64],
+) -> Result<(), ReadError> {
+    match Kind::of_polygon(corners.len() as u64) {
+        Some(kind @ (Kind::Triangle | Kind::Quadrilateral)) => {
+            let mut nodes = [0; 4];
+            nodes[..corners.len()].copy_from_slice(corners);
+            sink.element(cursor, &Element { tag, kind, region, nodes })
+        }
+        _ => sink.polygon(cursor, (tag, region), corners),
+    }
+}
+
+/// Tells the sink which kinds of rows are not read.
+#[cold]
+fn left_out(mut cursor: Cursor<'_>, sink: &mut dyn Sink) {
+    while cursor.next_row() {
+        match cursor.token() {
+            Some(b"vt") => sink.leaves_out("texture coordinates"),
+            Some(b"vn") => sink.leaves_out("normals"),
+            Some(b"mtllib") => sink.leaves_out("the name of a library of materials"),
+            Some(b"s") => sink.leaves_out("smoothing groups"),
+            _ => {}
+        }
+    }
+}
+
+/// Reads a row if it is that of a vertex.
+#[inline]
+fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
+    if cursor.token() != Some(b"v") {
+        return Ok(Row::Other);
+    }
+    let (x_at, at) = cursor.point("a vertex")?;
+    Ok(Row::Vertex(x_at, at, cursor.height_if_any("a vertex")?))
+}
+
+/// Reads a row unless it is that of a vertex.
+#[inline]
+fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
+    let named = b"gou".iter().any(|&first| cursor.is_at(first)).then(|| cursor.clone());
+    match cursor.token() {
+        Some(b"v") => Ok(Row::Vertex(0, [0.0; 2], (0, 0.0))),
+        Some(kind @ (b"f" | b"fo" | b"l" | b"p")) => {
+            let mut corners = Corners::Few([0; 4], 0);
+            loop {
+                // Nearly all corners are plain numbers.
+                if let Some(corner) = cursor.signed_up_to(b'/') {
+                    corners.push(corner);
+                    continue;
+                }
+                let Some(token) = cursor.token() else { break };
+                let end = token.iter().position(|&byte| byte == b'/').unwrap_or(token.len());
+                corners.push(signed(&token[..end]).ok_or_else(|| {
+                    let problem = format!("a vertex is `{}`, not a whole number", quoted(token));
+                    cursor.error(problem, CORRECT)
+                })?);
+            }
+            if corners.all().is_empty() {
+                return Err(cursor.error("an element without vertices", CORRECT));
+            }
+            Ok(match kind {
+                b"l" => Row::Line(corners),
+                b"p" => Row::Points(corners),
+                // `fo` is an old keyword for a face.
+                _ => Row::Face(corners),
+            })
+        }
+        Some(b"g" | b"o" | b"usemtl") => {
+            Ok(named.map_or(Row::Other, |mut row| Row::Name(row.rest())))
+        }
+        Some(b"curv" | b"curv2" | b"surf") => {
+            let problem = "curves and surfaces of free form are not read";
+            Err(cursor.error(problem, "Save the mesh as triangles"))
+        }
+        _ => Ok(Row::Other),
+    }
+}
+
+fn signed(token: &[u8]) -> Option<i64> {
+    let (digits, sign) = match token.strip_prefix(b"-") {
+        Some(digits) => (digits, -1),
+        None => (token, 1),
+    };
+    Some(sign * i64::try_from(integer(digits)?).ok()?)
+}

@@ -1,0 +1,132 @@
+//! Geomview's `.off`, as text.
+//!
+//! The format: <http://www.geomview.org/docs/html/OFF.html>. Vertices may stand
+//! anywhere on lines, and a face starts on a line of its own. Normals, colors and texture coordinates are not read.
+
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+
+pub(crate) struct Off;
+
+impl Walk for Off {
+    const VERTICES: &'static str = "the list of vertices";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        cursor.row(0, 1, "header lines")?;
+        // Geomview reads a file without a header as plain OFF.
+        let has_header = integer(cursor.clone().token().unwrap_or_default()).is_none();
+        let header = if has_header { cursor.token().unwrap_or_default() } else { b"OFF" };
+        let more = match header {
+            b"OFF" | b"off" => 0,
+            b"NOFF" => 3,
+            b"COFF" => 4,
+            b"CNOFF" => 7,
+            b"STOFF" => 2,
+            b"STCNOFF" => 9,
+            other => {
+                let problem = format!("the header is `{}`, not OFF", quoted(other));
+                return Err(cursor.error(problem, "Save as OFF with vertices of three coordinates"));
+            }
+        };
+        if more > 0 {
+            sink.leaves_out("normals, colors or texture coordinates");
+        }
+        if cursor.is_at(b'B') {
+            return Err(cursor.error("binary OFF is not read", "Save as text"));
+        }
+        let vertices = count(cursor, "vertices")?;
+        cursor.check_vertex_count(vertices)?;
+        let is_spread = cursor.is_at_end();
+        let faces = count(cursor, "faces")?;
+        // Many files leave out the number of edges.
+        match is_spread {
+            true => _ = count(cursor, "edges")?,
+            false => _ = cursor.token(),
+        }
+        let syntax = layout(cursor, (vertices, faces), more);
+        let more = if syntax.is_of_words() { more } else { 0 };
+        *cursor = cursor.clone().of(syntax);
+        sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
+        let mut heights = Heights::new(sink);
+        each_row(
+            cursor,
+            vertices,
+            "vertices",
+            sink,
+            |cursor| {
+                let point = cursor.point("a vertex")?;
+                let z = cursor.height("a vertex")?;
+                for _ in 0..more {
+                    cursor.real("a normal, color or texture coordinate of a vertex")?;
+                }
+                Ok((point, z))
+            },
+            |cursor, sink, done, ((x_at, at), z)| {
+                sink.node(cursor, done, 2, x_at, at);
+                heights.see(z);
+                Ok(())
+            },
+        )?;
+        sink.end_nodes(cursor)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
+        sink.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
+        // A color may follow the corners of a face on its row.
+        *cursor = cursor.clone().of(Syntax::RECORDS);
+        each_row(
+            cursor,
+            faces,
+            "faces",
+            sink,
+            |cursor| {
+                let corners = cursor.integer("the number of a face's vertices")?;
+                let Some(kind) = Kind::of_polygon(corners) else {
+                    let problem = format!("a face has {corners} vertices");
+                    return Err(cursor.error(problem, "Split it into triangles"));
+                };
+                Ok((kind, nodes(cursor, kind)?))
+            },
+            |cursor, sink, tag, (kind, nodes)| {
+                sink.element(cursor, &Element { tag, kind, region: [0; 2], nodes })
+            },
+        )?;
+        Ok(Layout::in_place(Format::Off, Numbers::TEXT))
+    }
+}
+
+fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
+    if !cursor.next_word() {
+        return Err(cursor.error("the file ends before its counts", CUT_OFF));
+    }
+    cursor.integer(format_args!("the number of {what}"))
+}
+
+/// Chooses how to read the vertices, which have `more` numbers besides coordinates. They are read one in each row, with
+/// other text after them ignored, unless rows have too few numbers or there are too few rows.
+fn layout(cursor: &Cursor<'_>, (vertices, faces): (u64, u64), more: usize) -> Syntax {
+    let starts_on_row = !cursor.is_at_end();
+    let mut first = cursor.clone();
+    if !starts_on_row && !first.next_row() {
+        return Syntax::RECORDS;
+    }
+    let words = std::iter::from_fn(|| first.token()).take(3 + more).count();
+    let is_of_words = words < 3 || !has_rows(cursor, vertices.saturating_add(faces));
+    if is_of_words { Syntax::WORDS } else { Syntax::RECORDS }
+}
+
+/// Whether at least `count` rows follow.
+fn has_rows(cursor: &Cursor<'_>, count: u64) -> bool {
+    // Nearly all lines start with a number and are rows, which is faster to count than rows are read.
+    let (bytes, start) = (&cursor.source.bytes, cursor.at());
+    let is_row = |&at: &usize| matches!(bytes.get(start + at + 1), Some(b'0'..=b'9' | b'-'));
+    let sure = memchr::memchr_iter(b'\n', &bytes[start..]).filter(is_row).count();
+    let mut rows = cursor.clone();
+    sure as u64 >= count || (0..count).all(|_| rows.next_row())
+}

@@ -1,0 +1,418 @@
+//! PLY, as text and in binary of either byte order.
+//!
+//! The format: Turk, The PLY Polygon File Format (1994), <http://paulbourke.net/dataformats/ply/>. These are read: x, y
+//! and data of vertices, `vertex_indices` or `vertex_index` of faces, `vertex1` and `vertex2` of edges. Other elements
+//! and properties are skipped. Coordinates of the type `float` have single precision in text, too.
+
+use crate::binary::order::Order;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers, Places};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::precision::Precision;
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::layout::of_rows_or_words;
+use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
+
+mod plain;
+pub(crate) mod write;
+
+pub(crate) struct Ply;
+
+/// The type of a number.
+#[derive(Clone, Copy, PartialEq)]
+enum Number {
+    Integer { size: usize, signed: bool },
+    Float,
+    Double,
+}
+
+/// A property that each item of a list has.
+struct Property<'a> {
+    name: &'a [u8],
+    /// The type of the length, if the property is a list.
+    length: Option<Number>,
+    number: Number,
+}
+
+struct List<'a> {
+    name: &'a [u8],
+    count: u64,
+    properties: Vec<Property<'a>>,
+}
+
+/// The form of items: text, or binary in a byte order.
+#[derive(Clone, Copy)]
+struct Items {
+    order: Option<Order>,
+}
+
+impl Walk for Ply {
+    const VERTICES: &'static str = "the list of vertices";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        let (items, lists) = header(cursor)?;
+        let Some(vertices) = lists.iter().position(|list| list.name == b"vertex") else {
+            return Err(cursor.error("it has no element vertex", "Save the mesh again"));
+        };
+        if lists[..vertices].iter().any(|list| list.name == b"face" || list.name == b"edge") {
+            let problem = "faces stand before the vertices";
+            return Err(cursor.error(problem, "Save the vertices first"));
+        }
+        let mut layout = None;
+        for list in &lists {
+            match list.name {
+                b"vertex" => layout = Some(items.vertices(cursor, list, sink)?),
+                b"face" => {
+                    items.elements(cursor, list, &[b"vertex_indices", b"vertex_index"], sink)?
+                }
+                b"edge" => items.elements(cursor, list, &[b"vertex1", b"vertex2"], sink)?,
+                b"tristrips" => {
+                    let problem = "strips of triangles are not read";
+                    return Err(cursor.error(problem, "Save them as faces"));
+                }
+                _ => {
+                    sink.leaves_out("elements that are neither vertices, faces nor edges");
+                    items.each(cursor, list, 0, |_, _, _| Ok(()))?;
+                }
+            }
+        }
+        layout.ok_or_else(|| cursor.error("it has no element vertex", "Save the mesh again"))
+    }
+}
+
+fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>>), ReadError> {
+    cursor.line();
+    let mut items = Items { order: None };
+    let mut lists: Vec<List<'a>> = Vec::new();
+    loop {
+        cursor.row(0, 1, "lines of the header")?;
+        match cursor.token().unwrap_or_default() {
+            b"format" => {
+                items.order = match cursor.token().unwrap_or_default() {
+                    b"ascii" => None,
+                    b"binary_little_endian" => Some(Order::Little),
+                    b"binary_big_endian" => Some(Order::Big),
+                    other => {
+                        let problem = format!("the format is `{}`", quoted(other));
+                        return Err(cursor.error(problem, CORRECT));
+                    }
+                }
+            }
+            b"element" => {
+                let name = cursor.token().unwrap_or_default();
+                let count = cursor.integer("the number of elements")?;
+                lists.push(List { name, count, properties: Vec::new() });
+            }
+            b"property" => {
+                let first = cursor.token().unwrap_or_default();
+                let (length, number) = match first {
+                    b"list" => (Some(number(cursor)?), number(cursor)?),
+                    kind => (None, number_of(cursor, kind)?),
+                };
+                let name = cursor.token().unwrap_or_default();
+                match lists.last_mut() {
+                    Some(list) => list.properties.push(Property { name, length, number }),
+                    None => {
+                        return Err(
+                            cursor.error("a property stands before the first element", CORRECT)
+                        );
+                    }
+                }
+            }
+            b"end_header" => {
+                if items.order.is_none() {
+                    // Many programs read text as words.
+                    let listed = lists.iter().filter(|list| !list.properties.is_empty());
+                    let count = listed.fold(0, |sum: u64, list| sum.saturating_add(list.count));
+                    cursor.syntax = of_rows_or_words(cursor, cursor.source.bytes.len(), count);
+                    cursor.rest();
+                }
+                return Ok((items, lists));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn number(cursor: &mut Cursor<'_>) -> Result<Number, ReadError> {
+    let kind = cursor.token().unwrap_or_default();
+    number_of(cursor, kind)
+}
+
+fn number_of(cursor: &Cursor<'_>, kind: &[u8]) -> Result<Number, ReadError> {
+    let integer = |size, signed| Ok(Number::Integer { size, signed });
+    match kind {
+        b"char" | b"int8" => integer(1, true),
+        b"uchar" | b"uint8" => integer(1, false),
+        b"short" | b"int16" => integer(2, true),
+        b"ushort" | b"uint16" => integer(2, false),
+        b"int" | b"int32" => integer(4, true),
+        b"uint" | b"uint32" => integer(4, false),
+        // meshio writes these types for numpy's arrays.
+        b"int64" => integer(8, true),
+        b"uint64" => integer(8, false),
+        b"float" | b"float32" => Ok(Number::Float),
+        b"double" | b"float64" => Ok(Number::Double),
+        other => Err(cursor.error(format!("`{}` is not a type of PLY", quoted(other)), CORRECT)),
+    }
+}
+
+impl Property<'_> {
+    /// Returns the precision of the property's numbers, if it is a single real number.
+    fn precision(&self) -> Option<Precision> {
+        match self.number {
+            _ if self.length.is_some() => None,
+            Number::Float => Some(Precision::Single),
+            Number::Double => Some(Precision::Double),
+            Number::Integer { .. } => None,
+        }
+    }
+}
+
+/// The properties of vertices besides coordinates that are single numbers.
+struct Data<'l, 'a> {
+    properties: Vec<(usize, &'l Property<'a>)>,
+    /// The numbers of each property and their offsets, if the sink asks for data.
+    numbers: Option<Vec<(Vec<f64>, Vec<usize>)>>,
+}
+
+impl<'l, 'a> Data<'l, 'a> {
+    fn new(list: &'l List<'a>, z: Option<usize>, sink: &dyn Sink) -> Self {
+        let is_data = |(index, property): &(usize, &Property<'_>)| {
+            property.length.is_none() && Some(*index) != z && !matches!(property.name, b"x" | b"y")
+        };
+        let properties: Vec<_> = list.properties.iter().enumerate().filter(is_data).collect();
+        let empty = || properties.iter().map(|_| Default::default()).collect();
+        let numbers = sink.asks_for_data().then(empty);
+        Data { properties, numbers }
+    }
+
+    /// Takes the data of the next vertex.
+    fn see(&mut self, values: &[Vec<f64>], at: &[usize]) {
+        let Some(numbers) = &mut self.numbers else { return };
+        for ((numbers, places), &(index, _)) in numbers.iter_mut().zip(&self.properties) {
+            numbers.push(values[index][0]);
+            places.push(at[index]);
+        }
+    }
+
+    fn send(self, items: Items, sink: &mut dyn Sink) {
+        let mut numbers = self.numbers.map(Vec::into_iter);
+        for (_, property) in self.properties {
+            let precision = property.precision();
+            let own = numbers.as_mut().and_then(Iterator::next);
+            if sink.point_array(property.name, 1, precision.is_some())
+                && let Some((mut numbers, places)) = own
+            {
+                let stored = precision.and_then(|precision| {
+                    numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));
+                    Stored::in_place(Places::List(places), items.form(precision))
+                });
+                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+            }
+        }
+    }
+}
+
+impl Number {
+    fn size(self) -> usize {
+        match self {
+            Number::Integer { size, .. } => size,
+            Number::Float => 4,
+            Number::Double => 8,
+        }
+    }
+}
+
+impl Items {
+    /// Returns how real numbers are stored in the file.
+    fn form(self, precision: Precision) -> Form {
+        match self.order {
+            None => Form::Text(precision),
+            Some(order) => Form::Binary(order, precision),
+        }
+    }
+
+    /// Hands the numbers of each item to `take`, from item `from` on, with the offset of each property's first number.
+    fn each<'a>(
+        self,
+        cursor: &mut Cursor<'a>,
+        list: &List<'_>,
+        from: u64,
+        mut take: impl FnMut(&Cursor<'a>, &[Vec<f64>], &[usize]) -> Result<(), ReadError>,
+    ) -> Result<(), ReadError> {
+        // Items without properties take no room in the file, so their count cannot be checked.
+        if list.properties.is_empty() {
+            return Ok(());
+        }
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); list.properties.len()];
+        let mut places = vec![0; list.properties.len()];
+        let (mut missing, mut is_plain) = (None, from > 0);
+        for done in from..list.count {
+            let mut item = None;
+            let mut read = |cursor: &mut Cursor<'a>| {
+                for (index, property) in list.properties.iter().enumerate() {
+                    values[index].clear();
+                    let length = match property.length {
+                        None => 1,
+                        Some(length) => self.value(cursor, length, &mut item)?.0 as u64,
+                    };
+                    for n in 0..length {
+                        let (value, at) = self.value(cursor, property.number, &mut item)?;
+                        if n == 0 {
+                            places[index] = at;
+                        }
+                        values[index].push(value);
+                    }
+                }
+                Ok(())
+            };
+            let read = match self.order {
+                Some(_) => read(cursor),
+                None => cursor
+                    .row(done, list.count, "items")
+                    .and_then(|()| cursor.item(&mut read, &mut missing)),
+            };
+            let taken = read.and_then(|()| match item {
+                Some(at) => take(&Cursor::at_byte_of(cursor.source, at), &values, &places),
+                None => take(cursor, &values, &places),
+            });
+            match taken {
+                Ok(()) => is_plain |= missing.is_none(),
+                // If one row among many lacks a number, the rows after it are read wrongly.
+                Err(error) if is_plain => return Err(missing.unwrap_or(error)),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads a number. Returns it with its offset. `item` is set to the offset of a binary item's first number.
+    fn value(
+        self,
+        cursor: &mut Cursor<'_>,
+        number: Number,
+        item: &mut Option<usize>,
+    ) -> Result<(f64, usize), ReadError> {
+        let Some(order) = self.order else {
+            let at = cursor.at();
+            let value = cursor.real("a number of an item")?;
+            // Programs write `nan` for a number that they could not compute.
+            if matches!(number, Number::Integer { .. }) && !value.is_finite() {
+                return Err(cursor.error("a whole number of an item is not finite", CORRECT));
+            }
+            return Ok((value, at));
+        };
+        let size = number.size();
+        let Some(bytes) = cursor.take(size) else {
+            return Err(cursor.error("the file ends within its lists", CUT_OFF));
+        };
+        let at = cursor.taken();
+        item.get_or_insert(at);
+        let value = match number {
+            Number::Float => order.real(Precision::Single, bytes),
+            Number::Double => order.real(Precision::Double, bytes),
+            Number::Integer { signed: true, .. } => order.signed(bytes) as f64,
+            Number::Integer { signed: false, .. } => order.whole(bytes) as f64,
+        };
+        Ok((value, at))
+    }
+
+    fn vertices(
+        self,
+        cursor: &mut Cursor<'_>,
+        list: &List<'_>,
+        sink: &mut dyn Sink,
+    ) -> Result<Layout, ReadError> {
+        cursor.check_vertex_count(list.count)?;
+        let named =
+            |name: &[u8]| list.properties.iter().position(|p| p.name == name && p.length.is_none());
+        let (Some(x), Some(y)) = (named(b"x"), named(b"y")) else {
+            return Err(cursor.error("vertices without x and y", "Save the mesh again"));
+        };
+        let number = list.properties[x].number;
+        let precision = match number {
+            Number::Float => Precision::Single,
+            Number::Double => Precision::Double,
+            Number::Integer { .. } => {
+                let problem = "coordinates are whole numbers";
+                return Err(cursor.error(problem, "Save them as float or double"));
+            }
+        };
+        if list.properties[y].number != number || y != x + 1 {
+            let problem = "y does not follow x with the same type";
+            return Err(cursor.error(problem, "Save vertices with x, y and z in this order"));
+        }
+        let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
+        let mut heights = Heights::new(sink);
+        let mut data = Data::new(list, z, sink);
+        let mut tag = self.plain_vertices(cursor, list, x, z, &mut heights, sink);
+        self.each(cursor, list, tag, |place, values, places| {
+            data.see(values, places);
+            if let Some(z) = z {
+                heights.see((places[z], values[z][0]));
+            }
+            let at = [values[x][0], values[y][0]];
+            if !at.iter().all(|x| x.is_finite()) {
+                let problem = format!("a coordinate of vertex {tag} is not a finite number");
+                return Err(place.error(problem, CORRECT));
+            }
+            sink.node(place, tag, 2, places[x], at);
+            tag += 1;
+            Ok(())
+        })?;
+        sink.end_nodes(cursor)?;
+        if let Some(precision) = z.and_then(|z| list.properties[z].precision()) {
+            heights.send("z", self.form(precision), sink);
+        }
+        data.send(self, sink);
+        Ok(match self.order {
+            None => Layout::in_place(Format::Ply, Numbers::Text { precision }),
+            Some(order) => Layout::in_place(Format::PlyBinary, Numbers::adjacent(order, precision)),
+        })
+    }
+
+    /// Reads elements whose corners are the properties with these names.
+    fn elements(
+        self,
+        cursor: &mut Cursor<'_>,
+        list: &List<'_>,
+        names: &[&[u8]],
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
+        let properties = &list.properties;
+        if properties.iter().any(|property| !names.contains(&property.name)) {
+            sink.leaves_out("properties of faces or edges");
+        }
+        let mut tag = self.plain_triangles(cursor, list, names, sink);
+        self.each(cursor, list, tag, |place, values, _| {
+            let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
+            let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
+            // A number that is negative or not whole is no number of a vertex.
+            let node = |&corner: &f64| match corner >= 0.0 && corner.fract() == 0.0 {
+                true => corner as u64,
+                false => u64::MAX,
+            };
+            let region = [0; 2];
+            match Kind::of_polygon(corners.len() as u64) {
+                Some(kind) => {
+                    let mut nodes = [0; 4];
+                    for (to, corner) in nodes.iter_mut().zip(&corners) {
+                        *to = node(corner);
+                    }
+                    sink.element(place, &Element { tag, kind, region, nodes })?;
+                }
+                None => {
+                    let corners: Vec<u64> = corners.iter().map(node).collect();
+                    sink.polygon(place, (tag, region), &corners)?;
+                }
+            }
+            tag += 1;
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,41 @@
+//! Writes PLY.
+
+use crate::export::content::Data;
+use crate::export::job::{Job, text_of};
+use crate::export::put;
+use crate::visit::sink::Kind;
+use std::fmt::Write;
+
+/// Writes PLY as text, with data of one number among the properties of vertices.
+pub(crate) fn write_ply(job: &Job<'_>) -> String {
+    let content = job.content;
+    let data: Vec<&Data> = job.point_data().collect();
+    let mut out = "ply\nformat ascii 1.0\n".to_owned();
+    put!(out, "element vertex {}\n", content.points.len());
+    out.push_str("property double x\nproperty double y\nproperty double z\n");
+    for data in &data {
+        let kind = if data.is_real { "double" } else { "int" };
+        put!(out, "property {kind} {}\n", data.name);
+    }
+    let faces = || {
+        let is_face = |cell: &usize| content.cells.kinds[*cell].dimension() == 2;
+        job.cells().filter(is_face)
+    };
+    put!(out, "element face {}\n", faces().count());
+    out.push_str("property list uchar int vertex_indices\n");
+    if job.count(Kind::Line) > 0 {
+        put!(out, "element edge {}\n", job.count(Kind::Line));
+        out.push_str("property int vertex1\nproperty int vertex2\n");
+    }
+    out.push_str("end_header\n");
+    for vertex in 0..content.points.len() {
+        out.push_str(&job.space(vertex));
+        data.iter().for_each(|data| put!(out, " {}", text_of(data, data.values[vertex])));
+        out.push('\n');
+    }
+    for cell in faces() {
+        put!(out, "{} {}\n", content.cells.of(cell).len(), job.places(cell, 0));
+    }
+    job.all(Kind::Line).for_each(|cell| put!(out, "{}\n", job.places(cell, 0)));
+    out
+}

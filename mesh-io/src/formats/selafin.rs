@@ -1,0 +1,179 @@
+//! TELEMAC's SELAFIN (also SERAFIN), in either byte order and precision.
+//!
+//! The format: TELEMAC-MASCARET's user manual, appendix on SERAFIN. A file is a sequence of Fortran records, each
+//! between two copies of its length. All x come before all y. The time steps after them are kept.
+
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers, Places};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::precision::Precision;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::visit::records::{NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
+
+pub(crate) struct Selafin;
+
+impl Walk for Selafin {
+    const VERTICES: &'static str = "the list of points";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        let order = match source.bytes.starts_with(&[0, 0, 0, 80]) {
+            true => Order::Big,
+            false => Order::Little,
+        };
+        let title = record(cursor, order, "the title", Some(80))?;
+        let doubles = title.ends_with(b"SERAFIND");
+        let precision = if doubles { Precision::Double } else { Precision::Single };
+        let counts = integers(record(cursor, order, "the numbers of variables", Some(8))?, order);
+        let variables = u64::from(counts[0].unsigned_abs()) + u64::from(counts[1].unsigned_abs());
+        let mut names = Vec::new();
+        for _ in 0..variables {
+            let name = record(cursor, order, "the name of a variable", Some(32))?;
+            names.push(name[..16].trim_ascii());
+        }
+        let parameters = integers(record(cursor, order, "the parameters", Some(40))?, order);
+        if parameters[6] > 1 {
+            return Err(volume(cursor, "several planes"));
+        }
+        if parameters[9] == 1 {
+            record(cursor, order, "the date", Some(24))?;
+        }
+        let sizes = integers(record(cursor, order, "the sizes", Some(16))?, order);
+        let [triangles, points, corners] = [sizes[0], sizes[1], sizes[2]];
+        let kind = match corners {
+            3 => Kind::Triangle,
+            4 => Kind::Quadrilateral,
+            6 => return Err(volume(cursor, "prisms")),
+            other => {
+                let problem = format!("the elements have {other} corners");
+                return Err(cursor.error(problem, "Save a mesh of triangles"));
+            }
+        };
+        let sized = |count: i32, each: usize| {
+            usize::try_from(count).ok().and_then(|count| count.checked_mul(each))
+        };
+        let (Some(listed), Some(numbers)) =
+            (sized(triangles, 4 * kind.nodes()), sized(points, precision.bytes()))
+        else {
+            return Err(cursor.error("a size is negative", "Write the mesh again"));
+        };
+        let connectivity = record(cursor, order, "the elements", Some(listed))?;
+        let listed_at = cursor.taken();
+        record(cursor, order, "the boundary numbers", Some(numbers / precision.bytes() * 4))?;
+        let xs = record(cursor, order, "the x of all points", Some(numbers))?;
+        let x_at = cursor.taken();
+        let ys = record(cursor, order, "the y of all points", Some(numbers))?;
+        let y_after = (cursor.taken() - x_at) as isize;
+        let after_mesh = cursor.clone();
+        sink.expect_nodes(points as usize);
+        let number = |bytes: &[u8]| order.real(precision, bytes);
+        let size = precision.bytes();
+        let count = points as usize;
+        let [x, y] = [xs, ys].map(|bytes| Field::new(Some(bytes), (size, size), order));
+        let tags = Tags::From(1);
+        let taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
+        let each = xs.chunks_exact(size).zip(ys.chunks_exact(size)).enumerate().skip(taken);
+        for (index, (x, y)) in each {
+            let (at, tag) = ([number(x), number(y)], index as u64 + 1);
+            if !at.iter().all(|x| x.is_finite()) {
+                let problem = format!("a coordinate of point {tag} is not a finite number");
+                return Err(cursor.error(problem, "Write the mesh again"));
+            }
+            let place = &Cursor::at_byte_of(source, x_at + index * size);
+            sink.node(place, tag, 2, x_at + index * size, at);
+        }
+        sink.end_nodes(cursor)?;
+        sink.expect_elements(triangles as usize);
+        let taken = match kind {
+            Kind::Triangle => sink.triangle_records(&TriangleRecords {
+                count: triangles as usize,
+                corners: Field::new(Some(connectivity), (12, 4), order),
+                first: 0,
+                below: u64::MAX,
+                regions: [Region::Same(0); 2],
+                expected: &[],
+            }),
+            _ => 0,
+        };
+        let each = connectivity.chunks_exact(4 * kind.nodes()).enumerate().skip(taken);
+        for (index, corners) in each {
+            let mut nodes = [0; 4];
+            for (node, number) in nodes.iter_mut().zip(integers(corners, order)) {
+                *node = u64::try_from(number).unwrap_or(0);
+            }
+            let tag = index as u64 + 1;
+            let place = &Cursor::at_byte_of(source, listed_at + index * 4 * kind.nodes());
+            sink.element(place, &Element { tag, kind, region: [0; 2], nodes })?;
+        }
+        if sink.asks_for_data() {
+            sink.leaves_out("the title, the date, boundary numbers and times of a SELAFIN");
+            steps(after_mesh, order, precision, &names, numbers, sink);
+        } else {
+            names.iter().for_each(|name| _ = sink.point_array(name, 1, true));
+        }
+        let numbers = Numbers::Binary { order, precision, y_after };
+        Ok(Layout::in_place(Format::Selafin, numbers))
+    }
+}
+
+/// Reads the time steps, each a time and a record for each variable. The first damaged or incomplete step ends the
+/// reading without an error, as the mesh does not depend on it.
+fn steps(
+    mut cursor: Cursor<'_>,
+    order: Order,
+    precision: Precision,
+    names: &[&[u8]],
+    bytes: usize,
+    sink: &mut dyn Sink,
+) {
+    let cursor = &mut cursor;
+    while record(cursor, order, "the time of a step", None).is_ok() {
+        for name in names {
+            let Ok(values) = record(cursor, order, "the values of a variable", Some(bytes)) else {
+                return;
+            };
+            if sink.point_array(name, 1, true) {
+                let size = precision.bytes();
+                let numbers = values.chunks_exact(size).map(|x| order.real(precision, x)).collect();
+                let places = Places::Regular { start: cursor.taken(), stride: size };
+                let stored = Stored::in_place(places, Form::Binary(order, precision));
+                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+            }
+        }
+    }
+}
+
+/// Takes a record, which must have `expected` bytes if that is known. [`Cursor::taken`] is then the offset of the
+/// record's content.
+fn record<'a>(
+    cursor: &mut Cursor<'a>,
+    order: Order,
+    what: &str,
+    expected: Option<usize>,
+) -> Result<&'a [u8], ReadError> {
+    let start = cursor.clone();
+    let cut_off = || start.error(format!("the file ends before {what}"), CUT_OFF);
+    let length = |bytes: &[u8]| order.i32(bytes.try_into().expect("4 bytes"));
+    let size = length(cursor.take(4).ok_or_else(cut_off)?);
+    let bytes = usize::try_from(size).unwrap_or(usize::MAX);
+    if expected.is_some_and(|expected| bytes != expected) {
+        let problem = format!("the record of {what} has {size} bytes");
+        return Err(start.error(problem, "Write the mesh again"));
+    }
+    let taken = cursor.take(bytes).ok_or_else(cut_off)?;
+    let mut after = cursor.clone();
+    if length(after.take(4).ok_or_else(cut_off)?) != size {
+        let problem = format!("the record of {what} ends with another length than it begins with");
+        return Err(start.error(problem, "Write the mesh again"));
+    }
+    cursor.pass(4);
+    Ok(taken)
+}
+
+fn integers(bytes: &[u8], order: Order) -> Vec<i32> {
+    bytes.as_chunks().0.iter().map(|&bytes| order.i32(bytes)).collect()
+}

@@ -1,0 +1,181 @@
+//! SMS's `.2dm`.
+//!
+//! The format: <https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm>. Rows start with a keyword and may stand in any
+//! order. Nodes of node strings (NS) stay fixed.
+
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
+
+pub(crate) struct Sms;
+
+/// The material of lines that have none.
+const NO_MATERIAL: i64 = i64::MIN;
+
+/// A row of the file, as far as it is used.
+enum Row {
+    Node(u64, usize, [f64; 2], (usize, f64)),
+    Element(Element),
+    String(Vec<u64>, End),
+    /// The number and name of a material.
+    Material(i64, Vec<u8>),
+    Other,
+}
+
+/// How a row of a node string ends.
+enum End {
+    /// The string continues in the next row.
+    Open,
+    /// The string ends here. The rest of the row is its name, if it has one.
+    Last(Vec<u8>),
+}
+
+impl Walk for Sms {
+    const VERTICES: &'static str = "the list of ND rows";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let nodes_first = &mut Cursor::new(source);
+        let mut heights = Heights::new(sink);
+        all_rows(nodes_first, sink, node, |cursor, sink, row| {
+            if let Row::Node(tag, x_at, at, z) = row {
+                sink.node(cursor, tag, 2, x_at, at);
+                heights.see(z);
+            }
+            Ok(())
+        })?;
+        sink.end_nodes(nodes_first)?;
+        heights.send("z", Numbers::TEXT.into(), sink);
+        let cursor = &mut Cursor::new(source);
+        let mut strings: Vec<u64> = Vec::new();
+        let mut string = 1;
+        let materials = || {
+            let label = |material| (material != NO_MATERIAL).then_some(Label::Tag(material));
+            vec![Column { what: "material".into(), from_dimension: 1, label }]
+        };
+        sink.columns(materials());
+        all_rows(cursor, sink, element, |cursor, sink, row| {
+            match row {
+                Row::Element(element) => sink.element(cursor, &element)?,
+                Row::String(nodes, end) => {
+                    // A row that continues a string has the same label.
+                    let label = Label::Tag(string);
+                    sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
+                    // Node strings belong to no material.
+                    sink.columns(Vec::new());
+                    sink.polyline(cursor, (0, [0; 2]), &nodes)?;
+                    sink.columns(materials());
+                    sink.within(&[]);
+                    strings.extend(nodes);
+                    if let End::Last(name) = end {
+                        if !name.is_empty() {
+                            sink.name("nodestring", Some(1), string, &name);
+                        }
+                        string += 1;
+                    }
+                }
+                Row::Material(tag, name) => sink.name("material", Some(2), tag, &name),
+                _ => {}
+            }
+            Ok(())
+        })?;
+        if !strings.is_empty() {
+            strings.sort_unstable();
+            strings.dedup();
+            sink.note(&format!("{} nodes of node strings stay fixed", strings.len()));
+        }
+        Ok(Layout::in_place(Format::Sms2dm, Numbers::TEXT))
+    }
+}
+
+/// Returns the first word of a row in capital letters, and its length. The length is 0 if the word is longer than any
+/// known keyword. Programs also write keywords in small letters.
+#[inline]
+fn keyword(cursor: &mut Cursor<'_>) -> ([u8; 3], usize) {
+    let mut word = [0; 3];
+    let token = cursor.token().filter(|token| token.len() <= word.len()).unwrap_or_default();
+    for (to, letter) in word.iter_mut().zip(token) {
+        *to = letter.to_ascii_uppercase();
+    }
+    (word, token.len())
+}
+
+/// Reads a row if it is that of a node.
+#[inline]
+fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
+    let (word, length) = keyword(cursor);
+    if &word[..length] != b"ND" {
+        return Ok(Row::Other);
+    }
+    let tag = cursor.integer("the number of a node")?;
+    let owner = format_args!("node {tag}");
+    let (x_at, at) = cursor.point(owner)?;
+    Ok(Row::Node(tag, x_at, at, cursor.height_if_any(owner)?))
+}
+
+/// Reads a row if it is that of an element, a node string or a material.
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
+    let (word, length) = keyword(cursor);
+    let kind = match &word[..length] {
+        b"E3T" => Kind::Triangle,
+        b"E4Q" => Kind::Quadrilateral,
+        b"E2L" => Kind::Line,
+        b"NS" => return string(cursor),
+        b"MAT" => return Ok(material(cursor)),
+        b"E6T" | b"E8Q" | b"E9Q" | b"E3L" => {
+            let problem = "elements with nodes on their sides, which are not moved with them";
+            return Err(cursor.error(problem, "Save linear elements (E3T, E4Q)"));
+        }
+        b"E4T" | b"E6W" | b"E8H" | b"E5P" => {
+            let problem = "elements of a volume";
+            return Err(cursor.error(problem, "Only triangles of the plane are smoothed"));
+        }
+        _ => return Ok(Row::Other),
+    };
+    let tag = cursor.integer("the number of an element")?;
+    let nodes = nodes(cursor, kind)?;
+    // A material is a number, which some programs leave out.
+    let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
+    let of_none = kind == Kind::Line && material == 0;
+    let region = [if of_none { NO_MATERIAL } else { material }, 0];
+    Ok(Row::Element(Element { tag, kind, region, nodes }))
+}
+
+/// Reads the nodes in a row of a node string. The last node of a string is negative, and the string's name may follow.
+#[cold]
+fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
+    let mut nodes = Vec::new();
+    while !cursor.is_at_end() {
+        let node = cursor.signed("a node of a node string")?;
+        nodes.push(node.unsigned_abs());
+        match node {
+            0 => return Err(cursor.error("a node string has node 0", CORRECT)),
+            ..0 => return Ok(Row::String(nodes, End::Last(unquoted(cursor.rest())))),
+            _ => {}
+        }
+    }
+    Ok(Row::String(nodes, End::Open))
+}
+
+/// Reads the number and the name of a material. A row without them is ignored, as the mesh does not depend on it.
+#[cold]
+fn material(cursor: &mut Cursor<'_>) -> Row {
+    match cursor.signed("a material") {
+        Ok(tag) => match unquoted(cursor.rest()) {
+            name if name.is_empty() => Row::Other,
+            name => Row::Material(tag, name),
+        },
+        Err(_) => Row::Other,
+    }
+}
+
+/// Removes the quotes around a name.
+fn unquoted(name: &[u8]) -> Vec<u8> {
+    let inner = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
+    inner.unwrap_or(name).to_vec()
+}

@@ -1,0 +1,267 @@
+//! STL, as text and in binary, for a mesh in the plane.
+//!
+//! The format: <https://www.fabbers.com/tech/STL_Format>. It lists the corners of each triangle and has no vertices. A
+//! mesh is read only if the user asks to join corners at the same place. Normals are not read.
+
+use crate::binary::order::Order;
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::precision::Precision;
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::token::quoted;
+use crate::visit::sink::{
+    Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,
+};
+use std::collections::HashMap;
+
+pub(crate) struct Stl;
+
+/// The size of a binary file's header in bytes. The number of triangles follows, and then the triangles.
+const HEADER: usize = 80;
+const START: usize = HEADER + 4;
+/// The size of a binary triangle in bytes: a normal and three corners of three floats each, and an attribute of two
+/// bytes.
+const TRIANGLE: usize = 50;
+
+/// The triangles of a file, which share no vertices.
+#[derive(Default)]
+struct Soup<'a> {
+    /// The offset of each triangle, and the number of its solid.
+    triangles: Vec<(usize, u32)>,
+    /// The offset of each corner's x, ascending, three for each triangle.
+    x_at: Vec<usize>,
+    corners: Vec<[f64; 2]>,
+    /// The third coordinate, which is the same for all corners.
+    z: Option<f64>,
+    /// The names of the solids.
+    solids: Vec<&'a [u8]>,
+}
+
+/// A row of text.
+enum Row<'a> {
+    Solid(&'a [u8]),
+    Facet(usize),
+    Vertex(usize, [f64; 2], f64),
+    EndFacet,
+    EndSolid,
+    Other,
+}
+
+impl Walk for Stl {
+    const VERTICES: &'static str = "the list of corners";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        if !source.welds {
+            let problem = "an STL lists corners of triangles, and has no vertices that these share";
+            let remedy = "Have corners at the same place joined: --weld, or MeshFile::read_welded";
+            return Err(source.error(problem, remedy));
+        }
+        let is_binary = is_binary(&source.bytes);
+        let (soup, format, numbers) = match is_binary {
+            true => {
+                let numbers = Numbers::adjacent(Order::Little, Precision::Single);
+                (binary(source, sink)?, Format::StlBinary, numbers)
+            }
+            false => (text(source, sink)?, Format::Stl, Numbers::TEXT),
+        };
+        let copies = hand_on(source, soup, is_binary, sink)?;
+        Ok(Layout { copies: Some(copies), ..Layout::in_place(format, numbers) })
+    }
+}
+
+/// Whether a file is binary. Some binary files start with `solid` as text does, but no text has zero bytes.
+fn is_binary(bytes: &[u8]) -> bool {
+    let begin = bytes.trim_ascii_start().get(..5);
+    let first = &bytes[..bytes.len().min(512)];
+    !begin.is_some_and(|w| w.eq_ignore_ascii_case(b"solid")) || memchr::memchr(0, first).is_some()
+}
+
+/// Returns the number of triangles that a binary file announces.
+fn announced(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(HEADER..START)?;
+    usize::try_from(Order::Little.whole(count)).ok()
+}
+
+fn binary<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadError> {
+    let order = Order::Little;
+    let bytes = source.bytes.as_slice();
+    let at = |at: usize| Cursor::at_byte_of(source, at);
+    let Some(count) = announced(bytes) else {
+        return Err(at(0).error("the file ends before its count", CUT_OFF));
+    };
+    let length = count.checked_mul(TRIANGLE);
+    let Some(listed) = length.and_then(|length| bytes[START..].get(..length)) else {
+        let problem = format!("the file ends before its {count} triangles");
+        return Err(at(HEADER).error(problem, CUT_OFF));
+    };
+    let mut soup = Soup::default();
+    soup.triangles.reserve_exact(count);
+    soup.x_at.reserve_exact(3 * count);
+    soup.corners.reserve_exact(3 * count);
+    let mut has_attributes = false;
+    for (index, triangle) in listed.chunks_exact(TRIANGLE).enumerate() {
+        let start = START + index * TRIANGLE;
+        soup.triangles.push((start, 0));
+        for corner in [12, 24, 36] {
+            let [x, y, z] = [0, 4, 8]
+                .map(|axis| order.real(Precision::Single, &triangle[corner + axis..][..4]));
+            let place = at(start + corner);
+            if ![x, y, z].iter().all(|x| x.is_finite()) {
+                let problem = format!("a corner of triangle {} is not finite", index + 1);
+                return Err(place.error(problem, "Write the mesh again"));
+            }
+            soup.corner(&place, start + corner, [x, y], z)?;
+        }
+        has_attributes |= triangle[48..] != [0, 0];
+    }
+    if has_attributes && sink.asks_for_data() {
+        sink.leaves_out("attributes of an STL's triangles");
+    }
+    Ok(soup)
+}
+
+fn text<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadError> {
+    let cursor = &mut Cursor::new(source);
+    let mut soup = Soup::default();
+    let mut is_open = false;
+    all_rows(cursor, sink, row, |cursor, _, row| {
+        let missing = 3 * soup.triangles.len() - soup.x_at.len();
+        match row {
+            Row::Other => {}
+            Row::Vertex(..) if missing == 0 => {
+                return Err(cursor.error("a vertex beyond the three of a facet", CORRECT));
+            }
+            Row::Vertex(x_at, at, z) => soup.corner(cursor, x_at, at, z)?,
+            _ if missing > 0 => {
+                let problem = format!("the facet has {} vertices, not three", 3 - missing);
+                return Err(cursor.error(problem, CORRECT));
+            }
+            Row::Solid(_) | Row::Facet(_) if is_open != matches!(row, Row::Facet(_)) => {
+                let problem = "`solid` and `endsolid` do not alternate";
+                return Err(cursor.error(problem, CORRECT));
+            }
+            Row::Solid(name) => {
+                is_open = true;
+                soup.solids.push(name);
+            }
+            Row::Facet(at) => soup.triangles.push((at, soup.solids.len() as u32 - 1)),
+            Row::EndFacet => {}
+            Row::EndSolid => is_open = false,
+        }
+        Ok(())
+    })?;
+    match is_open || soup.solids.is_empty() {
+        true => Err(cursor.error("the file ends before `endsolid`", CUT_OFF)),
+        false => Ok(soup),
+    }
+}
+
+#[inline]
+fn row<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
+    let start = cursor.at();
+    let word = cursor.token().unwrap_or_default();
+    let is = |name: &str| word.eq_ignore_ascii_case(name.as_bytes());
+    if is("vertex") {
+        let (x_at, at) = cursor.point("a vertex")?;
+        return Ok(Row::Vertex(x_at, at, cursor.coordinate('z', "a vertex")?));
+    }
+    match () {
+        () if is("facet") => Ok(Row::Facet(start)),
+        () if is("endloop") || is("endfacet") => Ok(Row::EndFacet),
+        () if is("outer") => Ok(Row::Other),
+        () if is("solid") => Ok(Row::Solid(cursor.rest())),
+        () if is("endsolid") => Ok(Row::EndSolid),
+        () => {
+            let problem = format!("a row starts with `{}`", quoted(word));
+            Err(cursor.error(problem, CORRECT))
+        }
+    }
+}
+
+impl Soup<'_> {
+    /// Adds the next corner. Returns an error if its z differs from that of earlier corners.
+    #[inline]
+    fn corner(
+        &mut self,
+        cursor: &Cursor<'_>,
+        x_at: usize,
+        at: [f64; 2],
+        z: f64,
+    ) -> Result<(), ReadError> {
+        if *self.z.get_or_insert(z) != z {
+            return Err(volume(cursor, "corners with different z"));
+        }
+        self.x_at.push(x_at);
+        self.corners.push(at);
+        Ok(())
+    }
+}
+
+/// Returns for each corner the first corner at the same place.
+fn first_there(corners: &[[f64; 2]]) -> Vec<u32> {
+    let mut first = HashMap::new();
+    // Adding zero makes a negative zero positive, so both are one place.
+    let places = corners.iter().map(|corner| corner.map(|x| (x + 0.0).to_bits()));
+    (0..).zip(places).map(|(corner, place)| *first.entry(place).or_insert(corner)).collect()
+}
+
+/// Joins corners at the same place, and hands on vertices and triangles. Vertices are in the order in which the file
+/// first has them. Returns where the copies of each vertex stand.
+fn hand_on(
+    source: &Source,
+    soup: Soup<'_>,
+    is_binary: bool,
+    sink: &mut dyn Sink,
+) -> Result<Copies, ReadError> {
+    let Soup { triangles, x_at, corners, z, solids } = soup;
+    let mut place = match is_binary {
+        true => Cursor::at_byte_of(source, 0),
+        false => Cursor::new(source),
+    };
+    place.check_vertex_count(corners.len() as u64)?;
+    let first = first_there(&corners);
+    let count = (0..).zip(&first).filter(|&(corner, first)| corner == *first).count();
+    sink.expect_nodes(count);
+    let mut vertices: Vec<u32> = Vec::with_capacity(corners.len());
+    let mut next = 0;
+    for (corner, &first) in first.iter().enumerate() {
+        if first as usize == corner {
+            place.go_to(x_at[corner]);
+            vertices.push(next);
+            next += 1;
+            sink.node(&place, u64::from(next), 2, x_at[corner], corners[corner]);
+        } else {
+            vertices.push(vertices[first as usize]);
+        }
+    }
+    sink.note(&format!("{} corners are joined to {count} vertices", corners.len()));
+    sink.end_nodes(&place)?;
+    if let Some(z) = z.filter(|&z| z != 0.0)
+        && sink.asks_for_data()
+        && sink.height_array(b"z")
+    {
+        // z is the same everywhere, so it never has to be replaced.
+        let numbers = vec![z; count];
+        sink.point_numbers(PointNumbers { numbers, nodes: None, stored: None });
+    }
+    sink.expect_elements(triangles.len());
+    place.go_to(0);
+    let mut last = None;
+    for (index, (&(at, solid), corners)) in triangles.iter().zip(vertices.chunks(3)).enumerate() {
+        if sink.asks_for_groups() && last.replace(solid) != Some(solid) {
+            let name = solids.get(solid as usize).filter(|name| !name.is_empty());
+            let group =
+                |name: &&[u8]| Within { what: "solid", label: Label::name(name), dimension: None };
+            sink.within(name.map(group).as_slice());
+        }
+        place.go_to(at);
+        let mut nodes = [0; 4];
+        nodes.iter_mut().zip(corners).for_each(|(node, &v)| *node = u64::from(v) + 1);
+        let (tag, kind) = (index as u64 + 1, Kind::Triangle);
+        sink.element(&place, &Element { tag, kind, region: [i64::from(solid), 0], nodes })?;
+    }
+    Ok(Copies { x_at, vertices })
+}

@@ -1,0 +1,241 @@
+//! SU2's `.su2`.
+//!
+//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list. The index
+//! at the end of its row is not read. Each zone of a multi-zone mesh has its own points, numbered from 0.
+
+use crate::content::label::Label;
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::formats::su2::motions::Motions;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::parallel_rows::take_rows;
+use crate::text::syntax::Syntax;
+use crate::text::token::{integer, quoted};
+use crate::visit::sink::{
+    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
+};
+use std::ops::Range;
+
+pub(crate) struct Su2;
+
+/// A list of elements, which may stand before the points.
+struct List<'a> {
+    cursor: Cursor<'a>,
+    /// The first elements, if they were read ahead.
+    ahead: Vec<Small>,
+    count: u64,
+    zone: usize,
+    /// The name of the elements' marker; `None` for elements of the domain.
+    marker: Option<&'a [u8]>,
+}
+
+/// An element with its nodes. Most fit this small type.
+type Small = (Kind, [u32; 4]);
+
+impl Walk for Su2 {
+    const VERTICES: &'static str = "NPOIN";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source).of(Syntax::PERCENT);
+        let mut lists: Vec<List<'_>> = Vec::new();
+        // The number of points before each zone, and the number of all points.
+        let (mut zones, mut points) = (vec![0], 0_u64);
+        let (mut marker, mut motions) = (None, None::<Motions>);
+        while cursor.next_row() {
+            let (key, all) = key_and_values(cursor);
+            let value = first(all);
+            match key {
+                b"NDIME" => match integer(value) {
+                    Some(2) => {}
+                    Some(3) => return Err(volume(cursor, "three dimensions (NDIME= 3)")),
+                    _ => return Err(wrong(cursor, "NDIME", value)),
+                },
+                b"IZONE" if points > zones[zones.len() - 1] => zones.push(points),
+                b"NPOIN" => {
+                    let count = number(cursor, "NPOIN", value)?;
+                    cursor.check_vertex_count(points.saturating_add(count))?;
+                    sink.expect_nodes(cursor.capacity(count, "0 0\n".len()));
+                    let first = points;
+                    each_row(
+                        cursor,
+                        count,
+                        "points",
+                        sink,
+                        |cursor| cursor.point("a point"),
+                        |cursor, sink, done, (x_at, at)| {
+                            sink.node(cursor, first + done, 2, x_at, at);
+                            Ok(())
+                        },
+                    )?;
+                    points += count;
+                }
+                b"MARKER_TAG" => marker = Some(value),
+                b"NELEM" | b"MARKER_ELEMS" => {
+                    let name = if key == b"NELEM" { "NELEM" } else { "MARKER_ELEMS" };
+                    let count = number(cursor, name, value)?;
+                    let zone = zones.len() - 1;
+                    let marker = if key == b"NELEM" { None } else { marker };
+                    skip_send_to(cursor);
+                    let start = cursor.clone();
+                    let ahead = read_ahead(cursor, count, sink);
+                    // Not `row`: the list is read again below and then returns a better error.
+                    for _ in ahead.len() as u64..count {
+                        if !cursor.next_row() {
+                            break;
+                        }
+                    }
+                    lists.push(List { cursor: start, ahead, count, zone, marker });
+                }
+                // The first periodic entry is no motion.
+                b"NPERIODIC"
+                    if !sink.asks_for_data() && integer(value).is_some_and(|count| count > 1) =>
+                {
+                    motions.get_or_insert_default();
+                }
+                b"PERIODIC_CENTER" | b"PERIODIC_ROTATION" | b"PERIODIC_TRANSLATION"
+                    if !sink.asks_for_data() =>
+                {
+                    motions.as_mut().into_iter().for_each(|motions| motions.read(key, all));
+                }
+                b"NMARK" | b"NZONE" | b"IZONE" => {}
+                // Counts of other lists, and boxes for free-form deformation.
+                _ if sink.asks_for_data() && !value.is_empty() => {
+                    sink.leaves_out(&format!("what {}= is", quoted(key)));
+                }
+                _ => {}
+            }
+        }
+        sink.end_nodes(cursor)?;
+        if let Some(motions) = motions {
+            sink.pairs(motions.finish());
+        }
+        if zones.len() > 1 {
+            let label = |zone| Some(Label::Tag(zone + 1));
+            sink.columns(vec![Column { what: "zone".into(), from_dimension: 2, label }]);
+        }
+        for List { mut cursor, ahead, count, zone, marker } in lists {
+            let within =
+                |name| Within { what: "marker", label: Label::name(name), dimension: None };
+            sink.within(marker.map(within).as_slice());
+            let last = zones.get(zone + 1).copied().unwrap_or(points);
+            elements((&mut cursor, &ahead), count, zone, zones[zone]..last, sink)?;
+        }
+        Ok(Layout::in_place(Format::Su2, Numbers::TEXT))
+    }
+}
+
+/// Hands on the elements of a list, whose nodes are those of a zone.
+fn elements(
+    (cursor, ahead): (&mut Cursor<'_>, &[Small]),
+    count: u64,
+    zone: usize,
+    Range { start: first, end: last }: Range<u64>,
+    sink: &mut dyn Sink,
+) -> Result<(), ReadError> {
+    sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
+    let mut take = |cursor: &Cursor<'_>, done: u64, (kind, nodes): (Kind, [u64; 4])| {
+        let listed = &nodes[..kind.nodes()];
+        if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
+            let kind = kind.name();
+            let problem = format!("{kind} {done} has node {point}, which NPOIN does not list");
+            return Err(cursor.error(problem, CORRECT));
+        }
+        let nodes = nodes.map(|node| node.saturating_add(first));
+        sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
+    };
+    let mut done = 0;
+    // Errors are dropped here, as reading row by row meets them again.
+    let nowhere = &Cursor::new(cursor.source);
+    for &(kind, nodes) in ahead {
+        if take(nowhere, done, (kind, nodes.map(u64::from))).is_err() {
+            break;
+        }
+        done += 1;
+    }
+    if done < count {
+        (0..done).for_each(|_| _ = cursor.next_row());
+    }
+    while done < count {
+        cursor.row(done, count, "elements")?;
+        let read = element(cursor)?;
+        take(cursor, done, read)?;
+        done += 1;
+    }
+    Ok(())
+}
+
+/// Reads the first elements of a long list on all threads, if the sink allows it, as long as its rows are plain.
+fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small> {
+    let mut ahead = Vec::new();
+    if sink.takes_ahead() {
+        ahead.reserve(cursor.capacity(count, "5 0 1 2\n".len()));
+        let read = |cursor: &mut Cursor<'_>| -> Result<Option<Small>, ReadError> {
+            let (kind, nodes) = element(cursor)?;
+            let small = |node: u64| u32::try_from(node).ok();
+            let [Some(a), Some(b), Some(c), Some(d)] = nodes.map(small) else { return Ok(None) };
+            Ok(Some((kind, [a, b, c, d])))
+        };
+        take_rows(cursor, count, read, |small| {
+            ahead.extend(small);
+            small.is_some()
+        });
+    }
+    ahead
+}
+
+/// Skips the row `SEND_TO` between the count of a marker's elements and the elements. It concerns copies in other
+/// processes.
+fn skip_send_to(cursor: &mut Cursor<'_>) {
+    let mut next = cursor.clone();
+    if next.next_row() && key_and_values(&mut next).0 == b"SEND_TO" {
+        *cursor = next;
+    }
+}
+
+/// Returns the two sides of the equals sign of a row, without comments. If there is no equals sign, returns the row and
+/// nothing.
+fn key_and_values<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
+    let row = cursor.rest();
+    match memchr::memchr(b'=', row) {
+        None => (row, &[]),
+        Some(at) => {
+            let values = row[at + 1..].split(|&byte| byte == b'%').next().unwrap_or_default();
+            (row[..at].trim_ascii(), values.trim_ascii())
+        }
+    }
+}
+
+/// Returns the first of several values.
+fn first(values: &[u8]) -> &[u8] {
+    let end = values.iter().position(|&byte| byte <= b' ').unwrap_or(values.len());
+    &values[..end]
+}
+
+fn number(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> Result<u64, ReadError> {
+    integer(value).ok_or_else(|| wrong(cursor, name, value))
+}
+
+#[cold]
+fn wrong(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> ReadError {
+    cursor.error(format!("{name} is `{}`", quoted(value)), CORRECT)
+}
+
+/// Reads the row of an element, which starts with VTK's number of its type.
+#[inline]
+fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, [u64; 4]), ReadError> {
+    let kind = match cursor.integer("the type of an element")? {
+        1 => Kind::Point,
+        3 => Kind::Line,
+        5 => Kind::Triangle,
+        9 => Kind::Quadrilateral,
+        10..=14 => return Err(volume(cursor, "elements of a volume")),
+        other => {
+            let problem = format!("element type {other} is not known");
+            let remedy = "Lines (3), triangles (5) and quadrilaterals (9) are read";
+            return Err(cursor.error(problem, remedy));
+        }
+    };
+    Ok((kind, nodes(cursor, kind)?))
+}

@@ -1,0 +1,42 @@
+//! Writes SU2's `.su2`.
+
+use crate::export::job::Job;
+use crate::export::put;
+use crate::visit::sink::Kind;
+use std::collections::HashMap;
+use std::fmt::Write;
+
+pub(crate) fn write(job: &Job<'_>) -> String {
+    let content = job.content;
+    let is_inside = |cell: &usize| content.cells.kinds[*cell].dimension() == 2;
+    let mut out = format!("NDIME= 2\nNELEM= {}\n", job.cells().filter(is_inside).count());
+    for (index, cell) in job.cells().filter(is_inside).enumerate() {
+        let kind = if content.cells.kinds[cell] == Kind::Triangle { 5 } else { 9 };
+        put!(out, "{kind} {} {index}\n", job.places(cell, 0));
+    }
+    put!(out, "NPOIN= {}\n", content.points.len());
+    (0..content.points.len()).for_each(|vertex| put!(out, "{} {vertex}\n", job.plane(vertex)));
+    // Lines without a group are in no marker.
+    let marker = |cell: &usize| {
+        let group = job.tags.group(content, *cell).filter(|_| !is_inside(cell))?;
+        Some((job.word(group), *cell))
+    };
+    let mut markers: Vec<(String, Vec<usize>)> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
+    for cell in job.cells() {
+        let Some((name, cell)) = marker(&cell) else { continue };
+        let place = *places.entry(name.clone()).or_insert(markers.len());
+        if place == markers.len() {
+            markers.push((name, Vec::new()));
+        }
+        markers[place].1.push(cell);
+    }
+    put!(out, "NMARK= {}\n", markers.len());
+    for (name, cells) in markers {
+        put!(out, "MARKER_TAG= {name}\nMARKER_ELEMS= {}\n", cells.len());
+        for cell in cells {
+            put!(out, "3 {}\n", job.places(cell, 0));
+        }
+    }
+    out
+}

@@ -1,0 +1,116 @@
+//! Data of nodes and faces in a UGRID file.
+
+use super::centers::Tables;
+use super::mesh::Mesh;
+use super::table::Table;
+use crate::formats::netcdf_points::{Parts, PointData};
+use crate::netcdf::{Number, Variable};
+use crate::visit::sink::Sink;
+
+/// What a variable has numbers for.
+#[derive(Clone, Copy, PartialEq)]
+enum Location {
+    Nodes,
+    Faces,
+}
+
+impl<'h, 'a> Mesh<'h, 'a> {
+    /// Hands on data of nodes and faces, and tells what is not handed on. The mesh does not depend on them.
+    pub(super) fn data(&self, tables: &Tables<'h, 'a>, sink: &mut dyn Sink) {
+        let faces = &tables.faces;
+        let lengths = [self.nodes as u64, faces.count as u64];
+        let places = self.places(tables);
+        let is_data = |variable: &&Variable| {
+            ![self.x, self.y, self.face_nodes].iter().any(|own| own.name == variable.name)
+                && !places.iter().any(|own| own.variable.name == variable.name)
+                && variable.text("cf_role").is_none()
+        };
+        let mut points = PointData::new(self.header);
+        for variable in self.header.variables.iter().filter(is_data) {
+            let Some((Location::Nodes, parts)) = self.located(variable, lengths) else { continue };
+            match sink.asks_for_data() {
+                true => points.send(&variable.name, variable, &parts, variable.missing(), sink),
+                false => {
+                    let is_real = matches!(variable.number, Number::Real(_));
+                    sink.point_array(&variable.name, parts.components, is_real);
+                }
+            }
+        }
+        if sink.asks_for_data() {
+            for variable in self.header.variables.iter().filter(is_data) {
+                if let Some((Location::Faces, parts)) = self.located(variable, lengths) {
+                    self.of_faces(faces, (variable, &parts), &mut points, sink);
+                }
+            }
+            self.left_out(sink);
+        }
+        let left = self.centers(tables, &places, &mut points, sink);
+        if !left.is_empty() {
+            let names: Vec<_> = left.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
+            sink.note(&format!(
+                "{}: places of edges or faces, which stay as they are",
+                names.join(", ")
+            ));
+        }
+    }
+
+    /// What a variable has numbers for, and how its records consist of parts. None if it is of something else, or if that is not
+    /// known.
+    fn located(&self, variable: &Variable, lengths: [u64; 2]) -> Option<(Location, Parts)> {
+        let is_numeric = matches!(variable.number, Number::Real(_) | Number::Whole(_));
+        if !is_numeric || variable.text("mesh").is_some_and(|mesh| mesh != self.own.name) {
+            return None;
+        }
+        let location = match variable.text("location") {
+            Some(b"node") => Location::Nodes,
+            Some(b"face") => Location::Faces,
+            Some(_) => return None,
+            None => match lengths.map(|length| variable.shape.contains(&length)) {
+                [true, false] => Location::Nodes,
+                [false, true] => Location::Faces,
+                _ => return None,
+            },
+        };
+        let length = lengths[usize::from(location == Location::Faces)];
+        let axis = variable.shape.iter().position(|&own| own == length)?;
+        let product = |lengths: &[u64]| {
+            lengths.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).filter(|&n| n > 0)
+        };
+        let all = usize::try_from(product(&variable.shape[..axis])?).ok()?;
+        let components = product(&variable.shape[axis + 1..])?;
+        Some((location, Parts { wanted: 0..all, all, components }))
+    }
+
+    fn of_faces(
+        &self,
+        faces: &Table<'h, 'a>,
+        (variable, parts): (&'h Variable, &Parts),
+        points: &mut PointData<'h, 'a>,
+        sink: &mut dyn Sink,
+    ) {
+        let is_real = matches!(variable.number, Number::Real(_));
+        let tags = faces.first..faces.first + faces.count as u64;
+        for record in 0..self.header.steps(variable) {
+            for part in parts.wanted.clone() {
+                if sink.cell_array(&variable.name, parts.components, is_real)
+                    && let Some(own) =
+                        points.numbers(variable, (record, part), parts, variable.missing())
+                {
+                    sink.cell_numbers(own.numbers, Some(tags.clone().collect()));
+                }
+            }
+        }
+    }
+
+    /// Tells what is in no mesh of another format. Edges, neighbors and places of faces follow from the mesh; attributes of variables
+    /// are like comments.
+    fn left_out(&self, sink: &mut dyn Sink) {
+        let variables = &self.header.variables;
+        if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {
+            sink.leaves_out("variables of edges");
+        }
+        if self.header.records > 1 {
+            sink.leaves_out("times of time steps");
+        }
+    }
+}

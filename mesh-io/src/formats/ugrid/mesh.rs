@@ -1,0 +1,166 @@
+//! The mesh of a UGRID file: which variables it consists of.
+
+use crate::error::ReadError;
+use crate::formats::axes::Axes;
+use crate::formats::netcdf_axes::axes;
+use crate::netcdf::{Header, Number, Variable};
+use crate::text::cursor::Cursor;
+use crate::text::token::quoted;
+
+/// A mesh of faces.
+pub(super) struct Mesh<'h, 'a> {
+    pub(super) header: &'h Header<'a>,
+    /// The variable that stands for it.
+    pub(super) own: &'h Variable,
+    pub(super) x: &'h Variable,
+    pub(super) y: &'h Variable,
+    /// How many nodes there are.
+    pub(super) nodes: usize,
+    /// Which nodes each face has.
+    pub(super) face_nodes: &'h Variable,
+}
+
+/// Whether a variable stands for a mesh, of any dimension.
+pub(super) fn is_mesh(variable: &Variable) -> bool {
+    variable.text("cf_role") == Some(b"mesh_topology")
+}
+
+const REMEDY: &str = "Write it again by the UGRID conventions, or save the mesh in another format";
+
+impl<'h, 'a> Mesh<'h, 'a> {
+    /// Finds the one mesh of faces of a file.
+    pub(super) fn find(header: &'h Header<'a>) -> Result<Mesh<'h, 'a>, ReadError> {
+        let has_faces = |variable: &&Variable| {
+            variable.whole("topology_dimension").is_none_or(|dimension| dimension == 2)
+        };
+        let all = header.variables.iter().filter(|variable| is_mesh(variable));
+        let of_faces: Vec<_> = all.filter(has_faces).collect();
+        let start = Cursor::at_byte_of(header.source, 0);
+        let own = match of_faces[..] {
+            [own] => own,
+            [] => {
+                let problem = "a UGRID file without a mesh of faces (topology_dimension 2)";
+                return Err(start.error(problem, "Save the mesh with its faces"));
+            }
+            _ => {
+                let names: Vec<_> = of_faces.iter().map(|own| quoted(&own.name)).collect();
+                let problem = format!("several meshes: {}", names.join(", "));
+                return Err(start.error(problem, "Save each in a file of its own"));
+            }
+        };
+        let parts = ["node_coordinates", "face_node_connectivity"];
+        let is_part = |name: &[u8]| {
+            parts.iter().flat_map(|attribute| names(own, attribute)).any(|own| own == name)
+        };
+        if let Some(error) = header.unread(is_part) {
+            return Err(error);
+        }
+        let [x, y] = coordinates(header, own)?;
+        let nodes = node_count(header, [x, y])?;
+        let named = own.text("face_node_connectivity");
+        let Some(face_nodes) = named.and_then(|name| variable(header, name)) else {
+            let problem = format!(
+                "the mesh {} has no variable that its face_node_connectivity names, so no faces",
+                quoted(&own.name)
+            );
+            let place = Cursor::at_byte_of(header.source, header.place(own));
+            return Err(place.error(problem, REMEDY));
+        };
+        Ok(Mesh { header, own, x, y, nodes, face_nodes })
+    }
+
+    /// The coordinates of the nodes.
+    pub(super) fn axes(&self) -> Result<Axes<'a>, ReadError> {
+        let Mesh { header, x, y, nodes, .. } = self;
+        let Number::Real(precision) = x.number else {
+            return Err(unfit(header, [x, y]));
+        };
+        axes(header, &[x, y], (x.order, precision), (2, *nodes))
+    }
+
+    /// The variables that an attribute of the mesh names.
+    pub(super) fn named(&self, attribute: &str) -> Vec<&'h Variable> {
+        names(self.own, attribute).filter_map(|name| self.variable(name)).collect()
+    }
+
+    pub(super) fn variable(&self, name: &[u8]) -> Option<&'h Variable> {
+        variable(self.header, name)
+    }
+}
+
+/// The names that an attribute lists.
+fn names<'v>(variable: &'v Variable, attribute: &str) -> impl Iterator<Item = &'v [u8]> + use<'v> {
+    let text = variable.text(attribute).unwrap_or_default();
+    text.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty())
+}
+
+fn variable<'h>(header: &'h Header<'_>, name: &[u8]) -> Option<&'h Variable> {
+    header.variables.iter().find(|variable| variable.name == name)
+}
+
+/// The variables of x and y, or of longitude and latitude. If nodes have further coordinates, those named first are meant.
+fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variable; 2], ReadError> {
+    let named = names(own, "node_coordinates").filter_map(|name| variable(header, name));
+    let found: Vec<_> = named.take(2).collect();
+    match found[..] {
+        [first, second] if axis_of(first) == Some(1) && axis_of(second) != Some(1) => {
+            Ok([second, first])
+        }
+        [first, second] => Ok([first, second]),
+        _ => {
+            let problem = format!(
+                "the mesh {} has no two variables that its node_coordinates names",
+                quoted(&own.name)
+            );
+            let place = Cursor::at_byte_of(header.source, header.place(own));
+            Err(place.error(problem, REMEDY))
+        }
+    }
+}
+
+/// Which coordinate a variable says that it is: 0 for x or the longitude, 1 for y or the latitude.
+pub(super) fn axis_of(variable: &Variable) -> Option<usize> {
+    const SAYS: [(&str, [&[&[u8]]; 2]); 3] = [
+        (
+            "standard_name",
+            [
+                &[b"longitude", b"projection_x_coordinate"],
+                &[b"latitude", b"projection_y_coordinate"],
+            ],
+        ),
+        ("axis", [&[b"X"], &[b"Y"]]),
+        (
+            "units",
+            [
+                &[b"degrees_east", b"degree_east", b"degreeE", b"degrees_E"],
+                &[b"degrees_north", b"degree_north", b"degreeN", b"degrees_N"],
+            ],
+        ),
+    ];
+    SAYS.iter().find_map(|(attribute, axes)| {
+        let text = variable.text(attribute)?;
+        axes.iter().position(|values| values.contains(&text))
+    })
+}
+
+fn node_count(header: &Header<'_>, [x, y]: [&Variable; 2]) -> Result<usize, ReadError> {
+    let is_real = matches!(x.number, Number::Real(_));
+    let is_same = (x.number, x.order, &x.shape) == (y.number, y.order, &y.shape);
+    match x.shape[..] {
+        [count] if is_real && is_same && !x.is_record && !y.is_record && x.name != y.name => {
+            Cursor::at_byte_of(header.source, header.place(x)).check_vertex_count(count)?;
+            Ok(count as usize)
+        }
+        _ => Err(unfit(header, [x, y])),
+    }
+}
+
+#[cold]
+fn unfit(header: &Header<'_>, [x, y]: [&Variable; 2]) -> ReadError {
+    let problem = format!(
+        "{} and {} are not two lists of real numbers, one for each node, of the same type",
+        quoted(&x.name),
+        quoted(&y.name)
+    );
+    Cursor::at_byte_of(header.source, header.place(x)).error(problem, REMEDY)
+}

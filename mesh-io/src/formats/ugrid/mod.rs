@@ -1,0 +1,46 @@
+//! UGRID, in netCDF's classic formats and in netCDF-4: the convention of coastal and atmospheric models.
+//!
+//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. A variable without numbers of its own stands
+//! for the mesh; its attributes name the variables of its parts. Faces are triangles, quadrilaterals and larger polygons.
+
+mod centers;
+mod data;
+mod faces;
+mod mesh;
+mod table;
+pub(crate) mod write;
+
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::hdf5::Hdf5;
+use crate::netcdf;
+use crate::visit::sink::{Layout, Sink, Walk};
+use mesh::Mesh;
+use table::{Table, What};
+
+pub(crate) struct Ugrid;
+
+/// Whether a file of netCDF has meshes of UGRID.
+///
+/// # Errors
+/// If its header is damaged.
+pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
+    let header = netcdf::open(source)?;
+    Ok(header.variables.iter().any(mesh::is_mesh))
+}
+
+impl Walk for Ugrid {
+    const VERTICES: &'static str = "the list of nodes";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let header = netcdf::open(source)?;
+        let mesh = Mesh::find(&header)?;
+        let faces = Table::find(&mesh, mesh.face_nodes, What::Faces)?;
+        let layout = mesh.axes()?.send(Format::Ugrid, (mesh.nodes, faces.first), sink)?;
+        faces::send(&faces, sink)?;
+        mesh.data(&mesh.tables(faces), sink);
+        header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        Ok(layout)
+    }
+}

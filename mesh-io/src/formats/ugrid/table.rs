@@ -1,0 +1,171 @@
+//! Tables of the nodes that faces or edges have.
+
+use super::mesh::Mesh;
+use crate::error::ReadError;
+use crate::netcdf::{Header, Items, Number, Variable};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
+
+/// The nodes of faces or edges: a row for each of them, or a column.
+pub(super) struct Table<'h, 'a> {
+    header: &'h Header<'a>,
+    what: What,
+    pub(super) variable: &'h Variable,
+    pub(super) items: Items<'a>,
+    /// How many faces or edges there are.
+    pub(super) count: usize,
+    /// How many nodes each has at most.
+    pub(super) corners: usize,
+    /// Whether the nodes of each stand side by side.
+    pub(super) has_rows: bool,
+    /// What stands in the place of a node that a face does not have.
+    missing: Option<f64>,
+    /// The number of the first node, which is that of the first face or edge too.
+    pub(super) first: u64,
+}
+
+/// What a table has the nodes of.
+#[derive(Clone, Copy)]
+pub(super) enum What {
+    Faces,
+    Edges,
+}
+
+impl What {
+    /// The words for one and for several, the attribute that names their dimension, and how few nodes each has.
+    fn words(self) -> (&'static str, &'static str, &'static str, u64) {
+        match self {
+            What::Faces => ("face", "faces", "face_dimension", 3),
+            What::Edges => ("edge", "edges", "edge_dimension", 2),
+        }
+    }
+}
+
+/// What stands in the place of a node.
+enum Corner {
+    Node(u64),
+    /// The face has fewer corners.
+    Missing,
+    /// No number of a node.
+    Other(f64),
+}
+
+impl<'h, 'a> Table<'h, 'a> {
+    /// Finds the nodes of the faces or edges of a mesh, which this variable has.
+    ///
+    /// # Errors
+    /// If that is no table of numbers, or what it holds cannot be read.
+    pub(super) fn find(
+        mesh: &Mesh<'h, 'a>,
+        variable: &'h Variable,
+        what: What,
+    ) -> Result<Table<'h, 'a>, ReadError> {
+        let header = mesh.header;
+        let (_, several, dimension, least) = what.words();
+        let wrong = |problem: &str| {
+            let name = quoted(&variable.name);
+            let problem = format!("{name}, the nodes of the {several}, {problem}");
+            Cursor::at_byte_of(header.source, header.place(variable)).error(problem, CORRECT)
+        };
+        let is_numeric = matches!(variable.number, Number::Whole(_) | Number::Real(_));
+        let (&[rows, columns], true, false) = (&variable.shape[..], is_numeric, variable.is_record)
+        else {
+            return Err(wrong("are not a table of numbers"));
+        };
+        // The dimension of faces comes second if the mesh says so, or if there are more of it than a face has corners.
+        let dimension = mesh.own.text(dimension).and_then(|name| str::from_utf8(name).ok());
+        let has_rows = match dimension.and_then(|name| header.dimension(name)) {
+            Some(length) if (length == rows) != (length == columns) => length == rows,
+            _ => rows >= columns,
+        };
+        let (count, corners) = if has_rows { (rows, columns) } else { (columns, rows) };
+        if corners < least {
+            return Err(wrong(&format!("have {corners} corners")));
+        }
+        let (count, corners) = (count as usize, corners as usize);
+        let items = header.items(variable)?;
+        let missing = variable.missing();
+        let table =
+            Table { header, what, variable, items, count, corners, has_rows, missing, first: 0 };
+        let first = match variable.whole("start_index") {
+            Some(first @ (0 | 1)) => first as u64,
+            Some(other) => return Err(wrong(&format!("start at number {other}, not at 0 or 1"))),
+            None => table.likely_first(mesh.nodes as u64),
+        };
+        Ok(Table { first, ..table })
+    }
+
+    /// Reads the nodes of a face or an edge.
+    ///
+    /// # Errors
+    /// If it has too few, or numbers of none.
+    pub(super) fn nodes(&self, element: usize, nodes: &mut Vec<u64>) -> Result<(), ReadError> {
+        nodes.clear();
+        let (one, .., least) = self.what.words();
+        let wrong = |problem: String| {
+            let problem = format!("{one} {} {problem}", element as u64 + self.first);
+            Err(self.cursor(element).error(problem, CORRECT))
+        };
+        let mut has_ended = false;
+        for place in 0..self.corners {
+            match self.corner(element, place) {
+                Corner::Missing => has_ended = true,
+                Corner::Node(_) if has_ended => {
+                    return wrong("has a corner after a missing one".into());
+                }
+                Corner::Node(node) => nodes.push(node),
+                Corner::Other(number) => {
+                    return wrong(format!("has the corner {number}, which is no node"));
+                }
+            }
+        }
+        match (nodes.len() as u64) < least {
+            true => wrong(format!("has {} corners", nodes.len())),
+            false => Ok(()),
+        }
+    }
+
+    /// The place of a face or an edge in the file.
+    pub(super) fn cursor(&self, element: usize) -> Cursor<'a> {
+        Cursor::at_byte_of(self.header.source, self.items.byte_of(self.place(element, 0)))
+    }
+
+    /// Where the number of a corner stands among the bytes.
+    fn place(&self, element: usize, corner: usize) -> usize {
+        let item = match self.has_rows {
+            true => element * self.corners + corner,
+            false => corner * self.count + element,
+        };
+        self.items.range(0).start + item * self.variable.number.bytes()
+    }
+
+    fn corner(&self, element: usize, corner: usize) -> Corner {
+        let at = self.place(element, corner);
+        let own = &self.items.bytes[at..at + self.variable.number.bytes()];
+        let number = match self.variable.number {
+            Number::Real(precision) => self.variable.order.real(precision, own),
+            _ => self.variable.order.signed(own) as f64,
+        };
+        let is_missing = number.is_nan() || Some(number) == self.missing;
+        // Without a value for what is missing, negative numbers stand for it, which no node has.
+        if is_missing || (number < 0.0 && corner >= 3) {
+            return Corner::Missing;
+        }
+        let is_node = number >= 0.0 && number.fract() == 0.0 && number < 9e15;
+        if is_node { Corner::Node(number as u64) } else { Corner::Other(number) }
+    }
+
+    /// The number of the first node where the file does not say it: 0 by the conventions, but 1 if the numbers go from 1 to as
+    /// many as there are nodes.
+    fn likely_first(&self, nodes: u64) -> u64 {
+        let (mut least, mut most) = (u64::MAX, 0);
+        for element in 0..self.count {
+            for corner in 0..self.corners {
+                if let Corner::Node(node) = self.corner(element, corner) {
+                    (least, most) = (least.min(node), most.max(node));
+                }
+            }
+        }
+        u64::from(least >= 1 && most >= nodes)
+    }
+}

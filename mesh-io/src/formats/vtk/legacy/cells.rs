@@ -1,0 +1,138 @@
+//! Cells of VTK, by the numbers of their types.
+
+use crate::binary::number_field::Field;
+use crate::binary::whole::Whole;
+use crate::error::ReadError;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::records::{Expected, LONG, Region, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink, volume};
+use std::ops::Range;
+
+/// A cell of one of VTK's formats.
+#[derive(Clone, Copy)]
+pub(crate) struct Cell<'a> {
+    /// The position of the cell in the file.
+    pub(crate) tag: u64,
+    /// VTK's number for the type of the cell.
+    pub(crate) cell_type: u64,
+    pub(crate) points: &'a [u64],
+    pub(crate) region: [i64; 2],
+}
+
+impl Cell<'_> {
+    /// Hands the cell to the sink. The points of cells without a kind of their own, such as polylines and polygons of
+    /// more than four corners, stay fixed.
+    pub(crate) fn send(&self, cursor: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+        let Cell { tag, cell_type, points, region } = *self;
+        let kind = kind_of(cursor, tag, cell_type, points.len())?;
+        if kind.nodes() == points.len() {
+            let mut nodes = [0; 4];
+            nodes[..points.len()].copy_from_slice(points);
+            return sink.element(cursor, &Element { tag, kind, region, nodes });
+        }
+        match (kind, cell_type) {
+            (Kind::Corner, _) => sink.polygon(cursor, (tag, region), points),
+            (_, 4) => sink.polyline(cursor, (tag, region), points),
+            _ => points.iter().try_for_each(|&point| {
+                let nodes = [point, 0, 0, 0];
+                sink.element(cursor, &Element { tag, kind, region, nodes })
+            }),
+        }
+    }
+}
+
+/// The cells from a triangle on. Those up to the next cell of another kind are handed on at once.
+pub(crate) struct Triangles<'a> {
+    /// How many cells there are from the first triangle on.
+    pub(crate) count: usize,
+    /// The points of all cells, and the range of the first triangle's points.
+    pub(crate) numbers: &'a Whole<'a>,
+    pub(crate) own: Range<usize>,
+    /// The ends of the cells' points, from the first triangle on. `None` if each cell's number of points stands before
+    /// its points.
+    pub(crate) ends: Option<Field<'a>>,
+    /// The types of the cells from the first triangle on. `None` if all are polygons.
+    pub(crate) types: Option<Field<'a>>,
+    /// A number that is added to each point, and a bound that each point must be less than.
+    pub(crate) points: (u64, u64),
+    pub(crate) regions: [Region<'a>; 2],
+}
+
+impl Triangles<'_> {
+    /// Hands on triangles. Returns how many the sink has taken, and where the points of the last one end.
+    pub(crate) fn send(self, sink: &mut dyn Sink) -> (usize, usize) {
+        let Triangles { count, numbers, own, ends, types, points, regions } = self;
+        let (stride, counts) = match ends {
+            Some(ends) => (3, (ends, Expected::Steps { first: own.end as u64, step: 3 })),
+            None => match own.start.checked_sub(1) {
+                Some(before) => (4, (numbers.field(before, 4), Expected::Is(3))),
+                None => return (0, own.end),
+            },
+        };
+        let triangles = types.map(|types| (types, Expected::Is(5)));
+        let expected: Vec<_> = [counts].into_iter().chain(triangles).collect();
+        let corners = numbers.field(own.start, stride);
+        let (first, below) = points;
+        let taken = sink.triangle_records(&TriangleRecords {
+            count,
+            corners,
+            first,
+            below,
+            regions,
+            expected: &expected,
+        });
+        (taken, own.start + 3 + taken.saturating_sub(1) * stride)
+    }
+}
+
+/// Decides when to try to hand on many triangles at once: rarely if they are few among other cells.
+pub(crate) struct Tries {
+    left: usize,
+    next: usize,
+}
+
+impl Tries {
+    pub(crate) const NEW: Tries = Tries { left: 10, next: 0 };
+
+    pub(crate) fn is_due(&self, cell: usize) -> bool {
+        self.left > 0 && cell >= self.next
+    }
+
+    /// Records a try at a cell, and how many triangles were handed on.
+    pub(crate) fn done(&mut self, cell: usize, taken: usize) {
+        self.left -= 1;
+        self.next = cell + taken + LONG;
+    }
+}
+
+/// Returns the kind of a cell by VTK's number of its type. For cells of any number of points that stay fixed, it is
+/// that of a single point.
+fn kind_of(
+    cursor: &Cursor<'_>,
+    tag: u64,
+    cell_type: u64,
+    points: usize,
+) -> Result<Kind, ReadError> {
+    let kind = match cell_type {
+        0 | 2 | 4 => return Ok(Kind::Point),
+        7 => return Ok(Kind::of_polygon(points as u64).unwrap_or(Kind::Corner)),
+        1 => Kind::Point,
+        3 => Kind::Line,
+        5 => Kind::Triangle,
+        8 | 9 => Kind::Quadrilateral,
+        10..=16 | 41..=42 => return Err(volume(cursor, "cells of a volume")),
+        6 => {
+            let problem = format!("cell {tag} is a strip of triangles");
+            return Err(cursor.error(problem, "Save strips as triangles"));
+        }
+        _ => {
+            let problem = format!("cell {tag} is of type {cell_type}, not of first order");
+            return Err(cursor.error(problem, "Save a mesh of linear triangles (type 5)"));
+        }
+    };
+    if points != kind.nodes() {
+        let problem = format!("cell {tag}, a {}, has {points} points", kind.name());
+        return Err(cursor.error(problem, CORRECT));
+    }
+    Ok(kind)
+}

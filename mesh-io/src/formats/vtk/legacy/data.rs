@@ -1,0 +1,293 @@
+//! Data of points and cells of a legacy VTK file. Arrays that name regions, and those that the sink wants, are read.
+//! Others are skipped.
+
+use crate::binary::order::Order;
+use crate::content::label::Label;
+use crate::edit::numbers::{Form, Places};
+use crate::formats::vtk::legacy::passed::{array_name, pass, size_of};
+use crate::formats::vtk::legacy::take;
+use crate::precision::Precision;
+use crate::text::cursor::Cursor;
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Column, PointNumbers, Sink, Stored};
+use std::borrow::Cow;
+
+/// Names of arrays that tell the regions of cells, in lower case. They are those of gmsh and meshio, of VTK's own
+/// readers, and of solvers, which call regions materials.
+const REGIONS: [&[u8]; 18] = [
+    b"gmsh:physical",
+    b"gmsh:geometrical",
+    b"medit:ref",
+    b"cell_tags",
+    b"cellentityids",
+    b"materialids",
+    b"material",
+    b"materials",
+    b"material_id",
+    b"elementblockids",
+    b"blockid",
+    b"region",
+    b"regions",
+    b"regionid",
+    b"regionids",
+    b"domain",
+    b"subdomain",
+    b"reference",
+];
+
+/// Whether an array of cell data with this name tells the regions of cells.
+pub(crate) fn names_regions(name: &[u8]) -> bool {
+    REGIONS.contains(&name.to_ascii_lowercase().as_slice())
+}
+
+/// The most arrays that tell regions.
+const MOST: usize = 2;
+
+/// An array of cell data that tells the regions of cells.
+pub(super) struct Regions {
+    name: String,
+    /// The number of each cell's region, or the bits of the number if the array has real numbers.
+    pub(super) names: Vec<i64>,
+    /// Returns the label that a number or its bits stand for.
+    label: fn(i64) -> Option<Label>,
+}
+
+impl Regions {
+    /// Returns the meaning of the array's numbers.
+    pub(super) fn column(&self) -> Column {
+        Column { what: self.name.clone(), from_dimension: 0, label: self.label }
+    }
+}
+
+/// Reads the regions of cells by the first two arrays that tell them, after a POINT_DATA or CELL_DATA that was just
+/// read. Damaged or unknown data end the search without an error, as the mesh does not depend on them.
+pub(super) fn regions(
+    cursor: &mut Cursor<'_>,
+    binary: bool,
+    keyword: &[u8],
+    sink: &mut dyn Sink,
+) -> Vec<Regions> {
+    let of_cells = keyword == b"CELL_DATA";
+    let mut data = Data { binary, of_cells, count: 0, found: Vec::new(), sink };
+    let Ok(count) = cursor.integer("a count") else {
+        return Vec::new();
+    };
+    data.count = count;
+    while cursor.next_word() {
+        if data.attribute(cursor).is_none() {
+            break;
+        }
+    }
+    data.found
+}
+
+struct Data<'s> {
+    binary: bool,
+    of_cells: bool,
+    count: u64,
+    found: Vec<Regions>,
+    sink: &'s mut dyn Sink,
+}
+
+impl Data<'_> {
+    /// Reads one attribute. `None` if it is damaged or unknown.
+    fn attribute(&mut self, cursor: &mut Cursor<'_>) -> Option<()> {
+        let keyword = cursor.token()?.to_ascii_uppercase();
+        match keyword.as_slice() {
+            b"POINT_DATA" | b"CELL_DATA" => {
+                self.of_cells = keyword == b"CELL_DATA";
+                self.count = cursor.integer("a count").ok()?;
+            }
+            b"SCALARS" => {
+                let (name, kind) = (cursor.token()?, cursor.token()?);
+                let components = cursor.integer_or(1, "the number of components").ok()?;
+                let mut ahead = cursor.clone();
+                if ahead.next_row() && ahead.token()?.eq_ignore_ascii_case(b"LOOKUP_TABLE") {
+                    *cursor = ahead;
+                    cursor.rest();
+                }
+                self.array(cursor, name, kind, components, self.count)?;
+            }
+            b"VECTORS" | b"NORMALS" | b"TENSORS" | b"TENSORS6" | b"GLOBAL_IDS"
+            | b"PEDIGREE_IDS" => {
+                let components = match keyword.as_slice() {
+                    b"TENSORS" => 9,
+                    b"TENSORS6" => 6,
+                    b"VECTORS" | b"NORMALS" => 3,
+                    _ => 1,
+                };
+                let (name, kind) = (cursor.token()?, cursor.token()?);
+                self.array(cursor, name, kind, components, self.count)?;
+            }
+            b"TEXTURE_COORDINATES" => {
+                let name = cursor.token()?;
+                let components = cursor.integer("the dimension").ok()?;
+                let kind = cursor.token()?;
+                self.array(cursor, name, kind, components, self.count)?;
+            }
+            b"COLOR_SCALARS" => {
+                let name = cursor.token()?;
+                let components = cursor.integer("the number of colors").ok()?;
+                self.array(cursor, name, b"unsigned_char", components, self.count)?;
+            }
+            b"LOOKUP_TABLE" => {
+                let name = cursor.token()?;
+                let size = cursor.integer("the size of a table").ok()?;
+                self.array(cursor, name, b"unsigned_char", 4, size)?;
+            }
+            b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
+            b"FIELD" => {
+                cursor.token()?;
+                for _ in 0..cursor.integer("the number of arrays").ok()? {
+                    cursor.next_row().then_some(())?;
+                    let name = array_name(cursor)?;
+                    let components = cursor.integer("the number of components").ok()?;
+                    let tuples = cursor.integer("the number of tuples").ok()?;
+                    let kind = cursor.token()?;
+                    self.array(cursor, name, kind, components, tuples)?;
+                }
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+
+    /// Reads an array if it tells regions or is wanted, else skips it.
+    fn array(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        name: &[u8],
+        kind: &[u8],
+        components: u64,
+        tuples: u64,
+    ) -> Option<()> {
+        let name = &decoded(name)[..];
+        let count = components.checked_mul(tuples)?;
+        let of_all = tuples == self.count;
+        let precision = precision_of(kind);
+        if !self.of_cells && of_all && self.sink.point_array(name, components, precision.is_some())
+        {
+            let numbers = self.numbers(cursor, kind, count)?;
+            self.sink.point_numbers(numbers);
+            return Some(());
+        }
+        let is_region = components == 1 && names_regions(name) && self.found.len() < MOST;
+        if self.of_cells
+            && of_all
+            && !is_region
+            && self.sink.asks_for_data()
+            && self.sink.cell_array(name, components, precision.is_some())
+        {
+            let numbers = self.numbers(cursor, kind, count)?.numbers;
+            self.sink.cell_numbers(numbers, None);
+            return Some(());
+        }
+        if !(self.of_cells && of_all && is_region) {
+            return pass(cursor, self.binary, kind, count).ok();
+        }
+        let name = String::from_utf8_lossy(name).into_owned();
+        let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<Label>);
+        if self.binary {
+            let size = size_of(kind)?;
+            // Real numbers are told apart by their bits, but a negative zero is zero.
+            let negative_zero = precision.map(|_| i64::MIN >> (64 - 8 * size));
+            let positive = |bits: i64| if Some(bits) == negative_zero { 0 } else { bits };
+            let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
+            names.extend(numbers.map(|number| positive(Order::Big.signed(number))));
+            label = label_of(kind);
+        } else {
+            for _ in 0..tuples {
+                cursor.next_word().then_some(())?;
+                let number = cursor.coordinate('r', "a region").ok()?;
+                // Adding zero makes a negative zero positive.
+                names.push((number + 0.0).to_bits().cast_signed());
+            }
+        }
+        self.found.push(Regions { name, names, label });
+        Some(())
+    }
+
+    /// Reads numbers of any type.
+    fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<PointNumbers> {
+        let precision = precision_of(kind);
+        if self.binary {
+            let (size, value) = (size_of(kind)?, value_of(kind));
+            let bytes = take(cursor, count, size).ok()?.chunks_exact(size);
+            let numbers = bytes.map(|number| value(Order::Big.signed(number))).collect();
+            let places = Places::Regular { start: cursor.taken(), stride: size };
+            let stored = precision.and_then(|precision| {
+                Stored::in_place(places, Form::Binary(Order::Big, precision))
+            });
+            return Some(PointNumbers { numbers, nodes: None, stored });
+        }
+        let mut numbers = TextNumbers::default();
+        for _ in 0..count {
+            cursor.next_word().then_some(())?;
+            numbers.read(cursor).ok()?;
+        }
+        let numbers = numbers.finish(precision.unwrap_or_default(), None);
+        Some(PointNumbers { stored: numbers.stored.filter(|_| precision.is_some()), ..numbers })
+    }
+}
+
+/// Returns the precision of numbers of this type, if they are real.
+fn precision_of(kind: &[u8]) -> Option<Precision> {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"float" => Some(Precision::Single),
+        b"double" => Some(Precision::Double),
+        _ => None,
+    }
+}
+
+/// Decodes the bytes of a name that VTK writes as a percent sign and two hexadecimal digits.
+fn decoded(name: &[u8]) -> Cow<'_, [u8]> {
+    if !name.contains(&b'%') {
+        return Cow::Borrowed(name);
+    }
+    let mut decoded = Vec::with_capacity(name.len());
+    let mut left = name;
+    while let Some((&first, rest)) = left.split_first() {
+        let digits = rest.get(..2).and_then(|digits| str::from_utf8(digits).ok());
+        let byte = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        match byte.filter(|_| first == b'%') {
+            Some(byte) => {
+                decoded.push(byte);
+                left = &rest[2..];
+            }
+            None => {
+                decoded.push(first);
+                left = rest;
+            }
+        }
+    }
+    Cow::Owned(decoded)
+}
+
+fn number_of_bits(bits: i64) -> Option<Label> {
+    Some(Label::number(f64::from_bits(bits.cast_unsigned())))
+}
+
+/// Returns a function from the bits of a number of this type, as a signed whole number, to its label.
+fn label_of(kind: &[u8]) -> fn(i64) -> Option<Label> {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"float" => |bits| Some(Label::number(f64::from(f32::from_bits(bits as u32)))),
+        b"double" => number_of_bits,
+        b"unsigned_char" => |number| Some(Label::Tag(number & 0xff)),
+        b"unsigned_short" => |number| Some(Label::Tag(number & 0xffff)),
+        b"unsigned_int" => |number| Some(Label::Tag(number & 0xffff_ffff)),
+        _ => |number| Some(Label::Tag(number)),
+    }
+}
+
+/// Returns a function from the bits of a number of this type, as a signed whole number, to its value.
+fn value_of(kind: &[u8]) -> fn(i64) -> f64 {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"float" => |bits| f64::from(f32::from_bits(bits as u32)),
+        b"double" => |bits| f64::from_bits(bits.cast_unsigned()),
+        b"unsigned_char" => |number| (number & 0xff) as f64,
+        b"unsigned_short" => |number| (number & 0xffff) as f64,
+        b"unsigned_int" => |number| (number & 0xffff_ffff) as f64,
+        b"vtktypeuint64" | b"unsigned_long" => |number| number.cast_unsigned() as f64,
+        _ => |number| number as f64,
+    }
+}

@@ -1,0 +1,308 @@
+//! Lists of cells of a legacy VTK file.
+
+use super::cells::{Cell, Triangles, Tries};
+use super::data::Regions;
+use super::take;
+use crate::binary::order::Order;
+use crate::binary::whole::Whole;
+use crate::error::ReadError;
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::parallel_rows::take_rows;
+use crate::text::token::quoted;
+use crate::visit::records::Region;
+use crate::visit::sink::Sink;
+use std::ops::Range;
+
+/// A list of cells.
+pub(super) struct Cells<'a> {
+    pub(super) count: usize,
+    /// The points of all cells. Without offsets, each cell's number of points stands before its points.
+    numbers: Whole<'a>,
+    /// The start of each cell's points, and the end of the last one's.
+    offsets: Option<Whole<'a>>,
+    /// The type of each cell. `None` for polygonal data.
+    pub(super) types: Option<Whole<'a>>,
+    kind: List,
+    /// The cursor at the first cell.
+    first: Cursor<'a>,
+    /// The bytes of a binary number. `None` for text.
+    width: Option<usize>,
+}
+
+/// The kind of a list of cells.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum List {
+    /// Cells of the types that CELL_TYPES lists.
+    Cells,
+    Polygons,
+    Strips,
+    Lines,
+    /// Points (VERTICES).
+    Others,
+}
+
+/// Reads a list of `count` whole numbers, of `size` bytes each. `None` for text.
+pub(super) fn integers<'a>(
+    cursor: &mut Cursor<'a>,
+    count: u64,
+    size: Option<usize>,
+) -> Result<Whole<'a>, ReadError> {
+    match size {
+        Some(size) => {
+            let bytes = take(cursor, count, size)?;
+            Ok(Whole::binary(bytes.into(), size, Order::Big))
+        }
+        None => {
+            let mut numbers = Whole::with_capacity(cursor.capacity(count, "0 ".len()));
+            if cursor.is_at_end() && cursor.is_long() {
+                whole_rows(cursor, count, &mut numbers);
+            }
+            for done in numbers.len() as u64..count {
+                if !cursor.next_word() {
+                    let problem = format!("the file ends after {done} of {count} numbers");
+                    return Err(cursor.error(problem, CUT_OFF));
+                }
+                numbers.push(cursor.integer("a number")?);
+            }
+            Ok(numbers)
+        }
+    }
+}
+
+/// Reads whole rows of numbers on all threads, as long as they are plain and have no more than `count` numbers in all.
+fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut Whole<'_>) {
+    /// Rows with more numbers than this, or with numbers of more than 32 bits, are left to be read one by one.
+    const MOST: usize = 10;
+    let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MOST], u8), ReadError> {
+        let mut row = ([0; MOST], 0);
+        while !cursor.is_at_end() {
+            let number = u32::try_from(cursor.integer("a number")?).ok();
+            let (Some(number), Some(next)) = (number, row.0.get_mut(usize::from(row.1))) else {
+                return Err(cursor.error("a long row or number", CORRECT));
+            };
+            *next = number;
+            row.1 += 1;
+        }
+        Ok(row)
+    };
+    let done = take_rows(cursor, u64::MAX, read, |(row, length)| {
+        let length = usize::from(length);
+        let fits = numbers.len() as u64 + length as u64 <= count;
+        if fits {
+            row[..length].iter().for_each(|&number| numbers.push(u64::from(number)));
+        }
+        fits
+    });
+    if done > 0 {
+        // The cursor stands on the last row, before its words, which were read.
+        cursor.rest();
+    }
+}
+
+/// Reads a list of cells. Before version 5, it has each cell's number of points and its points. From version 5 on, it
+/// has the offset of each cell and then all points.
+pub(super) fn read<'a>(
+    cursor: &mut Cursor<'a>,
+    binary: bool,
+    kind: List,
+) -> Result<Cells<'a>, ReadError> {
+    let first = cursor.integer("the number of cells")?;
+    let second = cursor.integer("the length of the list of cells")?;
+    let mut ahead = cursor.clone();
+    let by_offsets =
+        ahead.next_row() && ahead.token().is_some_and(|word| word.eq_ignore_ascii_case(b"OFFSETS"));
+    if by_offsets {
+        *cursor = ahead;
+        let size = width(cursor)?;
+        let offsets = integers(cursor, first, binary.then_some(size))?;
+        cursor.row(0, 1, "lists of CONNECTIVITY")?;
+        if !cursor.token().is_some_and(|word| word.eq_ignore_ascii_case(b"CONNECTIVITY")) {
+            return Err(cursor.error("OFFSETS without CONNECTIVITY", CORRECT));
+        }
+        let size = width(cursor)?;
+        let first = start_of(cursor, binary);
+        let numbers = integers(cursor, second, binary.then_some(size))?;
+        let count = offsets.len().saturating_sub(1);
+        if !offsets.is_sorted() || (!offsets.is_empty() && offsets.at(count) > second) {
+            return Err(cursor.error("the OFFSETS do not fit the CONNECTIVITY", CORRECT));
+        }
+        let (offsets, width) = (Some(offsets), binary.then_some(size));
+        return Ok(Cells { count, numbers, offsets, types: None, kind, first, width });
+    }
+    let first_cell = start_of(cursor, binary);
+    let numbers = integers(cursor, second, binary.then_some(4))?;
+    let mut at = 0;
+    for done in 0..first {
+        let corners = if at < numbers.len() { Some(numbers.at(at)) } else { None };
+        match corners {
+            Some(corners) if corners < (numbers.len() - at) as u64 => at += 1 + corners as usize,
+            _ => {
+                let problem = format!("the list ends after {done} of {first} cells");
+                return Err(cursor.error(problem, CORRECT));
+            }
+        }
+    }
+    let (first, count, width) = (first_cell, first as usize, binary.then_some(4));
+    Ok(Cells { count, numbers, offsets: None, types: None, kind, first, width })
+}
+
+/// Returns a cursor at the numbers that are read next.
+fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
+    match binary {
+        true => Cursor::at_byte_of(cursor.source, cursor.at_byte()),
+        false => cursor.clone(),
+    }
+}
+
+/// Returns the size of a number of the type in this row, in bytes.
+fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
+    match cursor.token().unwrap_or_default().to_ascii_lowercase().as_slice() {
+        b"vtktypeint64" | b"vtktypeuint64" | b"vtkidtype" | b"long" => Ok(8),
+        b"vtktypeint32" | b"vtktypeuint32" | b"int" => Ok(4),
+        other => {
+            let problem = format!("whole numbers of the type `{}` are not read", quoted(other));
+            Err(cursor.error(problem, "Save them as vtktypeint32 or vtktypeint64"))
+        }
+    }
+}
+
+impl Cells<'_> {
+    /// Hands the cells to the sink. `tag` is that of the first cell, and becomes that of the next list's first cell.
+    pub(super) fn send(
+        &self,
+        cursor: &Cursor<'_>,
+        regions: &[Regions],
+        tag: &mut u64,
+        sink: &mut dyn Sink,
+    ) -> Result<(), ReadError> {
+        sink.expect_elements(self.count);
+        if self.kind == List::Cells && self.types.is_none() && self.count > 0 {
+            return Err(cursor.error("CELLS without CELL_TYPES", CUT_OFF));
+        }
+        // The location of a cell is found only for a sink that uses it.
+        let mut place = self.first.clone();
+        let mut tries = Tries::NEW;
+        let (mut index, mut end) = (0, 0);
+        let mut points = Vec::new();
+        let first = *tag;
+        while index < self.count {
+            *tag = first + index as u64;
+            let own = self.points(index, end);
+            if own.len() == 3
+                && tries.is_due(index)
+                && let Some(triangles) = self.triangles(index, own.clone(), regions, *tag)
+            {
+                let (taken, last) = triangles.send(sink);
+                tries.done(index, taken);
+                if taken > 0 {
+                    (index, end) = (index + taken, last);
+                    continue;
+                }
+            }
+            points.clear();
+            points.extend(self.numbers.range(own.clone()));
+            let mut region = [0; 2];
+            for (number, regions) in region.iter_mut().zip(regions) {
+                *number = regions.names.get(*tag as usize).copied().unwrap_or(0);
+            }
+            let cell =
+                Cell { tag: *tag, cell_type: self.cell_type(index), points: &points, region };
+            if sink.takes_ahead() {
+                if cell.send(cursor, sink).is_err() {
+                    self.stand_before(&mut place, index);
+                    return cell.send(&place, sink);
+                }
+            } else {
+                self.stand(&mut place);
+                cell.send(&place, sink)?;
+                self.pass(&mut place, own.len());
+            }
+            (index, end) = (index + 1, own.end);
+        }
+        *tag = first + self.count as u64;
+        Ok(())
+    }
+
+    /// Returns the triangles from a cell of three points on.
+    fn triangles<'c>(
+        &'c self,
+        index: usize,
+        own: Range<usize>,
+        regions: &'c [Regions],
+        tag: u64,
+    ) -> Option<Triangles<'c>> {
+        let types = match (&self.types, self.kind) {
+            (Some(types), _) => Some(types.field(index, 1)),
+            (None, List::Polygons) => None,
+            _ => return None,
+        };
+        let mut of = [Region::Same(0); 2];
+        for (region, regions) in of.iter_mut().zip(regions) {
+            *region = Region::List(regions.names.get(tag as usize..).unwrap_or_default());
+        }
+        Some(Triangles {
+            count: self.count - index,
+            numbers: &self.numbers,
+            own,
+            ends: self.offsets.as_ref().map(|offsets| offsets.field(index + 1, 1)),
+            types,
+            points: (0, u64::MAX),
+            regions: of,
+        })
+    }
+
+    /// Returns the range of a cell's points. `end` is the end of the previous cell's points.
+    fn points(&self, index: usize, end: usize) -> Range<usize> {
+        match &self.offsets {
+            Some(offsets) => offsets.at(index) as usize..offsets.at(index + 1) as usize,
+            None => end + 1..end + 1 + self.numbers.at(end) as usize,
+        }
+    }
+
+    /// Returns the type of a cell. Polygonal data has no types; its lists are of polygons, strips, lines and points.
+    fn cell_type(&self, index: usize) -> u64 {
+        match (&self.types, self.kind) {
+            (Some(types), _) => types.at(index),
+            (None, List::Polygons) => 7,
+            (None, List::Strips) => 6,
+            // A polyline, and a group of points.
+            (None, List::Lines) => 4,
+            (None, _) => 2,
+        }
+    }
+
+    /// Moves from the first cell to another one.
+    #[cold]
+    fn stand_before(&self, place: &mut Cursor<'_>, index: usize) {
+        let mut end = 0;
+        for before in 0..index {
+            let points = self.points(before, end);
+            self.pass(place, points.len());
+            end = points.end;
+        }
+        self.stand(place);
+    }
+
+    /// Moves to the start of the next cell, over blanks in text.
+    fn stand(&self, place: &mut Cursor<'_>) {
+        if self.width.is_none() {
+            place.next_word();
+        }
+    }
+
+    /// Moves from the start of a cell with this many points to its end.
+    fn pass(&self, place: &mut Cursor<'_>, points: usize) {
+        let numbers = points + usize::from(self.offsets.is_none());
+        match self.width {
+            Some(width) => {
+                *place = Cursor::at_byte_of(place.source, place.taken() + numbers * width)
+            }
+            None => {
+                for _ in 0..numbers {
+                    place.next_word();
+                    place.token();
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! VTK's legacy `.vtk`: unstructured grids and polygonal data, as text and in binary.
+//!
+//! The format: <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>, versions 1.0 to 5.1. Binary
+//! numbers are big-endian. Points of the type `float` have single precision in text too, as VTK reads them so. Arrays
+//! that name the cells' regions are read with the mesh, other data when they are asked for.
+
+mod cells;
+mod data;
+mod lists;
+mod passed;
+
+pub(crate) use cells::{Cell, Triangles, Tries};
+pub(crate) use data::names_regions;
+
+use crate::binary::number_field::Field;
+use crate::binary::order::Order;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Numbers};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::precision::Precision;
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
+use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Layout, Sink, Walk, each_row};
+use data::Regions;
+use lists::{Cells, List};
+
+pub(crate) struct Vtk;
+
+impl Walk for Vtk {
+    const VERTICES: &'static str = "POINTS";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let cursor = &mut Cursor::new(source);
+        cursor.line();
+        cursor.line();
+        cursor.row(0, 1, "lines that say ASCII or BINARY")?;
+        let binary = match cursor.token().unwrap_or_default() {
+            b"ASCII" | b"ascii" => false,
+            b"BINARY" | b"binary" => true,
+            other => {
+                let problem = format!("`{}` is neither ASCII nor BINARY", quoted(other));
+                return Err(cursor.error(problem, CORRECT));
+            }
+        };
+        let mut cells: Vec<Cells<'_>> = Vec::new();
+        let mut precision = None;
+        let mut heights = None;
+        let mut regions: Vec<Regions> = Vec::new();
+        while cursor.next_word() {
+            // VTK ignores the case of keywords.
+            let keyword = cursor.token().unwrap_or_default().to_ascii_uppercase();
+            match keyword.as_slice() {
+                b"DATASET" => dataset(cursor)?,
+                b"POINTS" => {
+                    if precision.is_some() {
+                        let problem = "this is the second list of POINTS";
+                        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                    }
+                    let mut seen = Heights::new(sink);
+                    precision = Some(points(cursor, binary, &mut seen, sink)?);
+                    heights = Some(seen);
+                }
+                b"CELLS" | b"POLYGONS" | b"LINES" | b"VERTICES" | b"TRIANGLE_STRIPS" => {
+                    let kind = match keyword.as_slice() {
+                        b"CELLS" => List::Cells,
+                        b"POLYGONS" => List::Polygons,
+                        b"TRIANGLE_STRIPS" => List::Strips,
+                        b"LINES" => List::Lines,
+                        _ => List::Others,
+                    };
+                    cells.push(lists::read(cursor, binary, kind)?);
+                }
+                b"CELL_TYPES" => {
+                    let count = cursor.integer("the number of cell types")?;
+                    let types = Some(lists::integers(cursor, count, binary.then_some(4))?);
+                    match cells.last_mut() {
+                        Some(cells) if cells.count as u64 == count => cells.types = types,
+                        _ => {
+                            let problem = format!(
+                                "the number of cell types, {count}, is not the number of cells"
+                            );
+                            return Err(cursor.error(problem, CORRECT));
+                        }
+                    }
+                }
+                b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
+                b"FIELD" => {
+                    sink.leaves_out("field data");
+                    passed::pass_field(cursor, binary)?;
+                }
+                // Data of points and cells go on to the end of the file.
+                b"POINT_DATA" | b"CELL_DATA" => {
+                    regions = data::regions(cursor, binary, &keyword, sink);
+                    break;
+                }
+                other => {
+                    let problem = format!("the keyword `{}` is not known here", quoted(other));
+                    return Err(cursor.error(problem, "Save as an unstructured grid"));
+                }
+            }
+        }
+        let Some(precision) = precision else {
+            return Err(source.error("it has no POINTS", "Save the mesh again"));
+        };
+        sink.end_nodes(cursor)?;
+        if let Some(heights) = heights {
+            let form = match binary {
+                true => Form::Binary(Order::Big, precision),
+                false => Form::Text(precision),
+            };
+            heights.send("z", form, sink);
+        }
+        sink.columns(regions.iter().map(Regions::column).collect());
+        let mut tag = 0;
+        for cells in &cells {
+            cells.send(cursor, &regions, &mut tag, sink)?;
+        }
+        let (format, numbers) = match binary {
+            false => (Format::Vtk, Numbers::Text { precision }),
+            true => (Format::VtkBinary, Numbers::adjacent(Order::Big, precision)),
+        };
+        Ok(Layout::in_place(format, numbers))
+    }
+}
+
+fn dataset(cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
+    let kind = cursor.token().unwrap_or_default();
+    match kind.to_ascii_uppercase().as_slice() {
+        b"UNSTRUCTURED_GRID" | b"POLYDATA" => Ok(()),
+        other => {
+            let problem = format!("a dataset of the kind {} has no triangles", quoted(other));
+            Err(cursor.error(problem, "Save as an unstructured grid (UNSTRUCTURED_GRID)"))
+        }
+    }
+}
+
+/// Reads the points, of three coordinates each. Returns their precision.
+fn points(
+    cursor: &mut Cursor<'_>,
+    binary: bool,
+    heights: &mut Heights,
+    sink: &mut dyn Sink,
+) -> Result<Precision, ReadError> {
+    let count = cursor.vertex_count()?;
+    let precision = match cursor.token().unwrap_or_default().to_ascii_lowercase().as_slice() {
+        b"float" => Precision::Single,
+        b"double" => Precision::Double,
+        other => {
+            let problem = format!("points are of the type `{}`", quoted(other));
+            return Err(cursor.error(problem, "Points of the types float and double are read"));
+        }
+    };
+    if binary {
+        let width = precision.bytes();
+        let bytes = take(cursor, count, 3 * width)?;
+        let start = cursor.taken();
+        let count = bytes.len() / (3 * width);
+        sink.expect_nodes(count);
+        let [x, y, z] = [0, 1, 2]
+            .map(|axis| Field::new(bytes.get(axis * width..), (3 * width, width), Order::Big));
+        let tags = Tags::From(0);
+        let taken = sink.node_records(&NodeRecords { count, x, y, x_at: start, tags });
+        heights.see_all(z, taken, start + 2 * width);
+        for (index, point) in bytes.chunks_exact(3 * width).enumerate().skip(taken) {
+            let [x, y, z] = [0, 1, 2].map(|axis| {
+                let number = &point[axis * width..][..width];
+                Order::Big.real(precision, number)
+            });
+            let x_at = start + index * 3 * width;
+            let place = &Cursor::at_byte_of(cursor.source, x_at);
+            sink.node(place, index as u64, 2, x_at, finite(place, [x, y])?);
+            heights.see((x_at + 2 * width, z));
+        }
+        return Ok(precision);
+    }
+    sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
+    // If points are not one in each row, their numbers may be broken into lines anywhere, and the first may stand on the
+    // line of the keyword.
+    let mut rest = cursor.clone();
+    let mut done = 0;
+    let in_rows = if cursor.is_at_end() { count } else { 0 };
+    let plain = each_row(
+        cursor,
+        in_rows,
+        "points",
+        sink,
+        |cursor| {
+            let point = cursor.point("a point")?;
+            let z = cursor.height("a point")?;
+            match cursor.is_at_end() {
+                true => Ok((point, z)),
+                false => Err(cursor.error("more than a point on a line", CORRECT)),
+            }
+        },
+        |cursor, sink, index, ((x_at, at), z)| {
+            sink.node(cursor, index, 2, x_at, at);
+            heights.see(z);
+            done = index + 1;
+            Ok(())
+        },
+    );
+    if plain.is_ok() && in_rows == count {
+        return Ok(precision);
+    }
+    for index in 0..count {
+        let mut places = [0; 3];
+        let mut point = [0.0; 3];
+        for (axis, x) in point.iter_mut().enumerate() {
+            if !rest.next_word() {
+                let problem = format!("the file ends after {index} of {count} points");
+                return Err(rest.error(problem, CUT_OFF));
+            }
+            places[axis] = rest.at();
+            *x = rest.coordinate(['x', 'y', 'z'][axis], format_args!("point {index}"))?;
+        }
+        if index >= done {
+            sink.node(&rest, index, 2, places[0], [point[0], point[1]]);
+            heights.see((places[2], point[2]));
+        }
+    }
+    *cursor = rest;
+    Ok(precision)
+}
+
+fn finite(cursor: &Cursor<'_>, point: [f64; 2]) -> Result<[f64; 2], ReadError> {
+    match point.iter().all(|x| x.is_finite()) {
+        true => Ok(point),
+        false => Err(cursor.error("a coordinate is not a finite number", "Write the mesh again")),
+    }
+}
+
+/// Takes `count` items of `size` bytes. The line that announced them must be read to its end.
+fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Result<&'a [u8], ReadError> {
+    let bytes = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
+    let problem = format!("the file ends before {count} items of {size} bytes");
+    match bytes {
+        None => Err(cursor.error(problem, CUT_OFF)),
+        Some(bytes) => {
+            let start = cursor.clone();
+            cursor.take(bytes).ok_or_else(|| start.error(problem, CUT_OFF))
+        }
+    }
+}

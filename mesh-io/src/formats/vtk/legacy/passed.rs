@@ -1,0 +1,95 @@
+//! Skips arrays of a legacy VTK file.
+
+use crate::error::ReadError;
+use crate::formats::vtk::legacy::take;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::token::quoted;
+
+/// Skips an array of `count` numbers, bits or strings.
+pub(super) fn pass(
+    cursor: &mut Cursor<'_>,
+    binary: bool,
+    kind: &[u8],
+    count: u64,
+) -> Result<(), ReadError> {
+    let kind = kind.to_ascii_lowercase();
+    match (kind.as_slice(), binary) {
+        (b"string" | b"utf8_string", true) => strings(cursor, count),
+        // One string in each line, which may be empty.
+        (b"string" | b"utf8_string", false) => each(cursor, count, |c| c.line().is_some()),
+        (_, false) => each(cursor, count, |c| c.next_word() && c.token().is_some()),
+        (b"bit", true) => take(cursor, count.div_ceil(8), 1).map(|_| ()),
+        (kind, true) => match size_of(kind) {
+            Some(size) => take(cursor, count, size).map(|_| ()),
+            None => {
+                let problem = format!("an array of the type `{}` is not read", quoted(kind));
+                Err(cursor.error(problem, "Save without this array"))
+            }
+        },
+    }
+}
+
+fn each<'a>(
+    cursor: &mut Cursor<'a>,
+    count: u64,
+    mut passes: impl FnMut(&mut Cursor<'a>) -> bool,
+) -> Result<(), ReadError> {
+    match (0..count).all(|_| passes(cursor)) {
+        true => Ok(()),
+        false => Err(cursor.error("the file ends within an array", CUT_OFF)),
+    }
+}
+
+/// Skips binary strings. Each has its length before it, whose first two bits give the bytes of the length.
+fn strings(cursor: &mut Cursor<'_>, count: u64) -> Result<(), ReadError> {
+    for _ in 0..count {
+        let first = take(cursor, 1, 1)?[0];
+        let more = [7, 3, 1, 0][usize::from(first >> 6)];
+        let length = take(cursor, more, 1)?;
+        let append = |length: u64, &byte: &u8| length << 8 | u64::from(byte);
+        let length = length.iter().fold(u64::from(first & 0x3F), append);
+        take(cursor, length, 1)?;
+    }
+    Ok(())
+}
+
+/// Returns the bytes of a number of this type.
+pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
+    match kind.to_ascii_lowercase().as_slice() {
+        b"char" | b"unsigned_char" | b"signed_char" => Some(1),
+        b"short" | b"unsigned_short" => Some(2),
+        b"int" | b"unsigned_int" | b"float" | b"vtktypeint32" => Some(4),
+        b"double" | b"long" | b"unsigned_long" | b"vtkidtype" | b"vtktypeint64"
+        | b"vtktypeuint64" => Some(8),
+        _ => None,
+    }
+}
+
+/// Reads the name of an array, after skipping the metadata of the array before.
+pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
+    loop {
+        let name = cursor.token()?;
+        if !name.eq_ignore_ascii_case(b"METADATA") {
+            return Some(name);
+        }
+        while cursor.line().is_some_and(|line| !line.is_empty()) {}
+        cursor.next_row().then_some(())?;
+    }
+}
+
+/// Skips the arrays of a field of the dataset.
+pub(super) fn pass_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
+    cursor.token();
+    let arrays = cursor.integer("the number of arrays of a field")?;
+    for done in 0..arrays {
+        cursor.row(done, arrays, "arrays of a field")?;
+        if array_name(cursor).is_none() {
+            return Err(cursor.error("the file ends within a field", CUT_OFF));
+        }
+        let components = cursor.integer("the number of components")?;
+        let tuples = cursor.integer("the number of tuples")?;
+        let kind = cursor.token().unwrap_or_default();
+        pass(cursor, binary, kind, components.saturating_mul(tuples))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,226 @@
+//! Writes VTK's formats: the legacy `.vtk` as text, and `.vtu` with arrays in base64.
+
+use crate::export::content::Data;
+use crate::export::job::Job;
+use crate::export::put;
+use crate::visit::sink::Kind;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use std::fmt::Write;
+
+/// Returns VTK's number for a kind of element.
+fn kind_of(kind: Kind) -> u8 {
+    match kind {
+        Kind::Point => 1,
+        Kind::Line => 3,
+        Kind::Triangle => 5,
+        Kind::Corner => 7,
+        Kind::Quadrilateral => 9,
+    }
+}
+
+/// Returns the name that an array usually has for a kind of group.
+fn array_name(what: &str) -> &str {
+    match what {
+        "physical" => "gmsh:physical",
+        "entity" => "gmsh:geometrical",
+        "reference" | "label" => "medit:ref",
+        "material" => "MaterialIDs",
+        "attribute" => "region",
+        "zone" => "domain",
+        "marker" | "boundary" | "nodestring" | "list" => "cell_tags",
+        other => other,
+    }
+}
+
+/// An array to be written, of real or whole numbers.
+pub(crate) struct Array {
+    pub(crate) name: String,
+    pub(crate) components: usize,
+    pub(crate) numbers: Numbers,
+}
+
+pub(crate) enum Numbers {
+    Real(Vec<f64>),
+    Whole(Vec<i64>),
+}
+
+impl Array {
+    fn of(data: &Data, places: Option<&[usize]>) -> Array {
+        let each = data.components;
+        let values: Vec<f64> = match places {
+            None => data.values.clone(),
+            Some(places) => {
+                let of = |&place: &usize| data.values[place * each..(place + 1) * each].to_vec();
+                places.iter().flat_map(of).collect()
+            }
+        };
+        let is_whole = !data.is_real && values.iter().all(|value| value.is_finite());
+        let numbers = match is_whole {
+            true => Numbers::Whole(values.into_iter().map(|value| value as i64).collect()),
+            false => Numbers::Real(values),
+        };
+        Array { name: data.name.clone(), components: each, numbers }
+    }
+
+    fn whole(name: &str, numbers: Vec<i64>) -> Array {
+        Array { name: name.to_owned(), components: 1, numbers: Numbers::Whole(numbers) }
+    }
+}
+
+/// Makes the arrays of the vertices.
+pub(crate) fn of_points(job: &Job<'_>) -> Vec<Array> {
+    let mut arrays: Vec<Array> = job.point_data().map(|data| Array::of(data, None)).collect();
+    if !job.content.vertex_groups.is_empty() {
+        let what = &job.content.vertex_groups[0].0.what;
+        arrays.push(Array::whole(array_name(what), job.vertex_tags()));
+    }
+    arrays
+}
+
+/// Makes the arrays of the cells: one for each kind of group, and the data.
+pub(crate) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
+    let mut whats: Vec<&str> = Vec::new();
+    for what in (0..3).rev().flat_map(|dimension| job.content.whats(dimension)) {
+        if !whats.contains(&what) {
+            whats.push(what);
+        }
+    }
+    // The order of the usual arrays is always the same.
+    const FIRST: [&str; 5] =
+        ["gmsh:physical", "gmsh:geometrical", "medit:ref", "MaterialIDs", "region"];
+    whats.sort_by_key(|what| {
+        FIRST.iter().position(|first| *first == array_name(what)).unwrap_or(FIRST.len())
+    });
+    let mut arrays: Vec<Array> = Vec::new();
+    for what in whats {
+        let column = job.content.column(what);
+        let tag = |&cell: &usize| column[cell].map_or(0, |group| job.tags.number(group));
+        let usual = array_name(what);
+        let is_taken = arrays.iter().any(|array| array.name == usual);
+        let name = if is_taken { what } else { usual };
+        arrays.push(Array::whole(name, cells.iter().map(tag).collect()));
+    }
+    arrays.extend(job.cell_data().map(|data| Array::of(data, Some(cells))));
+    arrays
+}
+
+pub(crate) fn write_legacy(job: &Job<'_>) -> String {
+    let content = job.content;
+    let cells: Vec<usize> = job.cells().collect();
+    let mut out =
+        "# vtk DataFile Version 4.2\nwritten by gpu-smooth\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+            .to_owned();
+    put!(out, "POINTS {} double\n", content.points.len());
+    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    let numbers: usize = cells.iter().map(|&cell| 1 + content.cells.of(cell).len()).sum();
+    put!(out, "CELLS {} {numbers}\n", cells.len());
+    for &cell in &cells {
+        put!(out, "{} {}\n", content.cells.of(cell).len(), job.places(cell, 0));
+    }
+    put!(out, "CELL_TYPES {}\n", cells.len());
+    cells.iter().for_each(|&cell| put!(out, "{}\n", kind_of(content.cells.kinds[cell])));
+    for (keyword, count, arrays) in [
+        ("CELL_DATA", cells.len(), of_cells(job, &cells)),
+        ("POINT_DATA", content.points.len(), of_points(job)),
+    ] {
+        if arrays.is_empty() {
+            continue;
+        }
+        put!(out, "{keyword} {count}\nFIELD FieldData {}\n", arrays.len());
+        for Array { name, components, numbers } in arrays {
+            let (kind, words): (_, Vec<String>) = match numbers {
+                Numbers::Real(numbers) => {
+                    ("double", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
+                }
+                Numbers::Whole(numbers) => {
+                    let small = numbers.iter().all(|&number| i32::try_from(number).is_ok());
+                    let kind = if small { "int" } else { "long" };
+                    (kind, numbers.iter().map(i64::to_string).collect())
+                }
+            };
+            put!(out, "{} {components} {count} {kind}\n", encoded(&name));
+            for row in words.chunks(components.max(1)) {
+                put!(out, "{}\n", row.join(" "));
+            }
+        }
+    }
+    out
+}
+
+/// Encodes a name as one word, as VTK does.
+fn encoded(name: &str) -> String {
+    let mut encoded = String::new();
+    for byte in name.bytes() {
+        match byte {
+            b'!'..=b'~' if !matches!(byte, b'"' | b'%') => encoded.push(char::from(byte)),
+            _ => put!(encoded, "%{byte:02X}"),
+        }
+    }
+    encoded
+}
+
+pub(crate) fn write_xml(job: &Job<'_>) -> String {
+    let content = job.content;
+    let cells: Vec<usize> = job.cells().collect();
+    let mut out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+                   byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
+        .to_owned();
+    let (points, count) = (content.points.len(), cells.len());
+    put!(out, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{count}\">\n");
+    let at = |vertex: usize| {
+        let [x, y] = content.points[vertex];
+        [x, y, content.z(vertex)]
+    };
+    let coordinates = Array {
+        name: "Points".into(),
+        components: 3,
+        numbers: Numbers::Real((0..points).flat_map(at).collect()),
+    };
+    let connectivity = cells.iter().flat_map(|&cell| content.cells.of(cell));
+    let connectivity = connectivity.map(|&vertex| i64::from(vertex)).collect();
+    let mut end = 0;
+    let ends = cells.iter().map(|&cell| {
+        end += content.cells.of(cell).len() as i64;
+        end
+    });
+    let ends = ends.collect();
+    let types = cells.iter().map(|&cell| i64::from(kind_of(content.cells.kinds[cell]))).collect();
+    let sections = [
+        ("PointData", of_points(job)),
+        ("CellData", of_cells(job, &cells)),
+        ("Points", vec![coordinates]),
+        (
+            "Cells",
+            vec![
+                Array::whole("connectivity", connectivity),
+                Array::whole("offsets", ends),
+                Array::whole("types", types),
+            ],
+        ),
+    ];
+    for (section, arrays) in sections {
+        put!(out, "<{section}>\n");
+        for Array { name, components, numbers } in arrays {
+            let (kind, bytes): (_, Vec<u8>) = match numbers {
+                Numbers::Real(numbers) => {
+                    ("Float64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
+                }
+                Numbers::Whole(numbers) => {
+                    ("Int64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
+                }
+            };
+            let length = (bytes.len() as u64).to_le_bytes();
+            let text = STANDARD.encode([&length[..], &bytes].concat());
+            let name = quick_xml::escape::escape(&name);
+            put!(
+                out,
+                "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+                 format=\"binary\">\n{text}\n</DataArray>\n"
+            );
+        }
+        put!(out, "</{section}>\n");
+    }
+    out.push_str("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+    out
+}

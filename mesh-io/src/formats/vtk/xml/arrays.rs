@@ -1,0 +1,186 @@
+//! Reads arrays of a VTK XML file as numbers.
+
+use super::blocks::{Unwrapped, Wrapping};
+use super::document::{Array, Coding, Document};
+use super::encoding::Encoding;
+use crate::binary::whole::Whole;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Form, Offset, Places};
+use crate::error::{Location, ReadError};
+use crate::precision::Precision;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::token::quoted;
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Home, PointNumbers, Stored};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A file, with the content of its tags.
+pub(super) struct File<'a> {
+    pub(super) source: &'a Source,
+    pub(super) document: Document,
+    pub(super) offsets: Arc<[Offset]>,
+}
+
+impl File<'_> {
+    /// Returns the array of a section of a piece. `name` is needed if the section has several.
+    pub(super) fn array(
+        &self,
+        piece: usize,
+        section: &str,
+        name: Option<&str>,
+    ) -> Result<&Array, ReadError> {
+        let fits = |array: &&Array| {
+            array.piece == piece
+                && array.section == section
+                && name.is_none_or(|name| array.name.eq_ignore_ascii_case(name))
+        };
+        self.document.arrays.iter().find(fits).ok_or_else(|| {
+            let name = name.unwrap_or(section);
+            self.source.error(format!("it has no array of {name}"), CUT_OFF)
+        })
+    }
+
+    #[cold]
+    pub(super) fn damaged(&self, array: &Array) -> ReadError {
+        let place = Location::Line(self.source.line_of(array.at));
+        let problem = format!("the array {} is damaged or cut off", quoted(array.name.as_bytes()));
+        self.source.error_at(place, problem, CUT_OFF)
+    }
+
+    /// Decodes an array. Returns its wrapping, its bytes, and their range in the file.
+    pub(super) fn unwrap(
+        &self,
+        array: &Array,
+    ) -> Result<(Wrapping, Unwrapped<'_>, Range<usize>), ReadError> {
+        let Document { order, header, compressor, appended, .. } = self.document;
+        let wrapping = |base64| Wrapping { order, header, compressor, base64 };
+        let (wrapping, start, end) = match (&array.offset, appended) {
+            (Some((offset, _)), Some(appended)) => {
+                let start = appended.start.saturating_add(*offset);
+                (wrapping(appended.base64), start, self.source.bytes.len())
+            }
+            (Some(_), None) => return Err(self.damaged(array)),
+            (None, _) => {
+                let content = &self.source.bytes[array.content.clone()];
+                let blanks = content.iter().take_while(|&&byte| byte <= b' ').count();
+                (wrapping(true), array.content.start + blanks, array.content.end)
+            }
+        };
+        let found = self.source.bytes.get(start..end).and_then(|input| wrapping.unwrap(input));
+        let found = found.ok_or_else(|| self.damaged(array))?;
+        let range = start..start + found.taken;
+        Ok((wrapping, found, range))
+    }
+
+    /// Reads the whole numbers of an array as unsigned.
+    pub(super) fn integers(&self, array: &Array) -> Result<Whole<'_>, ReadError> {
+        if array.format == Coding::Ascii {
+            let mut numbers = Whole::with_capacity(array.content.len() / 8);
+            let cursor = &mut Cursor::within(self.source, array.content.clone());
+            while cursor.next_word() {
+                numbers.push(cursor.integer("a number")?);
+            }
+            return Ok(numbers);
+        }
+        let (wrapping, found, _) = self.unwrap(array)?;
+        let size = self.size_of_integer(array)?;
+        Ok(Whole::binary(found.bytes, size, wrapping.order))
+    }
+
+    /// Reads the whole numbers of an array as signed.
+    pub(super) fn signed_integers(&self, array: &Array) -> Result<Vec<i64>, ReadError> {
+        if array.format == Coding::Ascii {
+            return self.words(array, |cursor| cursor.signed("a number"));
+        }
+        if array.number.starts_with('U') {
+            let numbers = self.integers(array)?;
+            return Ok(numbers.range(0..numbers.len()).map(u64::cast_signed).collect());
+        }
+        let (wrapping, found, _) = self.unwrap(array)?;
+        let size = self.size_of_integer(array)?;
+        Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.signed(number)).collect())
+    }
+
+    /// Reads the numbers of an array of any type.
+    pub(super) fn numbers(&self, array: &Array) -> Result<PointNumbers, ReadError> {
+        let precision = precision_of(array);
+        if array.format == Coding::Ascii {
+            let cursor = &mut Cursor::within(self.source, array.content.clone());
+            let mut numbers = TextNumbers::default();
+            while cursor.next_word() {
+                numbers.read(cursor)?;
+            }
+            let numbers = numbers.finish(precision.unwrap_or_default(), None);
+            let stored = numbers.stored.filter(|_| precision.is_some());
+            return Ok(PointNumbers { stored, ..numbers });
+        }
+        let Some(precision) = precision else {
+            let numbers: Vec<f64> = match array.number.starts_with('U') {
+                true => {
+                    let numbers = self.integers(array)?;
+                    numbers.range(0..numbers.len()).map(|number| number as f64).collect()
+                }
+                false => {
+                    self.signed_integers(array)?.into_iter().map(|number| number as f64).collect()
+                }
+            };
+            return Ok(PointNumbers { numbers, nodes: None, stored: None });
+        };
+        let (wrapping, old, range) = self.unwrap(array)?;
+        let stride = precision.bytes();
+        let numbers = old.bytes.chunks_exact(stride);
+        let numbers = numbers.map(|number| wrapping.order.real(precision, number)).collect();
+        let form = Form::Binary(wrapping.order, precision);
+        // Raw bytes can be replaced in place. All others are encoded again.
+        let (start, home) = match !wrapping.base64 && wrapping.compressor.is_none() {
+            true => (range.end - old.bytes.len(), Home::File),
+            false => {
+                let offsets = Arc::clone(&self.offsets);
+                (0, Home::Encoded(Arc::new(Encoding::new(vec![(wrapping, old, range)], offsets))))
+            }
+        };
+        let places = Places::Regular { start, stride };
+        let stored = Some(Stored { places, form, home, part: 0 });
+        Ok(PointNumbers { numbers, nodes: None, stored })
+    }
+
+    /// Reads the words of an array of text.
+    fn words<T>(
+        &self,
+        array: &Array,
+        read: impl Fn(&mut Cursor<'_>) -> Result<T, ReadError>,
+    ) -> Result<Vec<T>, ReadError> {
+        let cursor = &mut Cursor::within(self.source, array.content.clone());
+        let mut words = Vec::new();
+        while cursor.next_word() {
+            words.push(read(cursor)?);
+        }
+        Ok(words)
+    }
+
+    /// Returns the bytes of a whole number of an array.
+    fn size_of_integer(&self, array: &Array) -> Result<usize, ReadError> {
+        match array.number.as_str() {
+            "Int8" | "UInt8" => Ok(1),
+            "Int16" | "UInt16" => Ok(2),
+            "Int32" | "UInt32" => Ok(4),
+            "Int64" | "UInt64" => Ok(8),
+            other => {
+                let place = Location::Line(self.source.line_of(array.at));
+                let problem =
+                    format!("whole numbers of the type {} are not read", quoted(other.as_bytes()));
+                Err(self.source.error_at(place, problem, "Save the mesh again"))
+            }
+        }
+    }
+}
+
+/// Returns the precision of an array's numbers, if they are real.
+pub(super) fn precision_of(array: &Array) -> Option<Precision> {
+    match array.number.as_str() {
+        "Float32" => Some(Precision::Single),
+        "Float64" => Some(Precision::Double),
+        _ => None,
+    }
+}

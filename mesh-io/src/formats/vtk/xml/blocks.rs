@@ -1,0 +1,255 @@
+//! Decodes and encodes arrays of a VTK XML file: base64, and compressed blocks.
+
+use crate::binary::order::Order;
+use crate::parallel::map_parts;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::read::{ZlibDecoder, ZlibEncoder};
+use std::borrow::Cow;
+use std::io::Read;
+
+/// The compression of blocks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Compressor {
+    Zlib,
+    Lz4,
+}
+
+/// How the bytes of an array are encoded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wrapping {
+    pub(super) order: Order,
+    /// The bytes of a number in the header.
+    pub(super) header: usize,
+    pub(super) compressor: Option<Compressor>,
+    pub(super) base64: bool,
+}
+
+/// A decoded array, with what is needed to encode it again.
+pub(super) struct Unwrapped<'a> {
+    /// The decoded bytes; those of the file itself, if they are not encoded.
+    pub(super) bytes: Cow<'a, [u8]>,
+    /// How many bytes of the file the array takes.
+    pub(super) taken: usize,
+    /// The size of a block before compression; 0 without blocks.
+    block: usize,
+    /// Whether an uncompressed array has its length in a base64 text of its own.
+    header_apart: bool,
+}
+
+impl<'a> Unwrapped<'a> {
+    /// Separates the bytes from the rest.
+    pub(super) fn split(self) -> (Cow<'a, [u8]>, Unwrapped<'static>) {
+        let Unwrapped { bytes, taken, block, header_apart } = self;
+        (bytes, Unwrapped { bytes: Cow::default(), taken, block, header_apart })
+    }
+}
+
+/// The most bytes that one compressed byte may stand for. No compressor reaches this, so counts beyond it are wrong.
+const MOST: usize = 1100;
+
+impl Wrapping {
+    /// Decodes the array at the start of `input`. `None` if it is damaged or ends too early.
+    pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
+        match self.compressor {
+            None => self.unwrap_plain(input),
+            Some(compressor) => self.unwrap_compressed(compressor, input),
+        }
+    }
+
+    fn unwrap_plain<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
+        if !self.base64 {
+            let length = self.number(input.get(..self.header)?)?;
+            let bytes = input.get(self.header..)?.get(..length)?.into();
+            let taken = self.header + length;
+            return Some(Unwrapped { bytes, taken, block: 0, header_apart: false });
+        }
+        let apart = encoded(self.header);
+        // The padding of a header that is encoded alone. With a few bytes after it, there is less padding.
+        let padding = 3 - self.header % 3;
+        let header_apart = input.get(apart - padding..apart)? == &b"=="[..padding];
+        let first = decode(input.get(..apart)?)?;
+        let length = self.number(first.get(..self.header)?)?;
+        let (mut bytes, taken) = match header_apart {
+            true => (decode(input.get(apart..)?.get(..encoded(length))?)?, apart + encoded(length)),
+            false => {
+                let taken = encoded(self.header.checked_add(length)?);
+                (decode(input.get(..taken)?)?.split_off(self.header), taken)
+            }
+        };
+        bytes.truncate(length);
+        Some(Unwrapped { bytes: bytes.into(), taken, block: 0, header_apart })
+    }
+
+    fn unwrap_compressed(
+        &self,
+        compressor: Compressor,
+        input: &[u8],
+    ) -> Option<Unwrapped<'static>> {
+        let counts = self.numbers(input, 3)?;
+        let [blocks, size, last] = [counts[0], counts[1], counts[2]];
+        // The header has another number for each block.
+        let counts = self.numbers(input, blocks.checked_add(3)?)?;
+        let header = self.header * counts.len();
+        let compressed: usize = counts[3..].iter().try_fold(0_usize, |a, &b| a.checked_add(b))?;
+        let (content, taken) = match self.base64 {
+            false => {
+                let content = input.get(header..)?.get(..compressed)?;
+                (Cow::Borrowed(content), header + compressed)
+            }
+            true => {
+                let content = input.get(encoded(header)..)?.get(..encoded(compressed))?;
+                (decode(content)?.into(), encoded(header) + encoded(compressed))
+            }
+        };
+        let mut left = content.get(..compressed)?;
+        let mut packed = Vec::with_capacity(blocks);
+        for (index, &length) in counts[3..].iter().enumerate() {
+            let (block, rest) = left.split_at_checked(length)?;
+            left = rest;
+            let expected = if index + 1 == blocks && last > 0 { last } else { size };
+            if expected > length.saturating_mul(MOST) {
+                return None;
+            }
+            packed.push((block, expected));
+        }
+        let unpacked = map_parts(packed, |_, (block, expected)| {
+            let bytes = decompress(compressor, block, expected)?;
+            (bytes.len() == expected).then_some(bytes)
+        });
+        let bytes = unpacked.into_iter().collect::<Option<Vec<_>>>()?.concat();
+        Some(Unwrapped { bytes: bytes.into(), taken, block: size, header_apart: true })
+    }
+
+    /// Encodes new bytes as those of `old` were encoded.
+    pub(super) fn wrap(&self, old: &Unwrapped<'_>, bytes: &[u8]) -> Vec<u8> {
+        let Some(compressor) = self.compressor else {
+            let header = self.bytes_of(bytes.len());
+            return match (self.base64, old.header_apart) {
+                (false, _) => [header.as_slice(), bytes].concat(),
+                (true, false) => STANDARD.encode([header.as_slice(), bytes].concat()).into_bytes(),
+                (true, true) => (STANDARD.encode(header) + &STANDARD.encode(bytes)).into_bytes(),
+            };
+        };
+        let size = old.block.max(1);
+        let blocks = map_parts(bytes.chunks(size), |_, block| compress(compressor, block));
+        let last = bytes.len() % size;
+        let counts = [blocks.len(), old.block, last];
+        let counts = counts.into_iter().chain(blocks.iter().map(Vec::len));
+        let header: Vec<u8> = counts.flat_map(|count| self.bytes_of(count)).collect();
+        match self.base64 {
+            false => [header, blocks.concat()].concat(),
+            true => (STANDARD.encode(header) + &STANDARD.encode(blocks.concat())).into_bytes(),
+        }
+    }
+
+    /// Reads the first `count` numbers of a header that is encoded alone.
+    fn numbers(&self, input: &[u8], count: usize) -> Option<Vec<usize>> {
+        let length = count.checked_mul(self.header)?;
+        let decoded;
+        let bytes = match self.base64 {
+            false => input.get(..length)?,
+            true => {
+                decoded = decode(input.get(..encoded(length))?)?;
+                decoded.get(..length)?
+            }
+        };
+        bytes.chunks_exact(self.header).map(|number| self.number(number)).collect()
+    }
+
+    fn number(&self, bytes: &[u8]) -> Option<usize> {
+        usize::try_from(self.order.whole(bytes)).ok()
+    }
+
+    fn bytes_of(&self, number: usize) -> Vec<u8> {
+        let number = number as u64;
+        match self.order {
+            Order::Big => number.to_be_bytes()[8 - self.header..].to_vec(),
+            Order::Little => number.to_le_bytes()[..self.header].to_vec(),
+        }
+    }
+}
+
+/// Returns the length of this many bytes in base64.
+fn encoded(bytes: usize) -> usize {
+    bytes.div_ceil(3).saturating_mul(4)
+}
+
+/// Decodes base64.
+fn decode(text: &[u8]) -> Option<Vec<u8>> {
+    STANDARD.decode(text).ok()
+}
+
+fn decompress(compressor: Compressor, block: &[u8], expected: usize) -> Option<Vec<u8>> {
+    match compressor {
+        Compressor::Zlib => {
+            let mut bytes = Vec::new();
+            ZlibDecoder::new(block).take(expected as u64).read_to_end(&mut bytes).ok()?;
+            Some(bytes)
+        }
+        Compressor::Lz4 => lz4_flex::block::decompress(block, expected).ok(),
+    }
+}
+
+fn compress(compressor: Compressor, block: &[u8]) -> Vec<u8> {
+    match compressor {
+        Compressor::Zlib => {
+            let mut out = Vec::new();
+            let mut encoder = ZlibEncoder::new(block, Compression::default());
+            encoder.read_to_end(&mut out).expect("memory can be read");
+            out
+        }
+        Compressor::Lz4 => lz4_flex::block::compress(block),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapped_arrays_are_unwrapped_to_the_same_bytes() {
+        let bytes: Vec<u8> = (0..10_007_u32).map(|n| (n * n / 7 % 251) as u8).collect();
+        for order in [Order::Little, Order::Big] {
+            for header in [4, 8] {
+                for base64 in [false, true] {
+                    for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
+                        for header_apart in [false, true] {
+                            let wrapping = Wrapping { order, header, compressor, base64 };
+                            let old = Unwrapped {
+                                bytes: Cow::default(),
+                                taken: 0,
+                                block: 1000,
+                                header_apart,
+                            };
+                            for bytes in [&bytes[..], &bytes[..3000], &bytes[..1]] {
+                                let mut wrapped = wrapping.wrap(&old, bytes);
+                                let length = wrapped.len();
+                                wrapped.extend_from_slice(b"   </DataArray>");
+                                let back = wrapping.unwrap(&wrapped).unwrap();
+                                assert!(back.bytes == bytes, "{wrapping:?} {header_apart}");
+                                assert_eq!(back.taken, length, "{wrapping:?} {header_apart}");
+                                assert!(wrapping.unwrap(&wrapped[..length - 1]).is_none());
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn wrong_lengths_in_a_file_allocate_no_memory() {
+        for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
+            for base64 in [false, true] {
+                let wrapping = Wrapping { order: Order::Little, header: 8, compressor, base64 };
+                for byte in [b'/', b'A', 0xFF, 1] {
+                    assert!(
+                        wrapping.unwrap(&[byte; 64]).is_none_or(|found| found.bytes.len() < 64)
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! The cells and data of a VTK XML file, piece by piece.
+
+use super::arrays::{File, precision_of};
+use super::document::{Array, Content};
+use crate::binary::whole::Whole;
+use crate::error::ReadError;
+use crate::formats::vtk::legacy;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::records::Region;
+use crate::visit::sink::{Column, Sink};
+
+/// The most arrays that tell regions.
+const MOST: usize = 2;
+
+/// The types of the cells of a list.
+enum Types<'a> {
+    /// The same type for all cells.
+    Same(u64),
+    Listed(Whole<'a>),
+}
+
+/// A list of cells of a piece.
+struct List<'a> {
+    connectivity: Whole<'a>,
+    /// The end of each cell's points in `connectivity`.
+    offsets: Whole<'a>,
+    types: Types<'a>,
+    /// The offset of the list in the file, for messages.
+    at: usize,
+}
+
+impl File<'_> {
+    /// Hands the cells of all pieces to the sink.
+    pub(super) fn cells(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
+        let regions = self.region_names();
+        sink.columns(regions.iter().map(|name| Column::tags(name, 0)).collect());
+        let (mut first_point, mut first_cell) = (0, 0);
+        for (piece, announced) in self.document.pieces.iter().enumerate() {
+            let lists = self.lists(piece)?;
+            let count: usize = lists.iter().map(|list| list.offsets.len()).sum();
+            if sink.asks_for_data() {
+                let cells = first_cell..first_cell + count as u64;
+                self.cell_arrays(piece, &regions, cells, sink);
+            }
+            sink.expect_elements(count);
+            let of_cells: Vec<Vec<i64>> =
+                regions.iter().map(|name| self.regions(piece, name)).collect();
+            let mut index = 0;
+            let mut points: Vec<u64> = Vec::new();
+            for List { connectivity, offsets, types, at } in &lists {
+                let cursor = &Cursor::standing_at(self.source, *at);
+                let (mut start, mut own) = (0, 0);
+                let mut tries = legacy::Tries::NEW;
+                while own < offsets.len() {
+                    let end = offsets.at(own) as usize;
+                    let of_triangles = match types {
+                        Types::Same(7) => Some(None),
+                        Types::Same(_) => None,
+                        Types::Listed(types) => Some(Some(types.field(own, 1))),
+                    };
+                    if end - start == 3
+                        && tries.is_due(own)
+                        && let Some(types) = of_triangles
+                    {
+                        let mut of = [Region::Same(0); MOST];
+                        for (region, regions) in of.iter_mut().zip(&of_cells) {
+                            *region = Region::List(regions.get(index..).unwrap_or_default());
+                        }
+                        let triangles = legacy::Triangles {
+                            count: offsets.len() - own,
+                            numbers: connectivity,
+                            own: start..end,
+                            ends: Some(offsets.field(own, 1)),
+                            types,
+                            points: (first_point, announced.points),
+                            regions: of,
+                        };
+                        let (taken, last) = triangles.send(sink);
+                        tries.done(own, taken);
+                        if taken > 0 {
+                            (own, index, start) = (own + taken, index + taken, last);
+                            continue;
+                        }
+                    }
+                    let cell_type = match types {
+                        &Types::Same(cell_type) => cell_type,
+                        Types::Listed(types) => types.at(own),
+                    };
+                    points.clear();
+                    for point in connectivity.range(start..end) {
+                        if point >= announced.points {
+                            let cell = first_cell + index as u64;
+                            let problem =
+                                format!("cell {cell} has node {point}, which Points does not list");
+                            return Err(cursor.error(problem, CORRECT));
+                        }
+                        points.push(first_point + point);
+                    }
+                    (start, own) = (end, own + 1);
+                    let mut region = [0; MOST];
+                    for (number, regions) in region.iter_mut().zip(&of_cells) {
+                        *number = regions.get(index).copied().unwrap_or(0);
+                    }
+                    let tag = first_cell + index as u64;
+                    legacy::Cell { tag, cell_type, points: &points, region }.send(cursor, sink)?;
+                    index += 1;
+                }
+            }
+            first_point += announced.points;
+            first_cell += count as u64;
+        }
+        Ok(())
+    }
+
+    /// Reads the lists of cells of a piece.
+    fn lists(&self, piece: usize) -> Result<Vec<List<'_>>, ReadError> {
+        let announced = &self.document.pieces[piece];
+        let sections: &[(&str, Option<u64>)] = match self.document.content {
+            Content::Grid => &[("Cells", None)],
+            // The sections of polygonal data, with the type of their cells.
+            Content::Polygons => {
+                &[("Verts", Some(2)), ("Lines", Some(4)), ("Strips", Some(6)), ("Polys", Some(7))]
+            }
+        };
+        let mut lists = Vec::new();
+        for (&(section, cell_type), &cells) in sections.iter().zip(&announced.cells) {
+            if cells == 0 && (cell_type.is_some() || announced.points == 0) {
+                continue;
+            }
+            let list = self.array(piece, section, Some("connectivity"))?;
+            let connectivity = self.integers(list)?;
+            let offsets = self.integers(self.array(piece, section, Some("offsets"))?)?;
+            let types = match cell_type {
+                Some(cell_type) => Types::Same(cell_type),
+                None => {
+                    Types::Listed(self.integers(self.array(piece, section, Some("types"))?)?)
+                }
+            };
+            let cursor = &Cursor::standing_at(self.source, list.at);
+            let types_count = match &types {
+                Types::Same(_) => offsets.len(),
+                Types::Listed(types) => types.len(),
+            };
+            let counts = [offsets.len(), types_count].map(|count| count as u64);
+            if counts != [cells; 2] {
+                let [offsets, types] = counts;
+                let problem = format!("{offsets} offsets and {types} types for {cells} cells");
+                return Err(cursor.error(problem, CORRECT));
+            }
+            let most = connectivity.len() as u64;
+            let last = offsets.len().checked_sub(1).map(|last| offsets.at(last));
+            if !offsets.is_sorted() || last.is_some_and(|last| last > most) {
+                return Err(cursor.error("the offsets do not fit the connectivity", CORRECT));
+            }
+            lists.push(List { connectivity, offsets, types, at: list.at });
+        }
+        Ok(lists)
+    }
+
+    /// Returns the names of the first arrays that tell regions. Damaged arrays are ignored, as the mesh does not depend
+    /// on them.
+    fn region_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for array in self.document.arrays.iter().filter(|array| tells_regions(array)) {
+            if names.len() < MOST
+                && !names.contains(&array.name)
+                && self.signed_integers(array).is_ok()
+            {
+                names.push(array.name.clone());
+            }
+        }
+        names
+    }
+
+    /// Reads the regions of a piece's cells from the array with this name. Empty if there is none.
+    fn regions(&self, piece: usize, name: &str) -> Vec<i64> {
+        let mut arrays = self.document.arrays.iter().filter(|array| tells_regions(array));
+        let array = arrays.find(|array| array.piece == piece && array.name == name);
+        array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
+    }
+
+    /// Hands the arrays of point data that the sink wants to it. Damaged ones are skipped, as the mesh does not depend
+    /// on them.
+    pub(super) fn point_arrays(&self, sink: &mut dyn Sink) {
+        let pieces = &self.document.pieces;
+        let mut first = 0;
+        for (piece, announced) in pieces.iter().enumerate() {
+            let points = first..first + announced.points;
+            first = points.end;
+            for array in self.document.arrays.iter().filter(|array| array.piece == piece) {
+                let of_points = array.section == "PointData" && announced.points > 0;
+                let is_real = precision_of(array).is_some();
+                if of_points
+                    && sink.point_array(array.name.as_bytes(), array.components, is_real)
+                    && let Ok(mut numbers) = self.numbers(array)
+                {
+                    let fits = Some(numbers.numbers.len() as u64)
+                        == announced.points.checked_mul(array.components);
+                    if pieces.len() > 1 {
+                        if !fits {
+                            continue;
+                        }
+                        numbers.nodes = Some(points.clone().collect());
+                    }
+                    sink.point_numbers(numbers);
+                }
+            }
+        }
+    }
+
+    /// Hands the arrays of cell data that the sink wants to it, except those that tell regions.
+    fn cell_arrays(
+        &self,
+        piece: usize,
+        regions: &[String],
+        cells: std::ops::Range<u64>,
+        sink: &mut dyn Sink,
+    ) {
+        for array in &self.document.arrays {
+            let is_region = tells_regions(array) && regions.contains(&array.name);
+            let is_real = precision_of(array).is_some();
+            match array.section.as_str() {
+                "FieldData" => sink.leaves_out("field data"),
+                "CellData"
+                    if array.piece == piece
+                        && !is_region
+                        && sink.cell_array(array.name.as_bytes(), array.components, is_real) =>
+                {
+                    match self.numbers(array) {
+                        Ok(numbers) => {
+                            sink.cell_numbers(numbers.numbers, Some(cells.clone().collect()));
+                        }
+                        Err(_) => sink.leaves_out("cell data that are damaged"),
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+fn tells_regions(array: &Array) -> bool {
+    let named = legacy::names_regions(array.name.as_bytes());
+    array.section == "CellData" && array.components == 1 && named
+}

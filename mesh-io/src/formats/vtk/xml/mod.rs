@@ -1,0 +1,39 @@
+//! VTK's XML formats of unstructured grids and polygonal data, `.vtu` and `.vtp`. Arrays are text, base64 or appended
+//! data, uncompressed or compressed by zlib or LZ4, in one piece or several.
+//!
+//! The format: <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>. Of encoded arrays, only those
+//! whose numbers change are encoded again, and the offsets of appended arrays after them are corrected.
+
+mod arrays;
+mod blocks;
+mod cells;
+mod document;
+mod encoding;
+mod points;
+
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::visit::sink::{Layout, Sink, Walk};
+use arrays::File;
+use document::{Content, Document};
+
+pub(crate) struct Vtu;
+
+impl Walk for Vtu {
+    const VERTICES: &'static str = "Points";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let document = Document::read(source)?;
+        let offsets = document.offsets().into();
+        let file = File { source, document, offsets };
+        let points::Stored { numbers, encoded } = points::read(&file, sink)?;
+        file.cells(sink)?;
+        file.point_arrays(sink);
+        let format = match file.document.content {
+            Content::Grid => Format::Vtu,
+            Content::Polygons => Format::Vtp,
+        };
+        Ok(Layout { encoded, ..Layout::in_place(format, numbers) })
+    }
+}

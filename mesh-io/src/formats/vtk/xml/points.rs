@@ -1,0 +1,174 @@
+//! Reads the points of a VTK XML file, piece by piece.
+
+use super::arrays::File;
+use super::blocks::{Unwrapped, Wrapping};
+use super::document::{Array, Coding};
+use super::encoding::Encoding;
+use crate::binary::number_field::Field;
+use crate::edit::numbers::{Encoded, Numbers};
+use crate::error::ReadError;
+use crate::precision::Precision;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Home, Sink};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// How the points of all pieces are stored in the file.
+pub(super) struct Stored {
+    pub(super) numbers: Numbers,
+    pub(super) encoded: Option<Box<dyn Encoded>>,
+}
+
+/// The points read so far.
+struct Points<'s, 'f> {
+    sink: &'s mut dyn Sink,
+    heights: Heights,
+    /// How the numbers are stored, and whether they are encoded. It must be the same in all pieces.
+    numbers: Option<(Numbers, bool)>,
+    encoded: Vec<(Wrapping, Unwrapped<'f>, Range<usize>)>,
+    /// The bytes of all encoded arrays, decoded.
+    bytes: usize,
+    /// The number of points.
+    count: u64,
+    /// The offset of the last array of points that is not encoded.
+    end: usize,
+}
+
+/// Hands on the points of all pieces.
+pub(super) fn read(file: &File<'_>, sink: &mut dyn Sink) -> Result<Stored, ReadError> {
+    let heights = Heights::new(sink);
+    let mut points =
+        Points { sink, heights, numbers: None, encoded: Vec::new(), bytes: 0, count: 0, end: 0 };
+    for (piece, announced) in file.document.pieces.iter().enumerate() {
+        if announced.points > 0 || file.document.pieces.len() == 1 {
+            points.read(file, file.array(piece, "Points", None)?, announced.points)?;
+        }
+    }
+    let Points { heights, numbers, encoded, sink, .. } = points;
+    let Some((numbers, is_encoded)) = numbers else {
+        return Err(file.source.error("it has no piece with points", CORRECT));
+    };
+    let home = if is_encoded { Home::Points } else { Home::File };
+    let encoded = is_encoded.then(|| {
+        let offsets = Arc::clone(&file.offsets);
+        Box::new(Encoding::new(encoded, offsets)) as Box<dyn Encoded>
+    });
+    sink.end_nodes(&Cursor::new(file.source))?;
+    heights.send_from("z", numbers.into(), (home, 0), sink);
+    Ok(Stored { numbers, encoded })
+}
+
+impl<'f> Points<'_, 'f> {
+    fn read(&mut self, file: &'f File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
+        let cursor = &mut Cursor::standing_at(file.source, points.at);
+        cursor.check_vertex_count(self.count.saturating_add(count))?;
+        if points.components != 3 {
+            let problem = format!("the points have {} components", points.components);
+            return Err(cursor.error(problem, "In VTK points have three: save the mesh again"));
+        }
+        let precision = match points.number.as_str() {
+            "Float32" => Precision::Single,
+            "Float64" => Precision::Double,
+            other => {
+                let problem =
+                    format!("points of the type {} are not read", quoted(other.as_bytes()));
+                return Err(cursor.error(problem, "Save them as Float32 or Float64"));
+            }
+        };
+        let (start, numbers, is_encoded) = match points.format {
+            Coding::Ascii => {
+                self.text(file, points, count)?;
+                (points.content.start, Numbers::Text { precision }, false)
+            }
+            _ => self.binary(file, points, count, precision)?,
+        };
+        if *self.numbers.get_or_insert((numbers, is_encoded)) != (numbers, is_encoded) {
+            let problem = "the points of this piece are not encoded as those of the pieces before";
+            return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
+        }
+        if !is_encoded && start < self.end {
+            let problem =
+                "the points of this piece stand in the file before those of the piece before it";
+            return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
+        }
+        self.end = start;
+        self.count += count;
+        Ok(())
+    }
+
+    /// Hands on binary points. Returns their offset, how they are stored, and whether they are encoded.
+    fn binary(
+        &mut self,
+        file: &'f File<'_>,
+        points: &Array,
+        count: u64,
+        precision: Precision,
+    ) -> Result<(usize, Numbers, bool), ReadError> {
+        let cursor = &Cursor::standing_at(file.source, points.at);
+        let (wrapping, old, range) = file.unwrap(points)?;
+        let wide = precision.bytes();
+        if Some(old.bytes.len() as u64) != count.checked_mul(3 * wide as u64) {
+            let problem =
+                format!("the array has {} bytes, which do not fit {count} points", old.bytes.len());
+            return Err(cursor.error(problem, CORRECT));
+        }
+        // Raw bytes can be replaced in place. All others are encoded again.
+        let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
+        let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
+        self.sink.expect_nodes(old.bytes.len() / (3 * wide));
+        let [x, y, z] = [0, 1, 2]
+            .map(|axis| Field::new(old.bytes.get(axis * wide..), (3 * wide, wide), wrapping.order));
+        let (tags, nodes) = (Tags::From(self.count), count as usize);
+        let records = NodeRecords { count: nodes, x, y, x_at: start, tags };
+        let taken = self.sink.node_records(&records);
+        self.heights.see_all(z, taken, start + 2 * wide);
+        for (index, point) in old.bytes.chunks_exact(3 * wide).enumerate().skip(taken) {
+            let number = |axis: usize| {
+                let bytes = &point[axis * wide..][..wide];
+                wrapping.order.real(precision, bytes)
+            };
+            let at = [number(0), number(1)];
+            if !at.iter().all(|x| x.is_finite()) {
+                let problem = format!("point {index} is not finite");
+                return Err(cursor.error(problem, "Write the mesh again"));
+            }
+            let x_at = start + index * 3 * wide;
+            self.sink.node(cursor, self.count + index as u64, 2, x_at, at);
+            self.heights.see((x_at + 2 * wide, number(2)));
+        }
+        let numbers = Numbers::adjacent(wrapping.order, precision);
+        if is_encoded {
+            self.bytes += old.bytes.len();
+            self.encoded.push((wrapping, old, range));
+        }
+        Ok((start, numbers, is_encoded))
+    }
+
+    /// Hands on points of a text.
+    fn text(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
+        let cursor = &mut Cursor::within(file.source, points.content.clone());
+        self.sink.expect_nodes(cursor.capacity(count, "0 0 0 ".len()));
+        for index in 0..count {
+            let mut point = [0.0; 3];
+            let mut places = [0; 3];
+            for (axis, x) in point.iter_mut().enumerate() {
+                if !cursor.next_word() {
+                    let problem = format!("the array ends after {index} of {count} points");
+                    return Err(cursor.error(problem, CORRECT));
+                }
+                places[axis] = cursor.at();
+                let owner = format_args!("point {index}");
+                *x = match axis {
+                    2 => cursor.height(owner)?.1,
+                    _ => cursor.coordinate(['x', 'y'][axis], owner)?,
+                };
+            }
+            self.sink.node(cursor, self.count + index, 2, places[0], [point[0], point[1]]);
+            self.heights.see((places[2], point[2]));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,194 @@
+//! Writes grids of coastal models: SMS's `.2dm`, and the grids of ADCIRC and SCHISM.
+
+use crate::export::content::{Content, Data};
+use crate::export::job::Job;
+use crate::export::put;
+use crate::format::Format;
+use crate::visit::sink::Kind;
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::fmt::Write;
+
+/// Turns depths into the third coordinates of a `.2dm`, or third coordinates into depths. In SMS, MIKE and UGRID z is positive
+/// upwards, and SMS opens a grid of ADCIRC with minus its depths as z. In UGRID z is a variable of nodes, of this name or one that
+/// ends in `node_z`; or it has depths, under a name that ends so.
+pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
+    // The subtraction gives no negative zero.
+    let minus = |number: f64| 0.0 - number;
+    match (from, to) {
+        (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => {
+            if let Some(at) = content.point_data.iter().position(|data| data.name == "depth") {
+                let depths = content.point_data.remove(at).values;
+                content.heights = depths.into_iter().map(minus).collect();
+            }
+        }
+        (Format::Sms2dm | Format::Mike, Format::Adcirc) => {
+            let vertices = 0..content.points.len();
+            let values = vertices.map(|vertex| minus(content.z(vertex))).collect();
+            (content.heights, content.height) = (Vec::new(), 0.0);
+            content.point_data.push(of_vertices("depth", values));
+        }
+        (Format::Ugrid, Format::Sms2dm) => {
+            if let Some((heights, is_depth)) = take_heights(content) {
+                let upwards = |number| if is_depth { minus(number) } else { number };
+                content.heights = heights.into_iter().map(upwards).collect();
+            }
+        }
+        (Format::Ugrid, Format::Adcirc) => {
+            if let Some((heights, is_depth)) = take_heights(content) {
+                let downwards = |number| if is_depth { number } else { minus(number) };
+                let values = heights.into_iter().map(downwards).collect();
+                content.point_data.push(of_vertices("depth", values));
+            }
+        }
+        (_, Format::Ugrid) if !content.heights.is_empty() => {
+            let values = std::mem::take(&mut content.heights);
+            content.point_data.push(of_vertices("z", values));
+        }
+        _ => {}
+    }
+}
+
+fn of_vertices(name: &str, values: Vec<f64>) -> Data {
+    Data { name: name.to_owned(), components: 1, is_real: true, values }
+}
+
+/// Takes the variable of nodes out that is z, or a depth, and tells whether it is a depth.
+fn take_heights(content: &mut Content) -> Option<(Vec<f64>, bool)> {
+    let is_z = |data: &Data| data.name == "z" || data.name.ends_with("node_z");
+    let is_depth = |data: &Data| data.name.to_ascii_lowercase().ends_with("depth");
+    let find = |is: &dyn Fn(&Data) -> bool| {
+        content.point_data.iter().position(|data| data.components == 1 && is(data))
+    };
+    let (at, is_depth) =
+        find(&is_z).map(|at| (at, false)).or_else(|| Some((find(&is_depth)?, true)))?;
+    Some((content.point_data.remove(at).values, is_depth))
+}
+
+pub(crate) fn write_sms(job: &Job<'_>) -> String {
+    let content = job.content;
+    let mut out = "MESH2D\n".to_owned();
+    let mut element = 0;
+    for cell in job.cells() {
+        let kind = match content.cells.kinds[cell] {
+            Kind::Triangle => "E3T",
+            Kind::Quadrilateral => "E4Q",
+            Kind::Line if !is_of_string(job, cell) => "E2L",
+            _ => continue,
+        };
+        element += 1;
+        put!(out, "{kind} {element} {} {}\n", job.numbers(cell), job.tag(cell));
+    }
+    for vertex in 0..content.points.len() {
+        put!(out, "ND {} {}\n", job.number(vertex), job.space(vertex));
+    }
+    let mut materials = BTreeMap::new();
+    for cell in job.cells() {
+        let Some(group) = job.tags.group(content, cell) else { continue };
+        let is_line = content.cells.kinds[cell] == Kind::Line;
+        if let Some(name) = content.groups[group as usize].name().filter(|_| !is_line) {
+            materials.insert(job.tags.number(group), name);
+        }
+    }
+    for (group, string) in strings(job) {
+        let Some((last, before)) = string.split_last() else { continue };
+        out.push_str("NS");
+        before.iter().for_each(|&vertex| put!(out, " {}", job.number(vertex as usize)));
+        put!(out, " -{}", job.number(*last as usize));
+        match content.groups[group as usize].name() {
+            Some(name) => put!(out, " \"{name}\"\n"),
+            None => out.push('\n'),
+        }
+    }
+    materials.iter().for_each(|(tag, name)| put!(out, "MAT {tag} \"{name}\"\n"));
+    out
+}
+
+/// Joins lines to chains, as long as possible and in either direction. Chains are in the order of their first lines.
+fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
+    let mut at: HashMap<u32, Vec<usize>> = HashMap::new();
+    // Lines are popped from the end of these lists, so that the first line comes first.
+    for (index, &[a, b]) in lines.iter().enumerate().rev() {
+        at.entry(a).or_default().push(index);
+        at.entry(b).or_default().push(index);
+    }
+    let mut used = vec![false; lines.len()];
+    let mut chains = Vec::new();
+    for (index, &[a, b]) in lines.iter().enumerate() {
+        if std::mem::replace(&mut used[index], true) {
+            continue;
+        }
+        // Returns the vertex that the next unused line leads to.
+        let mut next = |vertex: u32| {
+            let lines_at = at.get_mut(&vertex)?;
+            while let Some(line) = lines_at.pop() {
+                if !std::mem::replace(&mut used[line], true) {
+                    let [a, b] = lines[line];
+                    return Some(if a == vertex { b } else { a });
+                }
+            }
+            None
+        };
+        let mut chain = VecDeque::from([a, b]);
+        while let Some(vertex) = chain.back().and_then(|&end| next(end)) {
+            chain.push_back(vertex);
+        }
+        while let Some(vertex) = chain.front().and_then(|&end| next(end)) {
+            chain.push_front(vertex);
+        }
+        chains.push(chain.into());
+    }
+    chains
+}
+
+pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
+    let content = job.content;
+    let depth = job.point_data().next();
+    let is_inside = |cell: &usize| content.cells.kinds[*cell] != Kind::Line;
+    let elements = || job.cells().filter(is_inside);
+    let mut out = format!("grid\n{} {}\n", elements().count(), content.points.len());
+    for vertex in 0..content.points.len() {
+        let value = depth.map_or(0.0, |depth| depth.values[vertex]);
+        put!(out, "{} {} {value:?}\n", job.number(vertex), job.plane(vertex));
+    }
+    for (cell, element) in elements().zip(1..) {
+        put!(out, "{element} {} {}\n", content.cells.of(cell).len(), job.numbers(cell));
+    }
+    // Boundaries whose names start with `open` are open; all others are land.
+    let strings = strings(job);
+    let name = |group: u32| content.groups[group as usize].name().unwrap_or("");
+    for (what, is_open) in [("open", true), ("land", false)] {
+        let of = |(group, _): &&(u32, Vec<u32>)| name(*group).starts_with("open") == is_open;
+        let chosen: Vec<_> = strings.iter().filter(of).collect();
+        let nodes: usize = chosen.iter().map(|(_, string)| string.len()).sum();
+        put!(out, "{} = Number of {what} boundaries\n", chosen.len());
+        put!(out, "{nodes} = Total number of {what} boundary nodes\n");
+        for (group, string) in chosen {
+            put!(out, "{}", string.len());
+            if !is_open {
+                put!(out, " {}", u8::from(name(*group).starts_with("island")));
+            }
+            put!(out, " = Number of nodes for {what} boundary\n");
+            string.iter().for_each(|&vertex| put!(out, "{}\n", job.number(vertex as usize)));
+        }
+    }
+    out
+}
+
+/// Whether a line belongs to a node string, not to an element of a material.
+fn is_of_string(job: &Job<'_>, line: usize) -> bool {
+    job.group(line).is_some_and(|group| group.what != "material")
+}
+
+/// Returns the lines of each group as chains of vertices.
+fn strings(job: &Job<'_>) -> Vec<(u32, Vec<u32>)> {
+    let mut lines: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
+    for cell in job.all(Kind::Line).filter(|&cell| is_of_string(job, cell)) {
+        if let (Some(group), &[a, b]) =
+            (job.tags.group(job.content, cell), job.content.cells.of(cell))
+        {
+            lines.entry(group).or_default().push([a, b]);
+        }
+    }
+    let chained = lines.into_iter().map(|(group, lines)| (group, chains(&lines)));
+    chained.flat_map(|(group, chains)| chains.into_iter().map(move |c| (group, c))).collect()
+}

@@ -1,0 +1,261 @@
+//! The elements of an XDMF file.
+
+use super::File;
+use super::document::Item;
+use super::heavy;
+use crate::binary::whole::Whole;
+use crate::error::ReadError;
+use crate::formats::vtk::legacy;
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::quoted;
+use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::sink::{Column, Sink};
+
+/// How many arrays tell regions at most.
+const MOST: usize = 2;
+
+/// The whole numbers of a topology, one after another.
+enum Words<'a> {
+    Text(Cursor<'a>),
+    /// Those of a file beside the XML, and how many of them were taken.
+    Heavy {
+        numbers: Box<heavy::Numbers<'a>>,
+        whole: Whole<'a>,
+        taken: usize,
+        size: usize,
+    },
+}
+
+impl<'a> Words<'a> {
+    /// Stands where the number is that is taken next, or was taken last in text.
+    fn cursor(&self) -> Cursor<'a> {
+        match self {
+            Words::Text(cursor) => cursor.clone(),
+            Words::Heavy { numbers, taken, size, .. } => numbers.cursor(taken * size),
+        }
+    }
+
+    /// Whether there is another number, on which it then stands.
+    fn goes_on(&mut self) -> bool {
+        match self {
+            Words::Text(cursor) => cursor.next_word(),
+            Words::Heavy { whole, taken, .. } => *taken < whole.len(),
+        }
+    }
+
+    /// Takes the number that it stands on.
+    fn take(&mut self, what: &str) -> Result<u64, ReadError> {
+        match self {
+            Words::Text(cursor) => cursor.integer(what),
+            Words::Heavy { whole, taken, .. } => {
+                *taken += 1;
+                Ok(whole.at(*taken - 1))
+            }
+        }
+    }
+
+    #[cold]
+    fn error(&self, problem: impl Into<String>, remedy: &str) -> ReadError {
+        self.cursor().error(problem, remedy)
+    }
+}
+
+/// The numbers of cells in an array that tells regions.
+type Regions<'i> = Vec<(&'i Item, Vec<i64>)>;
+
+impl<'a> File<'a> {
+    /// Hands on the elements and their data.
+    pub(super) fn elements(&self, item: &Item, sink: &mut dyn Sink) -> Result<(), ReadError> {
+        let is_region =
+            |item: &&Item| !self.is_real(item) && legacy::names_regions(item.name.as_bytes());
+        let mut regions: Regions<'_> = Vec::new();
+        for own in self.attributes("cell").filter(is_region) {
+            let known = regions.iter().any(|(other, _)| other.name == own.name);
+            if regions.len() < MOST
+                && !known
+                && let Ok(numbers) = self.integers(own)
+            {
+                regions.push((own, numbers));
+            }
+        }
+        sink.columns(regions.iter().map(|(own, _)| Column::tags(&own.name, 0)).collect());
+        let words = &mut self.words(item)?;
+        let (mut tag, mut count) = self.triangles(item, words, &regions, sink);
+        let mut points = Vec::new();
+        while words.goes_on() {
+            let (cell_type, corners) = match item.kind.as_str() {
+                "mixed" => mixed(words, &mut count)?,
+                kind => self.uniform(item, kind)?,
+            };
+            points.clear();
+            let own = words.cursor();
+            for _ in 0..corners {
+                if !words.goes_on() {
+                    let problem = format!("the Topology ends within cell {tag}");
+                    return Err(words.error(problem, CORRECT));
+                }
+                points.push(words.take("a node of a cell")?);
+            }
+            count += corners;
+            let mut region = [0; MOST];
+            for (number, (_, of_cells)) in region.iter_mut().zip(&regions) {
+                *number = of_cells.get(tag as usize).copied().unwrap_or(0);
+            }
+            legacy::Cell { tag, cell_type, points: &points, region }.send(&own, sink)?;
+            tag += 1;
+        }
+        let differs = |announced: Option<u64>, found: u64| announced.is_some_and(|n| n != found);
+        if differs(item.elements, tag) || differs(item.announced(), count) {
+            let problem = format!("the Topology ends after {tag} elements of {count} numbers");
+            return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
+        }
+        if sink.asks_for_data() {
+            let of_regions: Vec<&Item> = regions.iter().map(|(own, _)| *own).collect();
+            self.cell_data(&of_regions, tag, sink);
+        }
+        Ok(())
+    }
+
+    fn words(&self, item: &Item) -> Result<Words<'a>, ReadError> {
+        let Some(mut numbers) = self.heavy.read(item, &self.cursor(item))? else {
+            let cursor = self.content(item);
+            return Ok(Words::Text(cursor));
+        };
+        let Some((size, order)) = numbers.whole() else {
+            let problem = "a Topology of numbers that are not whole";
+            return Err(self.cursor(item).error(problem, "Save the mesh again"));
+        };
+        let whole = Whole::binary(std::mem::take(&mut numbers.bytes), size, order);
+        Ok(Words::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
+    }
+
+    /// Hands on triangles of a file beside the XML, as many as the sink takes at once. Returns how many these are, and how many
+    /// numbers they have.
+    fn triangles(
+        &self,
+        item: &Item,
+        words: &mut Words<'_>,
+        regions: &Regions<'_>,
+        sink: &mut dyn Sink,
+    ) -> (u64, u64) {
+        let Words::Heavy { whole, taken, .. } = words else {
+            let room = words.cursor().capacity(item.elements.unwrap_or(0), "0 1 2 ".len());
+            sink.expect_elements(room);
+            return (0, 0);
+        };
+        sink.expect_elements(whole.len() / 4);
+        if item.kind != "triangle" {
+            return (0, 0);
+        }
+        let of = |place: usize| {
+            regions.get(place).map_or(Region::Same(0), |(_, numbers)| Region::List(numbers))
+        };
+        let found = sink.triangle_records(&TriangleRecords {
+            count: whole.len() / 3,
+            corners: whole.field(0, 3),
+            first: 0,
+            below: u64::MAX,
+            regions: [of(0), of(1)],
+            expected: &[],
+        });
+        *taken = 3 * found;
+        (found as u64, *taken as u64)
+    }
+
+    /// The type in VTK of the elements of a kind, and how many nodes each has.
+    fn uniform(&self, item: &Item, kind: &str) -> Result<(u64, u64), ReadError> {
+        let several = item.corners.or_else(|| item.dimensions.get(1).copied());
+        Ok(match kind {
+            "triangle" => (5, 3),
+            "quadrilateral" => (9, 4),
+            "polyvertex" => of_several(1, several.unwrap_or(1).max(1)),
+            "polyline" => of_several(2, several.unwrap_or(2).max(1)),
+            "polygon" => of_several(3, several.unwrap_or(3).max(1)),
+            "tetrahedron" => (10, 4),
+            "hexahedron" => (12, 8),
+            "wedge" => (13, 6),
+            "pyramid" => (14, 5),
+            other => {
+                let problem =
+                    format!("a Topology of the type {} is not read", quoted(other.as_bytes()));
+                let remedy = "Save a mesh of linear triangles (Triangle, or Mixed)";
+                return Err(self.cursor(item).error(problem, remedy));
+            }
+        })
+    }
+
+    /// Hands on the data of cells but for those that tell regions.
+    fn cell_data(&self, regions: &[&Item], cells: u64, sink: &mut dyn Sink) {
+        for item in self.attributes("cell") {
+            let is_region = regions.iter().any(|own| own.at == item.at);
+            let (is_real, components) = (self.is_real(item), item.components(cells));
+            if !is_region && sink.cell_array(item.name.as_bytes(), components, is_real) {
+                match self.numbers(item) {
+                    Ok(numbers) => {
+                        sink.cell_numbers(numbers.numbers, Some((0..cells).collect()));
+                    }
+                    Err(_) => sink.leaves_out("cell data that are damaged"),
+                }
+            }
+        }
+        let is_other = |item: &&Item| !matches!(item.center.as_str(), "node" | "cell");
+        if self.items.iter().filter(|i| i.section == "Attribute").any(|i| is_other(&i)) {
+            sink.leaves_out("data of grids, faces or edges");
+        }
+    }
+
+    fn integers(&self, item: &Item) -> Result<Vec<i64>, ReadError> {
+        if let Some(numbers) = self.heavy.read(item, &self.cursor(item))? {
+            let whole = numbers.integers();
+            return whole.ok_or_else(|| {
+                self.cursor(item).error("the numbers of cells are not whole", CORRECT)
+            });
+        }
+        let cursor = &mut self.content(item);
+        let mut numbers = Vec::new();
+        while cursor.next_word() {
+            numbers.push(cursor.signed("a number of a cell")?);
+        }
+        Ok(numbers)
+    }
+}
+
+/// Reads the type of an element among others, and how many nodes it has.
+fn mixed(words: &mut Words<'_>, count: &mut u64) -> Result<(u64, u64), ReadError> {
+    *count += 1;
+    let place = words.cursor();
+    let number = words.take("the type of a cell")?;
+    Ok(match number {
+        1..=3 => {
+            *count += 1;
+            if !words.goes_on() {
+                return Err(words.error("the number of a cell's nodes is missing", CORRECT));
+            }
+            of_several(number, words.take("a number of nodes")?)
+        }
+        4 => (5, 3),
+        5 => (9, 4),
+        6 => (10, 4),
+        7 => (14, 5),
+        8 => (13, 6),
+        9 => (12, 8),
+        other => {
+            let problem =
+                format!("a cell of the type {other} is not read, as it is not of first order");
+            let remedy = "Save a mesh of linear triangles (type 4)";
+            return Err(place.error(problem, remedy));
+        }
+    })
+}
+
+/// The type in VTK of an element of any number of nodes: points, a line through them or a polygon. Returns that number too.
+fn of_several(number: u64, nodes: u64) -> (u64, u64) {
+    let cell_type = match (number, nodes) {
+        (1, 1) => 1,
+        (1, _) => 2,
+        (2, 2) => 3,
+        (2, _) => 4,
+        _ => 7,
+    };
+    (cell_type, nodes)
+}

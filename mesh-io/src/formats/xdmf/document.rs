@@ -1,0 +1,238 @@
+//! The items of an XDMF file: what its tags say of them, and where their text stands.
+
+use crate::binary::order::Order;
+use crate::disk::source::{Named, Source};
+use crate::error::{Location, ReadError};
+use crate::hdf5::Number;
+use crate::precision::Precision;
+use crate::text::cursor::{CORRECT, CUT_OFF};
+use crate::text::token::{ill_formed_xml, quoted, xml_text};
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use std::ops::Range;
+
+/// Where the numbers of an item stand.
+pub(super) enum Content {
+    /// In the XML, in this range.
+    Text(Range<usize>),
+    /// In HDF5: the name of the file and the path in it.
+    Hdf5 { file: String, path: String, named_at: Range<usize> },
+    /// In a file of the name, from a byte on.
+    Raw { file: String, seek: u64, number: Number, named_at: Range<usize> },
+}
+
+/// A `DataItem` with numbers.
+pub(super) struct Item {
+    /// `Geometry`, `Topology` or `Attribute`.
+    pub(super) section: String,
+    /// The type that the section names, such as `XYZ` or `Triangle`, in small letters.
+    pub(super) kind: String,
+    /// Of an attribute what it is called, and what it belongs to, in small letters.
+    pub(super) name: String,
+    pub(super) center: String,
+    /// How many elements a topology announces, and how many nodes each has where its kind does not tell.
+    pub(super) elements: Option<u64>,
+    pub(super) corners: Option<u64>,
+    pub(super) dimensions: Vec<u64>,
+    /// How many digits the numbers have, if they are real.
+    pub(super) precision: Option<Precision>,
+    pub(super) content: Content,
+    /// Where its tag starts.
+    pub(super) at: usize,
+}
+
+impl Item {
+    /// How many numbers it announces, if it does.
+    pub(super) fn announced(&self) -> Option<u64> {
+        let product = || self.dimensions.iter().try_fold(1_u64, |n, &length| n.checked_mul(length));
+        (!self.dimensions.is_empty()).then(|| product().unwrap_or(u64::MAX))
+    }
+
+    /// The file beside the XML that it names, and where.
+    pub(super) fn named(self) -> Option<Named> {
+        match self.content {
+            Content::Text(_) => None,
+            Content::Hdf5 { file, named_at, .. } | Content::Raw { file, named_at, .. } => {
+                Some(Named { name: file, at: named_at })
+            }
+        }
+    }
+}
+
+/// A section that may have items, with what its tag says.
+#[derive(Clone, Default)]
+struct Section {
+    name: String,
+    attributes: Vec<(String, String)>,
+}
+
+impl Section {
+    /// The value of an attribute of one of these names.
+    fn value(&self, names: &[&str]) -> Option<&str> {
+        let found = self.attributes.iter().find(|(name, _)| names.contains(&name.as_str()));
+        found.map(|(_, value)| value.as_str())
+    }
+}
+
+/// The items of a file, in its order, but for those that refer to others.
+pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
+    let begin = source.begin();
+    let mut reader = Reader::from_reader(&source.bytes[begin..]);
+    reader.config_mut().check_end_names = false;
+    let mut open: Vec<Section> = Vec::new();
+    let mut items = Vec::new();
+    let mut seen = false;
+    loop {
+        let at = begin + reader.buffer_position() as usize;
+        let event = reader
+            .read_event()
+            .map_err(|error| error_at(source, at, &ill_formed_xml(&error), CORRECT))?;
+        let after = begin + reader.buffer_position() as usize;
+        match event {
+            Event::Eof => break,
+            Event::End(_) => _ = open.pop(),
+            Event::Start(tag) | Event::Empty(tag) => {
+                let is_empty = source.bytes[at..after].ends_with(b"/>");
+                let section = section(source, at, &tag)?;
+                seen |= section.name == "Xdmf";
+                if section.name == "DataItem"
+                    && let Some(of) = open.last()
+                    && ["Geometry", "Topology", "Attribute"].contains(&of.name.as_str())
+                    && section.value(&["Reference"]).is_none()
+                    && !is_empty
+                {
+                    items.push(item(source, at, after, &section, of)?);
+                }
+                if !is_empty {
+                    open.push(section);
+                }
+            }
+            _ => {}
+        }
+    }
+    match seen {
+        true => Ok(items),
+        false => Err(source.error("it has no Xdmf element", "Save the mesh again")),
+    }
+}
+
+fn section(source: &Source, at: usize, tag: &BytesStart<'_>) -> Result<Section, ReadError> {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let mut attributes = Vec::new();
+    for attribute in tag.attributes().with_checks(false) {
+        let attribute = attribute
+            .map_err(|error| error_at(source, at, &format!("an attribute: {error}"), CORRECT))?;
+        attributes.push((text(attribute.key.as_ref()), xml_text(&attribute.value)));
+    }
+    Ok(Section { name: text(tag.name().as_ref()), attributes })
+}
+
+/// The item of this tag, in this section.
+fn item(
+    source: &Source,
+    at: usize,
+    after: usize,
+    tag: &Section,
+    of: &Section,
+) -> Result<Item, ReadError> {
+    let Some(length) = memchr::memchr(b'<', &source.bytes[after..]) else {
+        return Err(error_at(source, at, "the file ends within a DataItem", CUT_OFF));
+    };
+    let number = |text: &str| {
+        text.trim().parse::<u64>().map_err(|_| {
+            let problem = format!("`{}` is not a whole number", quoted(text.as_bytes()));
+            error_at(source, at, &problem, CORRECT)
+        })
+    };
+    let optional = |section: &Section, names: &[&str]| section.value(names).map(number).transpose();
+    let small = |section: &Section, names: &[&str]| {
+        section.value(names).unwrap_or_default().trim().to_ascii_lowercase()
+    };
+    let is_real = small(tag, &["NumberType", "DataType"]);
+    let precision = match optional(tag, &["Precision"])? {
+        Some(8) => Precision::Double,
+        _ => Precision::Single,
+    };
+    let text = after..after + length;
+    let format = tag.value(&["Format"]).unwrap_or("XML").to_ascii_uppercase();
+    let content = match format.as_str() {
+        "XML" => Content::Text(text),
+        "HDF" | "HDF5" => in_hdf5(source, text)?,
+        "BINARY" => {
+            if tag.value(&["Compression"]).is_some_and(|c| !c.eq_ignore_ascii_case("raw")) {
+                let problem = "numbers in a compressed raw file beside it are not read";
+                return Err(error_at(source, at, problem, SAVE));
+            }
+            let precision = optional(tag, &["Precision"])?.unwrap_or(4);
+            let order = match small(tag, &["Endian"]).as_str() {
+                "big" => Order::Big,
+                _ => Order::Little,
+            };
+            let number = match (is_real.as_str(), precision) {
+                ("" | "float", 4) => Number::Real(Precision::Single, order),
+                ("" | "float", 8) => Number::Real(Precision::Double, order),
+                ("char" | "uchar", _) => Number::Whole(1, order),
+                ("short" | "ushort", _) => Number::Whole(2, order),
+                ("int" | "uint", 1 | 2 | 4 | 8) => Number::Whole(precision as usize, order),
+                _ => {
+                    let problem = format!("numbers of {precision} bytes are not read");
+                    return Err(error_at(source, at, &problem, SAVE));
+                }
+            };
+            let seek = optional(tag, &["Seek"])?.unwrap_or(0);
+            let (file, named_at) = name(source, text);
+            Content::Raw { file, seek, number, named_at }
+        }
+        other => {
+            let problem =
+                format!("numbers of the format {} are not read", quoted(other.as_bytes()));
+            return Err(error_at(source, at, &problem, SAVE));
+        }
+    };
+    let dimensions = tag.value(&["Dimensions"]).unwrap_or_default();
+    let dimensions = dimensions.split_whitespace().map(number).collect::<Result<_, _>>()?;
+    Ok(Item {
+        section: of.name.clone(),
+        kind: small(of, &["TopologyType", "GeometryType", "Type"]),
+        name: of.value(&["Name"]).unwrap_or_default().to_owned(),
+        center: small(of, &["Center"]),
+        elements: optional(of, &["NumberOfElements"])?,
+        corners: optional(of, &["NodesPerElement"])?,
+        dimensions,
+        precision: (is_real.is_empty() || is_real == "float").then_some(precision),
+        content,
+        at,
+    })
+}
+
+/// What to do about numbers that are not read.
+const SAVE: &str = "Save with the numbers in the XML, as meshio does by data_format=\"XML\"";
+
+/// The name of a file that a text is, and where that stands without blanks.
+fn name(source: &Source, text: Range<usize>) -> (String, Range<usize>) {
+    let own = &source.bytes[text.clone()];
+    let start = text.start + (own.len() - own.trim_ascii_start().len());
+    let name = own.trim_ascii();
+    (xml_text(name), start..start + name.len())
+}
+
+/// A file and the path of a dataset in it, with a colon between.
+fn in_hdf5(source: &Source, text: Range<usize>) -> Result<Content, ReadError> {
+    let (_, all) = name(source, text);
+    let own = &source.bytes[all.clone()];
+    let slash = memchr::memmem::rfind(own, b":/");
+    let Some(colon) = slash.or_else(|| memchr::memrchr(b':', own)).filter(|&colon| colon > 0)
+    else {
+        let problem = format!("`{}` names no dataset of an HDF5 file", quoted(own));
+        return Err(error_at(source, all.start, &problem, SAVE));
+    };
+    let named_at = all.start..all.start + colon;
+    let (file, path) = (xml_text(&own[..colon]), xml_text(&own[colon + 1..]));
+    Ok(Content::Hdf5 { file, path, named_at })
+}
+
+#[cold]
+fn error_at(source: &Source, at: usize, problem: &str, remedy: &str) -> ReadError {
+    let place = Location::Line(source.line_of(at.min(source.bytes.len())));
+    source.error_at(place, problem, remedy)
+}

@@ -1,0 +1,223 @@
+//! Numbers that do not stand in the XML: in HDF5 or raw, in files beside it.
+
+use super::document::{Content, Item};
+use crate::binary::order::Order;
+use crate::disk::source::{Beside, Source};
+use crate::edit::numbers::{Encoded, Form, Places};
+use crate::error::ReadError;
+use crate::hdf5::{Array, Encoding, Hdf5, Number};
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::token::quoted;
+use crate::visit::sink::{Home, Stored};
+use std::borrow::Cow;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The files beside an XDMF.
+pub(super) struct Heavy<'a> {
+    /// Each with its tree, if it is HDF5.
+    files: Vec<(&'a Beside, Option<Hdf5<'a>>)>,
+}
+
+/// The numbers of an item.
+pub(super) struct Numbers<'a> {
+    /// The file that they stand in, and which of the files of the mesh that is.
+    pub(super) source: &'a Source,
+    pub(super) part: usize,
+    pub(super) number: Number,
+    pub(super) bytes: Cow<'a, [u8]>,
+    /// Where they start in the file, if they stand there as they are.
+    pub(super) start: Option<usize>,
+    /// Near which byte they start, for messages.
+    at: usize,
+    array: Option<Array<'a>>,
+    file: usize,
+}
+
+impl<'a> Heavy<'a> {
+    /// Opens the files that a source has beside it.
+    pub(super) fn open(source: &'a Source) -> Result<Heavy<'a>, ReadError> {
+        let mut files = Vec::new();
+        for beside in &source.beside {
+            files.push((beside, Hdf5::open_any(&beside.source)?));
+        }
+        Ok(Heavy { files })
+    }
+
+    /// The file of a name.
+    fn file(&self, name: &str) -> Option<usize> {
+        self.files.iter().position(|(beside, _)| beside.names.iter().any(|own| own == name))
+    }
+
+    /// The type of the numbers of an item that does not stand in the XML. None if it is not known.
+    pub(super) fn number(&self, item: &Item) -> Option<Number> {
+        match &item.content {
+            Content::Text(_) => None,
+            Content::Raw { number, .. } => Some(*number),
+            Content::Hdf5 { file, path, .. } => {
+                let file = self.files[self.file(file)?].1.as_ref()?;
+                Some(file.dataset(file.find(path.as_bytes())?).ok()??.number)
+            }
+        }
+    }
+
+    /// The numbers of an item; none if they stand in the XML. `cursor` stands on its tag.
+    pub(super) fn read(
+        &self,
+        item: &Item,
+        cursor: &Cursor<'_>,
+    ) -> Result<Option<Numbers<'a>>, ReadError> {
+        let name = match &item.content {
+            Content::Text(_) => return Ok(None),
+            Content::Hdf5 { file, .. } | Content::Raw { file, .. } => file,
+        };
+        let Some(index) = self.file(name) else {
+            let problem =
+                format!("its numbers are in {}, which was not read", quoted(name.as_bytes()));
+            return Err(cursor.error(problem, "Put the file beside it"));
+        };
+        let (beside, tree) = &self.files[index];
+        let source = &beside.source;
+        let (part, file) = (index + 1, index);
+        let numbers = match (&item.content, tree) {
+            (Content::Hdf5 { path, .. }, Some(tree)) => {
+                let found = tree.find(path.as_bytes()).map(|object| tree.dataset(object));
+                let Some(dataset) = found.transpose()?.flatten() else {
+                    let problem =
+                        format!("{} has no dataset {}", source.name(), quoted(path.as_bytes()));
+                    return Err(cursor.error(problem, "Save the mesh again"));
+                };
+                let mut array = tree.array(&dataset)?;
+                let (start, at) = (array.place(), array.byte_of(0));
+                let bytes = std::mem::take(&mut array.bytes);
+                let number = dataset.number;
+                Numbers { source, part, number, bytes, start, at, array: Some(array), file }
+            }
+            (Content::Raw { seek, number, .. }, _) => {
+                let size = number.bytes() as u64;
+                let end =
+                    item.announced().and_then(|count| count.checked_mul(size)?.checked_add(*seek));
+                let range = end
+                    .and_then(|end| Some(usize::try_from(*seek).ok()?..usize::try_from(end).ok()?));
+                let bytes = range.as_ref().and_then(|range| source.bytes.get(range.clone()));
+                let (Some(bytes), Some(Range { start, .. })) = (bytes, range) else {
+                    let problem =
+                        format!("{} ends before the numbers of this item do", source.name());
+                    return Err(cursor.error(problem, CUT_OFF));
+                };
+                let (number, bytes) = (*number, Cow::Borrowed(bytes));
+                Numbers {
+                    source,
+                    part,
+                    number,
+                    bytes,
+                    start: Some(start),
+                    at: start,
+                    array: None,
+                    file,
+                }
+            }
+            _ => {
+                let problem = format!("{} is not HDF5", source.name());
+                return Err(cursor.error(problem, "Save the mesh again"));
+            }
+        };
+        let count = (numbers.bytes.len() / number_size(numbers.number)) as u64;
+        match item.announced() {
+            Some(announced) if announced != count => {
+                let problem = format!(
+                    "its Dimensions announce {announced} numbers, but {} has {count}",
+                    source.name()
+                );
+                Err(cursor.error(problem, "Correct them, or save the mesh again"))
+            }
+            _ => Ok(Some(numbers)),
+        }
+    }
+
+    /// The file and the bytes that the numbers of an item take there, of those in chunks the first one of their header. None if they
+    /// stand in the XML or cannot be read.
+    pub(super) fn place(&self, item: &Item) -> Option<(usize, Range<usize>)> {
+        let (Content::Hdf5 { file, .. } | Content::Raw { file, .. }) = &item.content else {
+            return None;
+        };
+        let index = self.file(file)?;
+        let range = match &item.content {
+            Content::Raw { seek, number, .. } => {
+                let length = item.announced()?.checked_mul(number.bytes() as u64)?;
+                let end = seek.checked_add(length)?;
+                usize::try_from(*seek).ok()?..usize::try_from(end).ok()?
+            }
+            Content::Hdf5 { path, .. } => {
+                let at = self.files[index].1.as_ref()?.find(path.as_bytes())?.at;
+                at..at + 1
+            }
+            Content::Text(_) => return None,
+        };
+        Some((index + 1, range))
+    }
+
+    /// What becomes of the files when numbers that are not where they could be replaced as they are change.
+    pub(super) fn encoding(&self, numbers: &mut Numbers<'_>) -> Option<Encoding> {
+        let mut array = numbers.array.take()?;
+        array.bytes = std::mem::take(&mut numbers.bytes);
+        let tree = self.files[numbers.file].1.as_ref()?;
+        Some(Encoding::new(tree, vec![array]))
+    }
+
+    /// Checks that no parts of a file overlap.
+    pub(super) fn check_apart(&self) -> Result<(), ReadError> {
+        self.files.iter().filter_map(|(_, tree)| tree.as_ref()).try_for_each(Hdf5::check_apart)
+    }
+}
+
+fn number_size(number: Number) -> usize {
+    number.bytes().max(1)
+}
+
+impl<'a> Numbers<'a> {
+    /// Stands at or near the byte of the file at which one of the bytes stands.
+    pub(super) fn cursor(&self, at: usize) -> Cursor<'a> {
+        let at = if self.start.is_some() { self.at + at } else { self.at };
+        Cursor::at_byte_of(self.source, at)
+    }
+
+    /// All of them, real or whole.
+    pub(super) fn reals(&self) -> Option<Vec<f64>> {
+        match self.number {
+            Number::Real(precision, order) => {
+                let each = self.bytes.chunks_exact(precision.bytes());
+                Some(each.map(|number| order.real(precision, number)).collect())
+            }
+            _ => Some(self.integers()?.into_iter().map(|number| number as f64).collect()),
+        }
+    }
+
+    /// All of them, if they are whole.
+    pub(super) fn integers(&self) -> Option<Vec<i64>> {
+        let (size, order) = self.whole()?;
+        Some(self.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
+    }
+
+    /// How many bytes each has, and in which order, if they are whole.
+    pub(super) fn whole(&self) -> Option<(usize, Order)> {
+        match self.number {
+            Number::Whole(size, order) => Some((size, order)),
+            _ => None,
+        }
+    }
+}
+
+/// Where real numbers of data stand, so that they can be replaced.
+pub(super) fn stored(numbers: &mut Numbers<'_>, heavy: &Heavy<'_>) -> Option<Stored> {
+    let Number::Real(precision, order) = numbers.number else { return None };
+    let (form, part, stride) = (Form::Binary(order, precision), numbers.part, precision.bytes());
+    let (start, home) = match numbers.start {
+        Some(start) => (start, Home::File),
+        None => {
+            let encoding = heavy.encoding(numbers)?;
+            (0, Home::Encoded(Arc::new(encoding) as Arc<dyn Encoded>))
+        }
+    };
+    Some(Stored { places: Places::Regular { start, stride }, form, home, part })
+}

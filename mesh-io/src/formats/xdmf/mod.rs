@@ -1,0 +1,153 @@
+//! XDMF, versions 2 and 3, with its numbers in the XML or in files beside it, HDF5 or raw.
+//!
+//! The format: <https://www.xdmf.org/index.php/XDMF_Model_and_Format>. A file has one mesh; data of it may be of several time steps,
+//! whose grids refer to the one with the mesh.
+
+mod cells;
+mod document;
+mod heavy;
+mod points;
+pub(crate) mod write;
+
+use crate::disk::source::{Named, Source};
+use crate::error::ReadError;
+use crate::hdf5::Number;
+use crate::precision::Precision;
+use crate::text::cursor::Cursor;
+use crate::visit::heights::TextNumbers;
+use crate::visit::sink::{Layout, PointNumbers, Sink, Walk};
+use document::{Content, Item};
+use heavy::Heavy;
+use std::ops::Range;
+
+pub(crate) struct Xdmf;
+
+impl Walk for Xdmf {
+    const VERTICES: &'static str = "Geometry";
+
+    fn beside(source: &Source) -> Result<Vec<Named>, ReadError> {
+        Ok(document::items(source)?.into_iter().filter_map(Item::named).collect())
+    }
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let items = document::items(source)?;
+        let file = File { source, items, heavy: Heavy::open(source)? };
+        let (layout, points) = file.points(file.only("Geometry")?, sink)?;
+        file.elements(file.only("Topology")?, sink)?;
+        file.point_data(points, sink)?;
+        file.heavy.check_apart()?;
+        Ok(layout)
+    }
+}
+
+/// A file with its items.
+struct File<'a> {
+    source: &'a Source,
+    items: Vec<Item>,
+    heavy: Heavy<'a>,
+}
+
+impl Item {
+    /// How many numbers each of so many owners has.
+    fn components(&self, owners: u64) -> u64 {
+        self.announced().and_then(|count| count.checked_div(owners)).unwrap_or(1).max(1)
+    }
+}
+
+impl<'a> File<'a> {
+    /// The item of a section that a mesh has once.
+    fn only(&self, section: &str) -> Result<&Item, ReadError> {
+        let mut items = self.items.iter().filter(|item| item.section == section);
+        match (items.next(), items.next()) {
+            (Some(item), None) => Ok(item),
+            (None, _) => {
+                let problem = format!("it has no {section} with numbers");
+                Err(self.source.error(problem, "Save an unstructured mesh again"))
+            }
+            (_, Some(second)) => {
+                let problem = format!("this is the second {section}");
+                let remedy = "Save each mesh to a file of its own, and tags of a mesh too";
+                Err(self.cursor(second).error(problem, remedy))
+            }
+        }
+    }
+
+    /// The data of nodes or cells.
+    fn attributes(&self, center: &str) -> impl Iterator<Item = &Item> {
+        self.items.iter().filter(move |item| item.section == "Attribute" && item.center == center)
+    }
+
+    fn cursor(&self, item: &Item) -> Cursor<'a> {
+        Cursor::standing_at(self.source, item.at)
+    }
+
+    /// Stands before the numbers of an item in the XML.
+    fn content(&self, item: &Item) -> Cursor<'a> {
+        let range = match &item.content {
+            Content::Text(range) => range.clone(),
+            _ => item.at..item.at,
+        };
+        Cursor::within(self.source, range)
+    }
+
+    /// Whether the numbers of an item are real ones, not whole.
+    fn is_real(&self, item: &Item) -> bool {
+        match self.heavy.number(item) {
+            Some(number) => matches!(number, Number::Real(..)),
+            None => item.precision.is_some(),
+        }
+    }
+
+    /// Hands on the data of so many points.
+    fn point_data(&self, points: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+        // What stands in a file twice is replaced once.
+        let mut known: Vec<(usize, Range<usize>)> = Vec::new();
+        for section in ["Geometry", "Topology"] {
+            let numbers = match sink.asks_for_data() {
+                true => self.heavy.place(self.only(section)?),
+                false => None,
+            };
+            known.extend(numbers);
+        }
+        for item in self.attributes("node") {
+            let (components, is_real) = (item.components(points), self.is_real(item));
+            if sink.point_array(item.name.as_bytes(), components, is_real)
+                && let Ok(mut numbers) = self.numbers(item)
+            {
+                if let Some((part, range)) = self.heavy.place(item) {
+                    let is_other = |(known, own): &(usize, Range<usize>)| {
+                        *known != part || own.end <= range.start || range.end <= own.start
+                    };
+                    if !known.iter().all(is_other) {
+                        numbers.stored = None;
+                    }
+                    known.push((part, range));
+                }
+                sink.point_numbers(numbers);
+            }
+        }
+        Ok(())
+    }
+
+    /// The numbers of an item of data.
+    fn numbers(&self, item: &Item) -> Result<PointNumbers, ReadError> {
+        if let Some(mut numbers) = self.heavy.read(item, &self.cursor(item))? {
+            let reals = numbers.reals();
+            let Some(reals) = reals else {
+                return Err(self
+                    .cursor(item)
+                    .error("the data are not numbers", "Save the data as Float or Int"));
+            };
+            let stored = heavy::stored(&mut numbers, &self.heavy);
+            return Ok(PointNumbers { numbers: reals, nodes: None, stored });
+        }
+        let cursor = &mut self.content(item);
+        let mut numbers = TextNumbers::default();
+        while cursor.next_word() {
+            numbers.read(cursor)?;
+        }
+        let numbers = numbers.finish(item.precision.unwrap_or(Precision::Double), None);
+        let stored = numbers.stored.filter(|_| item.precision.is_some());
+        Ok(PointNumbers { stored, ..numbers })
+    }
+}

@@ -1,0 +1,158 @@
+//! The points of an XDMF file.
+
+use super::File;
+use super::document::Item;
+use super::heavy;
+use crate::binary::number_field::Field;
+use crate::edit::numbers::{Encoded, Numbers};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::hdf5::{Encoding, Number};
+use crate::precision::Precision;
+use crate::text::cursor::CORRECT;
+use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::sink::{Home, Layout, Sink};
+
+impl File<'_> {
+    /// Hands on the points. Returns how they stand, and how many there are.
+    pub(super) fn points(
+        &self,
+        item: &Item,
+        sink: &mut dyn Sink,
+    ) -> Result<(Layout, u64), ReadError> {
+        let axes = match item.kind.as_str() {
+            "xy" => 2,
+            "" | "xyz" => 3,
+            other => {
+                let problem =
+                    format!("a Geometry of the type {} is not read", quoted(other.as_bytes()));
+                return Err(self.cursor(item).error(problem, "Save points as XY or XYZ"));
+            }
+        };
+        match self.heavy.read(item, &self.cursor(item))? {
+            Some(numbers) => self.heavy_points(item, numbers, axes as usize, sink),
+            None => self.text_points(item, axes, sink),
+        }
+    }
+
+    fn text_points(
+        &self,
+        item: &Item,
+        axes: u64,
+        sink: &mut dyn Sink,
+    ) -> Result<(Layout, u64), ReadError> {
+        if item.precision.is_none() {
+            let problem = "the points are whole numbers";
+            return Err(self.cursor(item).error(problem, "Save them as Float"));
+        }
+        let announced = item.announced();
+        let count = announced.map(|count| count / axes);
+        self.cursor(item).check_vertex_count(count.unwrap_or(0))?;
+        let cursor = &mut self.content(item);
+        sink.expect_nodes(cursor.capacity(count.unwrap_or(0), "0 0 ".len()));
+        let mut heights = Heights::new(sink);
+        let mut index = 0;
+        while cursor.next_word() {
+            if Some(index) == count {
+                return Err(cursor.error(
+                    format!("there are more points than the {index} that Dimensions announces"),
+                    CORRECT,
+                ));
+            }
+            let own = cursor.clone();
+            let mut point = [0.0; 3];
+            let mut places = [0; 3];
+            for axis in 0..axes as usize {
+                if !cursor.next_word() {
+                    return Err(cursor.error(format!("point {index} lacks a coordinate"), CORRECT));
+                }
+                places[axis] = cursor.at();
+                let owner = format_args!("point {index}");
+                point[axis] = match axis {
+                    2 => cursor.height(owner)?.1,
+                    _ => cursor.coordinate(['x', 'y'][axis], owner)?,
+                };
+            }
+            sink.node(&own, index, 2, places[0], [point[0], point[1]]);
+            if axes == 3 {
+                heights.see((places[2], point[2]));
+            }
+            index += 1;
+        }
+        if announced.is_some_and(|announced| index.checked_mul(axes) != Some(announced)) {
+            let problem = format!("the Geometry ends after {index} points");
+            return Err(
+                cursor.error(problem, "Its Dimensions announce another number: correct them")
+            );
+        }
+        cursor.check_vertex_count(index)?;
+        sink.end_nodes(&self.cursor(item))?;
+        let precision = item.precision.unwrap_or(Precision::Double);
+        let numbers = Numbers::Text { precision };
+        heights.send("z", numbers.into(), sink);
+        Ok((Layout::in_place(Format::Xdmf, numbers), index))
+    }
+
+    /// Points of a file beside the XML.
+    fn heavy_points(
+        &self,
+        item: &Item,
+        mut numbers: heavy::Numbers<'_>,
+        axes: usize,
+        sink: &mut dyn Sink,
+    ) -> Result<(Layout, u64), ReadError> {
+        let Number::Real(precision, order) = numbers.number else {
+            let problem = "the points are not floating-point numbers of 32 or 64 bits";
+            return Err(self.cursor(item).error(problem, "Save them as Float"));
+        };
+        let size = precision.bytes();
+        let stride = axes * size;
+        if !numbers.bytes.len().is_multiple_of(stride) {
+            let problem = format!(
+                "there are {} numbers, not {axes} for each point",
+                numbers.bytes.len() / size
+            );
+            return Err(self.cursor(item).error(problem, CORRECT));
+        }
+        let count = numbers.bytes.len() / stride;
+        self.cursor(item).check_vertex_count(count as u64)?;
+        // Numbers that stand in the file are replaced there, all others encoded again.
+        let (start, part) = (numbers.start.unwrap_or(0), numbers.part);
+        let encoded: Option<Encoding> = match numbers.start {
+            Some(_) => None,
+            None => self.heavy.encoding(&mut numbers),
+        };
+        let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Encoding::bytes);
+        sink.expect_nodes(count);
+        let mut heights = Heights::new(sink);
+        let field = |axis: usize| Field::new(bytes.get(axis * size..), (stride, size), order);
+        let (x, y) = (field(0), field(1));
+        let taken =
+            sink.node_records(&NodeRecords { count, x, y, x_at: start, tags: Tags::From(0) });
+        if axes == 3 {
+            heights.see_all(field(2), taken, start + 2 * size);
+        }
+        for (index, point) in bytes.chunks_exact(stride).enumerate().skip(taken) {
+            let number = |axis: usize| order.real(precision, &point[axis * size..][..size]);
+            let at = [number(0), number(1)];
+            let cursor = &numbers.cursor(index * stride);
+            if !at.iter().all(|x| x.is_finite()) {
+                let problem = format!("a coordinate of point {index} is not a finite number");
+                return Err(cursor.error(problem, "Write the mesh again"));
+            }
+            let x_at = start + index * stride;
+            sink.node(cursor, index as u64, 2, x_at, at);
+            if axes == 3 {
+                heights.see((x_at + 2 * size, number(2)));
+            }
+        }
+        sink.end_nodes(&self.cursor(item))?;
+        let numbers = Numbers::adjacent(order, precision);
+        let home = if encoded.is_some() { Home::Points } else { Home::File };
+        heights.send_from("z", numbers.into(), (home, part), sink);
+        let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);
+        Ok((Layout { encoded, part, ..Layout::in_place(Format::Xdmf, numbers) }, count as u64))
+    }
+}

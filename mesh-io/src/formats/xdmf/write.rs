@@ -1,0 +1,79 @@
+//! Writes XDMF with the numbers in the XML.
+
+use crate::export::job::Job;
+use crate::export::put;
+use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
+use crate::visit::sink::Kind;
+use std::fmt::Write;
+
+pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
+    let content = job.content;
+    let cells: Vec<usize> = job.cells().collect();
+    let (points, count) = (content.points.len(), cells.len());
+    let mut out = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"Grid\" GridType=\"Uniform\">\n"
+        .to_owned();
+    put!(
+        out,
+        "<Geometry GeometryType=\"XYZ\">\n<DataItem DataType=\"Float\" Dimensions=\"{points} 3\" Format=\"XML\" \
+         Precision=\"8\">\n"
+    );
+    (0..points).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    out.push_str("</DataItem>\n</Geometry>\n");
+    let rows: Vec<String> = cells.iter().map(|&cell| row(job, cell)).collect();
+    let words: usize = rows.iter().map(|row| row.split(' ').count()).sum();
+    put!(
+        out,
+        "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{count}\">\n<DataItem DataType=\"Int\" \
+         Dimensions=\"{words}\" Format=\"XML\" Precision=\"8\">\n"
+    );
+    rows.iter().for_each(|row| put!(out, "{row}\n"));
+    out.push_str("</DataItem>\n</Topology>\n");
+    of_points(job).iter().for_each(|array| attribute(array, "Node", points, &mut out));
+    of_cells(job, &cells).iter().for_each(|array| attribute(array, "Cell", count, &mut out));
+    out.push_str("</Grid>\n</Domain>\n</Xdmf>\n");
+    out
+}
+
+/// Writes a cell: XDMF's number of its type, its number of vertices if the type does not tell, and its vertices.
+fn row(job: &Job<'_>, cell: usize) -> String {
+    let vertices = job.places(cell, 0);
+    match job.content.cells.kinds[cell] {
+        Kind::Point => format!("1 1 {vertices}"),
+        Kind::Line => format!("2 2 {vertices}"),
+        Kind::Triangle => format!("4 {vertices}"),
+        Kind::Quadrilateral => format!("5 {vertices}"),
+        Kind::Corner => format!("3 {} {vertices}", job.content.cells.of(cell).len()),
+    }
+}
+
+/// Adds data of nodes or cells.
+fn attribute(array: &Array, center: &str, count: usize, out: &mut String) {
+    let Array { name, components, numbers } = array;
+    let name = quick_xml::escape::escape(name);
+    let kind = match components {
+        1 => "Scalar",
+        3 => "Vector",
+        9 => "Tensor",
+        _ => "Matrix",
+    };
+    let (number, words): (_, Vec<String>) = match numbers {
+        // NaN is written so that readers in C parse it.
+        Numbers::Real(numbers) => {
+            ("Float", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
+        }
+        Numbers::Whole(numbers) => ("Int", numbers.iter().map(i64::to_string).collect()),
+    };
+    let dimensions = match components {
+        1 => count.to_string(),
+        components => format!("{count} {components}"),
+    };
+    put!(
+        out,
+        "<Attribute Name=\"{name}\" AttributeType=\"{kind}\" Center=\"{center}\">\n<DataItem DataType=\"{number}\" \
+         Dimensions=\"{dimensions}\" Format=\"XML\" Precision=\"8\">\n"
+    );
+    for row in words.chunks((*components).max(1)) {
+        put!(out, "{}\n", row.join(" "));
+    }
+    out.push_str("</DataItem>\n</Attribute>\n");
+}

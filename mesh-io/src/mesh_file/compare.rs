@@ -1,0 +1,290 @@
+//! Checks whether two files of a mesh differ in nothing but coordinates. This code is not used to write files.
+
+use crate::edit::numbers::{Encoded, Form, Numbers, Places};
+use crate::error::Location;
+use crate::mesh_file::mesh::MeshFile;
+use crate::mesh_file::place::Place;
+use crate::text::token::quoted;
+use crate::visit::field::PointField;
+use crate::visit::sink::{Home, Stored};
+use std::ops::Range;
+
+/// The first place at which two files of a mesh differ in more than coordinates.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Where the first file differs. The label is 0.
+    pub place: Place,
+    /// Where the second file differs. The label is 0.
+    pub other_place: Place,
+    /// A description of the difference.
+    pub what: String,
+}
+
+impl MeshFile {
+    /// Finds the first difference to another file of the mesh, apart from coordinates. `None` if both have the same
+    /// format, list the same triangles, and have the same bytes except for coordinates.
+    ///
+    /// Where a file has its points encoded, as a `.vtu` may, the bytes that encode them are left out, and the numbers
+    /// themselves compared; so are the offsets of what stands after them. In HDF5, where chunks that are compressed anew may go to the end of
+    /// the file, that is what the files have at the places of such chunks in either of them, and where their places stand.
+    pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
+        self.difference_besides(other, [&[], &[]])
+    }
+
+    /// Finds the first difference as [`difference`](Self::difference) does, but also leaves out the numbers of some
+    /// data: fields of this file, and the same fields of the other.
+    pub fn difference_besides(
+        &self,
+        other: &MeshFile,
+        fields: [&[PointField]; 2],
+    ) -> Option<Difference> {
+        let (mine, theirs) = (self.parts(), other.parts());
+        let place = |file: &MeshFile, part: usize, at: usize| {
+            let source = file.parts()[part];
+            let location = match file.is_text(part) {
+                true => Location::Line(source.line_of(at)),
+                false => Location::Byte(at),
+            };
+            Place { path: source.path.clone(), location, label: 0 }
+        };
+        let differ = |part: usize, at: [usize; 2], what: String| {
+            let (place, other_place) = (place(self, part, at[0]), place(other, part, at[1]));
+            Some(Difference { place, other_place, what })
+        };
+        if self.format() != other.format() {
+            let what = format!("the formats are {} and {}", self.format(), other.format());
+            return differ(0, [0; 2], what);
+        }
+        if mine.len() != theirs.len() {
+            let what = format!("a mesh of {} files and one of {}", mine.len(), theirs.len());
+            return differ(0, [0; 2], what);
+        }
+        let counts = [self, other].map(|file| file.points().len());
+        if counts[0] != counts[1] {
+            return differ(0, [0; 2], format!("{} vertices and {}", counts[0], counts[1]));
+        }
+        if self.triangles() != other.triangles() {
+            return differ(0, [0; 2], "the triangles are not the same".into());
+        }
+        let encoded = [self, other].map(|file| file.encoded().map(Encoded::bytes));
+        if let [Some(mine), Some(theirs)] = encoded {
+            let ranges = [0, 1].map(|side| {
+                let (file, bytes) = ([self, other][side], [mine, theirs][side]);
+                merged(file.coordinates(), number_ranges(bytes, fields[side], is_beside_points))
+            });
+            if let Some([at, _]) = unequal([mine, theirs], ranges) {
+                let vertex = self.vertex_before(at);
+                let [place, other_place] = [self, other].map(|file| file.vertex_place(vertex));
+                let what =
+                    format!("third coordinates are not the same, first of vertex {}", place.label);
+                let unlabeled = |place| Place { label: 0, ..place };
+                let (place, other_place) = (unlabeled(place), unlabeled(other_place));
+                return Some(Difference { place, other_place, what });
+            }
+        }
+        for (part, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
+            let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
+            let mut ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
+            if [0, 1].iter().any(|&side| [self, other][side].keeps_places(part, fields[side])) {
+                ranges = in_either(bytes, ranges);
+            }
+            if let Some(at) = unequal(bytes, ranges) {
+                let text = |side: usize| match self.is_text(part) {
+                    _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
+                    true => {
+                        let start = memchr::memrchr(b'\n', &bytes[side][..at[side]]);
+                        let line = &bytes[side][start.map_or(0, |start| start + 1)..];
+                        let line = line.split(|&byte| byte == b'\n').next().unwrap_or_default();
+                        format!("`{}`", quoted(line.trim_ascii()))
+                    }
+                    false => format!("the byte {}", bytes[side][at[side]]),
+                };
+                return differ(part, at, format!("{} and {}", text(0), text(1)));
+            }
+        }
+        None
+    }
+
+    /// Returns the vertex whose coordinates stand last before a place in the bytes that hold them.
+    fn vertex_before(&self, at: usize) -> u32 {
+        let owners = self.owners();
+        let count = owners.map_or(self.points().len(), <[u32]>::len);
+        let x_at = self.x_at();
+        let before = (0..count).filter(|&index| x_at.at(index) <= at);
+        let index = before.max_by_key(|&index| x_at.at(index)).unwrap_or(0);
+        owners.map_or(index as u32, |owners| owners[index])
+    }
+
+    /// Returns the ranges of coordinates in the bytes that hold them, ascending.
+    fn coordinates(&self) -> Vec<Range<usize>> {
+        let x_at = self.x_at();
+        // There are as many coordinates as vertices, or as places where they are repeated.
+        let count = self.owners().map_or(self.points().len(), <[u32]>::len);
+        let mut ranges = Vec::with_capacity(2 * count);
+        let places = (0..count).map(|index| x_at.at(index));
+        match self.numbers() {
+            Numbers::Text { .. } | Numbers::Fields { .. } => {
+                let (bytes, form) = (&self.parts()[self.part()].bytes, Form::from(self.numbers()));
+                for x in places {
+                    let (x_end, _) = form.extent(bytes, x);
+                    let y = form.next(bytes, x_end);
+                    ranges.extend([x..x_end, y..form.extent(bytes, y).0]);
+                }
+            }
+            Numbers::Binary { precision, y_after, .. } => {
+                let size = precision.bytes();
+                ranges.extend(
+                    places.flat_map(|x| {
+                        [x, x.saturating_add_signed(y_after)].map(|at| at..at + size)
+                    }),
+                );
+                ranges.sort_unstable_by_key(|range| range.start);
+            }
+        }
+        ranges
+    }
+
+    /// Whether places in one of the files are told by lines.
+    fn is_text(&self, part: usize) -> bool {
+        match self.numbers() {
+            Numbers::Text { .. } | Numbers::Fields { .. } if part == self.part() => true,
+            Numbers::Binary { .. } if part == self.part() => false,
+            _ => memchr::memchr(0, &self.parts()[part].bytes).is_none(),
+        }
+    }
+
+    /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
+    fn keeps_places(&self, part: usize, fields: &[PointField]) -> bool {
+        let of = |field: &PointField| match field.stored()? {
+            Stored { home: Home::Encoded(array), part: own, .. } => {
+                Some(*own == part && array.keeps_places())
+            }
+            _ => None,
+        };
+        (part == self.part() && self.encoded().is_some_and(Encoded::keeps_places))
+            || fields.iter().filter_map(of).any(|keeps| keeps)
+    }
+
+    /// The ranges of a file that may change where vertices move and these data change, ascending.
+    fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
+        let bytes = &self.parts()[part].bytes;
+        let encoded = self.encoded().filter(|_| part == self.part());
+        let mut ranges = match encoded {
+            None if part == self.part() => self.coordinates(),
+            None => Vec::new(),
+            Some(points) => points.ranges(),
+        };
+        if part == 0 {
+            // Files beside it may have other names.
+            let beside = self.sources().iter().flat_map(|source| &source.beside);
+            ranges.extend(beside.flat_map(|beside| beside.named_at.iter().cloned()));
+        }
+        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
+        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.home));
+        let arrays = homes().filter_map(|home| match home {
+            Home::Encoded(array) => Some(&**array),
+            _ => None,
+        });
+        ranges.extend(arrays.clone().flat_map(Encoded::ranges));
+        // What follows from the length of an array.
+        let encoded = || encoded.into_iter().chain(arrays.clone());
+        let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
+        if let (Some(first), Some(array)) = (first, encoded().next()) {
+            ranges.extend(array.followers(first));
+        }
+        let in_file = |stored: &Stored| stored.part == part && matches!(stored.home, Home::File);
+        merged(ranges, number_ranges(bytes, fields, in_file))
+    }
+}
+
+/// All that is in the ranges of one of two files in which everything else has the same place, as far as each file goes. What stands
+/// behind the end of the shorter one is chunks, or where chunks were.
+fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<usize>>; 2] {
+    let [mine, theirs] = ranges;
+    let [a, b] = bytes.map(<[u8]>::len);
+    let behind = a.min(b)..a.max(b);
+    let mut joined: Vec<Range<usize>> = Vec::new();
+    for range in merged(merged(mine, theirs), vec![behind]) {
+        match joined.last_mut() {
+            Some(last) if last.end >= range.start => last.end = last.end.max(range.end),
+            _ => joined.push(range),
+        }
+    }
+    bytes.map(|bytes| {
+        let inside =
+            |range: &Range<usize>| range.start.min(bytes.len())..range.end.min(bytes.len());
+        joined.iter().map(inside).collect()
+    })
+}
+
+fn is_beside_points(stored: &Stored) -> bool {
+    matches!(stored.home, Home::Points)
+}
+
+/// Returns the ranges of the numbers of fields in the bytes that hold them.
+fn number_ranges(
+    bytes: &[u8],
+    fields: &[PointField],
+    in_these: impl Fn(&Stored) -> bool,
+) -> Vec<Range<usize>> {
+    let mut ranges = Vec::new();
+    for field in fields {
+        let Some(stored @ Stored { places, form, .. }) = field.stored() else { continue };
+        if !in_these(stored) {
+            continue;
+        }
+        let range = |at: usize| at..form.extent(bytes, at).0;
+        match places {
+            Places::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
+            Places::Regular { start, stride } => {
+                let count = field.numbers();
+                ranges.extend((0..count).map(|index| range(start + index * stride)));
+            }
+        }
+    }
+    ranges
+}
+
+/// Joins two lists of ranges, ascending.
+fn merged(mut ranges: Vec<Range<usize>>, more: Vec<Range<usize>>) -> Vec<Range<usize>> {
+    ranges.extend(more);
+    ranges.sort_unstable_by_key(|range| range.start);
+    ranges
+}
+
+/// Returns where two files first differ outside of these ranges. Files that are equal have the same number of ranges.
+fn unequal(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> Option<[usize; 2]> {
+    let [a, b] = bytes;
+    let mut at = [0, 0];
+    let ends = [a.len()..a.len(), b.len()..b.len()];
+    let [mine, theirs] = ranges.map(Vec::into_iter);
+    for (mine, theirs) in mine.zip(theirs).chain([ends.into()]) {
+        let (Some(mine_before), Some(theirs_before)) =
+            (a.get(at[0]..mine.start), b.get(at[1]..theirs.start))
+        else {
+            return Some(at);
+        };
+        if mine_before != theirs_before {
+            let same = mine_before.iter().zip(theirs_before).take_while(|(a, b)| a == b).count();
+            return Some(at.map(|at| at + same));
+        }
+        at = [mine.end, theirs.end];
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_outside_the_ranges_of_coordinates_are_compared() {
+        let (x, y) = (vec![2..3, 4..5], vec![2..4, 5..6]);
+        let find = |a: &[u8], b: &[u8]| unequal([a, b], [x.clone(), y.clone()]);
+        assert_eq!(find(b"v 1 2 z", b"v 10 2 z"), None);
+        assert_eq!(find(b"v 1 2 z", b"v 10 2 zz"), Some([7, 8]));
+        assert_eq!(find(b"v 1\t2 z", b"v 10 2 z"), Some([3, 4]));
+        assert_eq!(find(b"w 1 2 z", b"v 10 2 z"), Some([0, 0]));
+        assert_eq!(find(b"v 1 2", b"v 10 2"), None);
+    }
+}

@@ -1,0 +1,251 @@
+//! A mesh with its file, which is read once and written with nothing changed but coordinates.
+
+use crate::content::constraints::{Constraints, edges_between_regions};
+use crate::content::regions::interface_vertices;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Encoded, Numbers, Places};
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::precision::Precision;
+use crate::visit::parsed::Parsed;
+use std::fmt;
+use std::path::Path;
+
+/// A mesh with the file it was read from.
+///
+/// The file's content is kept. [`write`](Self::write) replaces the coordinates of moved vertices and nothing else.
+/// Numbering, comments, attributes, physical groups, third coordinates, node and element data, and line ends come back
+/// byte for byte.
+///
+/// # Regions
+/// Triangles are of one region if the file has the same entries for them:
+///
+/// | format | a region has the same |
+/// |---|---|
+/// | Triangle | attributes in the `.ele`, all that its first line announces, compared as numbers |
+/// | gmsh 2.2 | first and second tag: physical group and geometrical entity |
+/// | gmsh 4.0, 4.1 | entity of the model, and so the physical groups of that entity |
+/// | Medit, FreeFem | reference |
+/// | SMS 2dm | material |
+/// | OBJ | material, group and object |
+/// | SU2 | zone |
+/// | VTK, XDMF | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
+/// | STL | solid |
+/// | Exodus II | block |
+/// | MED | family |
+/// | CGNS | section |
+/// | Abaqus | set that a list of elements names, and section |
+/// | Nastran | property |
+/// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
+///
+/// [`interface_vertices`](Self::interface_vertices) lies between triangles of different regions. Two surfaces of a model are two
+/// regions even where they belong to one physical group.
+///
+/// # Facts, not decisions
+/// A mesh file never changes after it is read, and says nothing about which vertices may move. [`constraints`](Self::constraints) and
+/// [`regions`](Self::regions) are the facts by which a program decides.
+pub struct MeshFile {
+    points: Vec<[f64; 2]>,
+    triangles: Vec<[u32; 3]>,
+    format: Format,
+    notes: Vec<String>,
+    data: Vec<String>,
+    has_parameters: bool,
+    has_centers: bool,
+    /// The bytes at which the x of vertices start in the part that has the coordinates.
+    x_at: Places,
+    /// The vertex of each offset in `x_at`, if a vertex may have several.
+    owners: Option<Vec<u32>>,
+    /// How that part has the coordinates.
+    numbers: Numbers,
+    /// Which of the parts has the coordinates.
+    part: usize,
+    /// The points, if that part has them encoded.
+    encoded: Option<Box<dyn Encoded>>,
+    regions: Option<Vec<u32>>,
+    constraints: Constraints,
+    /// All files of the mesh, the one with the vertices first. For a Triangle mesh, these are the `.node`, the `.ele`
+    /// and, if there is one, the `.poly`.
+    sources: Vec<Source>,
+}
+
+impl MeshFile {
+    /// Makes a mesh file of what a reader returned.
+    ///
+    /// # Errors
+    /// [`ReadError::Format`] if there is no triangle.
+    pub(crate) fn new(parsed: Parsed, sources: Vec<Source>) -> Result<MeshFile, ReadError> {
+        let Parsed {
+            format,
+            points,
+            triangles,
+            x_at,
+            owners,
+            numbers,
+            part,
+            encoded,
+            regions,
+            constraints,
+            notes,
+            data,
+            has_parameters,
+            has_centers,
+        } = parsed;
+        if triangles.is_empty() {
+            let problem = format!("{} vertices, but no triangle", points.len());
+            let remedy = "Only triangles are smoothed: mesh the surface with them, and save all its elements";
+            return Err(sources[0].error(problem, remedy));
+        }
+        Ok(MeshFile {
+            points,
+            triangles,
+            format,
+            notes,
+            data,
+            has_parameters,
+            has_centers,
+            x_at,
+            owners,
+            numbers,
+            part,
+            encoded,
+            regions,
+            constraints,
+            sources,
+        })
+    }
+
+    /// Returns the path of the file that was read; for a Triangle mesh, that of its `.node`.
+    pub fn path(&self) -> &Path {
+        &self.sources[0].path
+    }
+
+    /// All files that were read: of a Triangle mesh its `.node`, `.ele` and, if there is one, `.poly`; of an XDMF the files beside it
+    /// that it has numbers in.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.parts().into_iter().map(|source| source.path.as_path())
+    }
+
+    /// Lists all files that were read, in the order of [`paths`](Self::paths), with their bytes.
+    pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
+        self.parts().into_iter().map(|source| {
+            let bytes = source.packed.as_ref().map_or(&source.bytes, |packed| &packed.bytes);
+            (source.path.as_path(), &bytes[..])
+        })
+    }
+
+    /// Returns x and y of each vertex, in the order of the file, in its unit.
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// Returns the vertex indices of each triangle, zero-based, in the order and the winding of the file.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Returns the lines, points, other elements and periodic pairs of the file.
+    pub fn constraints(&self) -> &Constraints {
+        &self.constraints
+    }
+
+    /// Returns the [region](Self#regions) of each triangle, in the order of [`triangles`](Self::triangles). Regions are
+    /// numbered from 0 in the order in which the file first names them. `None` if all triangles are of one region.
+    pub fn regions(&self) -> Option<&[u32]> {
+        self.regions.as_deref()
+    }
+
+    /// Returns the vertices inside the mesh at which triangles of different [regions](Self#regions) meet, ascending.
+    /// Vertices on the boundary are left out.
+    pub fn interface_vertices(&self) -> Vec<u32> {
+        let regions = self.regions.as_deref();
+        regions.map_or_else(Vec::new, |regions| {
+            interface_vertices(regions, &self.triangles, self.points.len())
+        })
+    }
+
+    /// Returns the edges between triangles of different [regions](Self#regions), ascending.
+    pub fn interface_edges(&self) -> Vec<[u32; 2]> {
+        let regions = self.regions.as_deref();
+        regions.map_or_else(Vec::new, |regions| {
+            edges_between_regions(regions, &self.triangles, self.points.len())
+        })
+    }
+
+    /// Returns the format that the file was read in, which is also written.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    pub(crate) fn sources(&self) -> &[Source] {
+        &self.sources
+    }
+
+    /// All files of the mesh, each of the sources with those beside it.
+    pub(crate) fn parts(&self) -> Vec<&Source> {
+        self.sources.iter().flat_map(Source::parts).collect()
+    }
+
+    /// Which of the parts has the coordinates.
+    pub(crate) fn part(&self) -> usize {
+        self.part
+    }
+
+    pub(crate) fn x_at(&self) -> &Places {
+        &self.x_at
+    }
+
+    pub(crate) fn owners(&self) -> Option<&[u32]> {
+        self.owners.as_deref()
+    }
+
+    pub(crate) fn numbers(&self) -> Numbers {
+        self.numbers
+    }
+
+    /// Returns the encoded points, if the file has them encoded.
+    pub(crate) fn encoded(&self) -> Option<&dyn Encoded> {
+        self.encoded.as_deref()
+    }
+
+    /// Returns the precision of coordinates in the file, to which [`write`](Self::write) rounds.
+    pub fn precision(&self) -> Precision {
+        self.numbers.precision()
+    }
+
+    /// Returns remarks for the user on what the file holds besides triangles, one line each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Returns the names of the real numbers that the file gives vertices besides x and y: depths, third coordinates
+    /// that differ, point data. [`write`](Self::write) keeps these numbers, so they no longer fit where vertices move.
+    /// [`point_fields`](Self::point_fields) reads them.
+    pub fn data_names(&self) -> &[String] {
+        &self.data
+    }
+
+    /// Whether the file gives vertices parameters on surfaces of a model, as gmsh 4.1 may. [`write`](Self::write) keeps
+    /// these parameters; [`plane_parameters`](Self::plane_parameters) updates them.
+    pub fn has_parameters(&self) -> bool {
+        self.has_parameters
+    }
+
+    /// Whether the file has the centers of faces or edges, as UGRID may. [`write`](Self::write) keeps them;
+    /// [`centers`](Self::centers) updates them.
+    pub fn has_centers(&self) -> bool {
+        self.has_centers
+    }
+}
+
+impl fmt::Debug for MeshFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let paths: Vec<_> = self.paths().collect();
+        f.debug_struct("MeshFile")
+            .field("paths", &paths)
+            .field("format", &self.format)
+            .field("vertices", &self.points.len())
+            .field("triangles", &self.triangles.len())
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,49 @@
+//! Walks again through a file for the parameters of vertices on surfaces of a model.
+
+use crate::content::tags::TagMap;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::field::PointField;
+use crate::visit::sink::{PointNumbers, Reader, Sink};
+
+/// Returns a field for each surface, with two parameters for each of its vertices. The file must have been read before.
+pub(crate) fn parameters(reader: &Reader, source: &Source) -> Result<Vec<PointField>, ReadError> {
+    let mut seeker = Seeker::default();
+    (reader.walk)(source, &mut seeker)?;
+    // There is no error to report, as the file was read before without one.
+    let map = TagMap::new(&seeker.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
+    let field = |(surface, numbers): (i64, PointNumbers)| {
+        let nodes = numbers.nodes.as_deref().unwrap_or_default();
+        let vertices = nodes.iter().map(|&node| map.index(node).unwrap_or(u32::MAX)).collect();
+        let name = format!("parameters on surface {surface}");
+        PointField::new(name, 2, seeker.tags.len(), numbers, Some(vertices))
+    };
+    Ok(seeker.found.into_iter().map(field).collect())
+}
+
+#[derive(Default)]
+struct Seeker {
+    tags: Vec<u64>,
+    surface: i64,
+    found: Vec<(i64, PointNumbers)>,
+}
+
+impl Sink for Seeker {
+    fn takes_ahead(&self) -> bool {
+        true
+    }
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn parameters(&mut self, surface: i64) -> bool {
+        self.surface = surface;
+        true
+    }
+
+    fn parameter_numbers(&mut self, numbers: PointNumbers) {
+        self.found.push((self.surface, numbers));
+    }
+}

@@ -1,0 +1,329 @@
+//! Writes a mesh file again, with the coordinates of moved vertices replaced.
+
+use crate::compress::packed::Packing;
+use crate::detect;
+use crate::disk::replace;
+use crate::disk::replace::Job;
+use crate::edit::beside;
+use crate::edit::column::Column;
+use crate::edit::numbers::{Encoded, Splice};
+use crate::edit::rewrite::Rewrite;
+use crate::error::WriteError;
+use crate::families::{Family, TRIANGLE};
+use crate::format::Format;
+use crate::formats::triangle::names::Names;
+use crate::mesh_file::mesh::MeshFile;
+use crate::visit::field::PointField;
+use crate::visit::sink::{Home, Stored};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+impl MeshFile {
+    /// Writes the file again with vertex `i` at `points[i]`, in the units of the file.
+    ///
+    /// A coordinate with the bits that were read keeps its text. Others are written with the fewest digits that read
+    /// back as the same bits. For a Triangle mesh, all files are written under the name that `path` gives, with or
+    /// without ending. `path` may be the file that was read. Existing files are replaced only once all is written, and
+    /// symbolic links are followed.
+    ///
+    /// The file is compressed if `path` ends in `.gz` (gzip) or `.zst` (zstd); if nothing has moved, a file that was compressed keeps its
+    /// bytes.
+    ///
+    /// # Errors
+    /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), if the points are not finite
+    /// or not one per vertex, or if the system refuses. Existing files are then unchanged.
+    pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
+        self.write_with(path, points, &[])
+    }
+
+    /// Writes the file as [`write`](Self::write) does, and also replaces data of vertices by the values of these
+    /// fields. The fields must come from [`point_fields`](Self::point_fields) or
+    /// [`plane_parameters`](Self::plane_parameters) or [`centers`](Self::centers) of this file. A number with the bits that were read keeps its text.
+    ///
+    /// # Errors
+    /// [`WriteError`] for the reasons of [`write`](Self::write).
+    pub fn write_with(
+        &self,
+        path: &Path,
+        points: &[[f64; 2]],
+        fields: &[PointField],
+    ) -> Result<(), WriteError> {
+        self.check_points(path, points)?;
+        self.check_destination(path)?;
+        let packs = self.packs(path);
+        let renamed = &beside::renamed(&self.sources()[0], path);
+        let job = |(part, destination)| -> Job<'_> {
+            let content = (points, fields);
+            (
+                destination,
+                Box::new(move |out| match part {
+                    0 if !renamed.is_empty() => self.put_plain(0, content, renamed, out),
+                    _ => self.put(part, content, packs, out),
+                }),
+            )
+        };
+        let mut jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
+        // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
+        // leave its place if that is left to the one with the coordinates.
+        if self.part() > 0 && self.is_written(&jobs[0], renamed) {
+            jobs.swap(0, self.part());
+        }
+        replace::replace_all(&jobs)
+    }
+
+    /// Whether what the first file becomes stands there already.
+    fn is_written(&self, (path, _): &Job<'_>, renamed: &[Splice]) -> bool {
+        let mut new = Vec::new();
+        let bytes = &self.sources()[0].bytes;
+        let written = Rewrite { bytes, columns: &[], splices: renamed }.write(&mut new);
+        written.is_ok() && std::fs::read(path).is_ok_and(|old| old == new)
+    }
+
+    /// Writes what [`write`](Self::write) does to where bytes can be written, such as the standard output. It is compressed if
+    /// the file that was read is.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the points are not finite or not one per vertex, for a mesh of several files, or
+    /// if nothing can be written; `name` stands in it for where that is.
+    pub fn write_to(
+        &self,
+        name: &Path,
+        out: &mut (dyn Write + Send),
+        points: &[[f64; 2]],
+    ) -> Result<(), WriteError> {
+        self.write_to_with(name, out, points, &[])
+    }
+
+    /// Writes the file and these fields as [`write_with`](Self::write_with) does, to any writer as
+    /// [`write_to`](Self::write_to) does.
+    ///
+    /// # Errors
+    /// [`WriteError`] for the reasons of [`write_to`](Self::write_to).
+    pub fn write_to_with(
+        &self,
+        name: &Path,
+        out: &mut (dyn Write + Send),
+        points: &[[f64; 2]],
+        fields: &[PointField],
+    ) -> Result<(), WriteError> {
+        self.check_points(name, points)?;
+        if self.parts().len() > 1 {
+            let problem = "the mesh is of several files".to_owned();
+            let remedy = "Name a file to write to".to_owned();
+            return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
+        }
+        let packs = self.sources()[0].packed.as_ref().map(|packed| packed.packing);
+        self.put(0, (points, fields), packs, out).and_then(|()| out.flush()).map_err(|source| {
+            let remedy = "Write to a file instead".to_owned();
+            WriteError::Io { path: name.to_owned(), source, remedy }
+        })
+    }
+
+    /// Returns the compression of what is written to a path, by its ending. A file that was compressed without such an
+    /// ending stays compressed under any name.
+    fn packs(&self, path: &Path) -> Option<Packing> {
+        let source = &self.sources()[0];
+        match Packing::of(path) {
+            None if Packing::of(&source.path).is_none() => {
+                source.packed.as_ref().map(|packed| packed.packing)
+            }
+            by_ending => by_ending,
+        }
+    }
+
+    /// Writes the file with index `part`.
+    fn put(
+        &self,
+        part: usize,
+        content: (&[[f64; 2]], &[PointField]),
+        packs: Option<Packing>,
+        out: &mut (dyn Write + Send),
+    ) -> io::Result<()> {
+        let (points, fields) = content;
+        let Some(packing) = packs else { return self.put_plain(part, content, &[], out) };
+        let is_same = || self.is_unmoved(points) && !fields.iter().any(PointField::is_changed);
+        match &self.parts()[part].packed {
+            // Another program may pack the same content into other bytes.
+            Some(packed) if packed.packing == packing && is_same() => out.write_all(&packed.bytes),
+            _ => packing.pack(out, |out| self.put_plain(part, content, &[], out)),
+        }
+    }
+
+    /// Writes one of the files, with what of it is replaced because files beside it get other names.
+    fn put_plain(
+        &self,
+        part: usize,
+        (points, fields): (&[[f64; 2]], &[PointField]),
+        renamed: &[Splice],
+        out: &mut (dyn Write + Send),
+    ) -> io::Result<()> {
+        let bytes = &self.parts()[part].bytes[..];
+        let has_points = part == self.part();
+        let coordinates = || {
+            let places = (self.x_at(), self.owners());
+            Column::of_points(places, self.numbers(), self.points(), points)
+        };
+        // Columns of the file itself and of the encoded points. Arrays that are encoded by themselves become splices.
+        let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
+        let mut in_others: Vec<(&Arc<dyn Encoded>, Vec<Column<'_>>)> = Vec::new();
+        let (mut splices, mut end) = (renamed.to_vec(), bytes.len());
+        let mut again = |array: &dyn Encoded, columns: &[Column<'_>]| -> io::Result<()> {
+            let old = array.bytes();
+            let mut new = Vec::with_capacity(old.len());
+            Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
+            splices.extend(array.splices(bytes, &new, &mut end));
+            Ok(())
+        };
+        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
+        for field in fields.iter().filter(own).filter(|field| field.is_changed()) {
+            let (Some(column), Some(Stored { home, .. })) = (field.column(), field.stored()) else {
+                continue;
+            };
+            match home {
+                Home::File => in_file.push(column),
+                Home::Points => in_points.push(column),
+                Home::Encoded(array) => {
+                    match in_others.iter_mut().find(|(other, _)| Arc::ptr_eq(array, other)) {
+                        Some((_, columns)) => columns.push(column),
+                        None => in_others.push((array, vec![column])),
+                    }
+                }
+            }
+        }
+        in_others.iter().try_for_each(|(array, columns)| again(&***array, columns))?;
+        let encoded = self.encoded().filter(|_| has_points);
+        match encoded {
+            None if has_points => in_file.extend(coordinates()),
+            None => {}
+            Some(array) => {
+                in_points.extend(coordinates());
+                again(array, &in_points)?;
+            }
+        }
+        let homes = fields.iter().filter(own);
+        let homes = homes.filter_map(|field| field.stored().map(|stored| &stored.home));
+        let arrays = encoded.into_iter().chain(homes.filter_map(|home| match home {
+            Home::Encoded(array) => Some(&**array),
+            _ => None,
+        }));
+        let mut more: Vec<Splice> = Vec::new();
+        for array in arrays {
+            for own in array.follow(bytes, &splices, end) {
+                if more.iter().all(|splice| splice.range != own.range) {
+                    more.push(own);
+                }
+            }
+        }
+        splices.extend(more);
+        splices.sort_by_key(|splice| splice.range.start);
+        Rewrite { bytes, columns: &in_file, splices: &splices }.write(out)
+    }
+
+    /// Whether these points, rounded to the precision of the file, are those that were read.
+    fn is_unmoved(&self, points: &[[f64; 2]]) -> bool {
+        let bits = |x: f64| self.precision().rounded(x).to_bits();
+        let mut pairs = points.iter().flatten().zip(self.points().iter().flatten());
+        pairs.all(|(&new, &old)| bits(new) == old.to_bits())
+    }
+
+    /// Checks, without writing, whether [`write`](Self::write) to `path` can work. The ending must not belong to
+    /// another format, the directory must exist and take new files, and no directory or read-only file may be in the
+    /// way.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the file cannot be written, with the reason.
+    pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
+        self.destinations(path)?.iter().try_for_each(|destination| replace::check(destination))
+    }
+
+    /// Lists the files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
+    ///
+    /// # Errors
+    /// [`WriteError::Format`] if `path` is not the name of a file, if its ending belongs to another format, or if a
+    /// file in the way would be read in place of or with a Triangle mesh.
+    pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+        let usual = Family::of(self.format()).endings[0];
+        let refused = |problem: String, remedy: String| {
+            Err(WriteError::Format { path: path.to_owned(), problem, remedy })
+        };
+        let ends_in_separator =
+            path.to_string_lossy().chars().next_back().is_none_or(std::path::is_separator);
+        // A device takes a single file, not several.
+        let is_device = path.exists() && !path.is_file() && self.parts().len() > 1;
+        if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
+            return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
+        }
+        if let Some(owner) = detect::owner_of_ending(path)
+            && !Family::of(self.format()).has_ending_of(path)
+        {
+            let problem =
+                format!("its ending is that of {owner}, but the mesh is {}", self.format());
+            return refused(
+                problem,
+                format!("A run keeps the format: end the name in {usual}, and convert the result"),
+            );
+        }
+        Ok(match self.format() {
+            Format::Triangle if Packing::of(path).is_some() => {
+                let problem =
+                    "a Triangle mesh is of several files, which are not written compressed";
+                return refused(problem.into(), "End the name in .node".into());
+            }
+            Format::Triangle => {
+                if path.is_file() && !TRIANGLE.has_ending_of(path) {
+                    let name = path.display();
+                    let problem = format!(
+                        "a file of this name is there, and would be read in place of {name}.node"
+                    );
+                    return refused(problem, "End the name in .node, or take another".into());
+                }
+                let Names { node, ele, poly } = Names::of(path);
+                if self.sources().len() == 2 && poly.exists() {
+                    let problem = format!(
+                        "{} of another mesh is there, and would be read with this one",
+                        poly.display()
+                    );
+                    return refused(problem, "Remove it, or take another name".into());
+                }
+                [node, ele, poly].into_iter().take(self.sources().len()).collect()
+            }
+            _ if self.parts().len() > 1 => {
+                let all = beside::destinations(&self.sources()[0], path);
+                if Packing::of(path).is_some() {
+                    let problem = "the mesh is of several files, which are not written compressed";
+                    return refused(problem.into(), format!("End the name in {usual}"));
+                }
+                // Each file of the mesh may be replaced by what it becomes, and by nothing else.
+                for (part, own) in all.iter().enumerate() {
+                    let mut others = self.paths().enumerate().filter(|(other, _)| *other != part);
+                    if others.any(|(_, other)| replace::same_file(own, other)) {
+                        let name = own.display();
+                        let problem =
+                            format!("{name}, from which the mesh was read, would be overwritten");
+                        return refused(problem, "Take another name".into());
+                    }
+                }
+                all
+            }
+            _ => vec![path.to_owned()],
+        })
+    }
+
+    fn check_points(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
+        let refused = |problem| Err(WriteError::Points { path: path.to_owned(), problem });
+        let vertices = self.points().len();
+        if points.len() != vertices {
+            return refused(format!("{} points given for {vertices} vertices", points.len()));
+        }
+        let precision = self.precision();
+        let is_finite = |&x: &f64| precision.rounded(x).is_finite();
+        match points.iter().position(|point| !point.iter().all(is_finite)) {
+            Some(index) => {
+                let [x, y] = points[index];
+                refused(format!("the point given for vertex index {index} is ({x}, {y})"))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Writes netCDF's classic format with 64-bit offsets.
+//!
+//! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. Numbers are big-endian.
+//! Variables of the record dimension come last, and there is at most one record.
+
+use std::collections::HashMap;
+
+/// A file under construction.
+#[derive(Default)]
+pub(crate) struct NetCdf {
+    dimensions: Vec<(String, usize)>,
+    /// Where the dimension of a name is: a file of as many blocks as elements has as many dimensions.
+    places: HashMap<String, usize>,
+    attributes: Vec<(&'static str, Values)>,
+    variables: Vec<Variable>,
+}
+
+struct Variable {
+    name: String,
+    /// The indices of the variable's dimensions.
+    dimensions: Vec<usize>,
+    is_record: bool,
+    attributes: Vec<(&'static str, Values)>,
+    values: Values,
+}
+
+/// The values of a variable or an attribute.
+pub(crate) enum Values {
+    Text(Vec<u8>),
+    Whole(Vec<i32>),
+    Single(f32),
+    Real(Vec<f64>),
+}
+
+impl Values {
+    /// Makes a text of names, each padded with zeros to `width` bytes.
+    pub(crate) fn names<'n>(names: impl IntoIterator<Item = &'n str>, width: usize) -> Values {
+        let mut text = Vec::new();
+        for name in names {
+            let end = text.len() + width;
+            text.extend_from_slice(name.as_bytes());
+            text.resize(end, 0);
+        }
+        Values::Text(text)
+    }
+
+    /// Returns the number of the type, how many values there are, and their bytes.
+    fn encoded(&self) -> (u32, usize, Vec<u8>) {
+        match self {
+            Values::Text(text) => (2, text.len(), text.clone()),
+            Values::Whole(numbers) => {
+                (4, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
+            }
+            Values::Single(number) => (5, 1, number.to_be_bytes().to_vec()),
+            Values::Real(numbers) => {
+                (6, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
+            }
+        }
+    }
+}
+
+impl NetCdf {
+    pub(crate) fn attribute(&mut self, name: &'static str, values: Values) {
+        self.attributes.push((name, values));
+    }
+
+    /// Adds a dimension. That of length zero is the dimension of records.
+    pub(crate) fn dimension(&mut self, name: impl Into<String>, length: usize) {
+        let name = name.into();
+        self.places.insert(name.clone(), self.dimensions.len());
+        self.dimensions.push((name, length));
+    }
+
+    pub(crate) fn has_dimension(&self, name: &str) -> bool {
+        self.places.contains_key(name)
+    }
+
+    /// Adds a variable of these dimensions, none for a single value.
+    pub(crate) fn variable(
+        &mut self,
+        name: impl Into<String>,
+        dimensions: &[&str],
+        attributes: Vec<(&'static str, Values)>,
+        values: Values,
+    ) {
+        let place = |name: &&str| self.places.get(*name).copied();
+        let dimensions: Vec<usize> = dimensions.iter().filter_map(place).collect();
+        let is_record = dimensions.first().is_some_and(|&first| self.dimensions[first].1 == 0);
+        let name = name.into();
+        self.variables.push(Variable { name, dimensions, is_record, attributes, values });
+    }
+
+    /// Returns the bytes of the file.
+    pub(crate) fn bytes(mut self) -> Vec<u8> {
+        // Variables with records come after all others.
+        self.variables.sort_by_key(|variable| variable.is_record);
+        let has_records =
+            self.variables.iter().any(|v| v.is_record && !v.values.encoded().2.is_empty());
+        let contents: Vec<Vec<u8>> = self.variables.iter().map(Variable::content).collect();
+        let header = self.header(has_records, &contents, 0).len();
+        let mut bytes = self.header(has_records, &contents, header);
+        contents.iter().for_each(|content| bytes.extend_from_slice(content));
+        bytes
+    }
+
+    /// Returns the header, for contents that start at byte `start`.
+    fn header(&self, has_records: bool, contents: &[Vec<u8>], mut start: usize) -> Vec<u8> {
+        let mut out = b"CDF\x02".to_vec();
+        word(&mut out, usize::from(has_records));
+        list(&mut out, 10, self.dimensions.len());
+        for (dimension, length) in &self.dimensions {
+            name(&mut out, dimension);
+            word(&mut out, *length);
+        }
+        attributes(&mut out, &self.attributes);
+        list(&mut out, 11, self.variables.len());
+        for (variable, content) in self.variables.iter().zip(contents) {
+            name(&mut out, &variable.name);
+            word(&mut out, variable.dimensions.len());
+            variable.dimensions.iter().for_each(|&dimension| word(&mut out, dimension));
+            attributes(&mut out, &variable.attributes);
+            out.extend_from_slice(&variable.values.encoded().0.to_be_bytes());
+            word(&mut out, content.len());
+            out.extend_from_slice(&(start as u64).to_be_bytes());
+            start += content.len();
+        }
+        out
+    }
+}
+
+impl Variable {
+    /// Returns the bytes of the values, padded to a multiple of four.
+    fn content(&self) -> Vec<u8> {
+        let mut content = self.values.encoded().2;
+        content.resize(content.len().next_multiple_of(4), 0);
+        content
+    }
+}
+
+/// Appends a number of 4 bytes. A number that does not fit becomes `u32::MAX`; readers do not rely on such sizes.
+fn word(out: &mut Vec<u8>, number: usize) {
+    out.extend_from_slice(&u32::try_from(number).unwrap_or(u32::MAX).to_be_bytes());
+}
+
+fn list(out: &mut Vec<u8>, tag: usize, count: usize) {
+    word(out, if count == 0 { 0 } else { tag });
+    word(out, count);
+}
+
+fn name(out: &mut Vec<u8>, name: &str) {
+    word(out, name.len());
+    out.extend_from_slice(name.as_bytes());
+    out.resize(out.len().next_multiple_of(4), 0);
+}
+
+fn attributes(out: &mut Vec<u8>, attributes: &[(&'static str, Values)]) {
+    list(out, 12, attributes.len());
+    for (own, values) in attributes {
+        name(out, own);
+        let (number, count, bytes) = values.encoded();
+        out.extend_from_slice(&number.to_be_bytes());
+        word(out, count);
+        out.extend_from_slice(&bytes);
+        out.resize(out.len().next_multiple_of(4), 0);
+    }
+}

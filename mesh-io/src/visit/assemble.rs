@@ -1,0 +1,366 @@
+//! Makes a mesh from a file's nodes and elements, or finds where they stand in the file.
+
+use crate::content::constraints::{Constraints, PeriodicPairs};
+use crate::content::regions::{Numbering, Regions};
+use crate::content::tags::{FoundTags, TagMap};
+use crate::disk::source::Source;
+use crate::edit::numbers::{FoundPlaces, Places};
+use crate::error::{Location, ReadError};
+use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::parsed::{Parsed, fixed_note};
+use crate::visit::records::{NodeRecords, TriangleRecords};
+use crate::visit::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
+
+/// Reads a mesh, long lists on all threads.
+pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
+    parse_by(reader, source, true)
+}
+
+/// Reads a mesh: long lists on all threads if `takes_ahead`, else all of it item by item.
+pub(crate) fn parse_by(
+    reader: &Reader,
+    source: &Source,
+    takes_ahead: bool,
+) -> Result<Parsed, ReadError> {
+    let vertices_of = reader.vertices;
+    let mut assembler = Assembler { vertices_of, takes_ahead, ..Assembler::default() };
+    let Layout { format, numbers, encoded, copies, part } = (reader.walk)(source, &mut assembler)?;
+    let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
+    let Assembler { mut points, triangles, x_at, regions, constraints, .. } = assembler;
+    let Assembler { quadrilaterals, mut notes, data, on_lower, .. } = assembler;
+    if quadrilaterals > 0 {
+        notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
+    }
+    if on_lower > 0 && on_lower == points.len() {
+        let note = "every vertex lies on a point or curve of the model: all of them stay fixed";
+        notes.push(note.into());
+    }
+    let precision = numbers.precision();
+    for (vertex, point) in points.iter_mut().enumerate() {
+        *point = point.map(|x| precision.rounded(x));
+        if !point.iter().all(|x| x.is_finite()) {
+            let (location, label, part) = vertex_places(reader, source, &[vertex])[0];
+            let source = source.parts().nth(part).unwrap_or(source);
+            let problem =
+                format!("a coordinate of vertex {label} is too large for single precision");
+            return Err(source.error_at(location, problem, CORRECT));
+        }
+    }
+    let regions = regions.finish();
+    let (x_at, owners) = match copies {
+        None => (x_at.finish(), None),
+        Some(Copies { x_at, vertices }) => (Places::List(x_at), Some(vertices)),
+    };
+    Ok(Parsed {
+        format,
+        points,
+        triangles,
+        x_at,
+        owners,
+        numbers,
+        part,
+        encoded,
+        regions,
+        constraints,
+        notes,
+        data,
+        has_parameters,
+        has_centers,
+    })
+}
+
+/// Location and tag, and which of the files that is, of the vertices with these indices, ascending, in a file that was read before.
+pub(crate) fn vertex_places(
+    reader: &Reader,
+    source: &Source,
+    indices: &[usize],
+) -> Vec<(Location, u64, usize)> {
+    find(reader, source, indices, &[])
+}
+
+/// Location and tag, and which of the files that is, of the triangles with these indices, ascending, in a file that was read before.
+pub(crate) fn triangle_places(
+    reader: &Reader,
+    source: &Source,
+    indices: &[usize],
+) -> Vec<(Location, u64, usize)> {
+    find(reader, source, &[], indices)
+}
+
+#[derive(Default)]
+struct Assembler {
+    /// Whether items that were read on all threads are taken.
+    takes_ahead: bool,
+    points: Vec<[f64; 2]>,
+    triangles: Vec<[u32; 3]>,
+    x_at: FoundPlaces,
+    /// The tag of each node, until `map` is made from them.
+    tags: FoundTags,
+    map: Option<TagMap>,
+    region_names: Numbering<[i64; 2]>,
+    regions: Regions,
+    constraints: Constraints,
+    quadrilaterals: u64,
+    notes: Vec<String>,
+    /// The names of the real numbers that the file gives vertices besides x and y.
+    data: Vec<String>,
+    /// Whether nodes have parameters on surfaces of the model that can be replaced.
+    has_parameters: bool,
+    has_centers: bool,
+    /// Names the file's list of vertices in messages.
+    vertices_of: &'static str,
+    /// How many nodes lie on points and curves of the model.
+    on_lower: usize,
+}
+
+impl Assembler {
+    /// Returns the index of a node of an element, or an error that names the element.
+    #[inline]
+    fn index(
+        &self,
+        cursor: &Cursor<'_>,
+        kind: Kind,
+        tag: u64,
+        node: u64,
+    ) -> Result<u32, ReadError> {
+        let index = self.map.as_ref().and_then(|map| map.index(node));
+        index.ok_or_else(|| {
+            let (kind, list) = (kind.name(), self.vertices_of);
+            let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
+            cursor.error(problem, CORRECT)
+        })
+    }
+}
+
+impl Sink for Assembler {
+    fn takes_ahead(&self) -> bool {
+        self.takes_ahead
+    }
+
+    fn expect_nodes(&mut self, count: usize) {
+        self.points.reserve_exact(count);
+        self.x_at.expect(count);
+        self.tags.expect(count);
+    }
+
+    #[inline]
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]) {
+        if dimension < 2 {
+            // On a point or curve of the model. It may lie inside the domain without being saved as line elements, such
+            // as the interface of two surfaces.
+            self.on_lower += 1;
+            self.constraints.vertices.push(self.points.len() as u32);
+        }
+        if dimension == 0 {
+            self.constraints.anchored.push(self.points.len() as u32);
+        }
+        self.tags.push(tag);
+        self.x_at.push(x_at);
+        self.points.push(at);
+    }
+
+    fn node_records(&mut self, records: &NodeRecords<'_>) -> usize {
+        if !self.takes_ahead {
+            return 0;
+        }
+        records.read(&mut self.points, &mut self.tags, &mut self.x_at)
+    }
+
+    fn polyline(
+        &mut self,
+        cursor: &Cursor<'_>,
+        (tag, _): (u64, [i64; 2]),
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        let index = |&node: &u64| self.index(cursor, Kind::Point, tag, node);
+        let vertices = nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
+        self.constraints.lines.extend(vertices.windows(2).map(|pair| [pair[0], pair[1]]));
+        self.constraints.vertices.extend(vertices);
+        Ok(())
+    }
+
+    fn asks_for_pairs(&self) -> bool {
+        true
+    }
+
+    fn pairs(&mut self, pairs: Option<Vec<Pairs>>) {
+        let Constraints { anchored, periodic, motions, has_unread_pairs, .. } =
+            &mut self.constraints;
+        *has_unread_pairs |= pairs.is_none();
+        let mut unlisted = 0;
+        for Pairs { motion, nodes } in pairs.into_iter().flatten() {
+            motions.extend(motion.filter(|_| nodes.is_empty()));
+            let index = |node: u64| self.map.as_ref().and_then(|map| map.index(node));
+            let mut pairs = Vec::with_capacity(nodes.len());
+            for [a, b] in nodes {
+                match (index(a), index(b)) {
+                    (Some(a), Some(b)) => pairs.push([a, b]),
+                    (a, b) => {
+                        // The node of the pair that is known does not slide.
+                        unlisted += 1;
+                        anchored.extend(a.into_iter().chain(b));
+                    }
+                }
+            }
+            if !pairs.is_empty() {
+                periodic.push(PeriodicPairs { pairs, motion });
+            }
+        }
+        if unlisted > 0 {
+            let list = self.vertices_of;
+            self.note(&format!(
+                "periodic pairs that name a node which {list} does not list do not slide: {unlisted}"
+            ));
+        }
+    }
+
+    fn note(&mut self, note: &str) {
+        if !self.notes.iter().any(|before| before == note) {
+            self.notes.push(note.to_owned());
+        }
+    }
+
+    fn parameters(&mut self, _: i64) -> bool {
+        self.has_parameters = true;
+        false
+    }
+
+    fn center_array(&mut self, _: &[u8], _: usize) -> bool {
+        self.has_centers = true;
+        false
+    }
+
+    fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {
+        let name = String::from_utf8_lossy(name).into_owned();
+        if is_real && !self.data.contains(&name) {
+            self.data.push(name);
+        }
+        false
+    }
+
+    fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
+        let tags = std::mem::take(&mut self.tags);
+        match tags.map() {
+            Ok(map) => {
+                self.map = Some(map);
+                Ok(())
+            }
+            Err(second) => {
+                let problem = format!("node {} is listed a second time", tags.of(second));
+                let remedy = "Give each node a tag of its own";
+                let location = cursor.location_of(self.x_at.at(second));
+                Err(cursor.source.error_at(location, problem, remedy))
+            }
+        }
+    }
+
+    fn expect_elements(&mut self, count: usize) {
+        self.triangles.reserve(count);
+    }
+
+    fn triangle_records(&mut self, records: &TriangleRecords<'_>) -> usize {
+        let Self { map: Some(map), takes_ahead: true, triangles, regions, region_names, .. } = self
+        else {
+            return 0;
+        };
+        records.read(map, triangles, |region, count| {
+            let number = region_names.number(region);
+            (0..count).for_each(|_| regions.push(number));
+        })
+    }
+
+    #[inline]
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        let &Element { tag, kind, region, nodes } = element;
+        let nodes = &nodes[..kind.nodes()];
+        let mut vertices = [0; 4];
+        for (vertex, &node) in vertices.iter_mut().zip(nodes) {
+            *vertex = self.index(cursor, kind, tag, node)?;
+        }
+        let [a, b, c, _] = vertices;
+        match kind {
+            Kind::Triangle if a == b || b == c || c == a => {
+                let twice = if b == c { nodes[1] } else { nodes[0] };
+                let problem = format!("triangle {tag} lists node {twice} twice");
+                Err(cursor.error(problem, "Remove the triangle, or correct its nodes"))
+            }
+            Kind::Triangle => {
+                self.triangles.push([a, b, c]);
+                self.regions.push(self.region_names.number(region));
+                Ok(())
+            }
+            Kind::Point | Kind::Corner | Kind::Line | Kind::Quadrilateral => {
+                let fixed = &vertices[..nodes.len()];
+                self.constraints.vertices.extend_from_slice(fixed);
+                match kind {
+                    Kind::Line => self.constraints.lines.push([a, b]),
+                    _ => self.constraints.anchored.extend_from_slice(fixed),
+                }
+                self.quadrilaterals += u64::from(kind == Kind::Quadrilateral);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Finds the locations of nodes and triangles, in another walk through the file. They are needed for messages only, so
+/// they are not kept.
+struct Locator<'a> {
+    nodes: Wanted<'a>,
+    triangles: Wanted<'a>,
+    places: Vec<(Location, u64, usize)>,
+    source: &'a Source,
+}
+
+/// The items to be found in a list.
+struct Wanted<'a> {
+    /// The indices not found yet, ascending.
+    left: &'a [usize],
+    /// The index of the next item in the file.
+    next: usize,
+}
+
+fn find(
+    reader: &Reader,
+    source: &Source,
+    nodes: &[usize],
+    triangles: &[usize],
+) -> Vec<(Location, u64, usize)> {
+    let wanted = |left| Wanted { left, next: 0 };
+    let places = Vec::with_capacity(nodes.len() + triangles.len());
+    let mut locator =
+        Locator { nodes: wanted(nodes), triangles: wanted(triangles), places, source };
+    // There is no error to handle: the file was read before without one.
+    let _ = (reader.walk)(source, &mut locator);
+    locator.places
+}
+
+impl Wanted<'_> {
+    /// Notes the place of the next node or triangle in the file, if it is looked for.
+    fn pass(
+        &mut self,
+        (places, source): (&mut Vec<(Location, u64, usize)>, &Source),
+        cursor: &Cursor<'_>,
+        tag: u64,
+    ) {
+        if self.left.first() == Some(&self.next) {
+            let part = source.parts().position(|part| std::ptr::eq(part, cursor.source));
+            places.push((cursor.location(), tag, part.unwrap_or(0)));
+            self.left = &self.left[1..];
+        }
+        self.next += 1;
+    }
+}
+
+impl Sink for Locator<'_> {
+    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.nodes.pass((&mut self.places, self.source), cursor, tag);
+    }
+
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        if element.kind == Kind::Triangle {
+            self.triangles.pass((&mut self.places, self.source), cursor, element.tag);
+        }
+        Ok(())
+    }
+}

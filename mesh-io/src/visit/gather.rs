@@ -1,0 +1,153 @@
+//! Walks again through a file for what the reading of the mesh leaves out: groups, and the labels of vertices.
+
+use crate::content::label::Label;
+use crate::content::regions::Numbering;
+use crate::content::tags::TagMap;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::group_table::GroupTable;
+use crate::visit::sink::{Column, Element, Kind, Reader, Sink, Within};
+
+/// Gathers the groups of a file.
+pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {
+    let mut gatherer = Gatherer::default();
+    (reader.walk)(source, &mut gatherer)?;
+    Ok(gatherer.table)
+}
+
+/// Returns the file's number or tag of each vertex.
+pub(crate) fn labels(reader: &Reader, source: &Source) -> Result<Vec<u64>, ReadError> {
+    let mut labels = Labels::default();
+    (reader.walk)(source, &mut labels)?;
+    Ok(labels.tags)
+}
+
+#[derive(Default)]
+struct Gatherer {
+    table: GroupTable,
+    tags: Vec<u64>,
+    map: Option<TagMap>,
+    triangles: u32,
+    columns: Vec<Column>,
+    /// For each column, the numbers that were met, by dimension.
+    met: Vec<Numbering<(u8, i64)>>,
+    /// For each column, the group of each number that was met, if it has one.
+    groups: Vec<Vec<Option<usize>>>,
+    /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
+    within: Vec<(String, Label, Option<u8>)>,
+    /// The groups of `within` for elements of each dimension, once such an element was met.
+    within_groups: [Option<Vec<usize>>; 3],
+    /// The groups of the current element.
+    of_element: Vec<usize>,
+}
+
+impl Gatherer {
+    /// Finds the groups of an element and puts them into `of_element`.
+    fn find(&mut self, dimension: u8, region: [i64; 2]) {
+        let Self { table, columns, met, groups, within, within_groups, of_element, .. } = self;
+        of_element.clear();
+        let columns = columns.iter().zip(met).zip(groups).zip(region);
+        for (((column, met), groups), number) in columns {
+            if dimension < column.from_dimension {
+                continue;
+            }
+            let name = met.number((dimension, number)) as usize;
+            if name == groups.len() {
+                let label = (column.label)(number);
+                let group = label.map(|label| table.number(&column.what, dimension, &label));
+                groups.push(group);
+            }
+            of_element.extend(groups[name]);
+        }
+        let within = within_groups[usize::from(dimension)].get_or_insert_with(|| {
+            let number = |(what, label, own): &(String, Label, Option<u8>)| {
+                table.number(what, own.unwrap_or(dimension), label)
+            };
+            within.iter().map(number).collect()
+        });
+        of_element.extend_from_slice(within);
+        // An element may be in the same group twice, as by two arrays of one name. It must be counted once.
+        of_element.sort_unstable();
+        of_element.dedup();
+    }
+}
+
+impl Sink for Gatherer {
+    fn takes_ahead(&self) -> bool {
+        true
+    }
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn end_nodes(&mut self, _: &Cursor<'_>) -> Result<(), ReadError> {
+        // There is no error to report, as the file was read before without one.
+        self.map = TagMap::new(&self.tags).ok();
+        Ok(())
+    }
+
+    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        let &Element { kind, region, nodes, .. } = element;
+        self.find(kind.dimension(), region);
+        if kind == Kind::Triangle {
+            for &group in &self.of_element {
+                self.table.add_triangle(group, self.triangles);
+            }
+            self.triangles += 1;
+        } else {
+            let index = |&node: &u64| self.map.as_ref().and_then(|map| map.index(node));
+            let vertices: Vec<u32> = nodes[..kind.nodes()].iter().filter_map(index).collect();
+            for &group in &self.of_element {
+                self.table.add(group, kind, &vertices);
+            }
+        }
+        Ok(())
+    }
+
+    fn asks_for_groups(&self) -> bool {
+        true
+    }
+
+    fn columns(&mut self, columns: Vec<Column>) {
+        self.met = columns.iter().map(|_| Numbering::default()).collect();
+        self.groups = columns.iter().map(|_| Vec::new()).collect();
+        self.columns = columns;
+    }
+
+    fn within(&mut self, groups: &[Within<'_>]) {
+        let owned =
+            |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+        self.within = groups.iter().map(owned).collect();
+        self.within_groups = [None, None, None];
+    }
+
+    fn node_within(&mut self, node: u32, what: &str, tag: i64) {
+        let group = self.table.number(what, 0, &Label::Tag(tag));
+        self.table.add_vertex(group, node);
+    }
+
+    fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+        self.table.name(what, dimension, tag, name);
+    }
+}
+
+#[derive(Default)]
+struct Labels {
+    tags: Vec<u64>,
+}
+
+impl Sink for Labels {
+    fn takes_ahead(&self) -> bool {
+        true
+    }
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
+        Ok(())
+    }
+}

@@ -1,0 +1,110 @@
+//! Gathers the groups of a file during a walk through it.
+
+use crate::content::group::{Group, Groups};
+use crate::content::label::Label;
+use crate::visit::sink::Kind;
+use std::collections::HashMap;
+
+/// The groups found so far. Their indices are their numbers.
+#[derive(Default)]
+pub(crate) struct GroupTable {
+    groups: Vec<Gathered>,
+    numbers: HashMap<(String, u8, Label), usize>,
+    /// The names of groups, by kind, dimension (`None` for all) and tag.
+    names: HashMap<(String, Option<u8>, i64), String>,
+}
+
+struct Gathered {
+    group: Group,
+    /// Vertices of elements other than triangles, unordered and with repeats.
+    others: Vec<u32>,
+}
+
+impl GroupTable {
+    /// Returns the number of a group, after adding it if it is new.
+    pub(crate) fn number(&mut self, what: &str, dimension: u8, label: &Label) -> usize {
+        let next = self.groups.len();
+        let key = (what.to_owned(), dimension, label.clone());
+        let number = *self.numbers.entry(key).or_insert(next);
+        if number == next {
+            let (name, tag) = match label {
+                Label::Tag(tag) => (None, Some(*tag)),
+                Label::Name(name) => (Some(name.clone()), None),
+            };
+            let group = Group {
+                what: what.to_owned(),
+                dimension,
+                name,
+                tag,
+                points: 0,
+                lines: 0,
+                quadrilaterals: 0,
+                triangles: Vec::new(),
+                vertices: Vec::new(),
+            };
+            self.groups.push(Gathered { group, others: Vec::new() });
+        }
+        number
+    }
+
+    /// Adds a triangle to a group. Triangles must come in ascending order.
+    pub(crate) fn add_triangle(&mut self, group: usize, triangle: u32) {
+        self.groups[group].group.triangles.push(triangle);
+    }
+
+    /// Adds the vertices of an element other than a triangle.
+    pub(crate) fn add(&mut self, group: usize, kind: Kind, vertices: &[u32]) {
+        let Gathered { group, others } = &mut self.groups[group];
+        match kind {
+            Kind::Point => group.points += 1,
+            Kind::Line => group.lines += 1,
+            Kind::Triangle | Kind::Corner => {}
+            Kind::Quadrilateral => group.quadrilaterals += 1,
+        }
+        others.extend_from_slice(vertices);
+    }
+
+    /// Adds a vertex that the file itself assigns to a group.
+    pub(crate) fn add_vertex(&mut self, group: usize, vertex: u32) {
+        self.groups[group].others.push(vertex);
+    }
+
+    /// Names groups that are known or are added later. A group with a name exists even if it has no element.
+    pub(crate) fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+        let Label::Name(name) = Label::name(name) else { return };
+        if let Some(dimension) = dimension {
+            self.number(what, dimension, &Label::Tag(tag));
+        }
+        self.names.insert((what.to_owned(), dimension, tag), name);
+    }
+
+    /// Returns the groups of a mesh with these triangles and this many vertices.
+    pub(crate) fn finish(mut self, triangles: &[[u32; 3]], vertices: usize) -> Groups {
+        // Groups of one kind stand together, and kinds are in the order in which the file first has them.
+        let mut order: HashMap<String, usize> = HashMap::new();
+        for Gathered { group, .. } in &self.groups {
+            let next = order.len();
+            order.entry(group.what.clone()).or_insert(next);
+        }
+        // For each vertex the last group that it was counted in.
+        let mut last = vec![0; vertices];
+        for (number, Gathered { group, others }) in (1_u32..).zip(&mut self.groups) {
+            let of_triangles = group.triangles.iter().flat_map(|&t| triangles[t as usize]);
+            for vertex in of_triangles.chain(others.drain(..)) {
+                if std::mem::replace(&mut last[vertex as usize], number) != number {
+                    group.vertices.push(vertex);
+                }
+            }
+            group.vertices.sort_unstable();
+        }
+        for Gathered { group, .. } in &mut self.groups {
+            let Some(tag) = group.tag else { continue };
+            let of = |dimension| self.names.get(&(group.what.clone(), dimension, tag)).cloned();
+            group.name = of(Some(group.dimension)).or_else(|| of(None));
+        }
+        let mut groups: Vec<Group> =
+            self.groups.into_iter().map(|gathered| gathered.group).collect();
+        groups.sort_by_key(|group| (order[&group.what], group.dimension, group.tag));
+        Groups { groups }
+    }
+}

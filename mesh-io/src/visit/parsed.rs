@@ -1,0 +1,42 @@
+//! What the reader of a format returns.
+
+use crate::content::constraints::Constraints;
+use crate::edit::numbers::{Encoded, Numbers, Places};
+use crate::format::Format;
+
+/// A mesh, and how its file stores the mesh.
+pub(crate) struct Parsed {
+    pub(crate) format: Format,
+    /// x and y of each vertex.
+    pub(crate) points: Vec<[f64; 2]>,
+    /// The vertices of each triangle.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Offset of each vertex's x in the file that holds the vertices, ascending.
+    pub(crate) x_at: Places,
+    /// The vertex of each offset in `x_at`; `None` if there is one for each vertex in order.
+    pub(crate) owners: Option<Vec<u32>>,
+    /// How the file stores coordinates.
+    pub(crate) numbers: Numbers,
+    /// Which of the files of the mesh holds them, counted from zero.
+    pub(crate) part: usize,
+    /// The points, if they are encoded.
+    pub(crate) encoded: Option<Box<dyn Encoded>>,
+    /// The region of each triangle; `None` if all are of one.
+    pub(crate) regions: Option<Vec<u32>>,
+    /// Lines, points and periodic pairs of the file.
+    pub(crate) constraints: Constraints,
+    /// One-line remarks for the user.
+    pub(crate) notes: Vec<String>,
+    /// The names of real numbers that the file gives vertices besides x and y, each once.
+    pub(crate) data: Vec<String>,
+    /// Whether the file gives vertices parameters on surfaces of a model, at offsets that are known.
+    pub(crate) has_parameters: bool,
+    /// Whether the file gives elements centers.
+    pub(crate) has_centers: bool,
+}
+
+/// Words the remark that elements other than triangles keep their vertices fixed.
+pub(crate) fn fixed_note(count: u64, what: &str, of: &str) -> String {
+    let (s, their) = if count == 1 { ("", "its") } else { ("s", "their") };
+    format!("{count} {what}{s}{of}: {their} vertices stay fixed")
+}

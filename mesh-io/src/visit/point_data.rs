@@ -1,0 +1,100 @@
+//! Walks again through a file for arrays of point data.
+
+use crate::content::tags::TagMap;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::field::PointField;
+use crate::visit::sink::{PointNumbers, Reader, Sink};
+
+/// Which arrays are looked for.
+#[derive(Clone, Copy)]
+pub(crate) enum Wanted<'n> {
+    /// Arrays with these names, of real or whole numbers.
+    Named(&'n [String]),
+    /// All arrays of real numbers.
+    Real,
+}
+
+/// The arrays that were found.
+#[derive(Default)]
+pub(crate) struct PointData {
+    /// The arrays that were looked for, in the order of the file. Several may have the same name.
+    pub(crate) fields: Vec<PointField>,
+    /// The name of each array of the file, and whether its numbers are real.
+    pub(crate) known: Vec<(String, bool)>,
+}
+
+/// Reads the arrays of point data that are wanted.
+pub(crate) fn point_data(
+    reader: &Reader,
+    source: &Source,
+    wanted: Wanted<'_>,
+) -> Result<PointData, ReadError> {
+    let mut seeker = Seeker { wanted, ..Seeker::new() };
+    (reader.walk)(source, &mut seeker)?;
+    Ok(seeker.found)
+}
+
+struct Seeker<'n> {
+    wanted: Wanted<'n>,
+    /// The name of the array that was announced last, and its number of components.
+    last: (String, usize),
+    tags: Vec<u64>,
+    map: Option<TagMap>,
+    found: PointData,
+}
+
+impl Seeker<'_> {
+    fn new() -> Self {
+        let last = (String::new(), 0);
+        Self {
+            wanted: Wanted::Real,
+            last,
+            tags: Vec::new(),
+            map: None,
+            found: PointData::default(),
+        }
+    }
+}
+
+impl Sink for Seeker<'_> {
+    fn takes_ahead(&self) -> bool {
+        true
+    }
+
+    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.tags.push(tag);
+    }
+
+    fn asks_for_data(&self) -> bool {
+        true
+    }
+
+    fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
+        let name = String::from_utf8_lossy(name).into_owned();
+        let wanted = match self.wanted {
+            Wanted::Named(names) => names.contains(&name),
+            Wanted::Real => is_real,
+        };
+        if !self.found.known.iter().any(|(known, _)| *known == name) {
+            self.found.known.push((name.clone(), is_real));
+        }
+        self.last = (name, usize::try_from(components).unwrap_or(usize::MAX));
+        wanted
+    }
+
+    fn point_numbers(&mut self, numbers: PointNumbers) {
+        let tags = &self.tags;
+        let vertices = numbers.nodes.as_ref().map(|nodes| {
+            // There is no error to report, as the file was read before without one.
+            let map = self.map.get_or_insert_with(|| {
+                TagMap::new(tags).unwrap_or(TagMap::Run { first: 0, count: 0 })
+            });
+            nodes.iter().map(|&node| map.index(node).unwrap_or(u32::MAX)).collect()
+        });
+        let (name, components) = std::mem::take(&mut self.last);
+        let count = self.tags.len();
+        self.found.fields.push(PointField::new(name, components, count, numbers, vertices));
+    }
+}

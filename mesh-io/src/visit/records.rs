@@ -1,0 +1,251 @@
+//! Reads lists of binary records, all of one size, on all threads.
+//!
+//! A list is read in chunks, as long as these are plain. A reader hands on the other records one by one, and is the
+//! only one that returns errors.
+
+use crate::binary::number_field::Field;
+use crate::content::tags::{FoundTags, TagMap};
+use crate::edit::numbers::FoundPlaces;
+use crate::parallel::{map_parts, map_ranges};
+use std::ops::Range;
+
+/// Records that one thread reads at a time.
+const CHUNK: usize = 1 << 13;
+/// Shorter lists are read as fast on one thread.
+pub(crate) const LONG: usize = 1 << 14;
+
+/// The tags of a list's nodes.
+#[derive(Clone, Copy)]
+pub(crate) enum Tags<'a> {
+    /// Consecutive tags from this one on.
+    From(u64),
+    Listed(Field<'a>),
+}
+
+/// A list of nodes.
+pub(crate) struct NodeRecords<'a> {
+    pub(crate) count: usize,
+    /// The coordinates, single or double precision by the width of the fields.
+    pub(crate) x: Field<'a>,
+    pub(crate) y: Field<'a>,
+    /// The offset of the first node's x, in the bytes that are written again.
+    pub(crate) x_at: usize,
+    pub(crate) tags: Tags<'a>,
+}
+
+impl NodeRecords<'_> {
+    /// Reads nodes from the first one on, as long as they are plain. Returns how many were read.
+    pub(crate) fn read(
+        &self,
+        points: &mut Vec<[f64; 2]>,
+        tags: &mut FoundTags,
+        places: &mut FoundPlaces,
+    ) -> usize {
+        let &NodeRecords { count, x, y, .. } = self;
+        let fits =
+            x.holds(count, 1) && y.holds(count, 1) && matches!((x.width, y.width), (4, 4) | (8, 8));
+        let has_tags = match self.tags {
+            Tags::From(_) => true,
+            Tags::Listed(field) => field.holds(count, 1),
+        };
+        if count < LONG || !fits || !has_tags {
+            return 0;
+        }
+        let (taken, _) = append(points, count, |records, points| {
+            let coordinates = x.real(records.clone()).zip(y.real(records.clone()));
+            let mut is_finite = true;
+            for (point, (x, y)) in points.iter_mut().zip(coordinates) {
+                is_finite &= x.is_finite() && y.is_finite();
+                *point = [x, y];
+            }
+            let is_plain = match self.tags {
+                Tags::From(_) => true,
+                Tags::Listed(field) => field.whole(records).all(|tag| tag <= field.most()),
+            };
+            (is_finite && is_plain).then_some(())
+        });
+        places.extend(self.x_at, x.stride, taken);
+        match self.tags {
+            Tags::From(first) => tags.extend(first, taken as u64),
+            Tags::Listed(field) => add_tags(field, taken, tags),
+        }
+        taken
+    }
+}
+
+fn add_tags(field: Field<'_>, count: usize, tags: &mut FoundTags) {
+    let first = field.whole(0..count.min(1)).next().unwrap_or(0);
+    let are_consecutive = |records: Range<usize>| {
+        let expected = records.clone().map(|record| first.checked_add(record as u64));
+        field.whole(records).map(Some).eq(expected)
+    };
+    match map_ranges(count, CHUNK, are_consecutive).into_iter().all(|are| are) {
+        true => tags.extend(first, count as u64),
+        false => field.whole(0..count).for_each(|tag| tags.push(tag)),
+    }
+}
+
+/// What the whole numbers of records must be for a triangle.
+#[derive(Clone, Copy)]
+pub(crate) enum Expected {
+    /// Not negative.
+    Natural,
+    /// This number in each record.
+    Is(u64),
+    /// `first` in the first record, and `step` more in each that follows.
+    Steps { first: u64, step: u64 },
+}
+
+/// One of the two numbers that name the region of a triangle.
+#[derive(Clone, Copy)]
+pub(crate) enum Region<'a> {
+    /// The same number for all triangles.
+    Same(i64),
+    Field(Field<'a>),
+    /// A number for each triangle; 0 for triangles beyond the end of the list.
+    List(&'a [i64]),
+}
+
+impl Region<'_> {
+    fn of(self, record: usize) -> i64 {
+        match self {
+            Region::Same(region) => region,
+            Region::Field(field) => {
+                field.order.signed(&field.bytes[record * field.stride..][..field.width])
+            }
+            Region::List(list) => list.get(record).copied().unwrap_or(0),
+        }
+    }
+}
+
+/// A list of triangles.
+pub(crate) struct TriangleRecords<'a> {
+    pub(crate) count: usize,
+    /// The numbers of three nodes. Each must be less than `below`.
+    pub(crate) corners: Field<'a>,
+    /// This is added to a number to get the node's tag.
+    pub(crate) first: u64,
+    pub(crate) below: u64,
+    pub(crate) regions: [Region<'a>; 2],
+    /// Further conditions for a record to be a triangle.
+    pub(crate) expected: &'a [(Field<'a>, Expected)],
+}
+
+impl TriangleRecords<'_> {
+    /// Reads triangles from the first one on, as long as they are plain. Hands regions to `region`, with how many
+    /// triangles have each. Returns how many triangles were read.
+    pub(crate) fn read(
+        &self,
+        map: &TagMap,
+        triangles: &mut Vec<[u32; 3]>,
+        mut region: impl FnMut([i64; 2], usize),
+    ) -> usize {
+        let &TriangleRecords { count, corners, .. } = self;
+        let mut fields = self.expected.iter().map(|&(field, _)| field);
+        let has_regions = self.regions.iter().all(|region| match region {
+            Region::Field(field) => field.holds(count, 1),
+            _ => true,
+        });
+        let fits = corners.holds(count, 3) && fields.all(|field| field.holds(count, 1));
+        // If the first chunk fails, it is not worth trying more.
+        if count < LONG || !fits || !has_regions || !self.is_expected(0..CHUNK) {
+            return 0;
+        }
+        let (taken, same) = append(triangles, count, |records, triangles| {
+            let is_plain = match *map {
+                TagMap::Run { first, count } => self.fill(records.clone(), triangles, |tag| {
+                    tag.checked_sub(first).filter(|&index| index < count).map(|index| index as u32)
+                }),
+                _ => self.fill(records.clone(), triangles, |tag| map.index(tag)),
+            };
+            (is_plain && self.is_expected(records.clone())).then(|| self.same_region(records))
+        });
+        for (records, same) in same {
+            match same {
+                Some(same) => region(same, records.len()),
+                None => records.for_each(|record| {
+                    region(self.regions.map(|region| region.of(record)), 1);
+                }),
+            }
+        }
+        taken
+    }
+
+    /// Fills in the indices of triangles' corners. Returns whether each triangle has three different corners.
+    fn fill(
+        &self,
+        records: Range<usize>,
+        triangles: &mut [[u32; 3]],
+        index: impl Fn(u64) -> Option<u32>,
+    ) -> bool {
+        let (most, width) =
+            (self.corners.most().min(self.below.saturating_sub(1)), self.corners.width);
+        for (triangle, bytes) in triangles.iter_mut().zip(self.corners.of(records)) {
+            for (corner, bytes) in triangle.iter_mut().zip(bytes.chunks_exact(width)) {
+                let tag = self.corners.order.whole(bytes);
+                if tag > most {
+                    return false;
+                }
+                let Some(index) = tag.checked_add(self.first).and_then(&index) else {
+                    return false;
+                };
+                *corner = index;
+            }
+            let [a, b, c] = *triangle;
+            if a == b || b == c || c == a {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn is_expected(&self, records: Range<usize>) -> bool {
+        self.expected.iter().all(|&(field, expected)| {
+            let mut numbers = field.whole(records.clone());
+            match expected {
+                Expected::Natural => numbers.all(|number| number <= field.most()),
+                Expected::Is(one) => numbers.all(|number| number == one),
+                Expected::Steps { first, step } => {
+                    let more = |record: usize| first.checked_add(step.checked_mul(record as u64)?);
+                    numbers.map(Some).eq(records.clone().map(more))
+                }
+            }
+        })
+    }
+
+    /// Returns the region of some triangles, if it is the same for all.
+    fn same_region(&self, mut records: Range<usize>) -> Option<[i64; 2]> {
+        let of = |record| self.regions.map(|region| region.of(record));
+        let first = of(records.start);
+        let is_same = self.regions.iter().all(|region| matches!(region, Region::Same(_)))
+            || records.all(|record| of(record) == first);
+        is_same.then_some(first)
+    }
+}
+
+/// Appends `count` items to a list. `fill` fills them in chunks on all threads, and items from the first chunk on for
+/// which it returns `None` are dropped. Returns how many items are left, and the range and result of each chunk.
+fn append<T: Copy + Default + Send, R: Send, const N: usize>(
+    list: &mut Vec<[T; N]>,
+    count: usize,
+    fill: impl Fn(Range<usize>, &mut [[T; N]]) -> Option<R> + Sync,
+) -> (usize, Vec<(Range<usize>, R)>) {
+    let before = list.len();
+    match before {
+        // The system provides this memory filled with zeros, so it need not be written twice.
+        0 => {
+            *list = vec![[T::default(); N]; list.capacity().max(count)];
+            list.truncate(count);
+        }
+        _ => list.resize(before + count, [T::default(); N]),
+    }
+    let filled = map_parts(list[before..].chunks_mut(CHUNK), |index, chunk| {
+        let start = index * CHUNK;
+        let records = start..start + chunk.len();
+        fill(records.clone(), chunk).map(|made| (records, made))
+    });
+    let plain: Vec<_> = filled.into_iter().map_while(|made| made).collect();
+    let taken = plain.last().map_or(0, |(records, _)| records.end);
+    list.truncate(before + taken);
+    (taken, plain)
+}
