@@ -15,9 +15,10 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
     let file = read(&args.input, args.reading)?;
     let conversion = Conversion::new(&file.source, format).map_err(|error| error.to_string())?;
     let (path, out) = (file.source.path().display(), args.output.display());
-    let Some(conversion) = conversion else {
+    let Some(mut conversion) = conversion else {
         return Err(format!("{out}: {format} is not written by convert. {}", known()));
     };
+    conversion.set_creator("gpu-smooth");
     let lost = conversion.lost();
     if !args.lossy && !lost.is_empty() {
         let list: String = lost.iter().map(|what| format!("\n  {what}")).collect();

@@ -27,18 +27,22 @@ fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
 const CRATES: [&str; 3] = ["src", "mesh-io/src", "cli/src"];
 
 /// The crates whose folders have an order in ARCHITECTURE.md.
-const ORDERED: [&str; 1] = ["src"];
+const ORDERED: [&str; 2] = ["src", "mesh-io/src"];
 
 /// Circles of files that are still there, by crate.
 const KNOWN_CIRCLES: [(&str, &str); 6] = [
-    ("mesh-io/src", "abaqus/elements abaqus/mod"),
-    ("mesh-io/src", "cgns/boundaries cgns/mod"),
+    ("mesh-io/src", "formats/abaqus/elements formats/abaqus/mod"),
+    ("mesh-io/src", "formats/cgns/boundaries formats/cgns/mod"),
     (
         "mesh-io/src",
-        "gmsh/binary2 gmsh/binary4 gmsh/binary40 gmsh/data gmsh/mod gmsh/model gmsh/periodic gmsh/text2 gmsh/text4 gmsh/text40",
+        "formats/gmsh/binary2 formats/gmsh/binary4 formats/gmsh/binary40 formats/gmsh/data formats/gmsh/mod formats/gmsh/model \
+         formats/gmsh/periodic formats/gmsh/text2 formats/gmsh/text4 formats/gmsh/text40",
+    ),
+    (
+        "mesh-io/src",
+        "formats/vtk/legacy/data formats/vtk/legacy/lists formats/vtk/legacy/mod formats/vtk/legacy/passed",
     ),
     ("mesh-io/src", "netcdf/attribute netcdf/header"),
-    ("mesh-io/src", "vtk/data vtk/lists vtk/mod vtk/passed"),
     ("cli/src", "bench/baseline bench/mod bench/report"),
 ];
 
@@ -65,7 +69,10 @@ fn folders_do_not_use_each_other_in_a_circle() {
     for source in CRATES {
         let uses = uses_of(source);
         for depth in [1, 2] {
-            assert_eq!(circles(&by_folder(&uses, depth)), [[""; 0]; 0], "{source}, {depth} deep");
+            let is_of_folders = |circle: &Vec<String>| !circles(&uses).contains(circle);
+            let mut found = circles(&by_folder(&uses, depth));
+            found.retain(is_of_folders);
+            assert_eq!(found, [[""; 0]; 0], "{source}, {depth} deep");
         }
     }
 }

@@ -37,6 +37,7 @@ pub struct Conversion {
     target: &'static Target,
     lost: Vec<String>,
     renamed: Vec<String>,
+    creator: String,
 }
 
 impl Conversion {
@@ -72,7 +73,14 @@ impl Conversion {
         write_grids::match_depths(&mut content, file.format(), to);
         let lost = target.holds.lost(&content);
         let renamed = names::fit(&target.holds, &mut content);
-        Ok(Some(Conversion { content, target, lost, renamed }))
+        let creator = "mesh-io".to_owned();
+        Ok(Some(Conversion { content, target, lost, renamed, creator }))
+    }
+
+    /// Sets the name of the program that titles of written files give: `written by NAME`. Without this call, the name is
+    /// `mesh-io`.
+    pub fn set_creator(&mut self, name: &str) {
+        name.clone_into(&mut self.creator);
     }
 
     /// Lists what the format does not hold of the mesh, one line each. Comments, titles and the numbers of elements are
@@ -167,7 +175,7 @@ impl Conversion {
     }
 
     fn job(&self) -> Job<'_> {
-        Job::new(&self.content, self.target.holds)
+        Job::new(&self.content, self.target.holds, &self.creator)
     }
 }
 

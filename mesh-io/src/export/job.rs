@@ -9,6 +9,8 @@ use crate::visit::sink::Kind;
 /// A mesh to be written, with what the format holds of it.
 pub(crate) struct Job<'a> {
     pub(crate) content: &'a Content,
+    /// The name of the program, for titles of files.
+    pub(crate) creator: &'a str,
     pub(crate) holds: Holds,
     pub(crate) tags: Tags,
     /// The number of each vertex, if none is 0.
@@ -16,9 +18,9 @@ pub(crate) struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    pub(crate) fn new(content: &'a Content, holds: Holds) -> Job<'a> {
+    pub(crate) fn new(content: &'a Content, holds: Holds, creator: &'a str) -> Job<'a> {
         let numbers = (!content.labels.contains(&0)).then_some(content.labels.as_slice());
-        Job { content, holds, tags: Tags::new(content, holds.negative), numbers }
+        Job { content, creator, holds, tags: Tags::new(content, holds.negative), numbers }
     }
 
     /// Lists the cells that the format holds, in the order of the file.

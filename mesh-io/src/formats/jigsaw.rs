@@ -124,7 +124,7 @@ fn check_kind(cursor: &Cursor<'_>, kind: &[u8]) -> Result<(), ReadError> {
         return Ok(());
     }
     let problem = format!("a mesh of the kind {} is not read", quoted(kind));
-    Err(cursor.error(problem, "Only triangles of the plane are smoothed: save a EUCLIDEAN-MESH"))
+    Err(cursor.error(problem, "Only meshes of the plane are read: save a EUCLIDEAN-MESH"))
 }
 
 /// Returns a number in the row of a key.

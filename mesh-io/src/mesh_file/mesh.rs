@@ -93,7 +93,7 @@ impl MeshFile {
         } = parsed;
         if triangles.is_empty() {
             let problem = format!("{} vertices, but no triangle", points.len());
-            let remedy = "Only triangles are smoothed: mesh the surface with them, and save all its elements";
+            let remedy = "Meshes are read by their triangles: mesh the surface with triangles, and save all its elements";
             return Err(sources[0].error(problem, remedy));
         }
         Ok(MeshFile {

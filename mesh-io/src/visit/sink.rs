@@ -432,5 +432,5 @@ pub(crate) fn nodes(cursor: &mut Cursor<'_>, kind: Kind) -> Result<[u64; 4], Rea
 #[cold]
 pub(crate) fn volume(cursor: &Cursor<'_>, what: &str) -> ReadError {
     let problem = format!("{what} make this a volume mesh");
-    cursor.error(problem, "Only triangles of the plane are smoothed: save a mesh of the plane")
+    cursor.error(problem, "Only meshes of the plane are read: save a mesh of the plane")
 }

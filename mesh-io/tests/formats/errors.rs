@@ -60,7 +60,7 @@ fn triangle_errors_name_line_and_remedy() {
     );
     ele(&changed("2 2 3 5", "2 0 3 5"), &["m.ele:3: triangle 2 has vertex 0"]);
     ele(&changed("2 2 3 5", "2 x 3 5"), &["m.ele:3: a vertex of triangle 2 is `x`"]);
-    ele("0 3 0\n", &["5 vertices, but no triangle. Only triangles are smoothed"]);
+    ele("0 3 0\n", &["5 vertices, but no triangle. Meshes are read by their triangles"]);
 
     let poly = |text: &str, parts: &[&str]| {
         assert_error(&[("m.node", NODE), ("m.ele", ELE), ("m.poly", text)], parts);

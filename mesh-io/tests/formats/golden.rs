@@ -40,7 +40,8 @@ fn hashes(folder: &Folder, file: &MeshFile, name: &str) -> String {
     let written = file.destinations(&out).unwrap();
     let written = written.iter().flat_map(|path| std::fs::read(path).unwrap());
     let converted = Conversion::targets().flat_map(|(name, format)| {
-        let conversion = Conversion::new(file, format).unwrap().unwrap();
+        let mut conversion = Conversion::new(file, format).unwrap().unwrap();
+        conversion.set_creator("gpu-smooth");
         let out = folder.path("moved").join(name);
         conversion.write(&out).unwrap();
         let paths = conversion.destinations(&out);

@@ -23,7 +23,7 @@ fn assert_refused(name: &str, bytes: impl AsRef<[u8]>, parts: &[&str]) {
     assert_eq!(error.lines().count(), 1, "{error}");
 }
 
-const OF_THE_PLANE: &str = "Only triangles of the plane are smoothed";
+const OF_THE_PLANE: &str = "Only meshes of the plane are read";
 
 #[test]
 fn meshes_of_a_volume_are_refused() {
@@ -97,7 +97,7 @@ fn other_contents_of_known_formats_are_refused() {
     vtk(&strips, &["a strip of triangles", "Save strips as triangles"]);
     vtk(&points.replace("double", "int"), &["a.vtk:5: points are of the type `int`", "float"]);
     vtk(&format!("{points}{}", &points[23..]), &["a.vtk:8: this is the second list of POINTS"]);
-    vtk(points, &["3 vertices, but no triangle. Only triangles are smoothed"]);
+    vtk(points, &["3 vertices, but no triangle. Meshes are read by their triangles"]);
     vtk("ASCII\nDATASET POLYDATA\n", &["it has no POINTS"]);
     assert_refused("a.vtk", vtk_of_one_cell(4, 6), &["strip of triangles", "as triangles"]);
     assert_refused("a.vtk", vtk_of_one_cell(4, 5), &["cell 0, a triangle, has 4 points"]);

@@ -3,7 +3,6 @@
 use super::plan_steps::exponents;
 use super::{Corrections, Stage};
 use crate::run::history::History;
-use crate::run::plan::Plan;
 use crate::run::step::Sharpness;
 
 /// The exponent k of EDGE's p-norm doubles once a sweep with its correction lowers the p-norm by less than this share over k. A third of it

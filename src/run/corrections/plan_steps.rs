@@ -2,6 +2,7 @@
 
 use crate::metric::Metric;
 use crate::run::plan::Plan;
+use crate::run::step::Sharpness;
 use std::ops::RangeInclusive;
 
 /// Over-relaxation of sweeps before corrections begin, except the first sweep. Chosen by measurements on strongly

@@ -65,7 +65,7 @@ pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
     out.attribute("floating_point_word_size", Values::Whole(vec![8]));
     out.attribute("file_size", Values::Whole(vec![1]));
     out.attribute("maximum_name_length", Values::Whole(vec![longest as i32]));
-    out.attribute("title", Values::Text(b"written by gpu-smooth".to_vec()));
+    out.attribute("title", Values::Text(format!("written by {}", job.creator).into_bytes()));
     out.dimension("len_string", 33);
     out.dimension("len_name", longest + 1);
     out.dimension("four", 4);

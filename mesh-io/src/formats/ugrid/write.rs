@@ -29,7 +29,7 @@ pub(crate) fn write_ugrid(job: &Job<'_>) -> Vec<u8> {
     let is_mixed = cells.iter().any(|&cell| content.cells.of(cell).len() < corners);
     let mut out = NetCdf::default();
     out.attribute("Conventions", text("CF-1.8 UGRID-1.0"));
-    out.attribute("title", text("written by gpu-smooth"));
+    out.attribute("title", text(&format!("written by {}", job.creator)));
     out.dimension(NODE_COUNT, content.points.len());
     out.dimension(FACE_COUNT, cells.len());
     out.dimension(CORNERS, corners);

@@ -108,9 +108,10 @@ pub(crate) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
 pub(crate) fn write_legacy(job: &Job<'_>) -> String {
     let content = job.content;
     let cells: Vec<usize> = job.cells().collect();
-    let mut out =
-        "# vtk DataFile Version 4.2\nwritten by gpu-smooth\nASCII\nDATASET UNSTRUCTURED_GRID\n"
-            .to_owned();
+    let mut out = format!(
+        "# vtk DataFile Version 4.2\nwritten by {}\nASCII\nDATASET UNSTRUCTURED_GRID\n",
+        job.creator
+    );
     put!(out, "POINTS {} double\n", content.points.len());
     (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
     let numbers: usize = cells.iter().map(|&cell| 1 + content.cells.of(cell).len()).sum();
