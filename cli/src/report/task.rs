@@ -6,6 +6,7 @@ use gpu_smooth::{Checkpoint, Outcome, Smoother};
 
 use crate::args::{OutputArgs, SmoothArgs};
 use crate::load::LoadedMesh;
+use crate::load::explain::BadTriangleReport;
 use crate::report::Report;
 
 /// A mesh that is to be smoothed.
@@ -26,4 +27,18 @@ pub(crate) struct Done<'a> {
     /// How many sweeps were done, and after how many seconds of the run, where that is known.
     pub(crate) times: Vec<(u32, f64)>,
     pub(crate) report: Report,
+}
+
+/// The reason why a mesh was not smoothed.
+pub(crate) struct Failure {
+    pub(crate) message: String,
+    /// All inverted and flat triangles in the order of the file, if they are the reason and a report was asked for;
+    /// else empty.
+    pub(crate) triangles: Vec<BadTriangleReport>,
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self { message, triangles: Vec::new() }
+    }
 }

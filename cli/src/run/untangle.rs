@@ -2,15 +2,13 @@
 
 use crate::load::LoadedMesh;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::{BadTriangle, Mesh, MeshError, Smoother, Topology, Untangled, Untangling};
 
-use crate::args::OutputArgs;
-use crate::args::SmoothArgs;
 use crate::load::explain;
 use crate::load::streams;
+use crate::report::Task;
 use crate::terminal::interrupt;
 
 /// A mesh that was untangled, with the work that this took.
@@ -27,12 +25,8 @@ pub(crate) struct Mended {
 ///
 /// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before. The time limit
 /// counts from `began`.
-pub(crate) fn mend(
-    (args, show): (&SmoothArgs, &OutputArgs),
-    began: Instant,
-    file: &LoadedMesh,
-    out: &Path,
-) -> Result<Mended, String> {
+pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, String> {
+    let Task { args, show, out, .. } = *task;
     let mesh = file.mesh();
     let told = |error: MeshError| explain::mesh_error(file, &error);
     let topology = Topology::by_area(mesh).map_err(told)?;

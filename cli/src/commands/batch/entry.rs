@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::report::Failure;
 use crate::report::Report;
-use crate::run::task::Failure;
 use crate::terminal::numbers::five;
 
 /// A mesh, and how its smoothing ended.
