@@ -3,6 +3,7 @@
 #[cfg(any(test, fuzzing))]
 pub(crate) mod checks;
 mod command_line;
+mod conflicts;
 mod smooth;
 mod target;
 #[cfg(test)]

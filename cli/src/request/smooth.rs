@@ -8,9 +8,10 @@ use gpu_smooth::{
 };
 
 use crate::args::{
-    DerivativesChoice, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice, SmoothArgs,
-    WorstArgs, WorstChoice,
+    DerivativesChoice, EdgeNorm, GuardChoice, History, MethodChoice, SmoothArgs, WorstArgs,
+    WorstChoice,
 };
+use crate::request::conflicts::{self, CONFLICTS, WITHOUT_EFFECT};
 
 impl SmoothArgs {
     /// Returns the meshes for `--out-dir`.
@@ -37,46 +38,8 @@ impl SmoothArgs {
                 "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
             ));
         }
-        if self.target.is_of_places() {
-            let dropped = [
-                (self.sliding.slide, "--slide"),
-                (self.max_move.is_some(), "--max-move"),
-                (self.fraction.is_some(), "--fraction"),
-                (self.desired.is_some(), "--desired"),
-                (self.keep_altitude, "--keep-altitude"),
-                (self.checkpoint.is_some(), "--checkpoint"),
-                (self.continued.is_some(), "--continue"),
-            ];
-            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
-                return Some(format!(
-                    "a target that belongs to places does not go with {other}: drop {other}, or let vertices take their targets along (--target-of vertex)"
-                ));
-            }
-        }
-        if self.keep_altitude {
-            let dropped = [
-                (self.max_move.is_some(), "--max-move"),
-                (self.checkpoint.is_some(), "--checkpoint"),
-                (self.continued.is_some(), "--continue"),
-            ];
-            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
-                return Some(format!("--keep-altitude does not go with {other}: drop one of them"));
-            }
-        }
-        if self.max_move.is_some() {
-            let dropped = [
-                (self.untangle, "--untangle"),
-                (self.checkpoint.is_some(), "--checkpoint"),
-                (self.continued.is_some(), "--continue"),
-            ];
-            if let Some((_, other)) = dropped.iter().find(|(given, _)| *given) {
-                return Some(format!("--max-move does not go with {other}: drop one of them"));
-            }
-        }
-        if self.sliding.slide && (self.checkpoint.is_some() || self.continued.is_some()) {
-            return Some(
-                "--slide does not go with --checkpoint or --continue: drop one of them".to_owned(),
-            );
+        if let Some(text) = conflicts::first(CONFLICTS, self) {
+            return Some(text);
         }
         let has_edge = || self.scheme().metrics().contains(&Metric::Edge);
         let idle = match self.edge_norm {
@@ -86,16 +49,7 @@ impl SmoothArgs {
         if let Some((option, wanted)) = idle {
             return Some(format!("{option} has no effect without {wanted}: drop it"));
         }
-        let (kept, dropped) = if self.method == MethodChoice::Paper && self.omega.is_some() {
-            ("--method paper", "--omega")
-        } else if self.method == MethodChoice::Multilevel && self.omega.is_some() {
-            ("--method multilevel", "--omega")
-        } else if self.engine == EngineChoice::Cpu && self.adapter.is_some() {
-            ("--engine cpu", "--adapter")
-        } else {
-            return None;
-        };
-        Some(format!("{dropped} has no effect with {kept}: drop one of them"))
+        conflicts::first(WITHOUT_EFFECT, self)
     }
 
     /// Returns the options of a run on a mesh whose file stores coordinates with precision `stored`.
