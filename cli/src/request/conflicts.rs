@@ -79,3 +79,32 @@ pub(super) fn first(table: &[Conflict], args: &SmoothArgs) -> Option<String> {
     let [a, b] = found.options;
     Some(found.reason.replace('A', a).replace('B', b))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::request::command_line::checked;
+
+    /// Returns the words that give an option of the table on a command line.
+    fn words(option: &str) -> Vec<&str> {
+        let value = match option {
+            "--target-of place" => return vec!["--target", "keep-shape", "--target-of", "place"],
+            "--checkpoint or --continue" => return vec!["--checkpoint", "state"],
+            "--max-move" | "--fraction" | "--desired" | "--omega" => Some("0.5"),
+            "--checkpoint" | "--continue" | "--adapter" => Some("name"),
+            _ => None,
+        };
+        option.split(' ').chain(value).collect()
+    }
+
+    #[test]
+    fn each_pair_is_refused_by_its_own_words() {
+        for row in CONFLICTS.iter().chain(WITHOUT_EFFECT) {
+            let [a, b] = row.options;
+            let line = ["gpu-smooth", "in", "out"].into_iter().chain(words(a)).chain(words(b));
+            let error = checked(line.map(Into::into)).err().map(|error| error.to_string());
+            let reason = row.reason.replace('A', a).replace('B', b);
+            assert!(error.is_some_and(|error| error.contains(&reason)), "{a} and {b}");
+        }
+    }
+}
