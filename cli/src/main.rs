@@ -5,58 +5,30 @@
 #![cfg_attr(fuzzing, no_main)]
 #![cfg_attr(fuzzing, allow(dead_code))]
 
-mod adapters;
-mod bench;
-mod cli;
-mod columns;
-mod compare;
-mod convert;
-mod engine;
-mod explain;
-mod follow;
-mod groups;
-mod html;
-mod interrupt;
-mod keep;
+mod args;
+mod commands;
 mod load;
-mod many;
-mod moving;
-mod numbers;
-mod panics;
-mod picture;
-mod progress;
-mod proof;
-mod quality;
-mod read_args;
+mod render;
 mod report;
-mod riding;
-mod run_args;
-mod shell;
-mod slide_args;
-mod smooth;
-mod streams;
-mod summary;
-mod surface_args;
-mod target_args;
-mod task;
-mod tell;
-mod trial;
-mod untangle;
-mod worst_args;
+mod request;
+mod run;
+mod terminal;
 
 use std::process::ExitCode;
 
-use cli::{Cli, Command, LogForm};
+use args::{Command, LogForm};
+use commands::{adapters, batch, bench, compare, convert, groups, metrics, quality, shell, smooth};
+use terminal::{interrupt, panics, tell};
 
 #[cfg(fuzzing)]
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| cli::checks::any_line(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| request::checks::any_line(bytes));
 
 fn main() -> ExitCode {
     panics::told(run)
 }
 
 fn run() -> ExitCode {
-    let cli = Cli::read();
+    let cli = request::read();
     if cli.output.log == LogForm::Json {
         tell::log_json();
     }
@@ -67,12 +39,12 @@ fn run() -> ExitCode {
         Some(Command::Compare(args)) => compare::run(args, &cli.output),
         Some(Command::Convert(args)) => convert::run(args, &cli.output),
         Some(Command::Adapters(args)) => adapters::run(args),
-        Some(Command::Metrics) => tell::metrics(),
+        Some(Command::Metrics) => metrics::run(),
         Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),
         Some(Command::Completions(args)) => shell::completions(args),
         Some(Command::Man(args)) => shell::man(args),
         None => match &cli.smooth.out_dir {
-            Some(directory) => many::run(&cli.smooth, directory, &cli.output),
+            Some(directory) => batch::run(&cli.smooth, directory, &cli.output),
             None => smooth::run(&cli.smooth, &cli.output),
         },
     };

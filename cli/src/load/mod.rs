@@ -1,5 +1,16 @@
 //! Meshes as the command line works on them: what a file holds, and which vertices may move.
 
+pub(crate) mod explain;
+mod fields;
 mod mesh;
+mod movable;
+pub(crate) mod remarks;
+mod slide;
+pub(crate) mod streams;
+mod surface;
+mod targets;
 
+pub(crate) use fields::Riding;
 pub(crate) use mesh::LoadedMesh;
+pub(crate) use movable::Choice;
+pub(crate) use surface::as_in_file;

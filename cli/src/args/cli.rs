@@ -1,0 +1,182 @@
+//! The command line: its commands and options.
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use mesh_io::{Conversion, Format};
+
+use crate::args::{
+    BenchArgs, MoveArgs, QualityArgs, ReadArgs, RidingArgs, SlideArgs, SmoothArgs, SurfaceArgs,
+};
+
+/// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
+/// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
+#[derive(Parser)]
+#[command(
+    name = "gpu-smooth",
+    version,
+    subcommand_negates_reqs = true,
+    override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
+    after_help = "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats: \
+                  Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
+                  fort.14, SCHISM .gr3, SMS .2dm, MIKE .mesh, FVCOM grids, MFEM .mesh, JIGSAW and FreeFem .msh, Abaqus .inp, Nastran .bdf, SELAFIN, UGRID, Exodus II, MED, CGNS, XDMF, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
+                  the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
+                  Examples:\n  \
+                  gpu-smooth coast.msh better.msh --picture better.png\n  \
+                  gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
+                  gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2\n  \
+                  gpu-smooth *.msh --out-dir smoothed --resume\n  \
+                  gpu-smooth part.msh better.msh --html run.html\n  \
+                  gpu-smooth quality better.msh\n  \
+                  gpu-smooth bench"
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) smooth: SmoothArgs,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+}
+
+/// How much is printed, whatever the command.
+#[derive(Args)]
+pub(crate) struct OutputArgs {
+    /// Print errors only; commands still print their answer
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Output")]
+    pub(crate) quiet: bool,
+    /// Print every sweep of a run
+    #[arg(short, long, global = true, help_heading = "Output")]
+    pub(crate) verbose: bool,
+    /// What goes to standard error: lines of text, or an object of JSON on each line
+    #[arg(
+        long,
+        global = true,
+        value_enum,
+        default_value = "text",
+        value_name = "FORM",
+        help_heading = "Output"
+    )]
+    pub(crate) log: LogForm,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LogForm {
+    Text,
+    Json,
+}
+
+/// Where shells look for completions.
+const COMPLETIONS: &str = "Examples:
+  gpu-smooth completions bash > ~/.local/share/bash-completion/completions/gpu-smooth
+  gpu-smooth completions zsh > ~/.zfunc/_gpu-smooth
+  gpu-smooth completions fish > ~/.config/fish/completions/gpu-smooth.fish";
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Tells how good meshes are, and where they are worst
+    #[command(after_help = "Examples:\n  \
+        gpu-smooth quality coast.msh -m min-angle,skewness --picture coast.png\n  \
+        gpu-smooth quality before.su2 after.su2 --csv\n  \
+        gpu-smooth quality part.msh --threshold 'min-angle<20' --threshold 'size-ratio>4'")]
+    Quality(QualityArgs),
+    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like, and data of
+    /// vertices
+    #[command(after_help = "Example:\n  gpu-smooth groups wing.su2")]
+    Groups(GroupsArgs),
+    /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
+    #[command(after_help = "Example:\n  gpu-smooth compare part.msh smooth.msh --only steel")]
+    Compare(CompareArgs),
+    /// Writes a mesh in another format; if that does not hold all of it, lists what is lost, and writes only with --lossy
+    Convert(ConvertArgs),
+    /// Lists the GPU adapters there are, best first, and whether each can be used
+    Adapters(AdaptersArgs),
+    /// Tells what each metric measures and what it is good for
+    Metrics,
+    /// Measures how fast this machine smooths: sweeps, bytes, and each kernel
+    #[command(
+        after_help = "Examples:\n  gpu-smooth bench\n  gpu-smooth bench coast.msh --scheme edge+imr --engine gpu"
+    )]
+    Bench(BenchArgs),
+    /// Prints completions for a shell
+    #[command(after_help = COMPLETIONS)]
+    Completions(CompletionsArgs),
+    /// Prints the manual page, or writes the pages of all commands into a directory
+    #[command(
+        after_help = "Examples:\n  gpu-smooth man | man -l -\n  gpu-smooth man ~/.local/share/man/man1"
+    )]
+    Man(ManArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct GroupsArgs {
+    /// The mesh
+    pub(crate) mesh: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct CompareArgs {
+    /// The mesh before
+    pub(crate) before: PathBuf,
+    /// The mesh after
+    pub(crate) after: PathBuf,
+    /// What may have moved: give the options of the run
+    #[command(flatten)]
+    pub(crate) moving: MoveArgs,
+    #[command(flatten)]
+    pub(crate) sliding: SlideArgs,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(crate) riding: RidingArgs,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct ConvertArgs {
+    /// The mesh, in any format that is read; - for the standard input
+    pub(crate) input: PathBuf,
+    /// Where to write it; its ending tells the format. - for the standard output, with --to
+    pub(crate) output: PathBuf,
+    /// The format to write, where the ending of OUT does not tell it: .msh alone stands for gmsh 4.1
+    #[arg(long, value_name = "FORMAT", value_parser = targets())]
+    pub(crate) to: Option<Format>,
+    /// Write the mesh even if the format does not hold all of it
+    #[arg(long)]
+    pub(crate) lossy: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadArgs,
+}
+
+/// Parses a format that meshes are converted to, by its short name.
+fn targets() -> impl TypedValueParser<Value = Format> {
+    let format = |name: String| Conversion::targets().find(|(own, _)| *own == name);
+    PossibleValuesParser::new(Conversion::targets().map(|(name, _)| name))
+        .try_map(move |name| format(name).map(|(_, format)| format).ok_or("not a format"))
+}
+
+#[derive(Args)]
+pub(crate) struct AdaptersArgs {
+    /// List only the adapter that --adapter NAME takes
+    pub(crate) name: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: Shell,
+}
+
+#[derive(Args)]
+pub(crate) struct ManArgs {
+    /// Directory for a page of the program and one of each command [default: the page of the program is printed]
+    pub(crate) directory: Option<PathBuf>,
+}

@@ -1,0 +1,106 @@
+//! Parsers of the values of options.
+
+use std::time::Duration;
+
+use gpu_smooth::Desired;
+
+/// Parses a number, and refuses it if `fits` does not hold. `range` describes the numbers that fit.
+pub(crate) fn number(text: &str, fits: impl Fn(f64) -> bool, range: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("not a number; it must be {range}"))?;
+    if fits(value) { Ok(value) } else { Err(format!("it must be {range}")) }
+}
+
+/// Parses the names or tags of groups.
+pub(crate) fn group_names(text: &str) -> Result<String, String> {
+    // If the value was forgotten, the next option is taken for it. A tag may be negative.
+    let is_option = text.starts_with('-') && !text[1..].starts_with(|c: char| c.is_ascii_digit());
+    match is_option || text.trim().is_empty() {
+        true => Err("the name or the tag of a group is needed".into()),
+        false => Ok(text.to_owned()),
+    }
+}
+
+/// Parses two opposite corners of a box.
+pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 2], String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x0, y0, x1, y1]) if [x0, y0, x1, y1].iter().all(|x| x.is_finite()) => {
+            Ok([[x0, y0], [x1, y1]])
+        }
+        _ => Err("four numbers with commas between them are needed".into()),
+    }
+}
+
+/// Parses an inverse mean ratio.
+pub(crate) fn ratio(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|q| *q >= 1.0 && q.is_finite());
+    number.ok_or_else(|| "it must be a number from 1, which an equilateral triangle has".into())
+}
+
+/// Parses an angle in degrees.
+pub(crate) fn angle(text: &str) -> Result<f64, String> {
+    number(text, |angle| (0.0..=180.0).contains(&angle), "an angle from 0 to 180 degrees")
+}
+
+/// Parses a length.
+pub(crate) fn distance(text: &str) -> Result<f64, String> {
+    number(text, |length| length > 0.0 && length.is_finite(), "a length above 0")
+}
+
+/// Parses the names of two groups with a comma between them.
+pub(crate) fn two_names(text: &str) -> Result<[String; 2], String> {
+    match text.split_once(',').map(|(a, b)| [a.trim(), b.trim()]) {
+        Some([a, b]) if !a.is_empty() && !b.is_empty() => Ok([a.to_owned(), b.to_owned()]),
+        _ => Err("the names or tags of two groups are needed, with a comma between them".into()),
+    }
+}
+
+/// Parses the name of data of vertices.
+pub(crate) fn field_name(text: &str) -> Result<String, String> {
+    match text.starts_with("--") || text.trim().is_empty() {
+        true => Err("the name of data is needed, or all".into()),
+        false => Ok(text.to_owned()),
+    }
+}
+
+/// Parses a number that is not negative.
+pub(crate) fn nonnegative(text: &str) -> Result<f64, String> {
+    number(text, |t| t >= 0.0 && t.is_finite(), "0 or above")
+}
+
+/// Parses a share of the way to the desired f.
+pub(crate) fn fraction(text: &str) -> Result<f64, String> {
+    number(text, |f| f > 0.0 && f <= 1.0, "above 0 and at most 1")
+}
+
+/// Parses a number of lengths of edges.
+pub(crate) fn edges(text: &str) -> Result<f64, String> {
+    number(text, |most| most > 0.0 && most.is_finite(), "above 0")
+}
+
+/// Parses a factor of over-relaxation.
+pub(crate) fn omega(text: &str) -> Result<f64, String> {
+    number(text, |w| w > 0.0 && w < 2.0, "above 0 and below 2")
+}
+
+/// Parses a desired f.
+pub(crate) fn desired(text: &str) -> Result<Desired, String> {
+    match text {
+        "auto" => Ok(Desired::Auto),
+        _ => number(text, f64::is_finite, "a value of f, or auto").map(Desired::Value),
+    }
+}
+
+/// Parses a number of seconds above 0.
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
+    let range = "a number of seconds above 0";
+    let seconds = number(text, |s| s > 0.0, range)?;
+    Duration::try_from_secs_f64(seconds).map_err(|_| format!("it is too large; it must be {range}"))
+}
+
+/// Parses the number of vertices of a lattice.
+pub(crate) fn vertices(text: &str) -> Result<usize, String> {
+    let range = "a number of vertices from 9 to 100000000";
+    let value = text.trim().parse().map_err(|_| range.to_owned())?;
+    if (9..=100_000_000).contains(&value) { Ok(value) } else { Err(format!("it must be {range}")) }
+}

@@ -1,0 +1,174 @@
+//! `gpu-smooth MESH... --out-dir DIR`: many meshes in one call.
+
+use crate::commands::batch::{listing, table, workers};
+use crate::load::LoadedMesh;
+use std::path::Path;
+use std::time::Instant;
+
+use gpu_smooth::Progress;
+use mesh_io::atomic;
+
+use crate::args::SmoothArgs;
+use crate::args::{LogForm, OutputArgs};
+use crate::commands::batch::entry::{Entry, Told};
+use crate::commands::batch::listing::Listed;
+use crate::commands::batch::workers::Watch;
+use crate::commands::smooth::check_report;
+use crate::render::columns;
+use crate::report::Task;
+use crate::run::carry_out;
+use crate::run::engine::Engines;
+use crate::run::observer::Follow;
+use crate::terminal::interrupt;
+use crate::terminal::progress::{Stage, Tally};
+use crate::terminal::tell;
+
+/// Output settings of each run: it prints nothing, as other runs go on beside it.
+const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogForm::Text };
+
+/// Smooths all meshes. Returns an error at the end if one of them failed.
+pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), String> {
+    let start = Instant::now();
+    let list = listing::list(args.meshes(), directory)?;
+    let files = list.iter().flat_map(|mesh| mesh.inputs.iter().chain(&mesh.outputs));
+    check_report(args, files.map(|path| path.as_path()))?;
+    interrupt::watch(show.quiet);
+    // The first signal is left to the runs. Runs under way are then given up, and finished ones are reported.
+    interrupt::has_result();
+    make(directory)?;
+    let is_done = |mesh: &Listed| args.resume && mesh.is_done();
+    let (skipped, open): (Vec<_>, Vec<_>) = (0..list.len()).partition(|&i| is_done(&list[i]));
+    let mut told: Vec<Option<Told>> = list.iter().map(|_| None).collect();
+    skipped.iter().for_each(|&i| told[i] = Some(Told::Skipped));
+    if !open.is_empty() {
+        let engines = Engines::new(args)?;
+        let tally = Tally::new(show, open.len());
+        let mut watch = Watched { list: &list, show, tally, told: &mut told };
+        workers::run(&list, &open, &|mesh| smooth(args, &engines, mesh), &mut watch);
+        watch.tally.clear();
+    }
+    let entry = |(mesh, told): (Listed, Option<Told>)| {
+        let told = told.unwrap_or(Told::Interrupted);
+        let Listed { input, out, inputs, .. } = mesh;
+        Entry { input, out, files: inputs, told }
+    };
+    let entries: Vec<Entry> = list.into_iter().zip(told).map(entry).collect();
+    let seconds = start.elapsed().as_secs_f64();
+    write_report(args, &entries, seconds)?;
+    if args.json {
+        tell::say(&table::json(&entries)?);
+    } else if args.csv {
+        tell::say(&table::csv(&entries));
+    } else if !show.quiet {
+        tell::say(&table::text(&entries, seconds, columns::of_terminal()));
+    }
+    match table::failures(&entries) {
+        Some(text) if interrupt::is_requested() => {
+            tell::error(&text);
+            Ok(())
+        }
+        Some(text) => Err(text),
+        None => match entries.iter().filter(|entry| entry.told.fell_short()).count() {
+            short if short > 0 && args.strict => Err(format!(
+                "{short} of {} runs neither converged nor reached their goal; --strict makes this an error",
+                entries.len()
+            )),
+            _ => Ok(()),
+        },
+    }
+}
+
+/// Makes the directory if it does not exist.
+fn make(directory: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(directory).map_err(|error| {
+        format!(
+            "{}: the directory cannot be made: {error}. Give another one to --out-dir",
+            directory.display()
+        )
+    })
+}
+
+/// Shows how far the call is, and keeps how each mesh ended.
+struct Watched<'a> {
+    list: &'a [Listed],
+    show: &'a OutputArgs,
+    tally: Tally,
+    told: &'a mut [Option<Told>],
+}
+
+impl Watch for Watched<'_> {
+    fn done(&mut self, mesh: usize, told: Told) {
+        self.tally.add(&self.list[mesh].input, told.problem(), &told.text());
+        self.told[mesh] = Some(told);
+    }
+
+    fn waits(&mut self) {
+        self.tally.waits();
+    }
+
+    fn interrupted(&mut self) {
+        tell::leave_bar();
+        let text = "interrupted: meshes that are being smoothed are given up (interrupt again to end at once)";
+        tell::note(self.show.quiet, text);
+    }
+}
+
+/// Smooths one of the meshes.
+fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
+    let task = Task { args, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
+    let mut follow = Followed { mesh, remarks: Vec::new() };
+    let engine = |size| Ok(engines.take(size));
+    match carry_out(&task, engine, &mut follow, |done| Ok(done.report)) {
+        Ok(report) => Told::Smoothed { report: Box::new(report), remarks: follow.remarks },
+        Err(_) if interrupt::is_requested() => Told::Interrupted,
+        Err(failure) => Told::Failed(failure),
+    }
+}
+
+/// Keeps the remarks on a mesh.
+struct Followed<'a> {
+    mesh: &'a Listed,
+    remarks: Vec<String>,
+}
+
+impl Follow for Followed<'_> {
+    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), String> {
+        let out = &self.mesh.out;
+        if interrupt::is_requested() {
+            return Err("interrupted".into());
+        }
+        file.source.check_destination(out).map_err(|error| error.to_string())?;
+        let written = file.source.destinations(out).map_err(|error| error.to_string())?;
+        // A file may have two names, which the list could not tell.
+        match written
+            .iter()
+            .find(|path| file.source.paths().any(|own| atomic::same_file(own, path)))
+        {
+            Some(path) => Err(format!("{}: the mesh itself would be replaced", path.display())),
+            None => Ok(()),
+        }
+    }
+
+    fn remark(&mut self, text: &str) {
+        self.remarks.push(text.to_owned());
+    }
+
+    fn stage(&mut self, _: Stage) {}
+
+    fn sweep(&mut self, _: &Progress) {}
+
+    fn has_smoothed(&mut self) -> Result<(), String> {
+        match interrupt::is_requested() {
+            true => Err("interrupted".into()),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Writes the report on all meshes if it was asked for.
+fn write_report(args: &SmoothArgs, entries: &[Entry], seconds: f64) -> Result<(), String> {
+    let Some(path) = &args.report else { return Ok(()) };
+    let text = table::report(entries, seconds)?;
+    atomic::replace(path, text.as_bytes())
+        .map_err(|error| format!("the report was not written: {error}. The meshes were written"))
+}

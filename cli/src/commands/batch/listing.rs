@@ -1,0 +1,254 @@
+//! Lists the meshes that are to be smoothed, and the files that they are written to.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use mesh_io::atomic;
+
+use crate::load::streams::is_standard;
+
+/// A mesh that is to be smoothed.
+pub(crate) struct Listed {
+    /// The path as it was given first, if the mesh was given several times.
+    pub(crate) input: PathBuf,
+    pub(crate) out: PathBuf,
+    /// The files of the mesh that exist.
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The files that the smoothed mesh is written to.
+    pub(crate) outputs: Vec<PathBuf>,
+}
+
+impl Listed {
+    fn new(input: &Path, directory: &Path) -> Result<Self, String> {
+        let name = input.file_name().filter(|_| !is_standard(input) && !input.is_dir());
+        let name = name.ok_or_else(|| {
+            format!("{}: not a file. --out-dir takes meshes in files, and names each result as its mesh", input.display())
+        })?;
+        let out = directory.join(name);
+        let inputs = parts(input);
+        let outputs = match stem(input) {
+            Some(_) => inputs.iter().filter_map(|part| Some(directory.join(part.file_name()?))),
+            None => {
+                return Ok(Self { inputs, outputs: vec![out.clone()], input: input.into(), out });
+            }
+        };
+        let outputs = outputs.collect();
+        Ok(Self { input: input.to_owned(), out, inputs, outputs })
+    }
+
+    /// Returns the size of the mesh's files, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let sizes = self.inputs.iter().filter_map(|part| Some(fs::metadata(part).ok()?.len()));
+        sizes.sum()
+    }
+
+    /// Whether all output files exist and are newer than all input files. A file that exists is complete, as files are
+    /// replaced whole.
+    pub(crate) fn is_done(&self) -> bool {
+        let time = |path: &PathBuf| fs::metadata(path).and_then(|found| found.modified()).ok();
+        let times = |paths: &[PathBuf]| paths.iter().map(time).collect::<Option<Vec<SystemTime>>>();
+        match (times(&self.inputs), times(&self.outputs)) {
+            (Some(read), Some(written)) => match (read.iter().max(), written.iter().min()) {
+                (Some(newest), Some(oldest)) => newest < oldest,
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+}
+
+/// Returns the path without its ending if it names a file of a Triangle mesh.
+fn stem(path: &Path) -> Option<PathBuf> {
+    let ending = path.extension()?.to_str()?.to_lowercase();
+    matches!(&*ending, "node" | "ele" | "poly").then(|| path.with_extension(""))
+}
+
+/// Whether files of this name may have numbers in files beside them, which are called after them.
+fn is_xdmf(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    matches!(&*ending, "xdmf" | "xmf" | "xdmf3")
+}
+
+/// What meshes have in common of which some files would be written to the same place.
+fn key_of(out: &Path) -> PathBuf {
+    match stem(out) {
+        Some(stem) => stem,
+        None if is_xdmf(out) => out.with_extension("xdmf"),
+        None => out.to_owned(),
+    }
+}
+
+/// The files of the mesh that a path names, as far as they are there and their names tell: two or three of Triangle, an XDMF and its
+/// HDF5, else one.
+fn parts(path: &Path) -> Vec<PathBuf> {
+    let with = |ending: &str| {
+        let mut name = path.with_extension("").into_os_string();
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    let (Some(_), Some(own)) = (stem(path), path.extension()) else {
+        let beside = with(".h5");
+        let has_beside = is_xdmf(path) && beside.is_file();
+        return [path.to_owned()].into_iter().chain(has_beside.then_some(beside)).collect();
+    };
+    let is_upper = own.to_string_lossy().starts_with(char::is_uppercase);
+    let endings = match is_upper {
+        true => [".NODE", ".ELE", ".POLY"],
+        false => [".node", ".ele", ".poly"],
+    };
+    endings.into_iter().map(with).filter(|part| part.is_file()).collect()
+}
+
+/// Lists the meshes that some paths name, each once, with the files in `directory` that they are written to.
+///
+/// Returns an error if two meshes would be written to the same file, or if a mesh would replace itself.
+pub(crate) fn list<'p>(
+    paths: impl Iterator<Item = &'p PathBuf>,
+    directory: &Path,
+) -> Result<Vec<Listed>, String> {
+    let mut listed: Vec<Listed> = Vec::new();
+    let mut by_out: HashMap<PathBuf, usize> = HashMap::new();
+    for path in paths {
+        // A mesh of Triangle may be named without an ending.
+        let mesh = match is_stem(path) {
+            true => Listed::new(&appended(path, ".node"), directory)?,
+            false => Listed::new(path, directory)?,
+        };
+        if let Some(own) = mesh.outputs.iter().find(|out| is_any(out, &mesh.inputs)) {
+            return Err(format!(
+                "{}: the mesh itself would be replaced. Give another directory to --out-dir",
+                own.display()
+            ));
+        }
+        let key = key_of(&mesh.out);
+        match by_out.get(&key).map(|&i| &mut listed[i]) {
+            Some(known) if is_same(known, &mesh) => {
+                // The mesh is named by its `.node` or `.ele`, not by its `.poly`.
+                if known.input.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly")) {
+                    *known = mesh;
+                }
+            }
+            Some(known) => {
+                return Err(format!(
+                    "{} and {} would both be written to {}. Rename one, or smooth them into different directories",
+                    known.input.display(),
+                    mesh.input.display(),
+                    mesh.out.display()
+                ));
+            }
+            None => {
+                by_out.insert(key, listed.len());
+                listed.push(mesh);
+            }
+        }
+    }
+    Ok(listed)
+}
+
+/// Whether a path is the name of a Triangle mesh without its ending.
+fn is_stem(path: &Path) -> bool {
+    !path.exists() && appended(path, ".node").is_file()
+}
+
+fn appended(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+fn is_any(path: &Path, others: &[PathBuf]) -> bool {
+    others.iter().any(|other| atomic::same_file(other, path))
+}
+
+/// Whether two meshes have a file in common.
+fn is_same(a: &Listed, b: &Listed) -> bool {
+    let (mine, theirs) = match is_xdmf(&a.input) {
+        // Several may have their numbers in one file.
+        true => (&a.inputs[..1], &b.inputs[..1]),
+        false => (&a.inputs[..], &b.inputs[..]),
+    };
+    a.input == b.input || mine.iter().any(|part| is_any(part, theirs))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(names: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for name in names {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "x").unwrap();
+        }
+        folder
+    }
+
+    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<Listed>, String> {
+        let paths: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
+        list(paths.iter(), &folder.path().join("out"))
+    }
+
+    #[test]
+    fn a_mesh_of_several_files_is_listed_once() {
+        let names = ["a.1.ele", "a.1.node", "a.1.poly", "b.msh", "c.node", "c.ele"];
+        let folder = folder(&names);
+        let listed = of(&folder, &names).unwrap();
+        let inputs: Vec<_> =
+            listed.iter().map(|mesh| mesh.input.file_name().unwrap().to_owned()).collect();
+        assert_eq!(inputs, ["a.1.ele", "b.msh", "c.node"]);
+        let outputs = listed.iter().map(|mesh| mesh.outputs.len()).collect::<Vec<_>>();
+        assert_eq!(outputs, [3, 1, 2]);
+        assert_eq!(
+            of(&folder, &["a.1.poly", "a.1.ele"]).unwrap()[0].input.extension().unwrap(),
+            "ele"
+        );
+        // Two meshes, each given twice: one also without its ending.
+        assert_eq!(of(&folder, &["a.1", "a.1.node", "b.msh", "b.msh"]).unwrap().len(), 2);
+    }
+
+    /// The files beside both would be called after them.
+    #[test]
+    fn files_beside_an_xdmf_are_its_own() {
+        let folder = folder(&["a.xdmf", "a.xmf", "a.h5", "b.xdmf"]);
+        let listed = of(&folder, &["a.xdmf", "a.xdmf", "b.xdmf"]).unwrap();
+        assert_eq!(listed.iter().map(|mesh| mesh.inputs.len()).collect::<Vec<_>>(), [2, 1]);
+        assert_eq!(listed[0].bytes(), 2);
+        let error = of(&folder, &["a.xdmf", "a.xmf"]).err().unwrap();
+        assert!(error.contains("would both be written to"), "{error}");
+    }
+
+    #[test]
+    fn two_meshes_of_one_name_are_refused() {
+        let folder = folder(&["a/m.msh", "b/m.msh", "a/t.node", "a/t.ele", "b/t.ele", "b/t.node"]);
+        for names in [["a/m.msh", "b/m.msh"], ["a/t.node", "b/t.ele"]] {
+            let error = of(&folder, &names).err().unwrap();
+            assert!(error.contains("would both be written to"), "{error}");
+        }
+        let own = list([folder.path().join("a/m.msh")].iter(), &folder.path().join("b/../a"));
+        assert!(own.err().unwrap().contains("the mesh itself would be replaced"));
+    }
+
+    #[test]
+    fn a_mesh_is_done_if_all_its_files_are_newer() {
+        let folder = folder(&["t.node", "t.ele", "out/t.ele"]);
+        let at = |name: &str, seconds| {
+            let file = fs::File::options().append(true).open(folder.path().join(name)).unwrap();
+            let time = SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(seconds);
+            file.set_modified(time).unwrap();
+        };
+        let is_done = || of(&folder, &["t.node"]).unwrap()[0].is_done();
+        at("t.node", 100);
+        at("t.ele", 200);
+        at("out/t.ele", 300);
+        assert!(!is_done(), "a part is missing");
+        fs::write(folder.path().join("out/t.node"), "x").unwrap();
+        assert!(is_done());
+        at("out/t.node", 200);
+        assert!(!is_done(), "as old as the mesh");
+        at("out/t.node", 201);
+        assert!(is_done());
+    }
+}

@@ -1,0 +1,258 @@
+//! Writes how many meshes ended: as a table, as CSV and as JSON.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+use unicode_width::UnicodeWidthStr;
+
+use crate::commands::batch::entry::{Entry, Told};
+use crate::render::columns::{left, quoted, right, shortened};
+use crate::report::Report;
+use crate::terminal::numbers::five;
+
+/// The widths of the columns of numbers. The first two columns are left out on a narrow terminal.
+const WIDTHS: [usize; 7] = [9, 7, 10, 10, 10, 8, 8];
+
+/// The width of the column of names, and which columns of numbers are shown.
+struct Widths {
+    name: usize,
+    is_narrow: bool,
+}
+
+impl Widths {
+    fn new(entries: &[Entry], terminal: Option<usize>) -> Self {
+        let longest = entries.iter().map(|entry| name(entry).width()).max().unwrap_or(0);
+        let numbers: usize = WIDTHS.iter().sum();
+        let room = |numbers: usize| terminal.unwrap_or(120).saturating_sub(numbers);
+        let is_narrow = room(numbers) < 12;
+        let left_out = if is_narrow { WIDTHS[0] + WIDTHS[1] } else { 0 };
+        let room = room(numbers - left_out);
+        Self { name: longest.clamp(7, room.max(8)), is_narrow }
+    }
+
+    fn line(&self, name: &str, columns: [String; WIDTHS.len()]) -> String {
+        let mut text = left(&shortened(name, self.name), self.name);
+        let skipped = if self.is_narrow { 2 } else { 0 };
+        for (column, width) in columns.iter().zip(WIDTHS).skip(skipped) {
+            text += &right(column, width);
+        }
+        text
+    }
+}
+
+/// Returns the name of a mesh's file. No two meshes of a call have the same.
+fn name(entry: &Entry) -> String {
+    entry.input.file_name().unwrap_or_default().display().to_string()
+}
+
+/// Writes a line for each mesh, and one for all of them. `terminal` is the number of columns of the terminal, if there
+/// is one.
+pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> String {
+    let widths = Widths::new(entries, terminal);
+    let base = entries.iter().find_map(|entry| entry.told.report()).map_or("imr", Report::base);
+    let base = format!("f {base}");
+    let head = ["vertices", "sweeps", &base, "after", "min angle", "after", "s"];
+    let mut text = widths.line("mesh", head.map(str::to_owned));
+    for entry in entries {
+        text.push('\n');
+        match entry.told.report() {
+            Some(report) => {
+                text += &widths.line(&name(entry), numbers(report));
+                if !matches!(report.stop, "converged" | "reached") {
+                    text += &format!("  {}", report.stop);
+                }
+            }
+            None => {
+                let name = left(&shortened(&name(entry), widths.name), widths.name);
+                text += &format!("{name}  {}", entry.told.status());
+            }
+        }
+    }
+    let _ = write!(text, "\n\n{}", counts(entries));
+    let vertices: usize =
+        entries.iter().filter_map(|entry| Some(entry.told.report()?.mesh.vertices)).sum();
+    let _ = write!(text, "; {vertices} vertices in {seconds:.3} s");
+    text
+}
+
+/// Formats the columns of a mesh that was smoothed.
+fn numbers(report: &Report) -> [String; WIDTHS.len()] {
+    let (before, after) = (&report.before, &report.after);
+    let base = report.base();
+    let angle = |angle: f64| format!("{angle:.2}°");
+    [
+        report.mesh.vertices.to_string(),
+        report.sweeps.to_string(),
+        five(before.f[base]),
+        five(after.f[base]),
+        angle(before.min_angle),
+        angle(after.min_angle),
+        format!("{:.3}", report.seconds.total),
+    ]
+}
+
+/// Counts the meshes by how they ended.
+fn counts(entries: &[Entry]) -> String {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for status in ["smoothed", "skipped", "failed", "interrupted"] {
+        let count = entries.iter().filter(|entry| entry.told.status() == status).count();
+        if count > 0 {
+            counts.push((status, count));
+        }
+    }
+    let told: Vec<String> =
+        counts.iter().map(|(status, count)| format!("{count} {status}")).collect();
+    format!("{} of {}", told.join(", "), counted(entries.len()))
+}
+
+fn counted(meshes: usize) -> String {
+    if meshes == 1 { "1 mesh".into() } else { format!("{meshes} meshes") }
+}
+
+/// Lists the meshes that failed with their reasons, if any did.
+pub(crate) fn failures(entries: &[Entry]) -> Option<String> {
+    let failed = || entries.iter().filter_map(|entry| Some((entry, entry.told.problem()?)));
+    let count = failed().count();
+    let mut text = format!("{count} of {} failed", counted(entries.len()));
+    for (entry, problem) in failed() {
+        let input = entry.input.display().to_string();
+        // Most reasons start with the name of a file of the mesh.
+        let named = |path: &PathBuf| problem.starts_with(&*path.to_string_lossy());
+        let _ = match entry.files.iter().any(named) || problem.starts_with(&input) {
+            true => write!(text, "\n  {problem}"),
+            false => write!(text, "\n  {input}: {problem}"),
+        };
+    }
+    (count > 0).then_some(text)
+}
+
+/// The columns of CSV and keys of JSON.
+const KEYS: [&str; 18] = [
+    "mesh",
+    "out",
+    "status",
+    "vertices",
+    "triangles",
+    "free",
+    "sweeps",
+    "stop",
+    "metric",
+    "f_before",
+    "f_after",
+    "min_angle_before",
+    "min_angle_after",
+    "worst_imr_before",
+    "worst_imr_after",
+    "engine",
+    "seconds",
+    "problem",
+];
+
+fn values(entry: &Entry) -> [Value; KEYS.len()] {
+    let [input, out] = [&entry.input, &entry.out].map(|path| path.display().to_string());
+    let head = [json!(input), json!(out), json!(entry.told.status())];
+    let numbers = match entry.told.report() {
+        None => std::array::from_fn(|_| Value::Null),
+        Some(report) => {
+            let Report { mesh, before, after, .. } = report;
+            let base = report.base();
+            [
+                json!(mesh.vertices),
+                json!(mesh.triangles),
+                json!(mesh.free),
+                json!(report.sweeps),
+                json!(report.stop),
+                json!(base),
+                json!(before.f[base]),
+                json!(after.f[base]),
+                json!(before.min_angle),
+                json!(after.min_angle),
+                json!(before.worst_imr),
+                json!(after.worst_imr),
+                json!(report.engine.kind),
+                json!(report.seconds.total),
+            ]
+        }
+    };
+    let mut all =
+        head.into_iter().chain::<[Value; 14]>(numbers).chain([json!(entry.told.problem())]);
+    std::array::from_fn(|_| all.next().unwrap_or_default())
+}
+
+/// Writes a header and a row for each mesh.
+pub(crate) fn csv(entries: &[Entry]) -> String {
+    let mut text = KEYS.join(",");
+    for entry in entries {
+        let fields = values(entry).map(|value| match value {
+            Value::Null => String::new(),
+            Value::String(text) => quoted(&text),
+            number => number.to_string(),
+        });
+        let _ = write!(text, "\n{}", fields.join(","));
+    }
+    text
+}
+
+/// Writes a list with an object for each mesh.
+pub(crate) fn json(entries: &[Entry]) -> Result<String, String> {
+    let object =
+        |entry| Value::Object(KEYS.map(str::to_owned).into_iter().zip(values(entry)).collect());
+    let list: Vec<Value> = entries.iter().map(object).collect();
+    serde_json::to_string_pretty(&list).map_err(|error| error.to_string())
+}
+
+/// Writes the report on all meshes. It has, for each smoothed mesh, the report that a single run writes.
+pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, String> {
+    let told = |error: serde_json::Error| error.to_string();
+    let mut meshes = Vec::new();
+    for Entry { input, out, told: what, .. } in entries {
+        let mut object = json!({
+            "mesh": input.display().to_string(), "out": out.display().to_string(), "status": what.status(),
+        });
+        match what {
+            Told::Smoothed { report, remarks } => {
+                object["remarks"] = json!(remarks);
+                object["report"] = serde_json::to_value(report).map_err(told)?;
+            }
+            Told::Failed(failure) => {
+                object["error"] = json!(what.problem());
+                object["triangles"] = serde_json::to_value(&failure.triangles).map_err(told)?;
+            }
+            Told::Skipped | Told::Interrupted => {}
+        }
+        meshes.push(object);
+    }
+    let all = json!({ "meshes": meshes, "seconds": seconds });
+    serde_json::to_string_pretty(&all).map(|text| text + "\n").map_err(told)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    fn entry(name: &str) -> Entry {
+        let path = PathBuf::from(name);
+        Entry { input: path.clone(), out: path.clone(), files: vec![path], told: Told::Skipped }
+    }
+
+    #[test]
+    fn tables_fit_their_terminal() {
+        let entries = ["a.msh", "東京湾の網格.msh", "a-mesh-with-quite-a-long-name-of-its-own.msh"];
+        let entries = entries.map(entry);
+        for (terminal, name, is_narrow) in
+            [(Some(80), 18, false), (Some(60), 14, true), (Some(200), 44, false), (None, 44, false)]
+        {
+            let widths = Widths::new(&entries, terminal);
+            assert_eq!((widths.name, widths.is_narrow), (name, is_narrow), "{terminal:?}");
+            let text = text(&entries, 0.0, terminal);
+            let head = text.lines().next().unwrap();
+            assert!(head.width() <= terminal.unwrap_or(120), "{text}");
+            for line in text.lines().filter(|line| line.ends_with("skipped")) {
+                assert_eq!(line.width(), name + "  skipped".len(), "{text}");
+            }
+            assert_eq!(head.contains("sweeps"), !is_narrow);
+        }
+    }
+}

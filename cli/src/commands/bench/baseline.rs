@@ -1,0 +1,48 @@
+//! Earlier measurements, which new ones are compared with.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::commands::bench::report::Row;
+
+/// The JSON that an earlier `bench --json` has printed.
+pub(super) struct Baseline {
+    rows: Vec<Known>,
+}
+
+#[derive(Deserialize)]
+struct Known {
+    engine: String,
+    scheme: String,
+    vertices: usize,
+    triangles: usize,
+    seconds_per_sweep: f64,
+}
+
+impl Baseline {
+    pub(super) fn read(path: &Path) -> Result<Self, String> {
+        let name = path.display();
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            format!(
+                "{name}: {error}. A baseline is a file with the output of `gpu-smooth bench --json`"
+            )
+        })?;
+        let rows = serde_json::from_str(&text).map_err(|error| {
+            format!(
+                "{name}: {error}. A baseline is a file with the output of `gpu-smooth bench --json`"
+            )
+        })?;
+        Ok(Self { rows })
+    }
+
+    /// Returns the seconds of a sweep in the earlier measurements, if they have one of the same engine, scheme and mesh
+    /// size.
+    pub(super) fn seconds(&self, row: &Row) -> Option<f64> {
+        let is_same = |known: &&Known| {
+            (&known.engine, &known.scheme) == (&row.engine, &row.scheme)
+                && (known.vertices, known.triangles) == (row.vertices, row.triangles)
+        };
+        self.rows.iter().find(is_same).map(|known| known.seconds_per_sweep)
+    }
+}

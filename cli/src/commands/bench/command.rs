@@ -1,0 +1,162 @@
+//! `gpu-smooth bench`: measures how fast this machine smooths.
+
+use gpu_smooth::gpu::Kernel;
+use gpu_smooth::internal::run_on_gpu;
+use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
+use gpu_smooth::{Mesh, Options, SmoothError};
+
+use crate::args::BenchArgs;
+use crate::args::EngineChoice;
+use crate::commands::bench::baseline::Baseline;
+use crate::commands::bench::machine::Place;
+use crate::commands::bench::report::{Form, KernelRow, Row};
+use crate::commands::bench::{kernels, lattice, machine, rates, sweeps};
+use crate::load::explain;
+use crate::load::streams::read;
+use crate::run::engine;
+use crate::terminal::tell;
+
+/// A function that words an error in the user's terms.
+type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
+
+pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
+    let file = args.mesh.as_deref().map(|mesh| read(mesh, args.reading)).transpose()?;
+    let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
+    let places = places(args, quiet)?;
+    let form = Form::new(args);
+    let mut rows = Vec::new();
+    if !args.json {
+        tell::say(&form.head(args, &places));
+    }
+    let mut measured = |mut row: Row| {
+        row.baseline_seconds_per_sweep =
+            baseline.as_ref().and_then(|baseline| baseline.seconds(&row));
+        if !args.json {
+            tell::say(&form.row(&row));
+        }
+        rows.push(row);
+    };
+    if let Some(file) = &file {
+        let explain = |error| match error {
+            SmoothError::Mesh(error) => explain::mesh_error(file, &error),
+            error => error.to_string(),
+        };
+        measure_all(args, file.mesh(), &places, &explain, &mut measured)?;
+    } else {
+        for &vertices in &args.vertices {
+            let mesh = lattice::lattice(vertices);
+            measure_all(args, &mesh, &places, &|error| error.to_string(), &mut measured)?;
+        }
+    }
+    if args.json {
+        let text = serde_json::to_string_pretty(&rows).map_err(|error| error.to_string())?;
+        tell::say(&text);
+    } else {
+        tell::say(&form.kernels(&rows));
+    }
+    Ok(())
+}
+
+fn measure_all(
+    args: &BenchArgs,
+    mesh: &Mesh,
+    places: &[Place],
+    explain: &Explain<'_>,
+    measured: &mut dyn FnMut(Row),
+) -> Result<(), String> {
+    let (_, problem) = prepare(mesh).map_err(|error| explain(error.into()))?;
+    if problem.free_count() == 0 {
+        return Err("the mesh has no free vertex: there is nothing to measure".into());
+    }
+    let mut count = 0;
+    for place in places {
+        match measure(args, mesh, &problem, place) {
+            Ok(row) => {
+                count += 1;
+                measured(row);
+            }
+            // If one adapter fails, the others are still measured.
+            Err(SmoothError::Gpu(error)) if places.len() > 1 || count > 0 => {
+                tell::note(false, &format!("{}: {error}", place.name));
+            }
+            Err(error) => return Err(explain(error)),
+        }
+    }
+    Ok(())
+}
+
+fn measure(
+    args: &BenchArgs,
+    mesh: &Mesh,
+    problem: &Problem,
+    place: &Place,
+) -> Result<Row, SmoothError> {
+    let options = Options {
+        scheme: args.scheme.clone(),
+        tolerance: 0.0,
+        max_sweeps: u32::MAX,
+        ..Options::default()
+    };
+    let plan = options.plan();
+    let (seconds, kernels) = match &place.gpu {
+        None => {
+            let mut engine = run_on_cpu(problem, problem.positions(), plan);
+            (sweeps::time(&mut engine, args.seconds)?, None)
+        }
+        Some(gpu) => {
+            let mut engine: Box<dyn Stepwise> =
+                Box::new(run_on_gpu(gpu, problem, problem.positions(), plan)?);
+            let seconds = sweeps::time(&mut *engine, args.seconds)?;
+            drop(engine);
+            (seconds, kernels::time(gpu, mesh, &options)?)
+        }
+    };
+    let (sweep, objective) = (sweeps::sweep_bytes(problem), sweeps::objective_bytes(problem));
+    let kernel_row = |known: kernels::KernelTime| {
+        let bytes = match known.kernel {
+            Kernel::Sweep(..) => Some(sweep),
+            Kernel::Objective(..) => Some(objective),
+            _ => None,
+        };
+        KernelRow::new(&known, bytes, place.copy_rate)
+    };
+    Ok(Row {
+        version: machine::version(),
+        machine: machine::machine(),
+        engine: place.name.clone(),
+        software: place.gpu.as_ref().is_some_and(|gpu| gpu.adapter().is_software()),
+        scheme: args.scheme.to_string(),
+        vertices: mesh.points.len(),
+        triangles: mesh.triangles.len(),
+        free: problem.free_count(),
+        colors: problem.colors().len(),
+        seconds_per_sweep: seconds,
+        baseline_seconds_per_sweep: None,
+        vertex_updates_per_second: problem.free_count() as f64 / seconds,
+        bytes_per_second: (sweep + objective) as f64 / seconds,
+        share_of_copy_rate: (sweep + objective) as f64 / seconds / place.copy_rate,
+        kernels: kernels.map(|kernels| kernels.into_iter().map(kernel_row).collect()),
+    })
+}
+
+/// Opens the engines to measure: those asked for, or all there are.
+fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, String> {
+    let mut places = Vec::new();
+    if args.engine != EngineChoice::Gpu && args.adapter.is_none() {
+        let threads = rayon::current_num_threads();
+        let name = format!("cpu, {threads} threads");
+        places.push(Place { gpu: None, name, copy_rate: rates::on_cpu() });
+    }
+    if args.engine != EngineChoice::Cpu {
+        match engine::open_adapter(args.adapter.as_deref()) {
+            Ok(gpu) => places.push(Place {
+                name: gpu.adapter().name.clone(),
+                copy_rate: rates::on_gpu(&gpu),
+                gpu: Some(gpu),
+            }),
+            Err(error) if places.is_empty() => return Err(error),
+            Err(error) => tell::note(args.json || quiet, &error),
+        }
+    }
+    Ok(places)
+}

@@ -1,0 +1,32 @@
+//! The machine and the version that a measurement depends on.
+
+use gpu_smooth::Gpu;
+/// An engine to measure, and how many bytes a second it reads and writes when it only copies.
+pub(super) struct Place {
+    pub(super) gpu: Option<Gpu>,
+    pub(super) name: String,
+    pub(super) copy_rate: f64,
+}
+
+/// Returns the name of the processor, as far as the system tells it.
+fn processor() -> String {
+    let of_linux = || {
+        let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+        let line = text.lines().find(|line| line.starts_with("model name"))?;
+        Some(line.split_once(':')?.1.trim().to_owned())
+    };
+    let of_windows = || std::env::var("PROCESSOR_IDENTIFIER").ok();
+    of_linux().or_else(of_windows).unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}
+
+/// Returns processor, threads and system in one line.
+pub(super) fn machine() -> String {
+    let (threads, system) = (rayon::current_num_threads(), std::env::consts::OS);
+    format!("{}, {threads} threads, {system} {}", processor(), std::env::consts::ARCH)
+}
+
+/// Returns the name and version of the program, and how it was compiled if that makes it slow.
+pub(super) fn version() -> String {
+    let slow = if cfg!(debug_assertions) { ", not optimized: measure with --release" } else { "" };
+    format!("gpu-smooth {}{slow}", env!("CARGO_PKG_VERSION"))
+}

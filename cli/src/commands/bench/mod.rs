@@ -1,0 +1,12 @@
+//! `gpu-smooth bench`: measures how fast this machine smooths.
+
+mod baseline;
+mod command;
+mod kernels;
+mod lattice;
+mod machine;
+mod rates;
+mod report;
+mod sweeps;
+
+pub(crate) use command::run;

@@ -1,0 +1,109 @@
+//! `gpu-smooth compare BEFORE AFTER`: proves that only vertices which may move have moved.
+
+use crate::args::{CompareArgs, OutputArgs};
+use crate::load::LoadedMesh;
+use crate::load::explain;
+use crate::load::streams::read;
+use crate::report::FileHash;
+use crate::run::proof::{self, Proof};
+use crate::terminal::tell;
+
+/// How many vertices, or triangles, are listed at most.
+const LISTED: usize = 10;
+
+/// Compares two files. Returns an error if they differ in anything but vertices that may move.
+pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
+    let mut before = read(&args.before, args.reading)?;
+    let mut after = read(&args.after, args.reading)?;
+    let laid_out = args.surface.lay_out(&mut before)?;
+    before.lay_out_likewise(&mut after);
+    let after = after;
+    let choice = args.moving.apply(&mut before)?;
+    if choice.nothing_to_do.is_some() {
+        before.fix_all_but(&[]).map_err(|error| error.to_string())?;
+    }
+    for note in laid_out.iter().chain(&choice.notes).chain(&choice.nothing_to_do) {
+        tell::note(show.quiet, note);
+    }
+    let (mut mine, mut theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
+    mine.add_dependents(&before, &before.mesh().points)?;
+    theirs.add_dependents(&after, &after.mesh().points)?;
+    let told = |error: gpu_smooth::MeshError| format!("{}: {error}", args.before.display());
+    let slide = args.sliding.slide(&before)?;
+    let proof = Proof::of([&before, &after], [&mine, &theirs], slide.as_ref()).map_err(told)?;
+    if proof.difference.is_some() {
+        return Err(proof.problem().unwrap_or_default());
+    }
+    let (old, new) = (&before.mesh().points, &after.mesh().points);
+    let Proof { moved, held, bad, .. } = &proof;
+    let mut problems = mine.implausible(&theirs, moved);
+    problems.extend(proof.problem());
+    let mut list = String::new();
+    for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
+        list += &format!("\n  {place}: vertex {}", place.label);
+    }
+    for place in
+        after.source.triangle_places(bad.iter().map(|bad| bad.triangle).take(LISTED)).values()
+    {
+        list += &format!("\n  {place}: triangle {}", place.label);
+    }
+    if !args.sliding.slide && !held.is_empty() {
+        list += "\n  if they slid along lines in a run with --slide, give --slide here too";
+    }
+    if explain::are_across(&after, bad) {
+        list += "\n  --surface sphere continues longitudes across the line where they start again, as at 180 degrees";
+    }
+    if !problems.is_empty() {
+        return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));
+    }
+    if !show.quiet {
+        tell::say(&summary(&after, old, new, (moved, proof.slid, proof.pairs)));
+        for FileHash { path, sha256 } in proof::hashes(&before).iter().chain(&proof::hashes(&after))
+        {
+            tell::say(&format!("{sha256}  {path}"));
+        }
+        if let Some(text) = mine.compared() {
+            tell::say(&text);
+        }
+    }
+    Ok(())
+}
+
+/// Says in a line or two which vertices moved.
+fn summary(
+    after: &LoadedMesh,
+    old: &[[f64; 2]],
+    new: &[[f64; 2]],
+    (moved, slid, pairs): (&[u32], usize, usize),
+) -> String {
+    let distance = |&vertex: &u32| {
+        let ([a, b], [c, d]) = (old[vertex as usize], new[vertex as usize]);
+        (c - a).hypot(d - b)
+    };
+    let slides = match slid {
+        0 => String::new(),
+        1 => "1 vertex slid along its line; ".to_owned(),
+        n => format!(
+            "{n} vertices slid along their lines{}; ",
+            match pairs {
+                0 => String::new(),
+                1 => ", two of them as a periodic pair together".to_owned(),
+                n => format!(", {n} periodic pairs of them together"),
+            }
+        ),
+    };
+    let farthest = moved.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let triangles = after.mesh().triangles.len();
+    let mut text = format!(
+        "only coordinates differ: {} of {} vertices have moved\n\
+         {slides}every vertex that must stay has the same bits; none of {triangles} triangles is inverted or flat",
+        moved.len(),
+        after.source.points().len()
+    );
+    if let Some(vertex) = farthest {
+        let place = after.vertex_place(vertex);
+        let by = distance(&vertex);
+        text += &format!("\nthe farthest has moved by {by:.6}: vertex {} ({place})", place.label);
+    }
+    text
+}

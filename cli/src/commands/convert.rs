@@ -1,0 +1,75 @@
+//! `gpu-smooth convert IN OUT`: writes a mesh in another format.
+
+use std::io::Write;
+
+use mesh_io::{Conversion, Format, atomic};
+
+use crate::args::{ConvertArgs, OutputArgs};
+use crate::load::streams::{is_standard, read};
+use crate::terminal::tell;
+
+/// Writes a mesh in another format. Returns an error if the format does not hold all of the mesh, unless `--lossy` is
+/// given.
+pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), String> {
+    let format = format(args)?;
+    let file = read(&args.input, args.reading)?;
+    let conversion = Conversion::new(&file.source, format).map_err(|error| error.to_string())?;
+    let (path, out) = (file.source.path().display(), args.output.display());
+    let Some(mut conversion) = conversion else {
+        return Err(format!("{out}: {format} is not written by convert. {}", known()));
+    };
+    conversion.set_creator("gpu-smooth");
+    let lost = conversion.lost();
+    if !args.lossy && !lost.is_empty() {
+        let list: String = lost.iter().map(|what| format!("\n  {what}")).collect();
+        return Err(format!(
+            "{path}: {format} does not hold all of this mesh; --lossy writes it without{list}"
+        ));
+    }
+    for what in lost {
+        tell::note(show.quiet, &format!("lost: {what}"));
+    }
+    for what in conversion.renamed() {
+        tell::note(show.quiet, &format!("renamed, as {format} cannot hold it so: {what}"));
+    }
+    if is_standard(&args.output) {
+        let Some(content) = conversion.bytes() else {
+            return Err(
+                "a Triangle mesh has several files and cannot go to standard output: name OUT"
+                    .into(),
+            );
+        };
+        let mut out = std::io::stdout();
+        let written = out.write_all(&content).and_then(|()| out.flush());
+        return written.map_err(|error| format!("standard output: {error}"));
+    }
+    let written = conversion.destinations(&args.output);
+    if let Some(same) =
+        written.iter().find(|own| file.source.paths().any(|p| atomic::same_file(p, own)))
+    {
+        return Err(format!("{} is the mesh that is read. Give OUT another name", same.display()));
+    }
+    conversion.write(&args.output).map_err(|error| error.to_string())?;
+    if !show.quiet {
+        let mesh = file.mesh();
+        let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
+        tell::say(&format!(
+            "{vertices} vertices and {triangles} triangles, with all else that {format} holds of {}: {out}",
+            file.source.format()
+        ));
+    }
+    Ok(())
+}
+
+/// Returns the format to write: that of `--to`, or that of the ending of OUT.
+fn format(args: &ConvertArgs) -> Result<Format, String> {
+    let by_ending = || Conversion::target_of(&args.output);
+    args.to.or_else(by_ending).ok_or_else(|| {
+        format!("{}: its ending names no format to convert to. {}", args.output.display(), known())
+    })
+}
+
+fn known() -> String {
+    let names: Vec<_> = Conversion::targets().map(|(name, _)| name).collect();
+    format!("--to takes one of {}", names.join(", "))
+}

@@ -1,0 +1,91 @@
+//! `gpu-smooth groups MESH`: lists what can be named in a mesh.
+
+use mesh_io::{Group, Groups};
+use serde_json::json;
+use unicode_width::UnicodeWidthStr;
+
+use crate::args::GroupsArgs;
+use crate::load::streams::read;
+use crate::render::columns::{left, right};
+use crate::terminal::tell;
+
+/// Prints what can be named in a mesh, and the name that options take.
+pub(crate) fn run(args: &GroupsArgs) -> Result<(), String> {
+    let file = read(&args.mesh, args.reading)?;
+    let groups = file.source.groups().map_err(|error| error.to_string())?;
+    let (path, format) = (file.source.path().display(), file.source.format());
+    if args.json {
+        let spellings = groups.spellings();
+        let list: Vec<_> = groups.iter().zip(&spellings).map(as_json).collect();
+        let value = json!({
+            "file": path.to_string(),
+            "format": format.to_string(),
+            "groups": list,
+            "data": file.source.data_names(),
+        });
+        tell::say(&format!("{value:#}"));
+        return Ok(());
+    }
+    tell::say(&format!("{path}: {format}"));
+    match groups.is_empty() {
+        true => tell::say("the file names no groups"),
+        false => tell::say(&table(&groups)),
+    }
+    if !file.source.data_names().is_empty() {
+        tell::say(&format!(
+            "data of vertices (--interpolate): {}",
+            file.source.data_names().join(", ")
+        ));
+    }
+    Ok(())
+}
+
+fn as_json((group, spelling): (&Group, &String)) -> serde_json::Value {
+    json!({
+        "group": spelling,
+        "what": group.what,
+        "kind": group.kind(),
+        "dimension": group.dimension,
+        "name": group.name,
+        "tag": group.tag,
+        "points": group.points,
+        "lines": group.lines,
+        "triangles": group.triangles().len(),
+        "quadrilaterals": group.quadrilaterals,
+        "vertices": group.vertices().len(),
+    })
+}
+
+/// Makes a table with a row for each group. Columns that hold only zeros are left out.
+fn table(groups: &Groups) -> String {
+    let texts = |group: &Group, spelling: &String| {
+        let tag = group.tag.map_or_else(|| "-".to_owned(), |tag| tag.to_string());
+        [spelling.clone(), format!("{} {}", group.what, group.kind()), tag]
+    };
+    let counts = |group: &Group| {
+        let (triangles, vertices) = (group.triangles().len(), group.vertices().len());
+        [group.points, group.lines, triangles, group.quadrilaterals, vertices]
+    };
+    let is_used = |column: usize| groups.iter().any(|group| counts(group)[column] > 0);
+    let names = ["points", "lines", "triangles", "quadrilaterals", "vertices"];
+    let used: Vec<usize> = (0..names.len()).filter(|&column| is_used(column)).collect();
+    let head = ["group", "what", "tag"].map(str::to_owned).into_iter();
+    let mut rows: Vec<Vec<String>> =
+        vec![head.chain(used.iter().map(|&column| names[column].to_owned())).collect()];
+    for (group, spelling) in groups.iter().zip(groups.spellings()) {
+        let counts = counts(group);
+        let numbers = used.iter().map(|&column| counts[column].to_string());
+        rows.push(texts(group, &spelling).into_iter().chain(numbers).collect());
+    }
+    let width = |column: usize| rows.iter().map(|row| row[column].width()).max();
+    let widths: Vec<usize> = (0..rows[0].len()).filter_map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cell = |(column, text): (usize, &String)| match column {
+            // Words are aligned left, numbers right.
+            0 | 1 => left(text, widths[column]),
+            _ => right(text, widths[column]),
+        };
+        row.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,50 @@
+//! `gpu-smooth quality MESH...`: measures meshes.
+
+use std::path::PathBuf;
+
+use crate::args::QualityArgs;
+use crate::commands::quality::bars::Style;
+use crate::commands::quality::sheet::Sheet;
+use crate::commands::quality::{json, text};
+
+use crate::render::picture;
+use crate::terminal::tell;
+
+/// Prints how good meshes are. Returns an error if a mesh cannot be read, or if a triangle passes a threshold.
+pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
+    if let Some(picture) = &args.picture.picture {
+        if args.meshes.len() > 1 {
+            return Err(format!(
+                "{}: --picture draws a single mesh: give only one",
+                picture.display()
+            ));
+        }
+        picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
+    }
+    let style = Style::of_terminal(args.ascii);
+    let sheets = args.meshes.iter().map(|path| Sheet::of(path, args));
+    let sheets = sheets.collect::<Result<Vec<_>, _>>()?;
+    if args.json {
+        tell::say(&format!("{:#}", json::json(&sheets)?));
+    } else if args.csv {
+        tell::say(&json::csv(&sheets));
+    } else {
+        tell::say(&text::text(&sheets, &style));
+    }
+    let violations: Vec<String> =
+        sheets.iter().flat_map(|sheet| violations(sheet, &style)).collect();
+    if violations.is_empty() { Ok(()) } else { Err(violations.join("\n  ")) }
+}
+
+/// Words a sentence for each threshold that triangles of a mesh have passed.
+fn violations(sheet: &Sheet, style: &Style) -> impl Iterator<Item = String> {
+    sheet.violations.iter().filter_map(move |violation| {
+        let (place, value) = violation.worst.as_ref()?;
+        let (path, threshold) = (sheet.path.display(), &violation.threshold);
+        let worst = text::valued(threshold.measure, *value, style);
+        Some(format!(
+            "{path}: {} of {} triangles have {threshold}; the worst is triangle {} ({place}), {worst}",
+            violation.count, sheet.triangles, place.label
+        ))
+    })
+}

@@ -1,0 +1,139 @@
+//! Writes the quality of meshes as JSON and as CSV.
+
+use std::fmt::Write;
+
+use gpu_smooth::{QUANTILES, Statistics};
+use mesh_io::Place;
+use serde_json::{Map, Value, json};
+
+use crate::commands::quality::sheet::{Region, Sheet, Violation, Worst, location};
+use crate::render::columns::quoted;
+use crate::report::Histogram;
+
+/// Returns an object for one mesh, or a list of objects for several.
+pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, String> {
+    let one = |sheet| object(sheet).map_err(|error: serde_json::Error| error.to_string());
+    match sheets {
+        [only] => one(only),
+        several => several.iter().map(one).collect::<Result<Vec<_>, _>>().map(Value::from),
+    }
+}
+
+fn object(sheet: &Sheet) -> Result<Value, serde_json::Error> {
+    let mut value = serde_json::to_value(&sheet.report)?;
+    value["file"] = sheet.path.display().to_string().into();
+    value["format"] = sheet.format.clone().into();
+    value["vertices"] = sheet.vertices.into();
+    value["triangles"] = sheet.triangles.into();
+    value["free"] = sheet.free.into();
+    value["flat"] = sheet.flat.into();
+    value["hanging_nodes"] = sheet.hanging_nodes.into();
+    value["duplicate_vertices"] = sheet.duplicate_vertices.into();
+    value["unused_vertices"] = sheet.unused_vertices.into();
+    value["bad_triangles"] = serde_json::to_value(&sheet.bad)?;
+    value["measures"] = measures(&sheet.statistics);
+    value["histograms"] = sheet.histograms.iter().map(histogram).collect();
+    value["worst"] = sheet.worst.iter().map(worst).collect();
+    if !sheet.regions.is_empty() {
+        let regions = sheet.regions.iter().map(|region| {
+            let mut object = placed("first_triangle", &region.first);
+            object.insert("groups".into(), json!(spellings(region)));
+            object.insert("triangles".into(), region.statistics[0].count.into());
+            object.insert("measures".into(), measures(&region.statistics));
+            Value::from(object)
+        });
+        value["regions"] = regions.collect();
+    }
+    if !sheet.violations.is_empty() {
+        value["thresholds"] = sheet.violations.iter().map(violation).collect();
+    }
+    Ok(value)
+}
+
+fn measures(statistics: &[Statistics]) -> Value {
+    let one = |s: &Statistics| {
+        let [low, median, high] = s.quantiles.map(|quantile| quantile as f32);
+        let numbers = json!({
+            "min": s.min, "p5": low, "p50": median, "mean": s.mean, "p95": high, "max": s.max, "sd": s.deviation,
+        });
+        (s.measure.name().to_owned(), numbers)
+    };
+    Value::Object(statistics.iter().map(one).collect())
+}
+
+/// Writes a histogram. The last edge is null if the last bin takes all the rest.
+fn histogram(histogram: &Histogram) -> Value {
+    let Histogram { measure, edges, counts } = histogram;
+    json!({ "measure": measure.name(), "edges": edges, "counts": counts })
+}
+
+/// Writes a triangle, under `key`, and its place in the file.
+fn placed(key: &str, place: &Place) -> Map<String, Value> {
+    let (kind, at) = location(place);
+    let mut object = Map::new();
+    object.insert(key.to_owned(), place.label.into());
+    object.insert("file".into(), place.path.display().to_string().into());
+    object.insert(kind.into(), at.into());
+    object
+}
+
+fn worst(worst: &Worst) -> Value {
+    let mut object = placed("triangle", &worst.place);
+    object.insert("vertices".into(), json!(worst.vertices));
+    object.insert("corners".into(), json!(worst.corners));
+    for (measure, value) in &worst.values {
+        object.insert(measure.name().into(), json!(value));
+    }
+    object.insert("movable".into(), worst.can_move.into());
+    object.into()
+}
+
+fn violation(violation: &Violation) -> Value {
+    let Violation { threshold, count, worst } = violation;
+    let worst = worst.as_ref().map(|(place, value)| {
+        let mut object = placed("triangle", place);
+        object.insert("value".into(), json!(value));
+        object
+    });
+    json!({ "threshold": threshold.to_string(), "triangles": count, "worst": worst })
+}
+
+/// Returns the groups of a region, spelled as options name them.
+fn spellings(region: &Region) -> Vec<&str> {
+    region.groups.iter().map(|group| &*group.spelling).collect()
+}
+
+/// Writes the statistics, a row for each measure of each file, and of each region if asked for.
+pub(crate) fn csv(sheets: &[Sheet]) -> String {
+    let mut text = String::from("file,region,measure,triangles,min,mean,max,sd");
+    for share in QUANTILES {
+        let _ = write!(text, ",p{:.0}", 100.0 * share);
+    }
+    let by_region = sheets.iter().any(|sheet| !sheet.regions.is_empty());
+    if by_region {
+        text.push_str(",groups");
+    }
+    for sheet in sheets {
+        let file = quoted(&sheet.path.display().to_string());
+        let mut rows = |region: &str, groups: &str, statistics: &[Statistics]| {
+            for s in statistics {
+                let (measure, count) = (s.measure, s.count);
+                let _ = write!(text, "\n{file},{region},{measure},{count}");
+                for number in [s.min, s.mean, s.max, s.deviation] {
+                    let _ = write!(text, ",{number}");
+                }
+                s.quantiles.iter().for_each(|&quantile| {
+                    let _ = write!(text, ",{}", quantile as f32);
+                });
+                if by_region {
+                    let _ = write!(text, ",{}", quoted(groups));
+                }
+            }
+        };
+        rows("", "", &sheet.statistics);
+        for (number, region) in (1..).zip(&sheet.regions) {
+            rows(&format!("{number}"), &spellings(region).join(";"), &region.statistics);
+        }
+    }
+    text
+}

@@ -1,0 +1,9 @@
+//! `gpu-smooth quality MESH...`: measures meshes.
+
+mod bars;
+mod command;
+mod json;
+mod sheet;
+mod text;
+
+pub(crate) use command::run;

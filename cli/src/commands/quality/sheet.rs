@@ -1,0 +1,234 @@
+//! All numbers that are shown of a mesh.
+
+use crate::load::LoadedMesh;
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+
+use gpu_smooth::{BadTriangle, Measure, Measured, Quality, Statistics, Topology};
+use mesh_io::{Group, Groups, Location, Place};
+
+use crate::args::{QualityArgs, Threshold};
+use crate::load::as_in_file;
+use crate::load::explain::{self, BadTriangleReport};
+use crate::load::remarks;
+use crate::load::streams::read;
+use crate::render::picture::{self, Shot};
+use crate::report::{Histogram, QualityReport, histogram};
+
+/// All numbers that are shown of one mesh. The mesh itself is not kept, so that many can be shown side by side.
+pub(crate) struct Sheet {
+    pub(crate) path: PathBuf,
+    pub(crate) format: String,
+    pub(crate) remarks: Vec<String>,
+    pub(crate) vertices: usize,
+    pub(crate) free: usize,
+    pub(crate) triangles: usize,
+    /// The quality, as in the report of a run.
+    pub(crate) report: QualityReport,
+    /// Where the triangle of the largest inverse mean ratio is in the file.
+    pub(crate) worst_place: Place,
+    /// Statistics of every measure.
+    pub(crate) statistics: Vec<Statistics>,
+    pub(crate) regions: Vec<Region>,
+    pub(crate) histograms: Vec<Histogram>,
+    /// The worst triangles by the first measure that was asked for.
+    pub(crate) worst: Vec<Worst>,
+    pub(crate) violations: Vec<Violation>,
+    /// Inverted and flat triangles: all of them for JSON, else the first ones, which are listed.
+    pub(crate) bad: Vec<BadTriangleReport>,
+    pub(crate) flat: usize,
+    pub(crate) hanging_nodes: usize,
+    pub(crate) duplicate_vertices: usize,
+    pub(crate) unused_vertices: usize,
+}
+
+/// Triangles that the file puts into one region.
+pub(crate) struct Region {
+    /// Where the first triangle of the region is in the file.
+    pub(crate) first: Place,
+    /// The groups of the file that the region's triangles belong to. Groups with a name come first.
+    pub(crate) groups: Vec<Named>,
+    /// The statistics of every measure in the region.
+    pub(crate) statistics: Vec<Statistics>,
+}
+
+/// A group of the file, with its names.
+pub(crate) struct Named {
+    /// The group as options name it.
+    pub(crate) spelling: String,
+    /// What kind of group it is, with its name or tag.
+    pub(crate) full: String,
+    /// Its name, or else its tag with the kind of group.
+    pub(crate) short: String,
+}
+
+/// A triangle in the terms of its file.
+pub(crate) struct Worst {
+    pub(crate) place: Place,
+    /// The file's numbers or tags for its vertices.
+    pub(crate) vertices: [u64; 3],
+    /// Its vertices as the file has them, even where longitudes are continued, and its centroid.
+    pub(crate) corners: [[f64; 2]; 3],
+    pub(crate) at: [f64; 2],
+    /// The values of the measures that were asked for.
+    pub(crate) values: Vec<(Measure, f64)>,
+    /// Whether one of its vertices is free to move.
+    pub(crate) can_move: bool,
+}
+
+/// The triangles that pass a threshold.
+pub(crate) struct Violation {
+    pub(crate) threshold: Threshold,
+    pub(crate) count: usize,
+    /// The worst of these triangles and its value; `None` if there is none.
+    pub(crate) worst: Option<(Place, f64)>,
+}
+
+impl Sheet {
+    /// Reads a mesh and measures it.
+    pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, String> {
+        let mut file = read(path, args.reading)?;
+        let laid_out = args.surface.lay_out(&mut file)?;
+        let (file, surface) = (file, args.surface.surface());
+        let mesh = file.mesh();
+        let refused = |error| explain::mesh_error(&file, &error);
+        let topology = Topology::new(mesh).map_err(refused)?;
+        let quality = Quality::on(surface, &mesh.points, &topology).map_err(refused)?;
+        let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
+        let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
+        let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
+        let title = path.file_name().unwrap_or_default().display().to_string();
+        let shot = Shot { title, points: &mesh.points };
+        picture::write(&args.picture, &file, (&topology, surface), &[shot])?;
+        let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
+        Ok(Self {
+            path: path.to_owned(),
+            format: file.source.format().to_string(),
+            remarks: remarks::remarks(&file, false)
+                .into_iter()
+                .chain(laid_out)
+                .chain(explain::hanging(&file, &hanging))
+                .collect(),
+            vertices: file.source.points().len(),
+            free: topology.free_count(),
+            triangles: mesh.triangles.len(),
+            report: QualityReport::from(&quality),
+            worst_place: file.source.triangle_place(quality.worst_triangle),
+            statistics: measured.statistics(Measure::ALL),
+            regions: if args.by_region { regions(&file, &measured)? } else { Vec::new() },
+            histograms: args.measure.iter().map(|&m| histogram(&measured, m)).collect(),
+            worst: worst(&file, &topology, &measured, args),
+            violations: args.threshold.iter().map(|t| violation(&file, &measured, t)).collect(),
+            bad: explain::bad_triangles(&file, &bad[..listed]),
+            flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),
+            hanging_nodes: hanging.len(),
+            duplicate_vertices: measured.duplicate_vertices().len(),
+            unused_vertices: unused(&file, &measured),
+        })
+    }
+}
+
+/// How many vertices of the file no triangle uses. On the sphere, triangles at a pole and where the globe is cut have copies of theirs.
+fn unused(file: &LoadedMesh, measured: &Measured<'_>) -> usize {
+    let unused = measured.unused_vertices();
+    if file.chart().is_none() {
+        return unused.len();
+    }
+    let used: HashSet<&u32> = file.source.triangles().as_flattened().iter().collect();
+    unused.iter().filter(|v| !used.contains(v)).count()
+}
+
+fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, String> {
+    let zeros;
+    let regions = match file.source.regions() {
+        Some(regions) => regions,
+        None => {
+            zeros = vec![0; measured.count()];
+            &zeros
+        }
+    };
+    let count = regions.iter().max().map_or(0, |&most| most as usize + 1);
+    let mut first = vec![None; count];
+    for (t, &region) in regions.iter().enumerate() {
+        first[region as usize].get_or_insert(t);
+    }
+    let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
+    let places = file.source.triangle_places(first.iter().copied());
+    let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
+    let groups = file.source.groups().map_err(|error| error.to_string())?;
+    let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<Named>)| Region {
+        first: places[first].clone(),
+        groups,
+        statistics,
+    };
+    let named = groups_of(&first, &groups);
+    Ok(first.iter().zip(statistics).zip(named).map(region).collect())
+}
+
+/// The groups that have each of these triangles; those that have a name first. All triangles of a region are of the same groups.
+fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
+    // Each group is gone through once, as there may be as many regions as groups.
+    let asked: HashMap<u32, usize> = triangles.iter().map(|&t| t as u32).zip(0..).collect();
+    let mut found: Vec<Vec<(&Group, String)>> = vec![Vec::new(); triangles.len()];
+    for (group, spelling) in groups.iter().zip(groups.spellings()) {
+        for &region in group.triangles().iter().filter_map(|t| asked.get(t)) {
+            found[region].push((group, spelling.clone()));
+        }
+    }
+    let named = |(group, spelling): (&Group, String)| {
+        let tag = group.tag.map(|tag| tag.to_string());
+        let short = match group.name.clone().or(tag).unwrap_or_default() {
+            // A number alone would be taken for the number of a region.
+            number if number.parse::<f64>().is_ok() => format!("{} {number}", group.what),
+            name => name,
+        };
+        Named { spelling, full: group.to_string(), short }
+    };
+    let told = |mut found: Vec<(&Group, String)>| {
+        found.sort_by_key(|(group, _)| group.name.is_none());
+        found.into_iter().map(named).collect()
+    };
+    found.into_iter().map(told).collect()
+}
+
+fn worst(
+    file: &LoadedMesh,
+    topology: &Topology<'_>,
+    measured: &Measured<'_>,
+    args: &QualityArgs,
+) -> Vec<Worst> {
+    let mesh = file.mesh();
+    let Some(&measure) = args.measure.first() else { return Vec::new() };
+    let found = measured.worst(measure, args.worst);
+    let places = file.source.triangle_places(found.iter().map(|found| found.0));
+    let names = file.vertex_places(found.iter().flat_map(|found| mesh.triangles[found.0]));
+    let one = |&(t, _): &(usize, f64)| Worst {
+        place: places[&t].clone(),
+        vertices: mesh.triangles[t].map(|v| names[&v].label),
+        corners: file.source.triangles()[t].map(|v| file.source.points()[v as usize]),
+        at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
+        values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
+        can_move: topology.can_move(t),
+    };
+    found.iter().map(one).collect()
+}
+
+fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
+}
+
+fn violation(file: &LoadedMesh, measured: &Measured<'_>, threshold: &Threshold) -> Violation {
+    let measure = threshold.measure;
+    let (count, _) = measured.count_where(measure, |value| threshold.is_met(value));
+    let worst = measured.worst(measure, usize::from(count > 0));
+    let worst = worst.first().map(|&(t, value)| (file.source.triangle_place(t), value));
+    Violation { threshold: threshold.clone(), count, worst }
+}
+
+/// Returns the line or byte of a place, with its key in JSON.
+pub(crate) fn location(place: &Place) -> (&'static str, usize) {
+    match place.location {
+        Location::Line(line) => ("line", line),
+        Location::Byte(byte) => ("byte", byte),
+    }
+}

@@ -1,0 +1,199 @@
+//! Writes the quality of meshes as text.
+
+use std::fmt::Write;
+
+use gpu_smooth::{Measure, Metric, Statistics};
+
+use crate::commands::quality::bars::{self, Style};
+use crate::commands::quality::sheet::{Region, Sheet, Worst};
+use crate::load::explain;
+use crate::render::columns::{left, right, shortened};
+use crate::terminal::numbers::{five, six};
+
+/// The width of a table's first column.
+const NAME: usize = 17;
+
+/// The columns of numbers. The usual terminal has room for seven.
+const COLUMNS: [&str; 7] = ["min", "5 %", "median", "mean", "95 %", "max", "sd"];
+const COLUMN: usize = 9;
+
+/// Chooses the columns that fit a terminal. The most important are chosen first.
+fn shown(style: &Style) -> [bool; COLUMNS.len()] {
+    let fit = style.width.saturating_sub(NAME) / COLUMN;
+    let mut shown = [false; COLUMNS.len()];
+    [0, 5, 3, 2, 6, 1, 4].into_iter().take(fit).for_each(|column| shown[column] = true);
+    shown
+}
+
+/// Writes all that is shown of some meshes.
+pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
+    let mut text = String::new();
+    for sheet in sheets {
+        let Sheet { path, format, vertices, free, triangles, remarks, .. } = sheet;
+        let _ = writeln!(text, "{}: {format}", path.display());
+        remarks.iter().for_each(|remark| text.push_str(&format!("{remark}\n")));
+        let _ = writeln!(text, "{vertices} vertices ({free} free), {triangles} triangles\n");
+    }
+    text.push_str(&table(sheets, style));
+    for sheet in sheets {
+        text.push('\n');
+        if sheets.len() > 1 {
+            let _ = writeln!(text, "== {}", sheet.path.display());
+        }
+        text.push_str(&details(sheet, style));
+    }
+    text.trim_end().to_owned()
+}
+
+/// Writes the statistics of every measure: a row for each measure, or for each measure and file.
+fn table(sheets: &[Sheet], style: &Style) -> String {
+    let mut text = head(style);
+    for (i, measure) in Measure::ALL.iter().enumerate() {
+        match sheets {
+            [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i], style)),
+            several => {
+                let _ = writeln!(text, "{}", named(*measure, style));
+                for sheet in several {
+                    let name = shortened(&sheet.path.display().to_string(), NAME - 2);
+                    text.push_str(&row(&format!("  {name}"), &sheet.statistics[i], style));
+                }
+            }
+        }
+    }
+    text
+}
+
+fn head(style: &Style) -> String {
+    line("", COLUMNS.map(str::to_owned), style)
+}
+
+fn row(name: &str, statistics: &Statistics, style: &Style) -> String {
+    let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
+    line(name, [min, low, median, mean, high, max, deviation].map(|number| five(*number)), style)
+}
+
+fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
+    let mut text = left(name, NAME);
+    for (field, is_shown) in fields.iter().zip(shown(style)) {
+        if is_shown {
+            text += &right(field, COLUMN);
+        }
+    }
+    text + "\n"
+}
+
+/// Returns the name of a measure with its unit.
+fn named(measure: Measure, style: &Style) -> String {
+    match (measure.definition().unit, style.plain) {
+        ("", _) => measure.name().to_owned(),
+        ("°", true) => format!("{measure} (deg)"),
+        (unit, _) => format!("{measure} {unit}"),
+    }
+}
+
+/// Writes all that is shown of one mesh besides the statistics of its measures.
+fn details(sheet: &Sheet, style: &Style) -> String {
+    let mut text = String::new();
+    for histogram in &sheet.histograms {
+        text.push_str(&bars::text(histogram, &named(histogram.measure, style), style));
+        text.push('\n');
+    }
+    text.push_str(&by_region(sheet, style));
+    if let Some(first) = sheet.worst.first() {
+        let by = first.values.first().map_or("", |value| value.0.name());
+        let _ = writeln!(text, "worst triangles by {by}");
+        sheet.worst.iter().for_each(|worst| text.push_str(&worst_line(worst, style)));
+        text.push('\n');
+    }
+    let report = &sheet.report;
+    for metric in Metric::ALL {
+        let _ = writeln!(text, "{:<22}{:>12}", format!("f {metric}"), six(report.f[metric.name()]));
+    }
+    let (worst, place) = (six(report.worst_imr), &sheet.worst_place);
+    let at = format!("  triangle {} ({place})", place.label);
+    let _ = writeln!(text, "{:<22}{worst:>12}{at}", "worst imr");
+    if sheet.free > 0 && report.worst_movable_imr < report.worst_imr {
+        let movable = six(report.worst_movable_imr);
+        let among = "among triangles with a free vertex";
+        let _ = writeln!(text, "{:<22}{movable:>12}  {among}", "worst imr movable");
+    }
+    for (name, count) in [
+        ("duplicate vertices", sheet.duplicate_vertices),
+        ("unused vertices", sheet.unused_vertices),
+        ("flat", sheet.flat),
+    ] {
+        let _ = writeln!(text, "{name:<22}{count:>12}");
+    }
+    let list = explain::list(&sheet.bad, report.inverted, "--json");
+    let _ = writeln!(text, "{:<22}{:>12}{list}", "inverted or flat", report.inverted);
+    text
+}
+
+/// Writes the statistics of the measures that were asked for, region by region.
+fn by_region(sheet: &Sheet, style: &Style) -> String {
+    let mut text = String::new();
+    for histogram in sheet.histograms.iter().filter(|_| !sheet.regions.is_empty()) {
+        let measure = histogram.measure;
+        let at = Measure::ALL.iter().position(|&other| other == measure).unwrap_or_default();
+        let _ = writeln!(text, "{} by region", named(measure, style));
+        text.push_str(&head(style));
+        for (number, region) in (1..).zip(&sheet.regions) {
+            let name = match region.groups.first() {
+                Some(group) => format!("{number} {}", group.short),
+                None => format!("region {number}"),
+            };
+            text.push_str(&row(&shortened(&name, NAME - 1), &region.statistics[at], style));
+        }
+        text.push('\n');
+    }
+    for (number, region) in (1..).zip(&sheet.regions) {
+        let Region { first, groups, statistics } = region;
+        let groups: Vec<&str> = groups.iter().map(|group| &*group.full).collect();
+        let named = if groups.is_empty() { String::new() } else { groups.join(", ") + "; " };
+        let count = statistics[0].count;
+        let _ = writeln!(text, "region {number}: {named}{count} triangles, the first at {first}");
+    }
+    if !sheet.regions.is_empty() {
+        text.push('\n');
+    }
+    text
+}
+
+/// Writes where a triangle is, how bad it is, and whether smoothing can help.
+fn worst_line(worst: &Worst, style: &Style) -> String {
+    let Worst { place, at: [x, y], values, can_move, .. } = worst;
+    let values: Vec<String> =
+        values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();
+    let movable = if *can_move { "can move" } else { "all its vertices are fixed" };
+    let (label, values) = (place.label, values.join(", "));
+    format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", six(*x), six(*y))
+}
+
+/// Writes a value after the name of its measure.
+pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
+    match (measure.definition().unit, style.plain) {
+        ("°", true) => format!("{measure} {} deg", five(value)),
+        (unit, _) => format!("{measure} {}{unit}", five(value)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_terminal_has_the_most_important_columns() {
+        let names = |width| {
+            let mut style = Style::of_terminal(true);
+            style.width = width;
+            let line = line("shape", COLUMNS.map(str::to_owned), &style);
+            assert!(line.trim_end().len() <= width, "{line}");
+            line[NAME..].trim().split("  ").map(|n| n.trim().to_owned()).collect::<Vec<_>>()
+        };
+        let full = |width| names(width).into_iter().filter(|n| !n.is_empty()).collect::<Vec<_>>();
+        assert_eq!(full(80), COLUMNS);
+        assert_eq!(full(71), ["min", "5 %", "median", "mean", "max", "sd"]);
+        assert_eq!(full(50), ["min", "mean", "max"]);
+        assert_eq!(full(40), ["min", "max"]);
+    }
+}

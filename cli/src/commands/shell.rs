@@ -1,0 +1,50 @@
+//! `gpu-smooth completions` and `gpu-smooth man`: make completions and manual pages from the definitions of the
+//! options.
+
+use std::fs;
+use std::path::Path;
+
+use clap::{Command, CommandFactory};
+use clap_mangen::Man;
+use mesh_io::atomic;
+
+use crate::args::{Cli, CompletionsArgs, ManArgs};
+use crate::terminal::tell;
+
+/// Prints the completions for a shell.
+pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), String> {
+    let mut text = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "gpu-smooth", &mut text);
+    tell::say(String::from_utf8_lossy(&text).trim_end());
+    Ok(())
+}
+
+/// Prints the manual page of the program, or writes all pages into a directory.
+pub(crate) fn man(args: &ManArgs) -> Result<(), String> {
+    let mut program = Cli::command();
+    program.build();
+    let Some(directory) = &args.directory else {
+        tell::say(String::from_utf8_lossy(&page(program)?).trim_end());
+        return Ok(());
+    };
+    let refused = |error| format!("{}: the directory cannot be made: {error}", directory.display());
+    fs::create_dir_all(directory).map_err(refused)?;
+    let commands: Vec<Command> = program.get_subcommands().cloned().collect();
+    write(directory, "gpu-smooth", program)?;
+    for command in commands.into_iter().filter(|command| command.get_name() != "help") {
+        write(directory, &format!("gpu-smooth-{}", command.get_name()), command)?;
+    }
+    Ok(())
+}
+
+fn write(directory: &Path, name: &str, command: Command) -> Result<(), String> {
+    let path = directory.join(format!("{name}.1"));
+    atomic::replace(&path, &page(command)?).map_err(|error| error.to_string())
+}
+
+/// Returns a page in roff, the language of manuals.
+fn page(command: Command) -> Result<Vec<u8>, String> {
+    let mut page = Vec::new();
+    Man::new(command).render(&mut page).map_err(|error| error.to_string())?;
+    Ok(page)
+}

@@ -1,0 +1,248 @@
+//! The interpolation of data of vertices at their new places: depths, third coordinates, point data.
+
+use crate::load::LoadedMesh;
+use gpu_smooth::{Interpolation, Topology};
+use mesh_io::{FieldError, PointField};
+
+use crate::args::RidingArgs;
+
+/// Data of vertices that are interpolated at the new places.
+pub(crate) struct Riding {
+    /// The data that the user named, followed by parameters of vertices on surfaces of a model and centers of elements.
+    fields: Vec<PointField>,
+    /// How many of the fields the user named.
+    data: usize,
+    /// Whether the user asked for any data.
+    asked: bool,
+    /// Whether the user asked for all: what is not taken is the same at all vertices.
+    all: bool,
+}
+
+impl RidingArgs {
+    /// Finds the data that the user named in a file.
+    pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<Riding, String> {
+        if self.interpolate.is_empty() {
+            return Ok(Riding { fields: Vec::new(), data: 0, asked: false, all: false });
+        }
+        // A name may contain commas.
+        let split = |text: &String| match file.source.data_names().contains(text) {
+            true => vec![text.clone()],
+            false => text.split(',').map(|name| name.trim().to_owned()).collect(),
+        };
+        let names: Vec<String> = self.interpolate.iter().flat_map(split).collect();
+        let all = names.iter().any(|name| name == "all");
+        let fields = file.source.point_fields(if all { None } else { Some(&names) });
+        let mut fields = fields.map_err(|error| format!("{error} (--interpolate)"))?;
+        if all {
+            // Third coordinates that are all the same need no interpolation.
+            fields.retain(|field| {
+                let first = field.values().first();
+                field.values().iter().any(|value| Some(value) != first)
+            });
+        }
+        Ok(Riding { data: fields.len(), fields, asked: true, all })
+    }
+}
+
+impl Riding {
+    pub(crate) fn fields(&self) -> &[PointField] {
+        &self.fields
+    }
+
+    /// Returns the fields that the user named.
+    fn data(&self) -> &[PointField] {
+        &self.fields[..self.data]
+    }
+
+    /// Returns the names of the data, each once.
+    fn names(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for field in self.data() {
+            if !names.contains(&field.name()) {
+                names.push(field.name());
+            }
+        }
+        names
+    }
+
+    /// Words the remark on data that stay as they are.
+    pub(crate) fn left_behind(&self, file: &LoadedMesh) -> Option<String> {
+        if self.all {
+            return None;
+        }
+        let taken = self.names();
+        let left: Vec<_> = file
+            .source
+            .data_names()
+            .iter()
+            .filter(|name| !taken.contains(&name.as_str()))
+            .collect();
+        let (verb, them) = match left[..] {
+            [] => return None,
+            [_] => ("stays as it is and no longer fits", "it"),
+            _ => ("stay as they are and no longer fit", "them"),
+        };
+        let option = if let [one] = left[..] { one.as_str() } else { "all" };
+        let names = listed(left.iter().map(|name| name.as_str()));
+        let option = if option.contains(' ') { format!("'{option}'") } else { option.to_owned() };
+        Some(format!(
+            "{names} {verb} where vertices have moved (--interpolate {option} takes {them} to the new places)"
+        ))
+    }
+
+    /// Returns an error if data are to be interpolated from a mesh that has to be untangled.
+    pub(crate) fn check_untangled(&self) -> Result<(), String> {
+        match self.data().is_empty() {
+            true => Ok(()),
+            false => Err("--interpolate takes data from triangles that are not inverted, and some of this mesh are: \
+                          untangle it without --interpolate, and interpolate in a second run"
+                .into()),
+        }
+    }
+
+    /// Adds what follows from the places of vertices, as it is at new points: parameters of vertices on plane surfaces of a
+    /// model, and centers of elements. Returns remarks on what is not known to follow from them.
+    pub(crate) fn add_dependents(
+        &mut self,
+        file: &LoadedMesh,
+        points: &[[f64; 2]],
+    ) -> Result<Vec<String>, String> {
+        let mut remarks = Vec::new();
+        let told = |error: FieldError| error.to_string();
+        if file.source.has_parameters() {
+            let (fields, others) =
+                file.source.plane_parameters(&file.given(points)).map_err(told)?;
+            self.fields.extend(fields);
+            let surfaces = if others == 1 { "1 surface" } else { &format!("{others} surfaces") };
+            if others > 0 {
+                remarks.push(format!(
+                    "parameters of nodes on {surfaces} that are not plane stay as they are where nodes move"
+                ));
+            }
+        }
+        if file.source.has_centers() {
+            let (fields, others) = file.source.centers(&file.given(points)).map_err(told)?;
+            self.fields.extend(fields);
+            if !others.is_empty() {
+                let names = listed(others.iter().map(String::as_str));
+                remarks.push(format!(
+                    "{names}: places of elements that are neither their centers nor circumcenters stay as they are"
+                ));
+            }
+        }
+        Ok(remarks)
+    }
+
+    /// Interpolates the data at the new points. Returns a remark on what was done, if anything was asked for.
+    pub(crate) fn carry(
+        &mut self,
+        file: &LoadedMesh,
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+    ) -> Result<Option<String>, String> {
+        if self.fields.is_empty() {
+            let none = "no data of the mesh differ from vertex to vertex: nothing to interpolate";
+            return Ok(self.asked.then(|| none.into()));
+        }
+        let told = |error: gpu_smooth::MeshError| error.to_string();
+        let interpolation =
+            Interpolation::new(topology, &file.mesh().points, points).map_err(told)?;
+        let mut left = 0;
+        for field in &mut self.fields {
+            let each = field.components();
+            let copied = file.chart().map(|chart| chart.extended(field.values(), each));
+            let old = copied.as_deref().unwrap_or(field.values());
+            let mut values = interpolation.apply(old, each).map_err(told)?;
+            values.truncate(field.values().len());
+            left += field.set(values).map_err(|error| error.to_string())?;
+        }
+        let names = listed(self.names().into_iter());
+        let moved = match interpolation.moved() {
+            1 => "1 vertex has".to_owned(),
+            moved => format!("{moved} vertices have"),
+        };
+        let kept = match left {
+            0 => String::new(),
+            1 => {
+                "; 1 number stays as it was, as a vertex around it has no finite number".to_owned()
+            }
+            left => format!(
+                "; {left} numbers stay as they were, as a vertex around them has no finite number"
+            ),
+        };
+        Ok(Some(format!("interpolated where {moved} moved: {names}{kept}")))
+    }
+}
+
+impl Riding {
+    /// Lists what is implausible in the data of another file. Vertices that have not moved must have the same bits, and
+    /// no value may lie beyond the least and the greatest of these data. `moved` is ascending.
+    pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
+        let mut problems = Vec::new();
+        if self.data != other.data {
+            problems.push("it does not have the same data of vertices".to_owned());
+        }
+        for (old, new) in self.data().iter().zip(other.data()) {
+            let (name, each) = (old.name(), old.components().max(1));
+            if new.name() != name || new.values().len() != old.values().len() {
+                problems.push(format!("{name} does not have as many numbers as before"));
+                continue;
+            }
+            let (mut held, mut beyond) = (0, 0);
+            let range = |component: usize| {
+                let values = old.values().iter().skip(component).step_by(each);
+                let finite = values.copied().filter(|value| value.is_finite());
+                finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+                    (value.min(least), value.max(most))
+                })
+            };
+            let ranges: Vec<_> = (0..each).map(range).collect();
+            for (index, (old, new)) in old.values().iter().zip(new.values()).enumerate() {
+                if old.to_bits() == new.to_bits() {
+                    continue;
+                }
+                let (least, most) = ranges[index % each];
+                held += usize::from(moved.binary_search(&((index / each) as u32)).is_err());
+                beyond += usize::from(!(least..=most).contains(new));
+            }
+            if held > 0 {
+                let vertices = if held == 1 {
+                    "1 vertex that has"
+                } else {
+                    &format!("{held} vertices that have")
+                };
+                problems.push(format!("{name} differs at {vertices} not moved"));
+            }
+            if beyond > 0 {
+                let values = if beyond == 1 { "1 value" } else { &format!("{beyond} values") };
+                problems.push(format!("{values} of {name} outside the range of the old ones"));
+            }
+        }
+        problems
+    }
+
+    /// Words what was checked of data that are not implausible.
+    pub(crate) fn compared(&self) -> Option<String> {
+        let names = self.names();
+        let (verb, it) = match names.len() {
+            0 => return None,
+            1 => ("differs", "it is"),
+            _ => ("differ", "they are"),
+        };
+        Some(format!(
+            "{} {verb} only at vertices that have moved, and {it} within the range of the old values",
+            listed(names.into_iter())
+        ))
+    }
+}
+
+/// Lists the first names, and counts the rest.
+fn listed<'n>(names: impl ExactSizeIterator<Item = &'n str>) -> String {
+    const TOLD: usize = 6;
+    let more = names.len().saturating_sub(TOLD);
+    let first: Vec<_> = names.take(TOLD).collect();
+    match more {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}

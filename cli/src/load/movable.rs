@@ -1,0 +1,236 @@
+//! The choice of the vertices of a mesh that may move.
+
+use crate::load::LoadedMesh;
+use gpu_smooth::{MeshError, Topology, select};
+use mesh_io::{Group, Groups};
+
+use crate::args::MoveArgs;
+use crate::load::explain;
+use crate::terminal::numbers::six;
+
+/// The effect of the options on a mesh.
+#[derive(Default)]
+pub(crate) struct Choice {
+    /// What each option holds or lets move, one line each.
+    pub(crate) notes: Vec<String>,
+    /// How many vertices would be free without the options; 0 if none is given.
+    free_without: usize,
+    /// Why there is nothing to smooth: no triangle is as bad as the options ask for. The mesh is then left as it was.
+    pub(crate) nothing_to_do: Option<String>,
+}
+
+impl MoveArgs {
+    /// Whether any option that fixes vertices is given.
+    fn restricts(&self) -> bool {
+        let Self { fix, fix_vertices, fix_array, fix_box, only, only_bad, .. } = self;
+        !fix.is_empty()
+            || !fix_vertices.is_empty()
+            || !fix_array.is_empty()
+            || !fix_box.is_empty()
+            || !only.is_empty()
+            || only_bad.is_some()
+    }
+
+    /// Frees and fixes vertices of a mesh as the options say.
+    pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<Choice, String> {
+        if self.free_interfaces {
+            file.free_interfaces();
+        }
+        let mut choice = Choice::default();
+        choice.notes.extend(self.free_interfaces.then(|| held_interfaces(file)).flatten());
+        if !self.restricts() {
+            return Ok(choice);
+        }
+        let chooser = Chooser::new(file)?;
+        choice.free_without = chooser.topology.free_count();
+        let fixed = chooser.fixed(self, &mut choice)?;
+        let movers = chooser.movers(self, &mut choice)?;
+        let told = |error: MeshError| error.to_string();
+        file.fix(&fixed).map_err(told)?;
+        for movers in movers {
+            file.fix_all_but(&movers).map_err(told)?;
+        }
+        Ok(choice)
+    }
+}
+
+impl Choice {
+    /// Words the error if the options leave nothing to move.
+    pub(crate) fn nothing_free(&self, file: &LoadedMesh, error: &MeshError) -> Option<String> {
+        let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
+        let path = file.source.path().display();
+        is_it.then(|| {
+            let error = explain::nothing_free(file);
+            format!(
+                "{path}: {error}. --fix, --only and the like leave nothing to smooth: let more move"
+            )
+        })
+    }
+}
+
+/// Words that vertices between regions are held all the same, if some are.
+fn held_interfaces(file: &LoadedMesh) -> Option<String> {
+    let held = match file.held_interface_vertices().len() {
+        0 => return None,
+        1 => "1 vertex between regions is".to_owned(),
+        n => format!("{n} vertices between regions are"),
+    };
+    Some(format!(
+        "--free-interfaces: {held} on line elements, points or quadrilaterals of the file, and not freed"
+    ))
+}
+
+/// Finds what options name in a mesh.
+struct Chooser<'f> {
+    file: &'f LoadedMesh,
+    topology: Topology<'f>,
+}
+
+impl<'f> Chooser<'f> {
+    fn new(file: &'f LoadedMesh) -> Result<Self, String> {
+        let topology =
+            Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
+        Ok(Self { file, topology })
+    }
+
+    /// Counts how many of these vertices would be free without the options.
+    fn free_among(&self, vertices: &[u32]) -> usize {
+        vertices.iter().filter(|&&vertex| self.topology.free()[vertex as usize]).count()
+    }
+
+    /// Finds the vertices that the options keep fixed.
+    fn fixed(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<u32>, String> {
+        let file = self.file;
+        let mut fixed = Vec::new();
+        let mut hold = |option: String, mut vertices: Vec<u32>| {
+            vertices.sort_unstable();
+            vertices.dedup();
+            let (count, free) = (vertices.len(), self.free_among(&vertices));
+            choice.notes.push(format!("{option}: {}", held(count, free)));
+            fixed.append(&mut vertices);
+        };
+        if !args.fix.is_empty() {
+            let groups = self.groups()?;
+            for text in &args.fix {
+                for (name, group) in self.named(&groups, "--fix", text)? {
+                    if group.vertices().is_empty() {
+                        return Err(self.refusal("--fix", format!("{group} has no elements")));
+                    }
+                    hold(format!("--fix {name} ({group})"), group.vertices().to_vec());
+                }
+            }
+        }
+        for list in &args.fix_vertices {
+            let vertices = file.source.read_vertices(list).map_err(|error| error.to_string())?;
+            hold(format!("--fix-vertices {}", list.display()), vertices);
+        }
+        for name in &args.fix_array {
+            let numbers = file.source.point_array(name).map_err(|error| error.to_string())?;
+            let set = (0..).zip(numbers).filter(|(_, number)| *number != 0.0);
+            hold(format!("--fix-array {name}"), set.map(|(vertex, _)| vertex).collect());
+        }
+        for corners in &args.fix_box {
+            let vertices = select::vertices_in_box(file.source.points(), *corners);
+            let [[x0, y0], [x1, y1]] = corners;
+            hold(format!("--fix-box {x0},{y0},{x1},{y1}"), vertices);
+        }
+        Ok(fixed)
+    }
+
+    /// Finds the vertices that the options let move, one list for each kind of option. A vertex may move if all lists
+    /// have it.
+    fn movers(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<Vec<u32>>, String> {
+        let mut lists = Vec::new();
+        let of_all = self.topology.free_count();
+        if !args.only.is_empty() {
+            let groups = self.groups()?;
+            let (mut triangles, mut named) = (Vec::new(), Vec::new());
+            for text in &args.only {
+                for (name, group) in self.named(&groups, "--only", text)? {
+                    if group.triangles().is_empty() {
+                        return Err(self.refusal("--only", format!("{group} has no triangles")));
+                    }
+                    triangles.extend_from_slice(group.triangles());
+                    named.push(format!("{name} ({group})"));
+                }
+            }
+            let vertices = select::vertices_inside(&self.topology, &triangles);
+            let free = self.free_among(&vertices);
+            choice.notes.push(format!("--only {}: {}", named.join(", "), may_move(free, of_all)));
+            lists.push(vertices);
+        }
+        if let Some(limit) = args.only_bad {
+            let points = &self.file.mesh().points;
+            let bad = select::triangles_above(points, &self.topology, limit);
+            if bad.is_empty() {
+                let worst = six(select::worst(points, &self.topology));
+                let text = format!("no triangle has an imr above {limit}; the worst has {worst}");
+                choice.nothing_to_do = Some(text);
+                return Ok(lists);
+            }
+            let vertices = select::vertices_near(&self.topology, &bad, args.rings);
+            let free = self.free_among(&vertices);
+            let within = match args.rings {
+                0 => "of their vertices".to_owned(),
+                rings => format!("within {} of them", counted(rings as usize, "ring")),
+            };
+            choice.notes.push(format!(
+                "--only-bad {limit}: {} above it; {within} {}",
+                counted(bad.len(), "triangle"),
+                may_move(free, of_all)
+            ));
+            lists.push(vertices);
+        }
+        Ok(lists)
+    }
+
+    fn groups(&self) -> Result<Groups, String> {
+        self.file.source.groups().map_err(|error| error.to_string())
+    }
+
+    /// Finds the groups that a text names: one, or several with commas between. Each comes with its part of the text.
+    fn named<'t, 'g>(
+        &self,
+        groups: &'g Groups,
+        option: &str,
+        text: &'t str,
+    ) -> Result<Vec<(&'t str, &'g Group)>, String> {
+        // A name may contain commas.
+        let ends = |name: &str| name.contains(',') && text.ends_with(name);
+        if groups.iter().any(|group| group.name.as_deref().is_some_and(ends))
+            && let Ok(group) = groups.find(text)
+        {
+            return Ok(vec![(text, group)]);
+        }
+        let find = |name: &'t str| match groups.find(name.trim()) {
+            Ok(group) => Ok((name.trim(), group)),
+            Err(error) => Err(self.refusal(option, error.to_string())),
+        };
+        text.split(',').map(find).collect()
+    }
+
+    fn refusal(&self, option: &str, problem: String) -> String {
+        let path = self.file.source.path().display();
+        format!("{path}: {option}: {problem}. `gpu-smooth groups` lists what can be named")
+    }
+}
+
+/// Counts things: `1 ring`, `2 rings`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Says how many vertices an option keeps fixed, and how many of these would be free without it.
+fn held(count: usize, free: usize) -> String {
+    match (count, free) {
+        (0, _) => "it names no vertex".into(),
+        (1, 0) => "1 vertex stays fixed; it was not free before".into(),
+        (1, _) => "1 vertex stays fixed; it would be free".into(),
+        (_, 0) => format!("{count} vertices stay fixed; none of them was free before"),
+        _ => format!("{count} vertices stay fixed; {free} of them would be free"),
+    }
+}
+
+fn may_move(free: usize, of_all: usize) -> String {
+    format!("{free} of {of_all} free vertices may move")
+}

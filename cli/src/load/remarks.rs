@@ -1,0 +1,37 @@
+//! Remarks on a mesh that was read.
+
+use mesh_io::Format;
+
+use crate::load::LoadedMesh;
+
+/// Lists the remarks on a mesh, one line each. If vertices slide, those between regions are not said to stay fixed.
+pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
+    let mut remarks = file.source.notes().to_vec();
+    match file.interface_vertices().len() {
+        0 => {}
+        _ if slides => {}
+        1 => remarks.push(
+            "1 vertex between regions stays fixed (--free-interfaces lets it move)".to_owned(),
+        ),
+        n => remarks.push(format!(
+            "{n} vertices between regions stay fixed (--free-interfaces lets them move)"
+        )),
+    }
+    remarks
+}
+
+/// Words a remark if a mesh in a format of coastal models seems to be in longitude and latitude, at latitudes where a degree of
+/// longitude is shorter by more than a few percent.
+pub(crate) fn degrees(file: &LoadedMesh) -> Option<String> {
+    let is_of_oceans = matches!(
+        file.source.format(),
+        Format::Adcirc | Format::Sms2dm | Format::Mike | Format::Fvcom | Format::Selafin
+    );
+    let points = &file.mesh().points;
+    let fits = |&[x, y]: &[f64; 2]| x.abs() <= 360.0 && y.abs() < 90.0;
+    let middle = points.iter().map(|p| p[1]).sum::<f64>() / points.len() as f64;
+    (is_of_oceans && middle.abs() > 20.0 && points.iter().all(fits)).then(|| {
+        "the coordinates look like degrees: --surface sphere smooths them as longitude and latitude"
+            .to_owned()
+    })
+}

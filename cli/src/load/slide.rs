@@ -1,0 +1,113 @@
+//! The vertices of a mesh that slide along lines, and the periodic pairs among them.
+
+use crate::load::LoadedMesh;
+use gpu_smooth::{Slide, Smoother, Topology};
+
+use crate::args::SlideArgs;
+use crate::load::explain;
+
+impl SlideArgs {
+    /// Chooses what slides in a mesh, if anything may.
+    pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Option<Slide>, String> {
+        if !self.slide {
+            return Ok(None);
+        }
+        let Self { corner_angle, hausdorff, .. } = *self;
+        let (held, periodic) = (file.held_vertices().to_vec(), file.periodic().to_vec());
+        let mut slide = Slide { corner_angle, hausdorff, lines: file.lines(), held, periodic };
+        let motions = &file.source.constraints().motions;
+        if self.periodic.is_empty()
+            && motions.is_empty()
+            && !file.source.constraints().has_unread_pairs
+        {
+            return Ok(Some(slide));
+        }
+        let topology =
+            Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
+        let points = &file.mesh().points;
+        for &motion in motions {
+            slide.pair_by(&topology, points, motion);
+        }
+        self.pair(file, &topology, &mut slide)?;
+        if has_lost_pairs(file, &slide) {
+            slide.held.extend(topology.boundary_edges().into_iter().flatten());
+        }
+        Ok(Some(slide))
+    }
+
+    /// Adds the pairs of vertices that `--periodic` asks for.
+    fn pair(
+        &self,
+        file: &LoadedMesh,
+        topology: &Topology<'_>,
+        slide: &mut Slide,
+    ) -> Result<(), String> {
+        if self.periodic.is_empty() {
+            return Ok(());
+        }
+        let groups = file.source.groups().map_err(|error| error.to_string())?;
+        for names @ [a, b] in &self.periodic {
+            let refusal = |problem: &str| {
+                format!(
+                    "{}: --periodic {}: {problem}",
+                    file.source.path().display(),
+                    names.join(",")
+                )
+            };
+            let find = |name: &str| {
+                let list = "`gpu-smooth groups` lists what can be named";
+                groups.find(name).map_err(|error| refusal(&format!("{error}. {list}")))
+            };
+            let sides = [find(a)?.vertices(), find(b)?.vertices()];
+            if slide.pair_sides(topology, &file.mesh().points, sides) == 0 {
+                return Err(refusal(
+                    "no translation or rotation takes all vertices of one to those of the other: \
+                     name two sides of the boundary that match vertex by vertex",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets vertices of a mesh slide. Returns a remark on how many may.
+    pub(crate) fn set(
+        &self,
+        file: &LoadedMesh,
+        smoother: &mut Smoother<'_>,
+    ) -> Result<Option<String>, String> {
+        let Some(slide) = self.slide(file)? else { return Ok(None) };
+        let count = smoother.set_slide(Some(&slide)).map_err(|error| error.to_string())?;
+        let [pairs, unlike] = smoother.pairs();
+        let mut text = match count {
+            0 => "--slide: no vertex can slide, as all on lines are corners or fixed".to_owned(),
+            1 => "--slide: 1 vertex on the boundary or another line may slide".to_owned(),
+            n => format!("--slide: {n} vertices on the boundary and other lines may slide"),
+        };
+        match pairs {
+            0 => {}
+            1 => text += ", 2 of them as a periodic pair",
+            n => text += &format!(", {} of them in {n} periodic pairs", 2 * n),
+        }
+        if has_lost_pairs(file, &slide) {
+            text += "; the boundary stays, as the model is periodic and its pairs are not known: \
+                     --periodic MARKER,MARKER names them";
+        }
+        match unlike {
+            0 => {}
+            1 => text += "; 1 pair stays, as it is not like the others",
+            n => {
+                text += &format!(
+                    "; {n} pairs stay, as no translation or rotation takes one vertex to the other"
+                );
+            }
+        }
+        Ok(Some(text))
+    }
+}
+
+/// Whether the file says that its model is periodic, but no pair of vertices is known.
+fn has_lost_pairs(file: &LoadedMesh, slide: &Slide) -> bool {
+    let has_some =
+        file.source.constraints().has_unread_pairs || !file.source.constraints().motions.is_empty();
+    has_some && slide.periodic.is_empty()
+}

@@ -1,0 +1,56 @@
+//! Reads and writes meshes. The name `-` stands for the standard input or output.
+
+use std::io::Read;
+use std::path::Path;
+
+use mesh_io::{MeshFile, PointField};
+
+use crate::args::ReadArgs;
+use crate::load::LoadedMesh;
+use crate::terminal::tell;
+
+/// Reads a mesh from a file, or from the standard input if its name is `-`.
+pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, String> {
+    read_source(path, args).map(LoadedMesh::new)
+}
+
+fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, String> {
+    if !is_standard(path) {
+        let read = if args.weld { MeshFile::read_welded } else { MeshFile::read };
+        return read(path).map_err(|error| error.to_string());
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
+    let read = if args.weld { MeshFile::from_bytes_welded } else { MeshFile::from_bytes };
+    read(Path::new("standard input"), bytes).map_err(|error| error.to_string())
+}
+
+/// Whether a name stands for the standard input or output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Writes a mesh with these data to a file, or to the standard output if its name is `-`.
+pub(crate) fn write(
+    file: &LoadedMesh,
+    out: &Path,
+    points: &[[f64; 2]],
+    fields: &[PointField],
+) -> Result<(), String> {
+    let written = match is_standard(out) {
+        true => {
+            let name = Path::new("standard output");
+            file.write_to_with(name, &mut std::io::stdout(), points, fields)
+        }
+        false => file.write_with(out, points, fields),
+    };
+    written.map_err(|error| error.to_string())
+}
+
+/// Prints a text to the standard output, or to the standard error if the mesh goes to the standard output.
+pub(crate) fn say_beside(out: &Path, text: &str) {
+    match is_standard(out) {
+        true => tell::aside(text),
+        false => tell::say(text),
+    }
+}

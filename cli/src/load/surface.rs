@@ -1,0 +1,61 @@
+//! The layout of a mesh on the surface that its coordinates are on.
+
+use crate::load::LoadedMesh;
+use gpu_smooth::{Chart, Surface};
+
+use crate::args::SurfaceArgs;
+use crate::load::explain;
+
+impl SurfaceArgs {
+    /// Lays a mesh out on the surface. Returns remarks on what was done.
+    pub(crate) fn lay_out(&self, file: &mut LoadedMesh) -> Result<Vec<String>, String> {
+        if self.surface() == Surface::Plane {
+            return Ok(Vec::new());
+        }
+        match file.lay_out_on_sphere() {
+            Ok(()) => Ok(file.chart().map(remarks).unwrap_or_default()),
+            Err(error) => Err(explain::mesh_error(file, &error)),
+        }
+    }
+}
+
+/// Returns a point of a mesh that is laid out on its surface as the file would have it.
+pub(crate) fn as_in_file(file: &LoadedMesh, [x, y]: [f64; 2]) -> [f64; 2] {
+    [file.chart().map_or(x, |chart| chart.given_longitude(x)), y]
+}
+
+/// Words what was done to lay a mesh out on the sphere.
+fn remarks(chart: &Chart) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let count = |n: usize, one: &str, many: &str| match n {
+        1 => format!("1 {one}"),
+        n => format!("{n} {many}"),
+    };
+    let points = &chart.original().points;
+    let poles = points.iter().filter(|point| point[1].abs() == 90.0).count();
+    let copied = |is_pole: bool| {
+        let is_of = |&&v: &&u32| (points[v as usize][1].abs() == 90.0) == is_pole;
+        let mut owners: Vec<u32> = chart.owners().iter().filter(is_of).copied().collect();
+        owners.sort_unstable();
+        owners.dedup();
+        owners.len()
+    };
+    if chart.across() > 0 {
+        let triangles = count(chart.across(), "triangle that reaches", "triangles that reach");
+        let mut text = format!(
+            "longitudes are continued for {triangles} across the line where they start again, as at 180 degrees"
+        );
+        if let stay @ 1.. = copied(false) {
+            let stay = count(stay, "vertex at that line stays", "vertices at that line stay");
+            text += &format!("; the mesh closes around the globe, so {stay}");
+        }
+        remarks.push(text);
+    }
+    if chart.polar() > 0 && poles > 0 {
+        let triangles =
+            count(chart.polar(), "triangle at a pole stays", "triangles at a pole stay");
+        remarks
+            .push(format!("{triangles}, with all vertices, as longitudes are no coordinate there"));
+    }
+    remarks
+}

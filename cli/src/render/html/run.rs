@@ -1,0 +1,136 @@
+//! The section on the run: the command, versions, the engine, and what was checked on the result.
+
+use std::ffi::OsStr;
+use std::fmt::Write;
+use std::time::SystemTime;
+
+use crate::render::html::page::escape;
+use crate::render::picture::slid;
+use crate::report::{Done, Task};
+use crate::terminal::numbers::six;
+
+/// Writes the command, versions, the engine, and the certificate.
+pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
+    let command: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
+    let engine = &done.report.engine;
+    let on = match (&engine.adapter, &engine.driver) {
+        (Some(adapter), Some(driver)) => format!("{adapter} ({driver})"),
+        _ => format!("CPU, {} threads", rayon::current_num_threads()),
+    };
+    let reason = engine.reason.as_ref().map(|reason| format!(": {reason}")).unwrap_or_default();
+    let mut text = format!("<pre>{}</pre><dl>", escape(&command.join(" ")));
+    let mut item = |name: &str, value: &str| {
+        let _ = write!(text, "<dt>{name}</dt><dd>{}</dd>", escape(value));
+    };
+    let format = &done.report.mesh.format;
+    item("from", &format!("{} ({format})", task.input.display()));
+    item("to", &task.out.display().to_string());
+    if let Ok(now) = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH) {
+        item("written", &date(now.as_secs()));
+    }
+    item("program", concat!("gpu-smooth ", env!("CARGO_PKG_VERSION")));
+    item("system", &format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH));
+    item("scheme", &done.report.scheme);
+    item("engine", &format!("{on}{reason}"));
+    for choice in &done.report.choices {
+        item("choice", choice);
+    }
+    if let Some(improved) = &done.report.improved {
+        item("worst", &improved.told());
+    }
+    text += "</dl>";
+    text += &certificate(done)?;
+    Ok(text)
+}
+
+/// Writes what was checked on the coordinates as they were written.
+fn certificate(done: &Done<'_>) -> Result<String, String> {
+    let topology = done.smoother.topology();
+    let (old, new) = (&done.file.mesh().points, &done.outcome.points);
+    let bad = topology.bad_triangles(new).map_err(|error| error.to_string())?.len();
+    let bits = |point: &[f64; 2]| point.map(f64::to_bits);
+    let moved: Vec<usize> = (0..old.len()).filter(|&v| bits(&old[v]) != bits(&new[v])).collect();
+    let held = topology.free().iter().filter(|free| !**free).count();
+    // Where vertices may slide, those that slid are told of in a sentence of their own.
+    let off = slid(topology, old, new).len();
+    let held = if done.report.slid.is_some() { held - off } else { held };
+    let kept = if done.report.slid.is_some() { held } else { held - off };
+    let slides = match done.report.slides() {
+        Some(text) => format!("<li>{}.</li>", escape(&text)),
+        None => String::new(),
+    };
+    let distance = |&v: &usize| (new[v][0] - old[v][0]).hypot(new[v][1] - old[v][1]);
+    let farthest = moved.iter().map(distance).fold(0.0, f64::max);
+    Ok(format!(
+        "<h3>Certificate</h3><ul><li>{bad} of {} triangles are inverted or flat, by exact predicates on the coordinates as \
+         they were written.</li><li>{kept} of {held} vertices that must stay have the same bits.</li>{slides}<li>{} of {} vertices \
+         have moved, the farthest by {}.</li><li>{} vertices were put back because rounding had inverted a triangle.</li></ul>\
+         <p><code>gpu-smooth compare</code> of both files proves this again.</p>",
+        topology.triangles().len(),
+        moved.len(),
+        old.len(),
+        six(farthest),
+        done.outcome.returned
+    ))
+}
+
+/// Formats day and time, given in seconds since 1970.
+fn date(seconds: u64) -> String {
+    let (mut days, minutes) = (seconds / 86_400, seconds % 86_400 / 60);
+    let is_leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
+    let mut year = 1970;
+    while days >= 365 + u64::from(is_leap(year)) {
+        days -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(is_leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    format!("{year}-{month:02}-{:02} {:02}:{:02} UTC", days + 1, minutes / 60, minutes % 60)
+}
+
+/// Quotes a word for a shell if it needs quotes.
+fn quoted(word: &OsStr) -> String {
+    let word = word.to_string_lossy();
+    let is_plain = |c: char| c.is_alphanumeric() || "-_=+./,:@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.into_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        let cases = [
+            (0, "1970-01-01 00:00 UTC"),
+            (951_782_399, "2000-02-28 23:59 UTC"),
+            (951_782_400, "2000-02-29 00:00 UTC"),
+            (1_735_689_599, "2024-12-31 23:59 UTC"),
+            (1_772_323_200, "2026-03-01 00:00 UTC"),
+        ];
+        for (seconds, text) in cases {
+            assert_eq!(date(seconds), text);
+        }
+    }
+
+    #[test]
+    fn words_are_quoted_for_a_shell() {
+        let cases =
+            [("in.msh", "in.msh"), ("", "''"), ("a b", "'a b'"), ("it's<5", r"'it'\''s<5'")];
+        for (word, expected) in cases {
+            assert_eq!(quoted(OsStr::new(word)), expected);
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Tables of numbers on the page.
+
+use std::fmt::Write;
+
+use gpu_smooth::{Measure, Measured, Statistics};
+
+use crate::render::html::page::escape;
+use crate::report::{Report, Seconds};
+use crate::terminal::numbers::{five, six};
+
+/// Writes the summary of the terminal: what was smoothed, and its quality before and after.
+pub(crate) fn summary(report: &Report) -> String {
+    let mut text = format!(
+        "{}<div class=\"wide\"><table><thead><tr><th></th><th>before</th><th>after</th></tr></thead><tbody>",
+        report.subject().lines().map(|line| format!("<p>{}</p>", escape(line))).collect::<String>()
+    );
+    for [name, before, after] in report.rows() {
+        let _ = write!(
+            text,
+            "<tr><th>{}</th><td>{}</td><td>{}</td></tr>",
+            escape(name.trim()),
+            escape(&before),
+            escape(&after)
+        );
+    }
+    text + "</tbody></table></div>"
+}
+
+/// Writes the statistics of every measure, before and after.
+pub(crate) fn statistics(states: [&Measured<'_>; 2]) -> String {
+    let [before, after] = states.map(|state| state.statistics(Measure::ALL));
+    let mut text = String::from(
+        "<div class=\"wide\"><table class=\"pairs\"><thead><tr><th>measure</th><th></th>",
+    );
+    for column in ["min", "5 %", "median", "mean", "95 %", "max", "sd"] {
+        let _ = write!(text, "<th>{column}</th>");
+    }
+    text += "</tr></thead><tbody>";
+    for (before, after) in before.iter().zip(&after) {
+        let name = escape(&measure_name(before.measure));
+        let source = escape(before.measure.definition().formula);
+        let _ = write!(text, "<tr><th rowspan=\"2\" title=\"{source}\">{name}</th>");
+        row(&mut text, "before", before);
+        text += "<tr>";
+        row(&mut text, "after", after);
+    }
+    text + "</tbody></table></div><p>docs/quality.md of the program defines each measure.</p>"
+}
+
+fn row(text: &mut String, state: &str, statistics: &Statistics) {
+    let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
+    let _ = write!(text, "<td class=\"state\">{state}</td>");
+    for number in [min, low, median, mean, high, max, deviation] {
+        let _ = write!(text, "<td>{}</td>", escape(&five(*number)));
+    }
+    *text += "</tr>";
+}
+
+/// Writes the share that each part of the run has of its time.
+pub(crate) fn time(seconds: &Seconds) -> String {
+    let Seconds { read, prepare, smooth, write, total } = *seconds;
+    let parts = [("read", read), ("prepare", prepare), ("smooth", smooth), ("write", write)];
+    let (mut bar, mut names) = (String::new(), String::new());
+    for (name, seconds) in parts {
+        let share = 100.0 * seconds / total.max(f64::MIN_POSITIVE);
+        let _ = write!(bar, "<span class=\"{name}\" style=\"width:{share:.3}%\"></span>");
+        let _ = write!(
+            names,
+            "<li><span class=\"{name} key\"></span>{name} {} s ({share:.1} %)</li>",
+            six(seconds)
+        );
+    }
+    format!(
+        "<div class=\"parts\">{bar}</div><ul class=\"keys\">{names}<li>total {} s</li></ul>",
+        six(total)
+    )
+}
+
+/// Returns the name of a measure with its unit.
+pub(crate) fn measure_name(measure: Measure) -> String {
+    match measure.definition().unit {
+        "" => measure.name().to_owned(),
+        unit => format!("{measure}, {unit}"),
+    }
+}

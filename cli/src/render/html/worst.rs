@@ -1,0 +1,147 @@
+//! Lists of the worst triangles before and after, with links that show each in the mesh.
+
+use crate::load::LoadedMesh;
+use std::fmt::Write;
+
+use gpu_smooth::{Measure, Measured};
+
+use crate::load::as_in_file;
+use crate::render::html::page::escape;
+use crate::terminal::numbers::five;
+
+/// How many triangles a list has.
+const LISTED: usize = 8;
+
+/// How many of the worst triangles are searched for those that can move.
+const CANDIDATES: usize = 10_000;
+
+/// The lists: title, state (0 before, 1 after), and whether it lists only triangles that can move.
+const LISTS: [(&str, usize, bool); 3] = [
+    ("The worst before the run", 0, false),
+    ("The worst after the run", 1, false),
+    ("The worst after the run of those that can move", 1, true),
+];
+
+/// A bad triangle of the mesh before or after the run.
+pub(crate) struct Spot {
+    /// The index of the triangle in the mesh.
+    pub(crate) triangle: usize,
+    list: usize,
+    /// 0 if the triangle is one of the worst before the run, 1 after it.
+    pub(crate) state: usize,
+    /// The file's number or tag for the triangle, and its place in the file.
+    label: u64,
+    place: String,
+    /// The centroid of the triangle where it is drawn and as the file has it, and its longest edge, in units of the mesh.
+    pub(crate) at: [f64; 2],
+    at_in_file: [f64; 2],
+    pub(crate) size: f64,
+    /// Shape and smallest angle (degrees), before and after.
+    values: [[f64; 2]; 2],
+    can_move: bool,
+}
+
+/// Finds the worst triangles by shape. Triangles that can move have a list of their own only if others are among the
+/// worst.
+pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> {
+    let topology = states[0].topology();
+    let corners = |t: usize| topology.triangles()[t];
+    let mut listed = Vec::new();
+    for (list, &(_, state, only_movable)) in LISTS.iter().enumerate() {
+        let most = if only_movable { CANDIDATES } else { LISTED };
+        let found = states[state].worst(Measure::Shape, most).into_iter().map(|found| found.0);
+        let found: Vec<usize> =
+            found.filter(|&t| !only_movable || topology.can_move(t)).take(LISTED).collect();
+        let is_new = listed.iter().all(|(_, known)| *known != found || !only_movable);
+        if is_new {
+            listed.push((list, found));
+        }
+    }
+    let places = file.source.triangle_places(listed.iter().flat_map(|(_, found)| found).copied());
+    let spot = |list: usize, triangle: usize| {
+        let state = LISTS[list].1;
+        let [p, q, r] = corners(triangle).map(|v| states[state].points()[v as usize]);
+        let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+        let measures = [Measure::Shape, Measure::MinAngle];
+        let place = &places[&triangle];
+        let at = [0, 1].map(|axis| p[axis] / 3.0 + q[axis] / 3.0 + r[axis] / 3.0);
+        Spot {
+            triangle,
+            list,
+            state,
+            label: place.label,
+            place: place.to_string(),
+            at,
+            at_in_file: as_in_file(file, at),
+            size: length(p, q).max(length(q, r)).max(length(r, p)),
+            values: states.map(|state| measures.map(|measure| state.value(measure, triangle))),
+            can_move: topology.can_move(triangle),
+        }
+    };
+    let all = listed.iter().flat_map(|(list, found)| found.iter().map(|&t| (*list, t)));
+    all.map(|(list, triangle)| spot(list, triangle)).collect()
+}
+
+/// Writes the lists as tables.
+pub(crate) fn lists(spots: &[Spot]) -> String {
+    let mut text = String::from("<div class=\"lists\">");
+    for (list, (title, ..)) in LISTS.iter().enumerate() {
+        let of_list = || spots.iter().enumerate().filter(|(_, spot)| spot.list == list);
+        if of_list().next().is_none() {
+            continue;
+        }
+        let _ = write!(
+            text,
+            "<div class=\"wide\"><table><caption>{title}</caption><thead><tr><th>triangle</th>\
+             <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>"
+        );
+        for (i, spot) in of_list() {
+            let Spot { label, place, at_in_file: [x, y], can_move, .. } = spot;
+            let [before, after] = spot.values;
+            let held = if *can_move { "" } else { " (fixed)" };
+            let _ = write!(
+                text,
+                "<tr><td><a href=\"#spot-{i}\" title=\"{}\">{label}</a>{held}</td><td>{}</td><td>→ {}</td><td>{}°</td><td>→ {}°</td><td>{}</td><td>{}</td></tr>",
+                escape(place),
+                five(before[0]),
+                five(after[0]),
+                five(before[1]),
+                five(after[1]),
+                coordinate(*x),
+                coordinate(*y),
+            );
+        }
+        text += "</tbody></table></div>";
+    }
+    text + "</div><p>Click a triangle to see it in the mesh. Triangles marked as fixed have no vertex that may move.</p>"
+}
+
+/// Formats a coordinate with about seven significant digits.
+fn coordinate(x: f64) -> String {
+    match x.abs() {
+        a if (1e-3..1e10).contains(&a) || a == 0.0 => {
+            let before_point = a.max(1.0).log10().floor() as usize + 1;
+            format!("{x:.*}", 7usize.saturating_sub(before_point))
+        }
+        _ => format!("{x:.5e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_keep_seven_digits() {
+        let cases = [
+            (976_188.46, "976188.5"),
+            (-6_737_012.3, "-6737012"),
+            (0.25, "0.250000"),
+            (0.0, "0.000000"),
+            (1.5e-7, "1.50000e-7"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(coordinate(x), text);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! `--html`: a run as one page in a single file.
+
+use std::path::Path;
+
+use gpu_smooth::{Measure, Measured};
+use mesh_io::atomic;
+
+use crate::render::html::page::{Page, escape};
+use crate::render::html::tables::measure_name;
+use crate::render::html::{charts, mesh, run, tables, worst};
+use crate::report::{Done, Task};
+use crate::report::{Histogram, histogram};
+
+/// The measures with a histogram.
+const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
+
+/// Refuses a page that cannot be written, or that would replace one of the other files.
+pub(crate) fn check<'p>(
+    path: Option<&Path>,
+    mut others: impl Iterator<Item = &'p Path>,
+) -> Result<(), String> {
+    let Some(path) = path else { return Ok(()) };
+    let name = path.display();
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
+    if !matches!(ending.as_deref(), Some("html" | "htm")) {
+        return Err(format!("{name}: a page is HTML. End its name in .html"));
+    }
+    if others.any(|other| atomic::same_file(other, path)) {
+        return Err(format!("{name}: the page would replace this file"));
+    }
+    atomic::check(path).map_err(|error| format!("the page cannot be written: {error}"))
+}
+
+/// Writes the page of a run, if it was asked for.
+pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
+    let Some(path) = path else { return Ok(()) };
+    let text =
+        page(task, done).map_err(|problem| format!("the page was not written: {problem}"))?;
+    atomic::replace(path, text.as_bytes())
+        .map_err(|error| format!("the page was not written: {error}"))
+}
+
+fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
+    let told = |error: gpu_smooth::MeshError| error.to_string();
+    let topology = done.smoother.topology();
+    let surface = task.args.target.surface();
+    let before = Measured::on(surface, &done.file.mesh().points, topology).map_err(told)?;
+    let after = Measured::on(surface, &done.outcome.points, topology).map_err(told)?;
+    let states = [&before, &after];
+    let spots = worst::spots(done.file, states);
+
+    let mut page = Page::new(&task.input.file_name().unwrap_or_default().to_string_lossy());
+    page.lead(&done.report.ending());
+    if let Some(warning) = done.report.warning() {
+        page.lead(&warning);
+    }
+    page.section("Summary", &tables::summary(&done.report));
+    let data = mesh::data(done.file, states, &spots, &mesh::BOUNDS)?;
+    page.mesh(&mesh::caption(topology.triangles().len()), &data);
+    page.section("Worst triangles", &worst::lists(&spots));
+    page.section("Distribution", &histograms(states));
+    page.section("Convergence", &convergence(done));
+    page.section("Statistics", &tables::statistics(states));
+    page.section("Where time went", &tables::time(&done.report.seconds));
+    page.section("The run", &run::run(task, done)?);
+    Ok(page.finish())
+}
+
+/// Draws the histograms before and after, side by side.
+fn histograms(states: [&Measured<'_>; 2]) -> String {
+    let mut text = String::from("<div class=\"charts\">");
+    for measure in HISTOGRAMS {
+        let [before, after] = states.map(|state| histogram(state, measure));
+        let Histogram { edges, counts, .. } = before;
+        text += &charts::bars(&measure_name(measure), &edges, [&counts, &after.counts]);
+    }
+    text + "</div>"
+}
+
+/// Draws f against sweeps and against time, and its distance from its least value.
+fn convergence(done: &Done<'_>) -> String {
+    let f: Vec<f64> = done.report.history.iter().map(|sweep| sweep.f).collect();
+    let by_sweep: Vec<[f64; 2]> = f.iter().enumerate().map(|(i, &f)| [i as f64, f]).collect();
+    let known = |&(sweep, seconds): &(u32, f64)| Some([seconds, *f.get(sweep as usize)?]);
+    let by_time: Vec<[f64; 2]> = [(0, 0.0)].iter().chain(&done.times).filter_map(known).collect();
+    let last = f.iter().copied().fold(f64::INFINITY, f64::min);
+    let excess = f.iter().enumerate().map(|(i, &f)| [i as f64, f - last]);
+    let excess: Vec<[f64; 2]> = excess.filter(|point| point[1] > 0.0).collect();
+    let base = escape(done.report.base());
+    format!(
+        "<div class=\"charts\">{}{}{}</div><p>f is the mean of q² by {base} over all triangles. Times are known after \
+         batches of sweeps; the left end of a logarithmic axis stands for 0.</p>",
+        charts::lines("f against sweep", "sweep", &by_sweep, [true, true]),
+        charts::lines("f against time", "s", &by_time, [true, true]),
+        charts::lines("f above its least value", "sweep", &excess, [false, true]),
+    )
+}

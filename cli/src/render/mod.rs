@@ -1,0 +1,5 @@
+//! Tables, pictures and pages.
+
+pub(crate) mod columns;
+pub(crate) mod html;
+pub(crate) mod picture;

@@ -1,0 +1,154 @@
+//! `--picture`: a mesh colored by its quality, before and after a run.
+
+use crate::args::PictureArgs;
+use crate::load::LoadedMesh;
+use crate::render::picture::{color, png, svg};
+use std::path::Path;
+
+use crate::render::picture::canvas::Canvas;
+use crate::render::picture::layout::{Extent, Frame};
+use crate::render::picture::outlines::Outlines;
+use crate::render::picture::raster::Raster;
+use crate::render::picture::scene::{Panel, Scene};
+use gpu_smooth::{Measure, Measured, MeshError, Surface, Topology};
+use mesh_io::atomic;
+
+use crate::terminal::numbers::five;
+
+/// How many of the worst triangles are searched for some that lie apart from each other.
+const CANDIDATES: usize = 1000;
+
+/// The vertices of a mesh at some time.
+pub(crate) struct Shot<'a> {
+    pub(crate) title: String,
+    pub(crate) points: &'a [[f64; 2]],
+}
+
+/// The kinds of picture files.
+enum Kind {
+    Png,
+    Svg,
+}
+
+fn kind(path: &Path) -> Result<Kind, String> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
+    match ending.as_deref() {
+        Some("png") => Ok(Kind::Png),
+        Some("svg") => Ok(Kind::Svg),
+        _ => Err(format!(
+            "{}: a picture is PNG or SVG. End its name in .png or .svg",
+            path.display()
+        )),
+    }
+}
+
+/// Refuses, before anything is drawn, a picture that cannot be written or that would replace one of these files.
+pub(crate) fn check<'p>(
+    args: &PictureArgs,
+    mut others: impl Iterator<Item = &'p Path>,
+) -> Result<(), String> {
+    let Some(path) = &args.picture else { return Ok(()) };
+    kind(path)?;
+    if others.any(|other| atomic::same_file(other, path)) {
+        return Err(format!("{}: the picture would replace this file", path.display()));
+    }
+    atomic::check(path).map_err(|error| format!("the picture cannot be written: {error}"))
+}
+
+/// Draws the picture that was asked for: one panel for each shot, all on one color scale.
+pub(crate) fn write(
+    args: &PictureArgs,
+    file: &LoadedMesh,
+    (topology, surface): (&Topology<'_>, Surface),
+    shots: &[Shot<'_>],
+) -> Result<(), String> {
+    let Some(path) = &args.picture else { return Ok(()) };
+    let failed = |problem: String| format!("the picture was not written: {problem}");
+    if args.picture_arrows && shots.len() < 2 {
+        return Err(failed(
+            "--picture-arrows needs a run, as arrows go from the old place of a vertex to the new one".into(),
+        ));
+    }
+    let panels = shots.iter().map(|shot| panel(args, (topology, surface), shot));
+    let panels =
+        panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.to_string()))?;
+    let (before, after) = match shots {
+        [first, .., last] => (first.points, last.points),
+        _ => (&[][..], &[][..]),
+    };
+    let scene = Scene {
+        measure: args.picture_measure,
+        triangles: topology.triangles(),
+        with_arrows: args.picture_arrows,
+        outlines: Outlines::of(
+            topology,
+            &file.mesh().fixed,
+            file.source.regions(),
+            [before, after],
+        ),
+        panels,
+    };
+    let layout = scene.layout(args.picture_size);
+    let [width, height] = layout.size;
+    let canvas = match kind(path)? {
+        Kind::Png => png::Png::new(width, height).map(|png| Box::new(png) as Box<dyn Canvas>),
+        Kind::Svg => svg::Svg::new(width, height).map(|svg| Box::new(svg) as Box<dyn Canvas>),
+    };
+    let mut canvas = canvas.map_err(failed)?;
+    scene.draw(&layout, canvas.as_mut());
+    let bytes = canvas.finish().map_err(failed)?;
+    atomic::replace(path, &bytes).map_err(|error| failed(error.to_string()))
+}
+
+/// Draws the triangles alone as a PNG without background, colored by a measure. The longer side of the picture is
+/// `longest` pixels, and it ends where the extent does.
+pub(crate) fn picture_of(
+    topology: &Topology<'_>,
+    state: &Measured<'_>,
+    measure: Measure,
+    extent: Extent,
+    longest: u32,
+) -> Result<Vec<u8>, String> {
+    let goodness = goodness_of(topology, state, measure).map_err(|error| error.to_string())?;
+    let [width, height] = extent.size();
+    let scale = f64::from(longest) / width.max(height);
+    let corner = [width, height].map(|size| (size * scale).ceil());
+    let frame = Frame::new(extent, [[0.0; 2], corner]);
+    let mut raster = Raster::new([[0.0; 2], corner.map(|x| x as f32)]);
+    for (triangle, goodness) in topology.triangles().iter().zip(goodness) {
+        raster.fill(triangle.map(|v| frame.place(state.points()[v as usize])), goodness);
+    }
+    png::encode(&raster)
+}
+
+/// Rates each triangle from 0 to 1, or below 0 if it is inverted or flat.
+fn goodness_of(
+    topology: &Topology<'_>,
+    state: &Measured<'_>,
+    measure: Measure,
+) -> Result<Vec<f32>, MeshError> {
+    let values = state.values(measure).into_iter();
+    let mut goodness: Vec<f32> = values.map(|value| color::goodness(measure, value)).collect();
+    for bad in topology.bad_triangles(state.points())? {
+        goodness[bad.triangle] = -1.0;
+    }
+    Ok(goodness)
+}
+
+fn panel<'a>(
+    args: &PictureArgs,
+    (topology, surface): (&Topology<'_>, Surface),
+    shot: &Shot<'a>,
+) -> Result<Panel<'a>, MeshError> {
+    let measure = args.picture_measure;
+    let measured = Measured::on(surface, shot.points, topology)?;
+    let goodness = goodness_of(topology, &measured, measure)?;
+    let unit = measure.definition().unit;
+    let statistics = measured.statistics(&[measure]);
+    let numbers = statistics.first().map_or(String::new(), |s| {
+        let [min, mean, max] = [s.min, s.mean, s.max].map(five);
+        format!("{} triangles; {measure} {min}{unit} to {max}{unit}, mean {mean}{unit}", s.count)
+    });
+    let worst = measured.worst(measure, CANDIDATES);
+    Ok(Panel { title: [shot.title.clone(), numbers], points: shot.points, goodness, worst })
+}

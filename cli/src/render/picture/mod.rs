@@ -1,0 +1,18 @@
+//! Pictures of a mesh colored by its quality, before and after a run, for `--picture`.
+
+mod arrows;
+mod canvas;
+mod color;
+mod draw;
+mod font;
+mod layout;
+mod outlines;
+mod png;
+mod raster;
+mod scene;
+mod svg;
+
+pub(crate) use color::{VIRIDIS, bad_end, goodness, ticks};
+pub(crate) use draw::{Shot, check, picture_of, write};
+pub(crate) use layout::Extent;
+pub(crate) use outlines::{Outlines, slid};

@@ -1,0 +1,154 @@
+//! Pictures as PNG.
+
+use tiny_skia::{
+    FillRule, Mask, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8, Rect, Stroke, Transform,
+};
+
+use crate::render::picture::canvas::{Anchor, Canvas, Point};
+use crate::render::picture::color::{BLACK, Color, WHITE};
+use crate::render::picture::font::Font;
+use crate::render::picture::raster::Raster;
+
+pub(crate) struct Png {
+    pixels: Pixmap,
+    font: Font,
+    clip: Option<Mask>,
+}
+
+impl Png {
+    pub(crate) fn new(width: u32, height: u32) -> Result<Self, String> {
+        let mut pixels = Pixmap::new(width, height)
+            .ok_or("the picture is too large: give a smaller --picture-size")?;
+        pixels.fill(tiny_skia::Color::WHITE);
+        Ok(Self { pixels, font: Font::new()?, clip: None })
+    }
+
+    fn stroke(&mut self, path: Option<Path>, width: f32, color: Color, opacity: f32) {
+        let Some(path) = path else { return };
+        let stroke = Stroke { width, ..Stroke::default() };
+        let paint = paint(color, opacity);
+        self.pixels.stroke_path(&path, &paint, &stroke, Transform::identity(), self.clip.as_ref());
+    }
+}
+
+fn paint(color: Color, opacity: f32) -> Paint<'static> {
+    let mut paint = Paint::default();
+    let [r, g, b] = color;
+    paint.set_color_rgba8(r, g, b, (255.0 * opacity).round() as u8);
+    paint
+}
+
+/// Encodes the triangles of a raster as a PNG without background.
+pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
+    let size = |pixels: usize| u32::try_from(pixels).map_err(|error| error.to_string());
+    let (width, height) = (size(raster.width)?, size(raster.height)?);
+    let mut pixels = Pixmap::new(width, height)
+        .ok_or("the picture is too large: give a smaller --picture-size")?;
+    for (to, [r, g, b, a]) in pixels.pixels_mut().iter_mut().zip(raster.pixels()) {
+        *to = PremultipliedColorU8::from_rgba(r, g, b, a).unwrap_or(*to);
+    }
+    pixels.encode_png().map_err(|error| error.to_string())
+}
+
+impl Canvas for Png {
+    fn faces(
+        &mut self,
+        corners: [Point; 2],
+        triangles: &mut dyn Iterator<Item = ([Point; 3], f32)>,
+        _count: usize,
+    ) {
+        let mut raster = Raster::new(corners);
+        triangles.for_each(|(corners, goodness)| raster.fill(corners, goodness));
+        let (columns, rows) = (self.pixels.width() as usize, self.pixels.height() as usize);
+        let pixels = self.pixels.pixels_mut();
+        for (i, [r, g, b, a]) in raster.pixels().enumerate().filter(|(_, pixel)| pixel[3] > 0) {
+            let x = raster.left + (i % raster.width) as i32;
+            let y = raster.top + (i / raster.width) as i32;
+            if let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y))
+                && x < columns
+                && y < rows
+                && let Some(color) = PremultipliedColorU8::from_rgba(r, g, b, a)
+            {
+                pixels[y * columns + x] = color;
+            }
+        }
+    }
+
+    fn lines(&mut self, segments: &[[Point; 2]], width: f32, color: Color, opacity: f32) {
+        // The lines are drawn in pieces, as the time for one path grows faster than its length.
+        for piece in segments.chunks(4096) {
+            let mut path = PathBuilder::new();
+            for [from, to] in piece {
+                path.move_to(from[0], from[1]);
+                path.line_to(to[0], to[1]);
+            }
+            self.stroke(path.finish(), width, color, opacity);
+        }
+    }
+
+    fn rectangle(&mut self, [[left, top], [right, bottom]]: [Point; 2], color: Color) {
+        if let Some(rectangle) = Rect::from_ltrb(left, top, right, bottom) {
+            self.pixels.fill_rect(
+                rectangle,
+                &paint(color, 1.0),
+                Transform::identity(),
+                self.clip.as_ref(),
+            );
+        }
+    }
+
+    fn disc(&mut self, [x, y]: Point, radius: f32, fill: Color) {
+        if let Some(path) = PathBuilder::from_circle(x, y, radius) {
+            let paint = paint(fill, 1.0);
+            self.pixels.fill_path(
+                &path,
+                &paint,
+                FillRule::Winding,
+                Transform::identity(),
+                self.clip.as_ref(),
+            );
+        }
+    }
+
+    fn ring(&mut self, [x, y]: Point, radius: f32, width: f32, color: Color) {
+        self.stroke(PathBuilder::from_circle(x, y, radius), width, color, 1.0);
+    }
+
+    fn text(&mut self, [x, y]: Point, size: f32, anchor: Anchor, text: &str) {
+        let width = self.font.width(size, text);
+        let start = match anchor {
+            Anchor::Start => x,
+            Anchor::Middle => x - width / 2.0,
+            Anchor::End => x - width,
+        };
+        if let Some(path) = self.font.outlines([start, y], size, text) {
+            // A white margin keeps the text legible on any background.
+            self.stroke(Some(path.clone()), size / 5.0, WHITE, 1.0);
+            let paint = paint(BLACK, 1.0);
+            self.pixels.fill_path(
+                &path,
+                &paint,
+                FillRule::Winding,
+                Transform::identity(),
+                self.clip.as_ref(),
+            );
+        }
+    }
+
+    fn clip(&mut self, corners: Option<[Point; 2]>) {
+        self.clip = corners.and_then(|[[left, top], [right, bottom]]| {
+            let path = PathBuilder::from_rect(Rect::from_ltrb(left, top, right, bottom)?);
+            let mut mask = Mask::new(self.pixels.width(), self.pixels.height())?;
+            mask.fill_path(&path, FillRule::Winding, true, Transform::identity());
+            Some(mask)
+        });
+    }
+
+    fn width(&self, size: f32, text: &str) -> f32 {
+        self.font.width(size, text)
+    }
+
+    fn finish(self: Box<Self>) -> Result<Vec<u8>, String> {
+        self.pixels.encode_png().map_err(|error| error.to_string())
+    }
+}

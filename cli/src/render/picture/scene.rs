@@ -1,0 +1,303 @@
+//! Draws meshes with their legend on a canvas.
+
+use std::collections::HashSet;
+
+use gpu_smooth::Measure;
+
+use crate::render::picture::arrows;
+use crate::render::picture::canvas::{Anchor, Canvas, Point};
+use crate::render::picture::color::{self, BAD, BLACK, WHITE};
+use crate::render::picture::layout::{Extent, Frame, Layout, Place};
+use crate::render::picture::outlines::{Outlines, inner_edges};
+use crate::terminal::numbers::five;
+
+/// A mesh at one set of positions, with the numbers that its colors show.
+pub(crate) struct Panel<'a> {
+    /// The two lines above the mesh.
+    pub(crate) title: [String; 2],
+    pub(crate) points: &'a [[f64; 2]],
+    /// For each triangle: from 0 to 1, or below 0 if it is inverted or flat.
+    pub(crate) goodness: Vec<f32>,
+    /// Bad triangles with their values, the worst first.
+    pub(crate) worst: Vec<(usize, f64)>,
+}
+
+/// Panels of one mesh.
+pub(crate) struct Scene<'a> {
+    pub(crate) measure: Measure,
+    pub(crate) triangles: &'a [[u32; 3]],
+    /// Whether the panels after the first show how far vertices have moved since the first.
+    pub(crate) with_arrows: bool,
+    pub(crate) outlines: Outlines,
+    pub(crate) panels: Vec<Panel<'a>>,
+}
+
+/// Triangles whose height is less than this, in pixels, have no edges. Edges are darker at twice and at four times this
+/// height.
+const LEAST_HEIGHT: f32 = 3.0;
+
+/// How many of the worst triangles are marked, and enlarged.
+const MARKED: usize = 3;
+
+impl Scene<'_> {
+    /// Lays out the panels, with insets if a marked triangle is too small to be seen without.
+    pub(crate) fn layout(&self, width: u32) -> Layout {
+        let all: Vec<&[[f64; 2]]> = self.panels.iter().map(|panel| panel.points).collect();
+        let extent = Extent::of(self.triangles, &all);
+        let plain = Layout::new(extent, self.panels.len(), 0, width);
+        let is_small = |(panel, place): (&Panel<'_>, &Place)| {
+            let spots = self.spots(panel, &place.frame, plain.text);
+            let length = |t: usize| self.longest_edge(panel, t) * place.frame.scale;
+            spots.iter().any(|&(t, _)| length(t) < 2.0 * f64::from(plain.text))
+        };
+        match self.panels.iter().zip(&plain.panels).any(is_small) {
+            true => Layout::new(extent, self.panels.len(), MARKED, width),
+            false => plain,
+        }
+    }
+
+    pub(crate) fn draw(&self, layout: &Layout, canvas: &mut dyn Canvas) {
+        let text = layout.text;
+        for (panel, place) in self.panels.iter().zip(&layout.panels) {
+            self.draw_mesh(panel, &place.frame, text, canvas);
+            let spots = self.spots(panel, &place.frame, text);
+            for (number, &(t, _)) in (1..).zip(&spots) {
+                let at = place.frame.place(self.middle(panel, t));
+                worst(at, text, canvas);
+                // The number stands on the left of a mark near the right end of the picture.
+                let is_last = at[0] + 2.0 * text > layout.size[0] as f32;
+                let (aside, anchor) = match is_last {
+                    true => (-0.85 * text, Anchor::End),
+                    false => (0.85 * text, Anchor::Start),
+                };
+                let beside = [at[0] + aside, at[1] - 0.5 * text];
+                canvas.text(beside, 0.8 * text, anchor, &number.to_string());
+            }
+            for (i, (&corners, &(t, value))) in place.insets.iter().zip(&spots).enumerate() {
+                let [[left, top], [right, _]] = corners;
+                // Some seven triangles fit across an inset, and it is larger than the picture of the whole.
+                let scale = f64::from(right - left) / (7.0 * self.longest_edge(panel, t));
+                let scale = if scale.is_finite() { scale } else { place.frame.scale };
+                let scale = scale.max(2.5 * place.frame.scale);
+                let frame = Frame::around(self.middle(panel, t), scale, corners);
+                canvas.clip(Some(corners));
+                self.draw_mesh(panel, &frame, text, canvas);
+                canvas.clip(None);
+                around(corners, text, canvas);
+                let (measure, unit) = (self.measure, self.measure.definition().unit);
+                let name = format!("{}: {measure} {}{unit}", i + 1, five(value));
+                canvas.text(
+                    [left + 0.5 * text, top + 1.2 * text],
+                    0.8 * text,
+                    Anchor::Start,
+                    &name,
+                );
+            }
+            let [x, y] = place.title;
+            canvas.text([x, y], text, Anchor::Start, &panel.title[0]);
+            canvas.text([x, y + 1.25 * text], 0.85 * text, Anchor::Start, &panel.title[1]);
+        }
+        self.draw_legend(layout, canvas);
+    }
+
+    /// Returns the worst triangles whose marks do not touch.
+    fn spots(&self, panel: &Panel<'_>, frame: &Frame, text: f32) -> Vec<(usize, f64)> {
+        let mut spots: Vec<(usize, f64, Point)> = Vec::new();
+        for &(t, value) in &panel.worst {
+            let at = frame.place(self.middle(panel, t));
+            let apart = |other: &Point| (other[0] - at[0]).hypot(other[1] - at[1]) > 2.0 * text;
+            if spots.len() < MARKED && spots.iter().all(|spot| apart(&spot.2)) {
+                spots.push((t, value, at));
+            }
+        }
+        spots.into_iter().map(|(t, value, _)| (t, value)).collect()
+    }
+
+    fn middle(&self, panel: &Panel<'_>, t: usize) -> [f64; 2] {
+        let corners = self.triangles[t].map(|v| panel.points[v as usize]);
+        [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
+    }
+
+    /// Returns the length of a triangle's longest edge, in units of the mesh.
+    fn longest_edge(&self, panel: &Panel<'_>, t: usize) -> f64 {
+        let [p, q, r] = self.triangles[t].map(|v| panel.points[v as usize]);
+        let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+        length(p, q).max(length(q, r)).max(length(r, p))
+    }
+
+    fn draw_mesh(&self, panel: &Panel<'_>, frame: &Frame, text: f32, canvas: &mut dyn Canvas) {
+        let place = |v: u32| frame.place(panel.points[v as usize]);
+        let shown = |points: &[Point]| is_shown(points, frame.corners, text);
+        let placed =
+            self.triangles.iter().map(|t| t.map(place)).zip(panel.goodness.iter().copied());
+        let mut faces = placed.filter(|face| shown(&face.0));
+        canvas.faces(frame.corners, &mut faces, self.triangles.len());
+
+        let mut edges: [Vec<[Point; 2]>; 3] = Default::default();
+        for (t, edge) in inner_edges(self.triangles) {
+            let height = least_height(self.triangles[t].map(place));
+            let edge = edge.map(place);
+            if height >= LEAST_HEIGHT && shown(&edge) {
+                let class = ((height / LEAST_HEIGHT).log2() as usize).min(2);
+                edges[class].push(edge);
+            }
+        }
+        let thin = (text / 30.0).max(0.5);
+        for (segments, opacity) in edges.iter().zip([0.15, 0.3, 0.5]) {
+            canvas.lines(segments, thin, BLACK, opacity);
+        }
+        let placed = |edges: &[[u32; 2]]| {
+            let placed = edges.iter().map(|edge| edge.map(place));
+            placed.filter(|edge| shown(edge)).collect::<Vec<_>>()
+        };
+        between_regions(&placed(&self.outlines.between_regions), text, canvas);
+        canvas.lines(&placed(&self.outlines.boundary), boundary_width(text), BLACK, 1.0);
+        // One mark in each small square, so that dense marks do not hide what lies under them.
+        let mut taken = HashSet::new();
+        if self.with_arrows {
+            let before = self.panels[0].points.iter().map(|&point| frame.place(point));
+            let after = panel.points.iter().map(|&point| frame.place(point));
+            let ways = before.zip(after).map(|(from, to)| [from, to]);
+            arrows::draw(ways.filter(|way| shown(way)), text, canvas);
+        }
+        let square = |at: Point| at.map(|x| (x / (0.45 * text)) as i32);
+        let places = self.outlines.held.iter().map(|&v| place(v)).filter(|at| shown(&[*at]));
+        places.filter(|&at| taken.insert(square(at))).for_each(|at| held(at, text, canvas));
+        let places = self.outlines.slid.iter().map(|&v| place(v)).filter(|at| shown(&[*at]));
+        places.filter(|&at| taken.insert(square(at))).for_each(|at| slid(at, text, canvas));
+    }
+
+    fn draw_legend(&self, layout: &Layout, canvas: &mut dyn Canvas) {
+        let (([left, top], width), text) = (layout.legend, layout.text);
+        let definition = self.measure.definition();
+        let bar = (0.45 * width).max(20.0 * text).min(width);
+        let (high, small) = (text, 0.8 * text);
+        let ideal = format!("{}{}", definition.ideal, definition.unit);
+        let name = format!("{}, {ideal} is best", definition.name);
+        canvas.text([left, top], small, Anchor::Start, &name);
+        let upper = top + 0.4 * text;
+        let steps = 128;
+        for step in 0..steps {
+            let [from, to] = [step, step + 1].map(|i| left + bar * i as f32 / steps as f32);
+            let color = color::of_goodness((step as f32 + 0.5) / steps as f32);
+            // Each step is a little longer, so that no seam is left.
+            let to = if step + 1 < steps { to + 1.0 } else { to };
+            canvas.rectangle([[from, upper], [to, upper + high]], color);
+        }
+        let ticks = color::ticks(self.measure);
+        for (value, name) in &ticks {
+            let x = left + bar * color::goodness(self.measure, *value);
+            let mark = [[x, upper + high], [x, upper + high + 0.25 * text]];
+            canvas.lines(&[mark], (text / 16.0).max(0.8), BLACK, 1.0);
+            let anchor = match x {
+                x if x <= left => Anchor::Start,
+                x if x >= left + bar => Anchor::End,
+                _ => Anchor::Middle,
+            };
+            canvas.text([x, upper + high + 1.15 * text], small, anchor, name);
+        }
+        self.draw_signs(layout, [left + bar + 2.0 * text, upper], canvas);
+    }
+
+    /// Explains the lines and marks that occur, in two columns beside the scale.
+    fn draw_signs(&self, layout: &Layout, [left, top]: Point, canvas: &mut dyn Canvas) {
+        let (text, small) = (layout.text, 0.8 * layout.text);
+        type Sign = fn(Point, f32, &mut dyn Canvas);
+        let boundary: Sign = |[x, y], text, canvas| {
+            let line = [[x - 0.7 * text, y], [x + 0.7 * text, y]];
+            canvas.lines(&[line], boundary_width(text), BLACK, 1.0);
+        };
+        let between: Sign = |[x, y], text, canvas| {
+            between_regions(&[[[x - 0.7 * text, y], [x + 0.7 * text, y]]], text, canvas);
+        };
+        let bad: Sign = |[x, y], text, canvas| {
+            let half = 0.4 * text;
+            canvas.rectangle([[x - half, y - half], [x + half, y + half]], BAD);
+        };
+        let is_bad = |panel: &Panel<'_>| panel.goodness.iter().any(|&goodness| goodness < 0.0);
+        let signs = [
+            (true, boundary, "boundary"),
+            (!self.outlines.between_regions.is_empty(), between, "between regions"),
+            (!self.outlines.held.is_empty(), held as Sign, "fixed vertex inside"),
+            (!self.outlines.slid.is_empty(), slid as Sign, "vertex that slid"),
+            (self.panels.iter().any(is_bad), bad, "inverted or flat"),
+            (
+                self.panels.iter().any(|panel| !panel.worst.is_empty()),
+                worst as Sign,
+                "worst triangles",
+            ),
+            (self.with_arrows, moved as Sign, "displacement"),
+        ];
+        let signs: Vec<_> = signs.into_iter().filter(|sign| sign.0).collect();
+        let rows = signs.len().div_ceil(2).max(3);
+        let [mut x, mut y] = [left, top + 0.3 * text];
+        let mut widest: f32 = 0.0;
+        for (i, (_, sign, name)) in signs.into_iter().enumerate() {
+            if i == rows {
+                x += widest + 4.0 * text;
+                y = top + 0.3 * text;
+            }
+            sign([x, y], text, canvas);
+            canvas.text([x + 1.3 * text, y + 0.3 * text], small, Anchor::Start, name);
+            widest = widest.max(canvas.width(small, name));
+            y += 1.35 * text;
+        }
+    }
+}
+
+fn boundary_width(text: f32) -> f32 {
+    (text / 14.0).max(1.0)
+}
+
+/// Draws edges between regions: a white line on a black one.
+fn between_regions(segments: &[[Point; 2]], text: f32, canvas: &mut dyn Canvas) {
+    canvas.lines(segments, (text / 5.0).max(3.5), BLACK, 1.0);
+    canvas.lines(segments, (text / 12.0).max(1.5), WHITE, 1.0);
+}
+
+/// Draws a frame around an inset.
+fn around([[left, top], [right, bottom]]: [Point; 2], text: f32, canvas: &mut dyn Canvas) {
+    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+    let sides = [0, 1, 2, 3].map(|i: usize| [corners[i], corners[(i + 1) % 4]]);
+    canvas.lines(&sides, text / 16.0, BLACK, 1.0);
+}
+
+/// Whether these points, or the lines between them, may be visible in a rectangle.
+fn is_shown(points: &[Point], corners: [Point; 2], text: f32) -> bool {
+    let beyond = |axis: usize| {
+        points.iter().all(|point| point[axis] < corners[0][axis] - text)
+            || points.iter().all(|point| point[axis] > corners[1][axis] + text)
+    };
+    !beyond(0) && !beyond(1)
+}
+
+/// Draws the arrow of a vertex that has moved, for the legend.
+fn moved([x, y]: Point, text: f32, canvas: &mut dyn Canvas) {
+    arrows::draw(std::iter::once([[x - 0.7 * text, y], [x + 0.7 * text, y]]), text, canvas);
+}
+
+/// Draws a vertex that must not move.
+fn held(at: Point, text: f32, canvas: &mut dyn Canvas) {
+    canvas.disc(at, text / 6.5, BLACK);
+    canvas.disc(at, text / 12.0, WHITE);
+}
+
+/// Draws a vertex that slid along its line.
+fn slid(at: Point, text: f32, canvas: &mut dyn Canvas) {
+    canvas.disc(at, text / 6.5, WHITE);
+    canvas.disc(at, text / 9.0, BLACK);
+}
+
+/// Draws a mark around a bad triangle.
+fn worst(at: Point, text: f32, canvas: &mut dyn Canvas) {
+    canvas.ring(at, 0.6 * text, text / 4.0, WHITE);
+    canvas.ring(at, 0.6 * text, text / 10.0, BLACK);
+}
+
+/// Returns the least height of a triangle.
+fn least_height([p, q, r]: [Point; 3]) -> f32 {
+    let to = |p: Point, q: Point| [q[0] - p[0], q[1] - p[1]];
+    let (a, b, c) = (to(p, q), to(p, r), to(q, r));
+    let longest = [a, b, c].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f32::max);
+    (a[0] * b[1] - a[1] * b[0]).abs() / longest
+}

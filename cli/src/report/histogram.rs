@@ -1,0 +1,56 @@
+//! Histograms of measures. Their bins depend on the measure alone, so that histograms of two meshes can be compared.
+
+use gpu_smooth::{Measure, Measured};
+
+/// How many triangles have a value in each bin.
+pub(crate) struct Histogram {
+    pub(crate) measure: Measure,
+    /// The edges of the bins, one more than there are bins.
+    pub(crate) edges: Vec<f64>,
+    pub(crate) counts: Vec<usize>,
+}
+
+/// Counts the triangles that have their value in each bin of a measure.
+pub(crate) fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
+    let edges = edges(measure);
+    let counts = measured.histogram(measure, &edges);
+    Histogram { measure, edges, counts }
+}
+
+/// Returns the edges of a measure's bins, ascending, one more than there are bins.
+fn edges(measure: Measure) -> Vec<f64> {
+    let definition = measure.definition();
+    let [least, most] = definition.range;
+    if most.is_finite() {
+        // Angles go by 5° or 10°, shares by tenths.
+        let bins = if most - least == 60.0 || most - least == 120.0 {
+            12
+        } else {
+            (10.0 * (most - least)) as u32
+        };
+        let edge = |i| least + (most - least) * f64::from(i) / f64::from(bins);
+        return (0..=bins).map(edge).collect();
+    }
+    // Ratios go by their distance above the ideal, and the last bin takes all the rest. Size ratios may be below the
+    // ideal.
+    let below = [0.0, 0.1, 0.25, 0.5, 0.75, 0.9].into_iter().filter(|_| least < definition.ideal);
+    let above =
+        [0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 9.0, 99.0, f64::INFINITY];
+    below.chain(above.map(|above| definition.ideal + above)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bins_cover_every_value() {
+        for &measure in Measure::ALL {
+            let (edges, [least, most]) = (edges(measure), measure.definition().range);
+            assert!(edges.is_sorted() && (11..22).contains(&edges.len()), "{measure}");
+            assert_eq!((edges[0], edges[edges.len() - 1]), (least, most), "{measure}");
+        }
+        assert_eq!(edges(Measure::MinAngle)[1..3], [5.0, 10.0]);
+        assert_eq!(edges(Measure::ScaledJacobian).len(), 21);
+    }
+}

@@ -1,0 +1,99 @@
+//! The report on how the worst triangles were improved.
+
+use gpu_smooth::Improved;
+use serde::Serialize;
+
+use crate::terminal::numbers::six;
+
+/// A change of the worst triangle by less than this share does not count.
+const TO_SPEAK_OF: f64 = 1e-3;
+
+/// The result of improving the worst triangles.
+#[derive(Serialize)]
+pub(crate) struct ImprovedReport {
+    /// `imr`, `min-angle` (in degrees) or `altitude` (in the unit of the mesh).
+    measure: &'static str,
+    /// How many vertices were moved.
+    vertices: usize,
+    /// The worst value of a triangle with a free vertex, before and after.
+    worst: [f64; 2],
+    /// How many triangles without a free vertex are worse than the worst one with a free vertex.
+    stuck: usize,
+    /// The base metric's objective, before and after.
+    f: [f64; 2],
+}
+
+impl From<Improved> for ImprovedReport {
+    fn from(Improved { by, vertices, worst, stuck, f }: Improved) -> Self {
+        Self { measure: by.name(), vertices, worst, stuck, f }
+    }
+}
+
+impl ImprovedReport {
+    /// Says in a sentence what was improved, and what that cost.
+    pub(crate) fn told(&self) -> String {
+        let Self { measure, vertices, worst: [before, after], stuck, f } = self;
+        let worst = match *measure {
+            "imr" => "worst imr".to_owned(),
+            name => format!("least {}", name.trim_start_matches("min-")),
+        };
+        let shown = |x: f64| match *measure {
+            "min-angle" => format!("{x:.2}°"),
+            _ => six(x),
+        };
+        let mut text = match vertices {
+            0 => {
+                format!(
+                    "the {worst} of movable triangles, {}, could not be improved",
+                    shown(*after)
+                )
+            }
+            n => {
+                let vertices = if *n == 1 { "vertex" } else { "vertices" };
+                let cost = match 100.0 * (f[1] / f[0] - 1.0) {
+                    change if change.abs() < 0.005 => "changed f by less than 0.01 %".to_owned(),
+                    change => format!("changed f by {change:+.2} %"),
+                };
+                // Patches around others may have become better all the same.
+                match (after / before - 1.0).abs() > TO_SPEAK_OF {
+                    true => format!(
+                        "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which {cost}",
+                        shown(*before),
+                        shown(*after)
+                    ),
+                    false => format!(
+                        "the {worst} of movable triangles stays {}; others were improved by {n} {vertices}, which {cost}",
+                        shown(*after)
+                    ),
+                }
+            }
+        };
+        text += &match stuck {
+            0 => String::new(),
+            1 => "; 1 triangle is worse, and all its corners are fixed".to_owned(),
+            n => format!("; {n} triangles are worse, and all their corners are fixed"),
+        };
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cost_of_an_improvement_is_printed_also_where_it_is_next_to_nothing() {
+        let report = |f| ImprovedReport {
+            measure: "imr",
+            vertices: 2,
+            worst: [2.0, 1.5],
+            stuck: 0,
+            f: [1.0, f],
+        };
+        for (f, told) in
+            [(1.02, "changed f by +2.00 %"), (1.0 - 1e-9, "changed f by less than 0.01 %")]
+        {
+            assert!(report(f).told().ends_with(told), "{}", report(f).told());
+        }
+    }
+}

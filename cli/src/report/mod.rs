@@ -1,0 +1,19 @@
+//! The report of a run: its data, its certificate, and its summary in words.
+
+mod certificate;
+mod histogram;
+mod improved;
+mod run;
+mod summary;
+mod target;
+mod task;
+
+pub(crate) use certificate::{Certificate, FileHash};
+pub(crate) use histogram::{Histogram, histogram};
+pub(crate) use improved::ImprovedReport;
+pub(crate) use run::{
+    ChangeReport, EngineReport, FaultReport, GoalReport, MeshReport, QualityReport, Refusal,
+    Report, Seconds, SlideReport, UntangleReport, history,
+};
+pub(crate) use target::TargetReport;
+pub(crate) use task::{Done, Failure, Task};

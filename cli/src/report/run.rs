@@ -1,0 +1,252 @@
+//! The report of a run, as `--report` writes it in JSON.
+
+use std::collections::BTreeMap;
+
+use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Slid, Spread};
+use serde::Serialize;
+
+use crate::load::explain::BadTriangleReport;
+use crate::report::{Certificate, ImprovedReport, TargetReport};
+
+/// The report of a run. Times are in seconds, angles in degrees.
+#[derive(Serialize)]
+pub(crate) struct Report {
+    pub(crate) engine: EngineReport,
+    pub(crate) mesh: MeshReport,
+    /// How the mesh was untangled before the run, if it had inverted or flat triangles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) untangled: Option<UntangleReport>,
+    pub(crate) scheme: String,
+    /// The target of the elements, if it is not equilateral in the plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) target: Option<TargetReport>,
+    pub(crate) sweeps: u32,
+    /// How many sweeps were corrected from coarser levels.
+    pub(crate) corrections: u32,
+    /// How many of the first sweeps were done in double precision on the CPU, because triangles were too flat or too
+    /// small for the GPU.
+    pub(crate) opening_sweeps: u32,
+    pub(crate) levels_left_out: bool,
+    /// The sweep whose mesh was written.
+    pub(crate) best_sweep: u32,
+    /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
+    pub(crate) remaining: Option<f64>,
+    /// reached, converged, stalled, held-back, max-sweeps, canceled, time-limit, not-finite or nothing-to-do.
+    pub(crate) stop: &'static str,
+    /// The sweep after which the run was left, if it was continued from a checkpoint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) continued_from: Option<u32>,
+    /// Why there was nothing to do, if that is so.
+    #[serde(skip)]
+    pub(crate) nothing_to_do: Option<String>,
+    /// What each option fixes or lets move, a line each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) choices: Vec<String>,
+    /// Which data of vertices were interpolated at the new positions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) interpolated: Option<String>,
+    /// Vertices that the guard kept from moving at the end of a run that converged otherwise.
+    pub(crate) held_back: usize,
+    /// The share of the gain in f that is lost by rounding coordinates to the digits of the file.
+    pub(crate) lost: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) goal: Option<GoalReport>,
+    /// Vertices put back because rounding had inverted a triangle.
+    pub(crate) returned: usize,
+    /// The most that vertices might move, in lengths of an edge, if there was a bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) max_move: Option<f64>,
+    pub(crate) change: ChangeReport,
+    pub(crate) before: QualityReport,
+    pub(crate) after: QualityReport,
+    /// How vertices slid along lines, if they might.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) slid: Option<SlideReport>,
+    /// What improving the worst triangles did, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) improved: Option<ImprovedReport>,
+    /// What was proved from the files alone, if the mesh was written to a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) certificate: Option<Certificate>,
+    pub(crate) history: Vec<SweepReport>,
+    pub(crate) seconds: Seconds,
+}
+
+/// The report of a run that was refused because of inverted or flat triangles.
+#[derive(Serialize)]
+pub(crate) struct Refusal {
+    /// The message on the terminal, without its list of triangles.
+    pub(crate) error: String,
+    /// All inverted and flat triangles, in the order of the file.
+    pub(crate) triangles: Vec<BadTriangleReport>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct EngineReport {
+    /// `gpu` or `cpu`.
+    pub(crate) kind: &'static str,
+    pub(crate) adapter: Option<String>,
+    pub(crate) driver: Option<String>,
+    /// Why this engine was taken, if the command line left that open.
+    pub(crate) reason: Option<String>,
+    /// The fault of the GPU after which the run continued on the CPU.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fault: Option<FaultReport>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct FaultReport {
+    /// The last sweep on the GPU whose result was kept.
+    pub(crate) sweep: u32,
+    pub(crate) error: String,
+}
+
+#[derive(Serialize)]
+pub(crate) struct MeshReport {
+    pub(crate) format: String,
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    pub(crate) free: usize,
+    pub(crate) colors: usize,
+}
+
+/// How far vertices moved, and how the sizes of elements at them changed.
+#[derive(Serialize)]
+pub(crate) struct ChangeReport {
+    /// Distances in lengths of an edge at the vertex.
+    pub(crate) moved: SpreadReport,
+    /// Factors by which sizes grew or shrank, at least 1.
+    pub(crate) size: SpreadReport,
+    /// The least altitude of a triangle in the unit of the mesh, before and after.
+    pub(crate) least_altitude: [f64; 2],
+}
+
+#[derive(Serialize)]
+pub(crate) struct SpreadReport {
+    pub(crate) median: f64,
+    /// The 95th percentile: nineteen of twenty vertices have no larger value.
+    pub(crate) most_of_twenty: f64,
+    pub(crate) most: f64,
+}
+
+impl From<Spread> for SpreadReport {
+    fn from(Spread { median, most_of_twenty, most }: Spread) -> Self {
+        Self { median, most_of_twenty, most }
+    }
+}
+
+impl From<Change> for ChangeReport {
+    fn from(change: Change) -> Self {
+        let Change { moved, size, least_altitude } = change;
+        Self { moved: moved.into(), size: size.into(), least_altitude }
+    }
+}
+
+/// How vertices slid along lines.
+#[derive(Serialize)]
+pub(crate) struct SlideReport {
+    /// Vertices that might slide.
+    pub(crate) vertices: usize,
+    /// How many of these vertices slid.
+    pub(crate) moved: usize,
+    /// Periodic pairs among these vertices. Both vertices of a pair slide together.
+    pub(crate) pairs: usize,
+    /// Rounds of sweeps, each followed by sweeps along the lines.
+    pub(crate) rounds: u32,
+    /// How far the lines are from those of the input, in the unit of the mesh.
+    pub(crate) off: f64,
+    /// The change of the mesh's area, as a share of the area.
+    pub(crate) area_change: f64,
+}
+
+impl From<Slid> for SlideReport {
+    fn from(Slid { vertices, moved, pairs, rounds, off, area }: Slid) -> Self {
+        Self { vertices, moved, pairs, rounds, off, area_change: area }
+    }
+}
+
+/// The result of untangling.
+#[derive(Serialize)]
+pub(crate) struct UntangleReport {
+    /// How many triangles were inverted or flat.
+    pub(crate) bad_before: usize,
+    pub(crate) sweeps: u32,
+    /// How many vertices were moved.
+    pub(crate) moved: usize,
+}
+
+#[derive(Serialize)]
+pub(crate) struct GoalReport {
+    pub(crate) fraction: f64,
+    pub(crate) desired: f64,
+    pub(crate) origin: String,
+    pub(crate) reached: bool,
+    pub(crate) best_fraction: f64,
+}
+
+#[derive(Serialize)]
+pub(crate) struct QualityReport {
+    /// The objective by each metric, by the metric's name.
+    pub(crate) f: BTreeMap<&'static str, f64>,
+    pub(crate) min_angle: f64,
+    pub(crate) max_angle: f64,
+    pub(crate) worst_imr: f64,
+    /// The worst inverse mean ratio of a triangle with a free vertex.
+    pub(crate) worst_movable_imr: f64,
+    pub(crate) inverted: usize,
+}
+
+#[derive(Serialize)]
+pub(crate) struct SweepReport {
+    pub(crate) sweep: u32,
+    /// The metric that this sweep minimized; none before the first sweep.
+    pub(crate) metric: Option<&'static str>,
+    /// The base metric's objective after the sweep.
+    pub(crate) f: f64,
+    /// The objective of every metric, where asked for.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) all: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) read: f64,
+    pub(crate) prepare: f64,
+    pub(crate) smooth: f64,
+    pub(crate) write: f64,
+    pub(crate) total: f64,
+}
+
+impl From<&Quality> for QualityReport {
+    fn from(quality: &Quality) -> Self {
+        Self {
+            f: Metric::ALL.iter().map(|&m| (m.name(), quality.f(m))).collect(),
+            min_angle: quality.min_angle,
+            max_angle: quality.max_angle,
+            worst_imr: quality.worst_imr,
+            worst_movable_imr: quality.worst_movable_imr,
+            inverted: quality.inverted,
+        }
+    }
+}
+
+/// Makes the history of a run, sweep by sweep.
+pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<SweepReport> {
+    let metric = |sweep| match sweep <= outcome.alternated {
+        true => scheme.metric(sweep),
+        false => scheme.base(),
+    };
+    let one = |(sweep, objectives): (u32, &gpu_smooth::Objectives)| SweepReport {
+        sweep,
+        metric: (sweep > 0).then(|| metric(sweep).name()),
+        f: objectives.of(scheme.base()).unwrap_or(f64::NAN),
+        all: match all {
+            false => BTreeMap::new(),
+            true => Metric::ALL
+                .iter()
+                .filter_map(|&m| objectives.of(m).map(|f| (m.name(), f)))
+                .collect(),
+        },
+    };
+    (0..).zip(&outcome.history).map(one).collect()
+}

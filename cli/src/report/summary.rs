@@ -1,0 +1,296 @@
+//! The summary of a run for a terminal, and sentences of it that pages show too.
+
+use std::fmt::Write;
+
+use gpu_smooth::Metric;
+
+use crate::report::{
+    ChangeReport, FaultReport, MeshReport, Report, Seconds, SlideReport, TargetReport,
+    UntangleReport,
+};
+use crate::terminal::numbers::{percent, six};
+
+/// The message of a run that a number which is not finite has ended.
+const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a mistake of this program or of the driver of the GPU; the mesh is of the last good state";
+
+/// If more than one vertex in twenty changes its size by more than this factor, the summary mentions `--target
+/// keep-size`.
+const LARGE_CHANGE: f64 = 1.25;
+/// If f by imr is below this, the sizes of elements are likely to be intended.
+const SOUND: f64 = 2.0;
+/// Shares of a smaller f are told of this, as `Outcome::remaining` has them.
+const LEAST_SCALE: f64 = 1e-6;
+
+impl Report {
+    /// Returns the metric that judges convergence: the first of the scheme.
+    pub(crate) fn base(&self) -> &str {
+        self.scheme.split('+').next().unwrap_or("imr")
+    }
+
+    /// Writes the summary for the terminal: what was done, before and after, and the times.
+    pub(crate) fn summary(&self) -> String {
+        let mut text = self.subject() + "\n\n";
+        let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
+        for [name, before, after] in self.rows() {
+            let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
+        }
+        let _ = writeln!(text, "\n{}", self.ending());
+        let _ = writeln!(text, "{}", self.moves());
+        if let Some(slides) = self.slides() {
+            let _ = writeln!(text, "{slides}");
+        }
+        if let Some(improved) = &self.improved {
+            let _ = writeln!(text, "{}", improved.told());
+        }
+        if let Some(warning) = self.warning() {
+            let _ = writeln!(text, "{warning}");
+        }
+        let Seconds { read, prepare, smooth, write, total } = self.seconds;
+        let _ = write!(
+            text,
+            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
+        );
+        text
+    }
+
+    /// Writes what was smoothed, on which engine and by which scheme.
+    pub(crate) fn subject(&self) -> String {
+        let mut text = String::new();
+        let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
+        let s = if colors == 1 { "" } else { "s" };
+        let _ = writeln!(
+            text,
+            "{vertices} vertices ({free} free, {colors} color{s}), {triangles} triangles"
+        );
+        let on = self.engine.adapter.as_deref().unwrap_or("all cores");
+        let _ = write!(text, "{} on {} ({on})", self.scheme, self.engine.kind);
+        if let Some(reason) = &self.engine.reason {
+            let _ = write!(text, ": {reason}");
+        }
+        text.push('\n');
+        if let Some(UntangleReport { bad_before, sweeps, moved }) = self.untangled {
+            let count = |n: usize, one: &str, many: &str| match n {
+                1 => format!("1 {one}"),
+                n => format!("{n} {many}"),
+            };
+            let _ = writeln!(
+                text,
+                "untangled {} in {}, which moved {}",
+                count(bad_before, "inverted or flat triangle", "inverted or flat triangles"),
+                count(sweeps as usize, "sweep", "sweeps"),
+                count(moved, "vertex", "vertices"),
+            );
+        }
+        text.trim_end().to_owned()
+    }
+
+    /// Returns the rows of the table before and after: a name, and both values.
+    pub(crate) fn rows(&self) -> Vec<[String; 3]> {
+        let base = self.base();
+        let mut rows = Vec::new();
+        let mut row = |name: &str, before, after| rows.push([name.to_owned(), before, after]);
+        let mut metrics = vec![base];
+        if !matches!(base, "imr" | "ar") {
+            metrics.push("imr");
+        }
+        if let Some(TargetReport { f: [before, after], .. }) = self.target {
+            row("f of targets", six(before), six(after));
+            metrics = vec!["imr"];
+        }
+        for metric in metrics {
+            row(&format!("f {metric}"), six(self.before.f[metric]), six(self.after.f[metric]));
+        }
+        let angle = |a: f64| format!("{a:.2}°");
+        row("min angle", angle(self.before.min_angle), angle(self.after.min_angle));
+        row("max angle", angle(self.before.max_angle), angle(self.after.max_angle));
+        row("worst imr", six(self.before.worst_imr), six(self.after.worst_imr));
+        // Without a free vertex there is none.
+        let movable = self.after.worst_movable_imr;
+        if movable > 0.0 && movable < self.after.worst_imr {
+            let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
+            row("  of movable", six(before), six(after));
+        }
+        let [before, after] = self.change.least_altitude;
+        row("min altitude", six(before), six(after));
+        row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
+        rows
+    }
+
+    /// Warns if the worst element is worse than before by a hundredth or more.
+    pub(crate) fn warning(&self) -> Option<String> {
+        let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
+        if after <= 1.01 * before {
+            return None;
+        }
+        let judges_shape =
+            |metric: &str| metric.parse::<Metric>().is_ok_and(|metric| metric.properties().barrier);
+        let shape = self.scheme.split('+').any(judges_shape);
+        let base = self.base();
+        let remedy = match shape {
+            true => "f is a mean, which may fall as one element gets worse; --guard worst does not let it".to_owned(),
+            false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
+        };
+        let (before, after) = (six(before), six(after));
+        Some(format!("worst imr rose from {before} to {after}: {remedy}"))
+    }
+
+    /// Writes in a sentence how far vertices moved and how much sizes changed.
+    pub(crate) fn moves(&self) -> String {
+        let ChangeReport { moved, size, .. } = &self.change;
+        if moved.most == 0.0 {
+            return "no vertex moved".to_owned();
+        }
+        let percent = |factor: f64| match 100.0 * (factor - 1.0) {
+            change if change < 99.5 => format!("{change:.0} %"),
+            _ => format!("{factor:.1} times"),
+        };
+        // Sizes of a mesh in a bad state mean nothing.
+        let is_sound = self.before.f["imr"] < SOUND;
+        let keeps = match self.target.is_none() && is_sound && size.most_of_twenty > LARGE_CHANGE {
+            true => "; --target keep-size keeps sizes",
+            false => "",
+        };
+        format!(
+            "vertices moved {:.2} edges (median), {:.2} (95 %), {:.2} (most); sizes around them changed by {}, {}, {}{keeps}",
+            moved.median,
+            moved.most_of_twenty,
+            moved.most,
+            percent(size.median),
+            percent(size.most_of_twenty),
+            percent(size.most),
+        )
+    }
+
+    /// Writes in a sentence how many vertices slid, and what that did to the domain.
+    pub(crate) fn slides(&self) -> Option<String> {
+        let SlideReport { vertices, moved, pairs, off, area_change, .. } = self.slid.as_ref()?;
+        let pairs = match pairs {
+            0 => "",
+            1 => ", a periodic pair together",
+            n => &format!(", {n} periodic pairs together"),
+        };
+        let area = match 100.0 * area_change {
+            change if change.abs() < 1e-9 => "stayed the same".to_owned(),
+            change if change.abs() >= 0.005 => format!("changed by {change:+.2} %"),
+            change => format!("changed by {change:+.2e} %"),
+        };
+        Some(format!(
+            "{moved} of {vertices} vertices on lines slid along them{pairs}; the lines are within {off:.1e} of what they were, and the area of the mesh {area}"
+        ))
+    }
+
+    /// Writes how far the run is from the limit of f, if that is known.
+    fn left(&self) -> String {
+        let f = self.target.as_ref().map_or(self.after.f[self.base()], |target| target.f[1]);
+        match self.remaining {
+            // A decay that has only begun says nothing.
+            None | Some(0.5..) => "; more sweeps may gain more".into(),
+            Some(left) if f < LEAST_SCALE => {
+                format!("; f is estimated to be {:.1e} above its limit", left * LEAST_SCALE)
+            }
+            Some(left) => format!("; f is estimated to be {left:.1e} of itself above its limit"),
+        }
+    }
+
+    /// Says why the run ended, if it neither converged nor reached its goal.
+    pub(crate) fn fell_short(&self) -> Option<String> {
+        let is_done = match &self.goal {
+            Some(goal) => goal.reached,
+            None => self.stop == "converged" || self.nothing_to_do.is_some(),
+        };
+        (!is_done).then(|| self.ending())
+    }
+
+    /// Says in a sentence why the run ended.
+    pub(crate) fn ending(&self) -> String {
+        if let Some(reason) = &self.nothing_to_do {
+            return format!("nothing to do: {reason}; the mesh is written as it was");
+        }
+        let sweeps = match self.sweeps {
+            1 => "1 sweep".to_owned(),
+            n => format!("{n} sweeps"),
+        };
+        let sweeps = match self.corrections {
+            0 => sweeps,
+            n => format!("{sweeps} ({n} corrected from coarser levels)"),
+        };
+        let held = match self.held_back {
+            1 => "1 vertex".to_owned(),
+            n => format!("{n} vertices"),
+        };
+        let mut text = match (self.stop, &self.goal) {
+            (stop, Some(goal)) => {
+                let desired = six(goal.desired);
+                let went = match goal.best_fraction {
+                    beyond if beyond > 1.0 => format!("beyond f = {desired}"),
+                    share => format!("{} % of the way to f = {desired}", percent(share)),
+                };
+                match (goal.reached, stop) {
+                    (true, _) if self.sweeps == 0 => {
+                        format!("nothing to do: f is as low as the desired {desired} already")
+                    }
+                    (true, _) => format!("reached after {sweeps}: {went}"),
+                    (false, "stalled") => {
+                        format!("not reached: no more progress after {sweeps}, {went}")
+                    }
+                    (false, "time-limit") => {
+                        format!("ended by --time-limit after {sweeps}, {went}")
+                    }
+                    (false, "not-finite") => {
+                        format!("{NOT_FINITE}, after {sweeps}, {went}")
+                    }
+                    (false, "canceled") => format!("interrupted after {sweeps}, {went}"),
+                    (false, _) => format!("not reached after {sweeps} (the most): {went}"),
+                }
+            }
+            ("converged", None) if self.held_back > 0 => {
+                format!("converged after {sweeps}; --guard worst keeps {held} from moving on")
+            }
+            ("converged", None) => format!("converged after {sweeps}"),
+            ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
+            ("held-back", None) => {
+                format!("held back by the shape guard at {held} after {sweeps}")
+            }
+            ("time-limit", None) => format!("ended by --time-limit after {sweeps}{}", self.left()),
+            ("not-finite", None) => format!("{NOT_FINITE}, after {sweeps}"),
+            ("canceled", None) => format!("interrupted after {sweeps}; more may gain more"),
+            (_, None) => {
+                let left = self.left();
+                let text = format!("stopped after {sweeps}, the most allowed (--max-sweeps){left}");
+                match self.held_back {
+                    0 => text,
+                    _ => format!("{text}; the shape guard holds back {held}"),
+                }
+            }
+        };
+        if self.sweeps > 0 && self.best_sweep == 0 {
+            text.push_str("; nothing was gained, so the mesh is written as it was");
+        } else if self.best_sweep != self.sweeps {
+            let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
+        }
+        if let Some(FaultReport { sweep, error }) = &self.engine.fault {
+            let _ = write!(text, "; on the CPU from sweep {sweep} on, as the GPU failed: {error}");
+        }
+        if self.opening_sweeps > 0 {
+            let n = self.opening_sweeps;
+            let _ = write!(
+                text,
+                "; the first {n} on the CPU, as triangles were too flat or small for the GPU"
+            );
+        }
+        if self.lost > 0.01 {
+            let share = percent(self.lost);
+            let _ = write!(
+                text,
+                "; {share} % of the gain is lost to rounding, as coordinates have too few digits for this mesh"
+            );
+        }
+        if self.levels_left_out {
+            text.push_str("; coarser levels of so large a mesh do not fit the GPU");
+        }
+        if self.returned > 0 {
+            let _ = write!(text, "; vertices put back for rounding: {}", self.returned);
+        }
+        text
+    }
+}

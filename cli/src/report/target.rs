@@ -1,0 +1,41 @@
+//! The report on the targets of elements.
+
+use serde::Serialize;
+
+use crate::args::{Target, TargetArgs};
+
+/// The target of the elements, if it is not equilateral in the plane.
+#[derive(Serialize)]
+pub(crate) struct TargetReport {
+    /// `equilateral`, `keep-size`, `keep-shape`, `size=SOURCE` or `metric=SOURCE`.
+    pub(crate) kind: String,
+    /// `vertex` if targets move with the vertices, or `place`.
+    pub(crate) of: &'static str,
+    /// `plane` or `sphere`.
+    pub(crate) surface: &'static str,
+    /// Over how many rings of neighbors sizes and shapes were averaged, if those of the mesh were to be kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rings: Option<u32>,
+    /// The base metric's objective of the triangles as targets show them, before and after.
+    pub(crate) f: [f64; 2],
+}
+
+impl TargetArgs {
+    /// Returns the report on targets, with the objective of targets before and after, unless elements were to be
+    /// equilateral in the plane.
+    pub(crate) fn report(
+        &self,
+        before: f64,
+        after: impl FnOnce() -> Result<f64, String>,
+    ) -> Result<Option<TargetReport>, String> {
+        if self.target == Target::Equilateral && self.is_on_plane() {
+            return Ok(None);
+        }
+        let kind = self.kind();
+        let f = [before, after()?];
+        let surface = self.surface.name();
+        let of = if self.is_of_places() { "place" } else { "vertex" };
+        let rings = self.keeps().then(|| self.rings());
+        Ok(Some(TargetReport { kind, of, surface, rings, f }))
+    }
+}

@@ -1,0 +1,44 @@
+//! A mesh that is to be smoothed, and the result of its run.
+
+use std::path::Path;
+
+use gpu_smooth::{Checkpoint, Outcome, Smoother};
+
+use crate::args::{OutputArgs, SmoothArgs};
+use crate::load::LoadedMesh;
+use crate::load::explain::BadTriangleReport;
+use crate::report::Report;
+
+/// A mesh that is to be smoothed.
+pub(crate) struct Task<'a> {
+    pub(crate) args: &'a SmoothArgs,
+    pub(crate) show: &'a OutputArgs,
+    pub(crate) input: &'a Path,
+    pub(crate) out: &'a Path,
+    /// The checkpoint that the run continues from, if there is one.
+    pub(crate) resumed: Option<&'a Checkpoint>,
+}
+
+/// A mesh that was smoothed and written.
+pub(crate) struct Done<'a> {
+    pub(crate) file: &'a LoadedMesh,
+    pub(crate) smoother: &'a Smoother<'a>,
+    pub(crate) outcome: &'a Outcome,
+    /// How many sweeps were done, and after how many seconds of the run, where that is known.
+    pub(crate) times: Vec<(u32, f64)>,
+    pub(crate) report: Report,
+}
+
+/// The reason why a mesh was not smoothed.
+pub(crate) struct Failure {
+    pub(crate) message: String,
+    /// All inverted and flat triangles in the order of the file, if they are the reason and a report was asked for;
+    /// else empty.
+    pub(crate) triangles: Vec<BadTriangleReport>,
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self { message, triangles: Vec::new() }
+    }
+}

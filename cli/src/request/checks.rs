@@ -1,0 +1,180 @@
+//! Checks that hold for any command line, parsed without a process: nothing panics, what is refused has a message, and
+//! what is accepted can be carried out. Unit tests choose the words at random, the fuzzer by the bytes it tries.
+
+use std::ffi::OsString;
+
+use clap::error::ErrorKind;
+use clap::{Arg, Command, CommandFactory};
+use gpu_smooth::{Backend, Desired, Mesh, Precision, SmoothError, Smoother};
+
+use crate::args::Cli;
+use crate::request::command_line::checked;
+
+/// A source of choices: random numbers, or bytes of the fuzzer.
+pub(crate) trait Choices {
+    /// Returns a number below `n`, which must not be 0.
+    fn below(&mut self, n: usize) -> usize;
+}
+
+/// Values that some options accept and others refuse.
+const VALUES: [&str; 34] = [
+    "in.msh",
+    "out.msh",
+    "-",
+    "",
+    "--",
+    "0",
+    "1",
+    "2",
+    "3",
+    "-1",
+    "0.5",
+    "1.5",
+    "0.9",
+    "1e-3",
+    "1e400",
+    "nan",
+    "inf",
+    "-0.0",
+    "99999999999999999999",
+    "18446744073709551616",
+    "0,0,1,1",
+    "inlet,3",
+    "edge+imr",
+    "area",
+    "imr+",
+    "soft-size",
+    "auto",
+    "keep-size",
+    "keep-shape",
+    "size=s.sol",
+    "metric=b.msh:m",
+    "size=",
+    "min-angle<20",
+    "é\u{301}\u{7f}",
+];
+
+/// Makes a command line of random options with values, half of the time after IN and OUT, and at times of words that
+/// belong nowhere.
+fn line(program: &Command, choices: &mut impl Choices) -> Vec<OsString> {
+    let mut words = vec!["gpu-smooth".to_owned()];
+    let mut command = program;
+    let commands: Vec<&Command> =
+        program.get_subcommands().filter(|command| command.get_name() != "help").collect();
+    match choices.below(4) {
+        0 => {
+            command = commands[choices.below(commands.len())];
+            words.extend([command.get_name().to_owned(), "in.msh".to_owned()]);
+        }
+        1 => {}
+        _ => words.extend(["in.msh", "out.msh"].map(str::to_owned)),
+    }
+    let options: Vec<&Arg> = command.get_arguments().filter(|arg| !arg.is_positional()).collect();
+    for _ in 0..choices.below(5) {
+        let arg = options[choices.below(options.len())];
+        words.push(match (arg.get_long(), arg.get_short()) {
+            (Some(long), _) => format!("--{long}"),
+            (None, short) => format!("-{}", short.unwrap_or('x')),
+        });
+        let has_value = arg.get_action().takes_values();
+        if has_value != (choices.below(12) == 0) {
+            let own: Vec<String> =
+                arg.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+            words.push(match own.len() {
+                0 => VALUES[choices.below(VALUES.len())].to_owned(),
+                count => own[choices.below(count)].clone(),
+            });
+        }
+    }
+    if choices.below(8) == 0 {
+        words
+            .insert(1 + choices.below(words.len()), VALUES[choices.below(VALUES.len())].to_owned());
+    }
+    #[cfg_attr(not(unix), expect(unused_mut))]
+    let mut words: Vec<OsString> = words.into_iter().map(OsString::from).collect();
+    #[cfg(unix)]
+    if choices.below(20) == 0 {
+        use std::os::unix::ffi::OsStringExt;
+        words.push(OsString::from_vec(vec![b'a', 0xFF, 0x80]));
+    }
+    words
+}
+
+/// Returns a mesh of six triangles around a vertex.
+fn small_mesh() -> Mesh {
+    let mut points = vec![[0.1, 0.2]];
+    points.extend((0..6).map(|k| f64::from(k).to_radians() * 60.0).map(|a| [a.cos(), a.sin()]));
+    let triangles = (0..6).map(|k| [0, 1 + k, 1 + (k + 1) % 6]).collect();
+    Mesh { points, triangles, fixed: Vec::new() }
+}
+
+/// Parses command lines as the program does.
+pub(crate) struct Checker {
+    program: Command,
+    smoother: Smoother<'static>,
+}
+
+impl Checker {
+    pub(crate) fn new() -> Self {
+        let mut program = Cli::command();
+        program.build();
+        Self { program, smoother: Smoother::new(&small_mesh()).unwrap().into_owned() }
+    }
+
+    /// Makes a command line by `choices`, checks it, and returns how it ended. Runs are limited to three sweeps.
+    ///
+    /// # Panics
+    ///
+    /// Panics if a check fails.
+    pub(crate) fn check(&self, choices: &mut impl Choices) -> &'static str {
+        let words = line(&self.program, choices);
+        match checked(words.clone()) {
+            Ok(cli) if cli.command.is_some() => "command",
+            Ok(cli) => {
+                assert!(cli.smooth.input.is_some(), "{words:?}");
+                let mut options = cli.smooth.options(Precision::Double);
+                options.max_sweeps = options.max_sweeps.min(3);
+                // Looking for the optimum would take most of the time.
+                if let Some(goal) =
+                    options.goal.as_mut().filter(|goal| goal.desired == Desired::Auto)
+                {
+                    goal.desired = Desired::Value(1.0);
+                }
+                match self.smoother.run(&options, &Backend::Cpu) {
+                    Ok(_) => "run",
+                    Err(SmoothError::Option { .. }) => "options that do not go together",
+                    Err(error) => panic!("{words:?}: {error}"),
+                }
+            }
+            Err(error) if !error.use_stderr() => "help",
+            Err(error) => {
+                let told = error.render().to_string();
+                assert!(
+                    told.starts_with("error: ") && told.contains("--help"),
+                    "{words:?}\n{told}"
+                );
+                assert_eq!(error.exit_code(), 2, "{words:?}");
+                match error.kind() {
+                    ErrorKind::ArgumentConflict => "contradiction",
+                    ErrorKind::ValueValidation => "value out of range",
+                    _ => "other error",
+                }
+            }
+        }
+    }
+}
+
+/// Checks the command line that bytes choose, one byte for each choice. After the last byte the first choice is taken.
+#[cfg(fuzzing)]
+pub(crate) fn any_line(bytes: &[u8]) {
+    struct Bytes<'a>(std::slice::Iter<'a, u8>);
+
+    impl Choices for Bytes<'_> {
+        fn below(&mut self, n: usize) -> usize {
+            self.0.next().map_or(0, |&byte| usize::from(byte) % n)
+        }
+    }
+
+    static CHECKER: std::sync::LazyLock<Checker> = std::sync::LazyLock::new(Checker::new);
+    CHECKER.check(&mut Bytes(bytes.iter()));
+}

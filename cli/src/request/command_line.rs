@@ -1,0 +1,60 @@
+//! The command line of the process, parsed and checked.
+
+use std::ffi::OsString;
+
+use clap::error::ErrorKind;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
+
+use crate::args::Cli;
+
+/// Reads the command line of this process. If it is wrong, or asks for help, prints that and ends the process.
+pub(crate) fn read() -> Cli {
+    checked(std::env::args_os()).unwrap_or_else(|error| error.exit())
+}
+
+/// Parses a command line, which begins with the name of the program. Checks the values of options, and that no
+/// options contradict each other.
+///
+/// # Errors
+/// An error says what is wrong with it, or holds the help or version that it asks for.
+pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
+    let matches = Cli::command().try_get_matches_from(words)?;
+    let refused = |kind, text: String| Err(Cli::command().error(kind, text));
+    if let Some(text) = misplaced(&matches) {
+        return refused(ErrorKind::ArgumentConflict, text);
+    }
+    let cli = Cli::from_arg_matches(&matches)?;
+    if let (None, Some(extra)) = (&cli.smooth.out_dir, cli.smooth.more.first()) {
+        let text = format!(
+            "unexpected argument '{}' after IN and OUT: give one mesh per run, or --out-dir DIR for several meshes",
+            extra.display()
+        );
+        return refused(ErrorKind::UnknownArgument, text);
+    }
+    match cli.smooth.contradiction() {
+        Some(text) => refused(ErrorKind::ArgumentConflict, text),
+        None => Ok(cli),
+    }
+}
+
+/// Returns the error if a command comes after arguments of a run.
+fn misplaced(matches: &ArgMatches) -> Option<String> {
+    let name = matches.subcommand_name()?;
+    let command = Cli::command();
+    let given = |arg: &&Arg| {
+        let source = matches.value_source(arg.get_id().as_str());
+        !arg.is_global_set() && source == Some(ValueSource::CommandLine)
+    };
+    let arg = command.get_arguments().find(given)?;
+    Some(match arg.get_long() {
+        Some(long) => {
+            format!(
+                "'--{long}' stands before the command '{name}': put the options of a command after it"
+            )
+        }
+        None => format!(
+            "'{name}' is a command, and no mesh may stand before it; write ./{name} for a file of that name"
+        ),
+    })
+}

@@ -1,0 +1,12 @@
+//! The meaning of options, and what is refused before any file is read.
+
+#[cfg(any(test, fuzzing))]
+pub(crate) mod checks;
+mod command_line;
+mod conflicts;
+mod smooth;
+mod target;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use command_line::read;

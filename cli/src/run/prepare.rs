@@ -1,0 +1,160 @@
+//! The preparation of a mesh: its engine, its colors and levels, untangling, targets and sliding.
+
+use std::time::Instant;
+
+use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
+
+use crate::args::SmoothArgs;
+use crate::load::explain;
+use crate::load::{Choice, LoadedMesh, Riding};
+use crate::report::Failure;
+use crate::run::engine::Taken;
+use crate::run::observer::Follow;
+use crate::run::pipeline::Input;
+use crate::run::untangle::{self, Mended};
+use crate::terminal::progress::Stage;
+
+/// A mesh that can be smoothed: as it was read, or after it was untangled.
+pub(super) enum Prepared<'a> {
+    Ready(Box<Smoother<'a>>),
+    Mended(Mended),
+}
+
+/// The prepared mesh and the engine, each with the reason if there is none.
+pub(super) struct Opened<'a> {
+    pub(super) prepared: Result<Prepared<'a>, Failure>,
+    pub(super) taken: Result<Taken, String>,
+}
+
+/// The smoother of a mesh, and how the mesh was untangled before, if it was.
+pub(super) struct Subject<'a> {
+    pub(super) smoother: Smoother<'a>,
+    pub(super) mended: Option<&'a Mended>,
+}
+
+/// All that the sweeps need.
+pub(super) struct Ready<'a> {
+    pub(super) smoother: Smoother<'a>,
+    pub(super) mended: Option<&'a Mended>,
+    pub(super) taken: Taken,
+    /// The quality of the mesh before the run.
+    pub(super) before: Quality,
+    /// The time at which the preparation ended.
+    pub(super) at: Instant,
+}
+
+impl<'a> Subject<'a> {
+    /// Prepares a mesh that was untangled.
+    pub(super) fn of_mended(file: &LoadedMesh, mended: &'a Mended) -> Result<Self, String> {
+        let smoother = Smoother::new(&mended.mesh);
+        let smoother = smoother.map_err(|error| explain::mesh_error(file, &error))?;
+        Ok(Self { smoother, mended: Some(mended) })
+    }
+}
+
+/// Prepares a mesh while its engine starts, and untangles the mesh if that was asked for.
+pub(super) fn open<'a>(
+    input: &Input<'a>,
+    riding: &Riding,
+    engine: impl FnOnce(MeshSize) -> Result<Taken, String> + Send,
+    follow: &mut dyn Follow,
+) -> Opened<'a> {
+    let mesh = input.file.mesh();
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    follow.stage(Stage::Preparing { vertices: size.vertices });
+    std::thread::scope(|scope| {
+        let opening = scope.spawn(move || engine(size));
+        let prepared = prepared(input, riding, follow);
+        let taken = opening.join().map_err(|_| "the graphics driver crashed on start".to_owned());
+        Opened { prepared, taken: taken.and_then(|taken| taken) }
+    })
+}
+
+fn prepared<'a>(
+    input: &Input<'a>,
+    riding: &Riding,
+    follow: &mut dyn Follow,
+) -> Result<Prepared<'a>, Failure> {
+    let (args, file) = (input.args(), input.file);
+    match smoother(args, file) {
+        prepared if args.untangle && untangle::can_mend(&prepared) => {
+            drop(prepared);
+            follow.stage(Stage::Untangling);
+            riding.check_untangled()?;
+            Ok(Prepared::Mended(untangle::mend(input.task, input.began, file)?))
+        }
+        Err(error) => Err(refusal(args, input.choice, file, &error)),
+        Ok(smoother) => Ok(Prepared::Ready(Box::new(smoother))),
+    }
+}
+
+/// Sets the targets of a prepared mesh and what slides in it, and measures the mesh. Takes the CPU instead of `taken` if
+/// no vertex is free.
+pub(super) fn set_up<'a>(
+    input: &Input<'a>,
+    subject: Subject<'a>,
+    taken: Taken,
+    follow: &mut dyn Follow,
+) -> Result<Ready<'a>, String> {
+    let Subject { mut smoother, mended } = subject;
+    let (args, file, mesh) = (input.args(), input.file, input.file.mesh());
+    let told = |error: MeshError| error.to_string();
+    let taken = match smoother.topology().free_count() {
+        0 => Taken::new(Backend::Cpu, Some("no vertex is free, and sliding is on the CPU".into())),
+        _ => taken,
+    };
+    let points = mended.map_or(&mesh.points, |mended| &mended.mesh.points);
+    if let Some(remark) = mended.and_then(|mended| mended.remark.as_ref()) {
+        follow.remark(remark);
+    }
+    let hanging = smoother.topology().hanging_nodes(&mesh.points).map_err(told)?;
+    if let Some(remark) = explain::hanging(file, &hanging) {
+        follow.remark(&remark);
+    }
+    if let Some(remark) = args.target.set(file, &mut smoother, points)? {
+        follow.remark(&remark);
+    }
+    if let Some(remark) = args.sliding.set(file, &mut smoother)? {
+        follow.remark(&remark);
+    }
+    let surface = args.target.surface();
+    let before = Quality::on(surface, &mesh.points, smoother.topology()).map_err(told)?;
+    Ok(Ready { smoother, mended, taken, before, at: Instant::now() })
+}
+
+/// Prepares a mesh to be smoothed. If vertices slide, none needs to be free.
+fn smoother<'f>(args: &SmoothArgs, file: &'f LoadedMesh) -> Result<Smoother<'f>, MeshError> {
+    let slides = |error| match args.sliding.slide(file) {
+        Ok(Some(slide)) => Smoother::with_slide(file.mesh(), &slide).map_err(|_| error),
+        _ => Err(error),
+    };
+    match Smoother::new(file.mesh()) {
+        Err(error @ MeshError::NothingFree { .. }) => slides(error),
+        made => made,
+    }
+}
+
+/// Words why a mesh is not smoothed, with its inverted and flat triangles if a report was asked for.
+fn refusal(args: &SmoothArgs, choice: &Choice, file: &LoadedMesh, error: &MeshError) -> Failure {
+    if let Some(message) = choice.nothing_free(file, error) {
+        return message.into();
+    }
+    let message = match error {
+        MeshError::NothingFree { .. }
+            if args.sliding.slide && file.interface_vertices().is_empty() =>
+        {
+            let (path, error) = (file.source.path().display(), explain::nothing_free(file));
+            format!(
+                "{path}: {error}, and none can slide, as all are corners or held. Refine the mesh, so that it has vertices between"
+            )
+        }
+        _ => explain::mesh_error(file, error),
+    };
+    let triangles = match error {
+        MeshError::Infeasible { triangles } if args.report.is_some() => {
+            explain::bad_triangles(file, triangles)
+        }
+        _ => Vec::new(),
+    };
+    Failure { message, triangles }
+}

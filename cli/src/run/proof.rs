@@ -1,0 +1,100 @@
+//! Compares two files of a mesh to prove that one is the other with vertices moved.
+
+use crate::load::LoadedMesh;
+use gpu_smooth::{BadTriangle, MeshError, Slide, Topology};
+use mesh_io::Difference;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
+
+use crate::load::Riding;
+use crate::report::FileHash;
+
+/// What a comparison of two mesh files finds. It does not rest on anything that a run says it did.
+pub(crate) struct Proof {
+    /// The first difference that is neither in coordinates nor in data that may change.
+    pub(crate) difference: Option<Difference>,
+    /// Vertices whose coordinates have other bits, ascending.
+    pub(crate) moved: Vec<u32>,
+    /// Vertices that moved and must not, ascending.
+    pub(crate) held: Vec<u32>,
+    /// How many vertices on lines slid along their line.
+    pub(crate) slid: usize,
+    /// How many periodic pairs of vertices slid together.
+    pub(crate) pairs: usize,
+    /// Triangles that are inverted or flat in the second file, by exact predicates.
+    pub(crate) bad: Vec<BadTriangle>,
+}
+
+impl Proof {
+    /// Compares two files. The first says which vertices may move, `slide` which may slide. The data that may change
+    /// are given for both files.
+    pub(crate) fn of(
+        [before, after]: [&LoadedMesh; 2],
+        [mine, theirs]: [&Riding; 2],
+        slide: Option<&Slide>,
+    ) -> Result<Self, MeshError> {
+        let fields = [mine.fields(), theirs.fields()];
+        let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut slid, mut pairs) = (0, 0);
+        let difference = before.source.difference_besides(&after.source, fields);
+        if difference.is_none() {
+            let topology = Topology::new(before.mesh())?;
+            let (old, new) = (&before.mesh().points, &after.mesh().points);
+            let bits = |point: &[f64; 2]| point.map(f64::to_bits);
+            let differ = |&(_, (old, new)): &(u32, (&[f64; 2], &[f64; 2]))| bits(old) != bits(new);
+            moved = (0..).zip(old.iter().zip(new)).filter(differ).map(|(v, _)| v).collect();
+            held = moved.iter().copied().filter(|&v| !topology.free()[v as usize]).collect();
+            if let Some(slide) = slide {
+                let astray = slide.astray(&topology, old, new, after.precision());
+                slid = held.len() - astray.len();
+                held.retain(|v| astray.binary_search(v).is_err());
+                pairs = pairs_among(slide, &held);
+                held = astray;
+            }
+            bad = topology.bad_triangles(new)?;
+            if !bad.is_empty() {
+                // Where more than half of the triangles were inverted before, windings are those of the wrong half.
+                bad = Topology::new(after.mesh())?.bad_triangles(new)?;
+            }
+        }
+        Ok(Self { difference, moved, held, slid, pairs, bad })
+    }
+
+    /// Words what is wrong, in a sentence; `None` if nothing is.
+    pub(crate) fn problem(&self) -> Option<String> {
+        if let Some(Difference { place, other_place, what }) = &self.difference {
+            return Some(format!(
+                "{place} and {other_place}: the files differ in more than coordinates: {what}"
+            ));
+        }
+        let mut problems = Vec::new();
+        match self.held.len() {
+            0 => {}
+            1 => problems.push("1 vertex has moved that must not".to_owned()),
+            count => problems.push(format!("{count} vertices have moved that must not")),
+        }
+        match self.bad.len() {
+            0 => {}
+            1 => problems.push("1 triangle is inverted or flat".to_owned()),
+            count => problems.push(format!("{count} triangles are inverted or flat")),
+        }
+        (!problems.is_empty()).then(|| problems.join(", "))
+    }
+}
+
+/// Counts the periodic pairs whose two vertices are both among these, which are ascending.
+fn pairs_among(slide: &Slide, vertices: &[u32]) -> usize {
+    let has = |v: &u32| vertices.binary_search(v).is_ok();
+    let all = slide.periodic.iter().flat_map(|periodic| &periodic.pairs);
+    let among = all.filter(|pair| pair.iter().all(has));
+    among.map(|&[a, b]| [a.min(b), a.max(b)]).collect::<BTreeSet<_>>().len()
+}
+
+/// Hashes each file of a mesh, as it was read.
+pub(crate) fn hashes(file: &LoadedMesh) -> Vec<FileHash> {
+    let hash = |(path, bytes): (&std::path::Path, &[u8])| {
+        let hex = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        FileHash { path: path.display().to_string(), sha256: hex }
+    };
+    file.source.contents().map(hash).collect()
+}

@@ -1,0 +1,123 @@
+//! The result of a run: its measures, its data and its files.
+
+use std::time::Instant;
+
+use gpu_smooth::{Change, Quality};
+
+use crate::load::{Riding, streams};
+use crate::report::{Certificate, FileHash, TargetReport};
+use crate::run::checkpoint;
+use crate::run::observer::Follow;
+use crate::run::pipeline::Input;
+use crate::run::prepare::Ready;
+use crate::run::proof::{self, Proof};
+use crate::run::sweeps::Ran;
+use crate::terminal::progress::Stage;
+
+/// What is measured of a smoothed mesh.
+pub(super) struct Measures {
+    pub(super) after: Quality,
+    pub(super) change: Change,
+    pub(super) target: Option<TargetReport>,
+    /// The sentence on interpolated data, if there are some.
+    pub(super) interpolated: Option<String>,
+    /// The time at which the measures were done.
+    pub(super) at: Instant,
+}
+
+/// What writing a mesh leads to.
+pub(super) struct Written {
+    /// What the written files prove, if a report was asked for.
+    pub(super) certificate: Option<Certificate>,
+    /// The time at which the files were written.
+    pub(super) at: Instant,
+}
+
+fn told(error: impl std::error::Error) -> String {
+    error.to_string()
+}
+
+/// Measures a smoothed mesh, and brings the data of its vertices to their new places.
+pub(super) fn measure(
+    input: &Input<'_>,
+    ready: &Ready<'_>,
+    ran: &Ran,
+    riding: &mut Riding,
+    follow: &mut dyn Follow,
+) -> Result<Measures, String> {
+    let (args, file, outcome) = (input.args(), input.file, &ran.outcome);
+    let (topology, old) = (ready.smoother.topology(), &file.mesh().points);
+    let after = Quality::on(args.target.surface(), &outcome.points, topology).map_err(told)?;
+    let change = Change::between(topology, old, &outcome.points).map_err(told)?;
+    let base = args.scheme().base();
+    let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
+    let f_after = || ready.smoother.f(base, &outcome.points).map_err(told);
+    let target = args.target.report(f_before, f_after)?;
+    let interpolated = riding.carry(file, topology, &outcome.points)?;
+    let left_over = riding.add_dependents(file, &outcome.points)?;
+    let has_moved = outcome.points != *old;
+    let left_behind = has_moved.then(|| riding.left_behind(file)).flatten();
+    let left_over = left_over.iter().filter(|_| has_moved);
+    for note in interpolated.iter().chain(&left_behind).chain(left_over) {
+        follow.remark(note);
+    }
+    Ok(Measures { after, change, target, interpolated, at: Instant::now() })
+}
+
+/// Writes a smoothed mesh, and proves from the files what a report says of them. Removes the checkpoint of a run that
+/// came to its end.
+pub(super) fn write(
+    input: &Input<'_>,
+    ready: &Ready<'_>,
+    ran: &Ran,
+    riding: &Riding,
+    follow: &mut dyn Follow,
+) -> Result<Written, String> {
+    let (args, file, out) = (input.args(), input.file, input.task.out);
+    follow.stage(Stage::Writing { bytes: input.bytes });
+    // The files are hashed before the mesh is written, which may replace them.
+    let hashes = if args.report.is_some() { proof::hashes(file) } else { Vec::new() };
+    streams::write(file, out, &ran.outcome.points, riding.fields())?;
+    let certificate = match args.report.is_some() && !streams::is_standard(out) {
+        true => Some(certificate(input, ready, riding, hashes)?),
+        false => None,
+    };
+    checkpoint::clear(args, ran.outcome.stop);
+    Ok(Written { certificate, at: Instant::now() })
+}
+
+/// Reads the written mesh again, and proves from the files alone that only vertices which may move have moved.
+fn certificate(
+    input: &Input<'_>,
+    ready: &Ready<'_>,
+    riding: &Riding,
+    hashes: Vec<FileHash>,
+) -> Result<Certificate, String> {
+    let (args, file, out) = (input.args(), input.file, input.task.out);
+    let mut after = streams::read(out, args.reading)?;
+    file.lay_out_likewise(&mut after);
+    let after = after;
+    let mut theirs = args.riding.choose(&after)?;
+    theirs.add_dependents(&after, &after.mesh().points)?;
+    let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref());
+    let proof = proof.map_err(told)?;
+    if let Some(problem) = proof.problem() {
+        return Err(format!(
+            "{}: the written mesh was read again, and it is wrong: {problem}",
+            out.display()
+        ));
+    }
+    let surface = args.target.surface();
+    let quality =
+        Quality::on(surface, &after.mesh().points, ready.smoother.topology()).map_err(told)?;
+    let f = quality.f(args.scheme().base());
+    Ok(Certificate {
+        connectivity_identical: proof.difference.is_none(),
+        moved: proof.moved.len(),
+        fixed_moved: proof.held.len(),
+        inverted: proof.bad.len(),
+        f,
+        input: hashes,
+        output: proof::hashes(&after),
+    })
+}

@@ -1,0 +1,133 @@
+//! The report of a run, from the results of its stages.
+
+use std::time::Instant;
+
+use gpu_smooth::{Backend, Checkpoint, Outcome, Smoother, Stop};
+
+use crate::args::History;
+use crate::load::LoadedMesh;
+use crate::report::{
+    self, Certificate, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds,
+    UntangleReport,
+};
+use crate::run::engine::Taken;
+use crate::run::pipeline::Input;
+use crate::run::prepare::Ready;
+use crate::run::result::Measures;
+use crate::run::sweeps::Ran;
+use crate::run::untangle::Mended;
+
+/// The times at which a run began and its stages ended.
+pub(super) struct Clock {
+    pub(super) began: Instant,
+    pub(super) read: Instant,
+    pub(super) prepared: Instant,
+    pub(super) smoothed: Instant,
+    pub(super) written: Instant,
+}
+
+impl Clock {
+    /// Returns how long each stage took.
+    fn seconds(&self) -> Seconds {
+        Seconds {
+            read: (self.read - self.began).as_secs_f64(),
+            prepare: (self.prepared - self.read).as_secs_f64(),
+            smooth: (self.smoothed - self.prepared).as_secs_f64(),
+            write: (self.written - self.smoothed).as_secs_f64(),
+            total: (self.written - self.began).as_secs_f64(),
+        }
+    }
+}
+
+/// Makes the report of a run whose mesh is written.
+pub(super) fn report(
+    input: &Input<'_>,
+    ready: &Ready<'_>,
+    ran: &Ran,
+    measured: Measures,
+    certificate: Option<Certificate>,
+    clock: &Clock,
+) -> Report {
+    let (args, choice, outcome) = (input.args(), input.choice, &ran.outcome);
+    Report {
+        engine: engine_report(&ran.taken, outcome),
+        mesh: mesh_report(input.file, &ready.smoother),
+        target: measured.target,
+        untangled: ready.mended.map(untangle_report),
+        scheme: args.scheme().to_string(),
+        sweeps: outcome.sweeps,
+        corrections: outcome.corrections,
+        opening_sweeps: outcome.opening_sweeps,
+        levels_left_out: outcome.levels_left_out,
+        best_sweep: outcome.best_sweep,
+        remaining: outcome.remaining,
+        stop: stop(input, ran),
+        continued_from: input.task.resumed.map(Checkpoint::sweeps),
+        nothing_to_do: choice.nothing_to_do.clone(),
+        choices: choice.notes.clone(),
+        interpolated: measured.interpolated,
+        held_back: outcome.held_back,
+        lost: outcome.lost,
+        goal: goal_report(outcome),
+        returned: outcome.returned,
+        slid: outcome.slid.map(Into::into),
+        improved: outcome.improved.map(Into::into),
+        max_move: args.max_move,
+        change: measured.change.into(),
+        before: (&ready.before).into(),
+        after: (&measured.after).into(),
+        certificate,
+        history: report::history(outcome, &args.scheme(), args.history == History::All),
+        seconds: clock.seconds(),
+    }
+}
+
+/// Names the reason for which a run ended.
+fn stop(input: &Input<'_>, ran: &Ran) -> &'static str {
+    match input.choice.nothing_to_do {
+        Some(_) => "nothing-to-do",
+        None if ran.out_of_time => "time-limit",
+        None => ran.outcome.stop.name(),
+    }
+}
+
+fn untangle_report(mended: &Mended) -> UntangleReport {
+    UntangleReport { bad_before: mended.bad_before, sweeps: mended.sweeps, moved: mended.moved }
+}
+
+fn engine_report(taken: &Taken, outcome: &Outcome) -> EngineReport {
+    let adapter = match &*taken.backend {
+        Backend::Cpu => None,
+        Backend::Gpu(gpu) => Some(gpu.adapter()),
+    };
+    EngineReport {
+        kind: if adapter.is_some() { "gpu" } else { "cpu" },
+        adapter: adapter.map(|adapter| adapter.name.clone()),
+        driver: adapter.map(|adapter| adapter.driver.clone()),
+        reason: taken.reason.clone(),
+        fault: outcome
+            .device_fault
+            .as_ref()
+            .map(|fault| FaultReport { sweep: fault.sweep, error: fault.error.to_string() }),
+    }
+}
+
+fn mesh_report(file: &LoadedMesh, smoother: &Smoother<'_>) -> MeshReport {
+    MeshReport {
+        format: file.source.format().to_string(),
+        vertices: file.source.points().len(),
+        triangles: file.mesh().triangles.len(),
+        free: smoother.topology().free_count(),
+        colors: smoother.colors(),
+    }
+}
+
+fn goal_report(outcome: &Outcome) -> Option<GoalReport> {
+    outcome.goal.as_ref().map(|goal| GoalReport {
+        fraction: goal.fraction,
+        desired: goal.desired,
+        origin: goal.origin.clone(),
+        reached: outcome.stop == Stop::Reached,
+        best_fraction: goal.best_fraction,
+    })
+}

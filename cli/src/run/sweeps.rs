@@ -1,0 +1,122 @@
+//! The sweeps of a run, on one engine or, if that fails, on another.
+
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+use gpu_smooth::{Backend, Options, Outcome, Phase, Precision, Progress, SmoothError, Stop};
+
+use crate::args::SmoothArgs;
+use crate::load::{Choice, LoadedMesh, explain};
+use crate::run::checkpoint::Kept;
+use crate::run::engine::{self, Taken};
+use crate::run::observer::Follow;
+use crate::run::pipeline::Input;
+use crate::run::prepare::Ready;
+use crate::terminal::interrupt;
+use crate::terminal::progress::Stage;
+
+/// A finished run, its engine, and the times in seconds after which sweeps were done.
+pub(super) struct Ran {
+    pub(super) outcome: Outcome,
+    pub(super) taken: Taken,
+    pub(super) times: Vec<(u32, f64)>,
+    /// Whether the time limit ended the run.
+    pub(super) out_of_time: bool,
+}
+
+/// The clock of a run: the times after which sweeps were done, and whether the time limit has passed.
+struct SweepClock<'a> {
+    input: &'a Input<'a>,
+    start: Instant,
+    times: Vec<(u32, f64)>,
+    out_of_time: bool,
+}
+
+impl SweepClock<'_> {
+    /// Takes the time of a sweep. Ends the run if the user interrupts it or its time is up.
+    fn sweep(&mut self, progress: &Progress) -> ControlFlow<()> {
+        if progress.phase == Phase::Smoothing {
+            self.times.push((progress.sweep, self.start.elapsed().as_secs_f64()));
+        }
+        let limit = self.input.args().time_limit;
+        self.out_of_time = limit.is_some_and(|limit| self.input.began.elapsed() >= limit);
+        match interrupt::is_requested() || self.out_of_time {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Ends the times of a run with the sweep whose mesh is returned.
+    fn end(&mut self, outcome: &Outcome) {
+        self.times.retain(|time| time.0 < outcome.sweeps);
+        self.times.push((outcome.sweeps, self.start.elapsed().as_secs_f64()));
+    }
+}
+
+/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice of engine open, or if
+/// the GPU fails.
+pub(super) fn smooth(
+    input: &Input<'_>,
+    ready: &Ready<'_>,
+    follow: &mut dyn Follow,
+) -> Result<Ran, String> {
+    let args = input.args();
+    let options = options(args, input.choice, input.file.precision());
+    follow.stage(Stage::Smoothing);
+    let mut clock =
+        SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };
+    let follow = RefCell::new(follow);
+    let mut kept = Kept::new(args, &follow);
+    let mut run = |backend: &Backend| {
+        let mut observe = |progress: &Progress| {
+            follow.borrow_mut().sweep(progress);
+            clock.sweep(progress)
+        };
+        ready.smoother.run_kept(&options, backend, input.task.resumed, &mut kept, &mut observe)
+    };
+    let mut taken = ready.taken.clone();
+    let turn = taken.turn();
+    let mut outcome = run(&taken.backend);
+    drop(turn);
+    if let Err(error) = &outcome
+        && engine::is_open(args)
+        && engine::is_too_large(error)
+    {
+        taken = Taken::new(Backend::Cpu, Some(error.to_string()));
+        outcome = run(&taken.backend);
+    }
+    let outcome = outcome.map_err(|error| worded(args, input.file, &error))?;
+    clock.end(&outcome);
+    let is_canceled = outcome.stop == Stop::Canceled;
+    if is_canceled {
+        kept.left();
+    }
+    let out_of_time = clock.out_of_time && is_canceled && !interrupt::is_requested();
+    Ok(Ran { outcome, taken, times: clock.times, out_of_time })
+}
+
+/// Words the error of a run in the terms of the file and the command line.
+fn worded(args: &SmoothArgs, file: &LoadedMesh, error: &SmoothError) -> String {
+    match error {
+        SmoothError::Mesh(error) => explain::mesh_error(file, error),
+        SmoothError::Checkpoint(_) => {
+            let path = args.continued.as_deref().unwrap_or(Path::new(""));
+            format!("{}: {error}", path.display())
+        }
+        error if engine::is_too_large(error) => {
+            format!("{error}. Smooth on the CPU: --engine cpu")
+        }
+        error => error.to_string(),
+    }
+}
+
+/// Returns the options of the run. If there is nothing to do, the run has no sweeps.
+fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
+    let options = args.options(stored);
+    match choice.nothing_to_do {
+        Some(_) => Options { max_sweeps: 0, goal: None, improve_worst: None, ..options },
+        None => options,
+    }
+}

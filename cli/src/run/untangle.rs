@@ -1,0 +1,144 @@
+//! `--untangle`: untangles a mesh that has inverted or flat triangles.
+
+use crate::load::LoadedMesh;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use gpu_smooth::{BadTriangle, Mesh, MeshError, Smoother, Topology, Untangled, Untangling};
+
+use crate::load::explain;
+use crate::load::streams;
+use crate::report::Task;
+use crate::terminal::interrupt;
+
+/// A mesh that was untangled, with the work that this took.
+pub(crate) struct Mended {
+    pub(crate) mesh: Mesh,
+    pub(crate) bad_before: usize,
+    pub(crate) sweeps: u32,
+    pub(crate) moved: usize,
+    /// What is wrong with the mesh still.
+    pub(crate) remark: Option<String>,
+}
+
+/// Untangles a mesh that cannot be smoothed as it is.
+///
+/// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before. The time limit
+/// counts from `began`.
+pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, String> {
+    let Task { args, show, out, .. } = *task;
+    let mesh = file.mesh();
+    let told = |error: MeshError| explain::mesh_error(file, &error);
+    let topology = Topology::by_area(mesh).map_err(told)?;
+    let remedy = match args.keep_going {
+        true => "",
+        false => {
+            ". Correct them, or untangle a mesh that is meant to lie over itself with --keep-going"
+        }
+    };
+    let crossings = explain::crossings(file, &topology, remedy);
+    if let (Some(crossings), false) = (&crossings, args.keep_going) {
+        return Err(format!("{}: {crossings}", file.source.path().display()));
+    }
+    let mut ended = None;
+    let mut observe = |progress: &Untangling| {
+        if show.verbose {
+            let Untangling { sweep, bad } = progress;
+            let text = format!("untangling, sweep {sweep:<5} inverted or flat {bad}");
+            streams::say_beside(out, &text);
+        }
+        if interrupt::is_requested() {
+            ended = Some("interrupted while untangling");
+        } else if args.time_limit.is_some_and(|limit| began.elapsed() >= limit) {
+            ended = Some("--time-limit ended untangling");
+        }
+        match ended {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    };
+    let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(told)?;
+    let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved } = untangled;
+    let mut message = match overlapping {
+        None if left.is_empty() => {
+            let mesh = Mesh { points, ..mesh.clone() };
+            return Ok(Mended { mesh, bad_before, sweeps, moved, remark: crossings });
+        }
+        Some(vertex) if left.is_empty() => overlaps(file, vertex, sweeps),
+        _ => still_tangled(file, (&left, &hopeless), sweeps, ended.is_some()),
+    };
+    if let Some(ended) = ended {
+        message = format!("{ended}. {message}");
+    }
+    if !args.keep_going {
+        return Err(message);
+    }
+    match streams::write(file, out, &points, &[]) {
+        Ok(()) => Err(format!("{message}\n  The best mesh found was written: {}", out.display())),
+        Err(error) => Err(format!("{message}\n  {error}")),
+    }
+}
+
+const KEPT: &str = "; --keep-going writes the best mesh found";
+const PERHAPS: &str = ". Perhaps fixed vertices leave no room, or the boundary winds around itself";
+
+/// Words that no triangle is inverted, but that those around a vertex wind more than once around it.
+fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> String {
+    let place = file.vertex_place(vertex);
+    let vertex = place.label;
+    format!(
+        "{place}: after {} of untangling no triangle is inverted, but those around vertex {vertex} wind more than once around \
+         it{PERHAPS}{KEPT}",
+        counted(sweeps)
+    )
+}
+
+/// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless. `was_ended` tells
+/// that untangling was ended before it gave up.
+fn still_tangled(
+    file: &LoadedMesh,
+    (left, hopeless): (&[BadTriangle], &[BadTriangle]),
+    sweeps: u32,
+    was_ended: bool,
+) -> String {
+    let name = file.source.path().display();
+    let (shown, count, why) = match hopeless.len() {
+        0 => {
+            let perhaps = if was_ended { "" } else { PERHAPS };
+            let sweeps = counted(sweeps);
+            let why =
+                format!("stayed inverted or flat after {sweeps} of untangling{perhaps}{KEPT}");
+            (left, left.len(), why)
+        }
+        count => {
+            let why = "cannot be mended by moving vertices, as none of their vertices is free: they are on the \
+                       boundary, on constraint lines, between regions or of other elements. Mend the file, or let \
+                       those between regions move: --free-interfaces"
+                .to_owned();
+            (hopeless, count, why)
+        }
+    };
+    let (triangles, first) = (
+        if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") },
+        explain::bad_triangles(file, &shown[..count.min(explain::TOLD)]),
+    );
+    format!(
+        "{name}: {triangles} {why}{}",
+        explain::list(&first, count, "gpu-smooth quality --json")
+    )
+}
+
+fn counted(sweeps: u32) -> String {
+    if sweeps == 1 { "1 sweep".to_owned() } else { format!("{sweeps} sweeps") }
+}
+
+/// Whether a mesh was refused for inverted or flat triangles, or has some that double precision cannot judge, which
+/// untangling may mend.
+pub(crate) fn can_mend(prepared: &Result<Smoother<'_>, MeshError>) -> bool {
+    match prepared {
+        Ok(smoother) => {
+            smoother.beyond_precision().iter().any(|&t| smoother.topology().can_move(t))
+        }
+        Err(error) => matches!(error, MeshError::Infeasible { .. }),
+    }
+}

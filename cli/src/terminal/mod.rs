@@ -1,0 +1,7 @@
+//! The terminal: messages, progress, signals and panics.
+
+pub(crate) mod interrupt;
+pub(crate) mod numbers;
+pub(crate) mod panics;
+pub(crate) mod progress;
+pub(crate) mod tell;

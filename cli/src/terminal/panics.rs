@@ -1,0 +1,52 @@
+//! Panics of wgpu, which it uses to report some failures of drivers. The library turns them into errors, so they are
+//! not printed. A panic that the library does not see, as while a device is dropped, ends the process with an error
+//! message.
+
+use std::cell::Cell;
+use std::panic::{self, AssertUnwindSafe};
+use std::process::ExitCode;
+
+use crate::terminal::tell;
+
+thread_local! {
+    /// Whether the latest panic of this thread was one of wgpu.
+    static OF_WGPU: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Does the work of the process. Reports a panic of wgpu that nothing has caught as an error.
+pub(crate) fn told(work: impl FnOnce() -> ExitCode) -> ExitCode {
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        let of_wgpu = panic.location().is_some_and(|place| is_of_wgpu(place.file()));
+        OF_WGPU.set(of_wgpu);
+        if !of_wgpu {
+            usual(panic);
+        }
+    }));
+    match panic::catch_unwind(AssertUnwindSafe(work)) {
+        Ok(code) => code,
+        Err(_) if OF_WGPU.get() => {
+            tell::error("the driver of the GPU failed. Use --engine cpu, or another driver");
+            ExitCode::FAILURE
+        }
+        Err(payload) => panic::resume_unwind(payload),
+    }
+}
+
+/// Whether a source file is one of wgpu's crates (wgpu, wgpu-core, wgpu-hal).
+fn is_of_wgpu(file: &str) -> bool {
+    file.split(['/', '\\']).any(|folder| folder.starts_with("wgpu"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_wgpu_are_distinguished_from_others() {
+        assert!(is_of_wgpu("/home/a/registry/src/b/wgpu-hal-30.0.1/src/vulkan/descriptor.rs"));
+        assert!(is_of_wgpu(r"C:\registry\wgpu-30.0.1\src\lib.rs"));
+        assert!(!is_of_wgpu("src/gpu/device/open.rs"));
+        assert!(!is_of_wgpu("/home/a/my-wgpu/src/main.rs"));
+    }
+}

@@ -1,0 +1,245 @@
+//! Shows how far a run on one mesh is.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use gpu_smooth::{Phase, Progress};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+
+use crate::args::OutputArgs;
+use crate::terminal::progress::form::{Form, PATIENCE};
+use crate::terminal::progress::left::{Decay, Pace, told};
+use crate::terminal::progress::stage::Stage;
+use crate::terminal::tell;
+
+/// How often a bar is drawn again.
+const FRAME: Duration = Duration::from_millis(200);
+
+/// Shows the stages of a run on standard error, if the run takes long enough.
+pub(crate) struct Display {
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    state: Mutex<State>,
+    ended: Condvar,
+}
+
+struct State {
+    has_ended: bool,
+    form: Form,
+    bar: ProgressBar,
+    started: Instant,
+    stage: Stage,
+    stage_began: Instant,
+    pace: Pace,
+    decay: Decay,
+    sweeps: Option<Swept>,
+    max_sweeps: u32,
+    next_line: Instant,
+}
+
+/// How far the sweeps are.
+struct Swept {
+    progress: Progress,
+    /// When the phase of these sweeps began, and when its progress was last told.
+    began: Instant,
+    told: Instant,
+}
+
+impl Swept {
+    /// Returns the mean seconds of a sweep in this phase.
+    fn seconds(&self) -> f64 {
+        (self.told - self.began).as_secs_f64() / f64::from(self.progress.sweep.max(1))
+    }
+}
+
+impl Display {
+    /// Makes a display for a run that ends within `tolerance` of the limit of f (`None` if it has another goal) or
+    /// after `max_sweeps`.
+    pub(crate) fn new(show: &OutputArgs, tolerance: Option<f64>, max_sweeps: u32) -> Self {
+        let (form, now) = (Form::new(show), Instant::now());
+        let wait = match form {
+            Form::Lines(interval) if !show.verbose => interval,
+            _ => PATIENCE,
+        };
+        let state = State {
+            has_ended: false,
+            form,
+            bar: form.bar(),
+            started: now,
+            stage: Stage::Reading { bytes: 0 },
+            stage_began: now,
+            pace: Pace::default(),
+            decay: Decay::new(tolerance, max_sweeps),
+            sweeps: None,
+            max_sweeps,
+            next_line: now + wait,
+        };
+        let shared = Arc::new(Shared { state: Mutex::new(state), ended: Condvar::new() });
+        if form != Form::None {
+            // The stages of reading, preparing and writing do not tell how far they are, so a clock redraws the
+            // display.
+            let of_clock = Arc::clone(&shared);
+            let clock = std::thread::Builder::new().name("progress".into());
+            let _ = clock.spawn(move || of_clock.tick());
+        }
+        Self { shared }
+    }
+
+    /// Begins another stage.
+    pub(crate) fn stage(&self, stage: Stage) {
+        let mut state = self.shared.lock();
+        let seconds = state.stage_began.elapsed().as_secs_f64();
+        let ended = state.stage;
+        state.pace.learn(ended, seconds);
+        state.stage = stage;
+        state.stage_began = Instant::now();
+        if tell::is_json() && state.form != Form::None {
+            tell::event(json!({ "event": "stage", "stage": stage.name() }));
+        }
+    }
+
+    /// Shows that sweeps were done.
+    pub(crate) fn sweep(&self, progress: &Progress) {
+        let mut state = self.shared.lock();
+        let told = Instant::now();
+        let began = match &state.sweeps {
+            Some(last) if last.progress.phase == progress.phase => last.began,
+            Some(_) => told,
+            None => state.stage_began,
+        };
+        state.sweeps = Some(Swept { progress: *progress, began, told });
+        if progress.phase == Phase::Smoothing {
+            state.decay.learn(progress.sweep, progress.f);
+        }
+        state.show();
+    }
+
+    /// Calls `print` while the bar is hidden.
+    pub(crate) fn aside(&self, print: impl FnOnce()) {
+        let state = self.shared.lock();
+        state.bar.suspend(print);
+    }
+
+    /// Removes the bar, and shows no more.
+    pub(crate) fn clear(&self) {
+        let mut state = self.shared.lock();
+        state.has_ended = true;
+        state.bar.finish_and_clear();
+        self.shared.ended.notify_all();
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        self.clear();
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn tick(&self) {
+        let mut state = self.lock();
+        while !state.has_ended {
+            state.show();
+            let waited = self.ended.wait_timeout(state, FRAME);
+            state = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+}
+
+impl State {
+    fn show(&mut self) {
+        let now = Instant::now();
+        if self.has_ended || now - self.started < PATIENCE {
+            return;
+        }
+        match self.form {
+            Form::None => {}
+            Form::Lines(interval) => {
+                if now >= self.next_line {
+                    self.next_line = now + interval;
+                    self.line();
+                }
+            }
+            Form::Bar => {
+                let (text, left) = (self.text(), self.left());
+                let seconds = self.stage_began.elapsed().as_secs_f64();
+                // A narrow terminal has no room for a bar beside the text.
+                let template = match left {
+                    Some(_) => "{bar:16} {wide_msg}",
+                    None => "{wide_msg}",
+                };
+                if let Ok(style) = ProgressStyle::with_template(template) {
+                    self.bar.set_style(style);
+                }
+                let share = left.map_or(0.0, |left| seconds / (seconds + left).max(1e-9));
+                self.bar.set_position((1000.0 * share) as u64);
+                self.bar.set_message(text);
+            }
+        }
+    }
+
+    fn line(&self) {
+        if !tell::is_json() {
+            return tell::note(false, &self.text());
+        }
+        let mut event = json!({
+            "event": "progress", "stage": self.stage.name(),
+            "stage_seconds": self.stage_began.elapsed().as_secs_f64(), "seconds_left": self.left(),
+        });
+        if let (Stage::Smoothing, Some(Swept { progress, .. })) = (self.stage, &self.sweeps) {
+            event["sweep"] = progress.sweep.into();
+            event["f"] = progress.f.into();
+            event["finds_optimum"] = (progress.phase == Phase::Reference).into();
+        }
+        tell::event(event);
+    }
+
+    /// Says what is under way, for how long, and how long it will take.
+    fn text(&self) -> String {
+        let mut text = match (self.stage, &self.sweeps) {
+            (Stage::Smoothing, Some(swept)) => {
+                let Swept { progress: Progress { sweep, f, phase }, began, .. } = swept;
+                let speed = match swept.seconds() {
+                    seconds if seconds > 0.5 => format!("{seconds:.1} s/sweep"),
+                    seconds => format!("{:.0} sweeps/s", 1.0 / seconds.max(1e-6)),
+                };
+                let figures = format!("f {f:.7}  {speed}  {}", told(began.elapsed().as_secs_f64()));
+                match phase {
+                    Phase::Reference => format!("finding the optimum: sweep {sweep}  {figures}"),
+                    Phase::Smoothing => format!("sweep {sweep}/{}  {figures}", self.max_sweeps),
+                    Phase::Improving => format!("improving the worst triangles: f {f:.7}"),
+                }
+            }
+            (stage, _) => {
+                format!("{}  {}", stage.text(), told(self.stage_began.elapsed().as_secs_f64()))
+            }
+        };
+        if let Some(left) = self.left().filter(|left| *left > 0.5) {
+            text += &format!(", about {} left", told(left));
+        }
+        text
+    }
+
+    /// Estimates how many more seconds the stage takes, if that can be told.
+    fn left(&self) -> Option<f64> {
+        let seconds = self.stage_began.elapsed().as_secs_f64();
+        match (self.stage, &self.sweeps) {
+            (Stage::Smoothing, Some(swept)) if swept.progress.phase == Phase::Smoothing => {
+                let since = swept.told.elapsed().as_secs_f64();
+                Some((self.decay.sweeps_left()? * swept.seconds() - since).max(0.0))
+            }
+            (Stage::Smoothing, _) => None,
+            // A stage that takes longer than expected has no known end.
+            (stage, _) => {
+                self.pace.whole(stage).map(|whole| whole - seconds).filter(|left| *left > 0.0)
+            }
+        }
+    }
+}

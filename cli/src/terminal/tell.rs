@@ -1,0 +1,99 @@
+//! Prints everything that the program prints.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use gpu_smooth::gpu::AdapterSummary;
+
+use serde_json::{Value, json};
+
+/// Whether standard error gets JSON, and when the process began.
+static JSON: AtomicBool = AtomicBool::new(false);
+static START: OnceLock<Instant> = OnceLock::new();
+
+/// Makes every line on standard error an object of JSON from now on.
+pub(crate) fn log_json() {
+    START.get_or_init(Instant::now);
+    JSON.store(true, Ordering::Relaxed);
+}
+
+/// Whether standard error gets JSON.
+pub(crate) fn is_json() -> bool {
+    JSON.load(Ordering::Relaxed)
+}
+
+/// Writes an event to standard error as a line of JSON, with the seconds since the process began.
+pub(crate) fn event(mut event: Value) {
+    event["seconds"] = START.get_or_init(Instant::now).elapsed().as_secs_f64().into();
+    eprintln!("{event}");
+}
+
+/// Prints a result to the standard output. It is no error if the reader has gone, as `head` does; a full disk ends the
+/// process.
+pub(crate) fn say(text: &str) {
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
+            error(&format!("standard output: {problem}"));
+            std::process::exit(1);
+        }
+        _ => {}
+    }
+}
+
+/// Prints a result to the standard error, where the standard output is the mesh.
+pub(crate) fn aside(text: &str) {
+    eprintln!("{text}");
+}
+
+/// Prints a remark to the standard error, unless `quiet`.
+pub(crate) fn note(quiet: bool, text: &str) {
+    match () {
+        () if quiet => {}
+        () if is_json() => event(json!({ "event": "note", "message": text })),
+        () => eprintln!("gpu-smooth: {}", printable(text)),
+    }
+}
+
+/// Escapes the control characters in a message, except for line ends. Names of files may have such characters, and a
+/// terminal would obey them.
+fn printable(text: &str) -> String {
+    let shown = |c: char| match c.is_control() && c != '\n' {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(shown).collect()
+}
+
+/// Ends the last line of a terminal, where a bar may stand.
+pub(crate) fn leave_bar() {
+    if std::io::stderr().is_terminal() && !is_json() {
+        eprintln!();
+    }
+}
+
+pub(crate) fn error(text: &str) {
+    let shown = printable(text);
+    match is_json() {
+        true => event(json!({ "event": "error", "message": text })),
+        false if is_colored() => eprintln!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {shown}"),
+        false => eprintln!("gpu-smooth: error: {shown}"),
+    }
+}
+
+/// Whether standard error is colored: on a terminal with colors, unless `NO_COLOR` (<https://no-color.org>) is set;
+/// anywhere if `CLICOLOR_FORCE` (<https://bixense.com/clicolors>) is set.
+fn is_colored() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let forced = set("CLICOLOR_FORCE");
+    let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    !set("NO_COLOR") && (forced || std::io::stderr().is_terminal() && !is_dumb)
+}
+
+/// Describes an adapter: its kind, backend and driver.
+pub(crate) fn adapter(adapter: &AdapterSummary) -> String {
+    let software = if adapter.is_software() { ": software" } else { "" };
+    format!("({}{software}, {}; {})", adapter.kind, adapter.backend, adapter.driver)
+}
