@@ -3,6 +3,7 @@
 pub(crate) mod checkpoint;
 pub(crate) mod driver_probe;
 pub(crate) mod engine;
+mod input;
 pub(crate) mod observer;
 mod pipeline;
 mod prepare;

@@ -5,36 +5,18 @@ use std::time::Instant;
 
 use gpu_smooth::MeshSize;
 
-use crate::args::SmoothArgs;
 use crate::load::remarks;
 use crate::load::streams;
 use crate::load::{Choice, LoadedMesh, Riding};
 use crate::report::{Done, Failure, Task};
 use crate::run::engine::Taken;
+use crate::run::input::Input;
 use crate::run::observer::Follow;
 use crate::run::prepare::{Prepared, Subject, open, set_up};
 use crate::run::result::{measure, write};
 use crate::run::run_report;
 use crate::run::sweeps::smooth;
 use crate::terminal::progress::Stage;
-
-/// A mesh as its stages see it, with the task that it comes from.
-#[derive(Clone, Copy)]
-pub(super) struct Input<'a> {
-    pub(super) task: &'a Task<'a>,
-    pub(super) file: &'a LoadedMesh,
-    pub(super) choice: &'a Choice,
-    /// The size of the input file, or 0 if the input is no file.
-    pub(super) bytes: u64,
-    /// The time at which the run began, from which its time limit counts.
-    pub(super) began: Instant,
-}
-
-impl<'a> Input<'a> {
-    pub(super) fn args(&self) -> &'a SmoothArgs {
-        self.task.args
-    }
-}
 
 /// A mesh that was read, with what its options chose in it.
 struct ReadMesh {

@@ -9,8 +9,8 @@ use crate::load::explain;
 use crate::load::{Choice, LoadedMesh, Riding};
 use crate::report::Failure;
 use crate::run::engine::Taken;
+use crate::run::input::Input;
 use crate::run::observer::Follow;
-use crate::run::pipeline::Input;
 use crate::run::untangle::{self, Mended};
 use crate::terminal::progress::Stage;
 

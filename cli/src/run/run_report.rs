@@ -11,7 +11,7 @@ use crate::report::{
     UntangleReport,
 };
 use crate::run::engine::Taken;
-use crate::run::pipeline::Input;
+use crate::run::input::Input;
 use crate::run::prepare::Ready;
 use crate::run::result::Measures;
 use crate::run::sweeps::Ran;
