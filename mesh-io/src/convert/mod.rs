@@ -1,5 +1,5 @@
-//! Writes a mesh of one format in another. A reader's walk makes a description of the mesh ([`mod@content`]), a row of
-//! [`targets`] says what the format holds of it, and a writer writes that.
+//! Writes a mesh of one format in another. A reader's walk makes the [`content`](mod@crate::export::content) of a mesh, a row of
+//! [`targets`] says which parts the format holds, and a writer writes these parts.
 
 mod conversion;
 #[cfg(test)]
