@@ -133,7 +133,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         }
         b"E4T" | b"E6W" | b"E8H" | b"E5P" => {
             let problem = "elements of a volume";
-            return Err(cursor.error(problem, "Only triangles of the plane are read"));
+            return Err(cursor.error(problem, "Only meshes of the plane are read"));
         }
         _ => return Ok(Row::Other),
     };
