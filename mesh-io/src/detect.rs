@@ -5,22 +5,15 @@ use crate::error::ReadError;
 use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
 use crate::formats::mike;
 use crate::formats::nastran;
-use crate::formats::triangle::names::{Names, appended};
+use crate::formats::triangle;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
 use crate::visit::sink::Reader;
-use std::path::{Path, PathBuf};
-
-/// How a file is read.
-pub(crate) enum Content {
-    /// A mesh in one file, with its reader.
-    Of(&'static Reader),
-    Triangle(Names),
-}
+use std::path::Path;
 
 /// Finds the format of a file. If no reader exists for it, the error names the format if it is known.
-pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
+pub(crate) fn reader(source: &Source) -> Result<&'static Reader, ReadError> {
     let head = head(&source.bytes, b"%");
     if head.is_empty() {
         return Err(source.error("the file is empty", "Write the mesh again"));
@@ -49,7 +42,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
         return of(source, &MIKE);
     }
     if TRIANGLE.has_ending_of(&source.path) {
-        return Ok(Content::Triangle(Names::of(&source.path)));
+        return of(source, &TRIANGLE);
     }
     // Formats without first words are told by their ending if it is theirs alone. An STL in text must start with its
     // first word.
@@ -65,7 +58,7 @@ pub(crate) fn content(source: &Source) -> Result<Content, ReadError> {
 }
 
 /// Tells apart formats of plain rows of numbers, by how many numbers the first rows have.
-fn by_rows(source: &Source) -> Result<Content, ReadError> {
+fn by_rows(source: &Source) -> Result<&'static Reader, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
         |row: &[&[u8]]| row.iter().map(|token| integer(token)).collect::<Option<Vec<_>>>();
@@ -76,10 +69,8 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
             return Err(source.error(problem, "Name the mesh itself, its .node or .ele"));
         }
         Some([_, 2, _, 0..=1]) if second.len() > 2 => {
-            return match companion(&source.path, "ele") {
-                Some((ele, poly)) => {
-                    Ok(Content::Triangle(Names { node: source.path.clone(), ele, poly }))
-                }
+            return match triangle::files::names(source) {
+                Some(_) => of(source, &TRIANGLE),
                 None => {
                     let problem = "the vertices of a Triangle mesh, without its triangles";
                     let wanted = file_name(&source.path.with_extension("ele"));
@@ -93,10 +84,8 @@ fn by_rows(source: &Source) -> Result<Content, ReadError> {
                 }
             };
         }
-        Some([_, 3 | 6, ..]) => {
-            if let Some((node, poly)) = companion(&source.path, "node") {
-                return Ok(Content::Triangle(Names { node, ele: source.path.clone(), poly }));
-            }
+        Some([_, 3 | 6, ..]) if triangle::files::names(source).is_some() => {
+            return of(source, &TRIANGLE);
         }
         _ => {}
     }
@@ -124,9 +113,9 @@ pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
     family.map(|family| family.name)
 }
 
-fn of(source: &Source, family: &'static Family) -> Result<Content, ReadError> {
+fn of(source: &Source, family: &'static Family) -> Result<&'static Reader, ReadError> {
     match &family.reader {
-        Some(reader) => Ok(Content::Of(reader)),
+        Some(reader) => Ok(reader),
         None => {
             let remedy = match family.instead {
                 "" => formats_read(),
@@ -175,15 +164,6 @@ fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
     })
 }
 
-/// Finds the other file of a Triangle mesh if a `.node` or `.ele` has another ending. Returns its path and that of the
-/// `.poly`, which need not exist.
-fn companion(path: &Path, ending: &str) -> Option<(PathBuf, PathBuf)> {
-    [path.with_extension(""), path.to_owned()].iter().find_map(|stem| {
-        let other = appended(stem, &format!(".{ending}"));
-        other.is_file().then(|| (other, appended(stem, ".poly")))
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -194,14 +174,13 @@ mod tests {
             bytes: content_bytes.to_vec(),
             packed: None,
             welds: false,
-            beside: Vec::new(),
+            companions: Vec::new(),
         };
-        match content(&source) {
-            Ok(Content::Of(reader)) => {
+        match reader(&source) {
+            Ok(reader) => {
                 let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
                 FAMILIES.iter().find(of).unwrap().name.into()
             }
-            Ok(Content::Triangle(_)) => "triangle".into(),
             Err(ReadError::Format { problem, .. }) => problem,
             Err(error) => error.to_string(),
         }
@@ -212,8 +191,8 @@ mod tests {
         assert_eq!(problem("a.node", b"\n $MeshFormat\n"), "gmsh");
         assert_eq!(problem("a.msh", b"\xEF\xBB\xBF$MeshFormat\r\n"), "gmsh");
         assert_eq!(problem("a.node", b"# vtk DataFile Version 2.0\n"), "legacy VTK");
-        assert_eq!(problem("a.node", b"# made by hand\n3 2 0 0\n"), "triangle");
-        assert_eq!(problem("a.ELE", b"1 3 0\n"), "triangle");
+        assert_eq!(problem("a.node", b"# made by hand\n3 2 0 0\n"), "Triangle .node/.ele");
+        assert_eq!(problem("a.ELE", b"1 3 0\n"), "Triangle .node/.ele");
     }
 
     #[test]

@@ -6,14 +6,14 @@ use crate::format::Format;
 use crate::formats::vtk::{legacy, xml};
 use crate::formats::{
     abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, mfem, mike,
-    nastran, obj, off, ply, selafin, sms, stl, ugrid, xdmf,
+    nastran, obj, off, ply, selafin, sms, stl, triangle, ugrid, xdmf,
 };
 use crate::formats::{medit, su2};
 use crate::visit::sink::{Reader, Walk};
 use std::path::Path;
 
-const fn reader<W: Walk>() -> Option<Reader> {
-    Some(Reader::of::<W>())
+const fn reader<W: Walk>() -> Reader {
+    Reader::of::<W>()
 }
 
 /// A row of the table: formats that one reader reads, or a format that only messages name. To add a format, add a row,
@@ -25,7 +25,7 @@ pub(crate) struct Family {
     /// The first bytes of a file of this format, after blanks and comment lines. Empty for formats that are told by
     /// their first rows of numbers.
     pub(crate) opens: &'static [&'static [u8]],
-    /// The reader. `None` for Triangle, which has two files, and for formats that are not read.
+    /// The reader. `None` for formats that are not read.
     pub(crate) reader: Option<Reader>,
     /// What to do with a file of a format that is not read. If empty, the message lists the formats that are read.
     pub(crate) instead: &'static str,
@@ -72,7 +72,7 @@ impl Family {
 
     /// Whether meshes of this format are read.
     pub(crate) fn is_read(&self) -> bool {
-        self.reader.is_some() || std::ptr::eq(self, &TRIANGLE)
+        self.reader.is_some()
     }
 
     /// Whether the path ends as files of this format do, compressed or not, in capital or small letters.
@@ -86,9 +86,9 @@ const fn family(
     name: &'static str,
     endings: &'static [&'static str],
     opens: &'static [&'static [u8]],
-    reader: Option<Reader>,
+    reader: Reader,
 ) -> Family {
-    Family { name, endings, opens, reader, instead: "" }
+    Family { name, endings, opens, reader: Some(reader), instead: "" }
 }
 
 /// Makes a row for a format that is not read.
@@ -101,7 +101,8 @@ const fn unread(
     Family { name, endings, opens, reader: None, instead }
 }
 
-pub(crate) static TRIANGLE: Family = family("Triangle .node/.ele", &[".node", ".ele"], &[], None);
+pub(crate) static TRIANGLE: Family =
+    family("Triangle .node/.ele", &[".node", ".ele"], &[], reader::<triangle::Triangle>());
 static GMSH: Family =
     family("gmsh", &[".msh"], &[b"$MeshFormat", b"$Comments"], reader::<gmsh::Gmsh>());
 static VTK: Family = family(

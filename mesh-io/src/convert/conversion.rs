@@ -12,7 +12,6 @@ use crate::export::content::Content;
 use crate::export::job::Job;
 use crate::families::Family;
 use crate::format::Format;
-use crate::formats::triangle::content;
 use crate::formats::triangle::names::Names;
 use crate::formats::write_grids;
 use crate::mesh_file::mesh::MeshFile;
@@ -63,11 +62,7 @@ impl Conversion {
         let Some(target) = TARGETS.iter().find(|target| target.format == to) else {
             return Ok(None);
         };
-        let sources = file.sources();
-        let mut content = match &Family::of(file.format()).reader {
-            Some(reader) => collector::content(reader, &sources[0])?,
-            None => content::content(&sources[0], &sources[1], sources.get(2))?,
-        };
+        let mut content = collector::content(file.reader(), file.source())?;
         // The points as they were read, rounded to the precision of the file.
         content.points = file.points().to_vec();
         write_grids::match_depths(&mut content, file.format(), to);

@@ -1,4 +1,4 @@
-//! The bytes of one file.
+//! The bytes of a file, with the other files of the same mesh.
 
 use crate::compress::packed;
 use crate::compress::packed::{Packed, Unpackable};
@@ -17,22 +17,24 @@ pub(crate) struct Source {
     pub(crate) packed: Option<Packed>,
     /// Whether corners at the same place become one vertex, for formats without vertices.
     pub(crate) welds: bool,
-    /// The files that it names, in which numbers of the mesh stand.
-    pub(crate) beside: Vec<Beside>,
+    /// The other files of the mesh.
+    pub(crate) companions: Vec<Companion>,
 }
 
-/// A file that a mesh has numbers in, beside the one that names it.
-pub(crate) struct Beside {
-    /// What it is called there, and where, ascending.
+/// Another file of a mesh.
+pub(crate) struct Companion {
+    /// The names by which the main file refers to this file. Empty if the name follows from that of the main file.
     pub(crate) names: Vec<String>,
+    /// The ranges of bytes of the main file that hold one of the names, ascending.
     pub(crate) named_at: Vec<Range<usize>>,
     pub(crate) source: Source,
 }
 
-/// Where a file names another one.
-pub(crate) struct Named {
-    pub(crate) name: String,
-    pub(crate) at: Range<usize>,
+impl Companion {
+    /// Makes a companion whose name follows from that of the main file.
+    pub(crate) fn by_convention(source: Source) -> Companion {
+        Companion { names: Vec::new(), named_at: Vec::new(), source }
+    }
 }
 
 impl Source {
@@ -54,8 +56,13 @@ impl Source {
 
     /// Makes a source of a file's bytes, and decompresses them if needed.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Source, ReadError> {
-        let source =
-            Source { path: path.to_owned(), bytes, packed: None, welds: false, beside: Vec::new() };
+        let source = Source {
+            path: path.to_owned(),
+            bytes,
+            packed: None,
+            welds: false,
+            companions: Vec::new(),
+        };
         match packed::unpack(&source.bytes) {
             Ok(None) => Ok(source),
             Ok(Some((packing, content))) => {
@@ -93,9 +100,9 @@ impl Source {
         1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
     }
 
-    /// The file itself and those beside it.
+    /// Returns the files of the mesh: this file, then its companions.
     pub(crate) fn parts(&self) -> impl Iterator<Item = &Source> {
-        std::iter::once(self).chain(self.beside.iter().map(|beside| &beside.source))
+        std::iter::once(self).chain(self.companions.iter().map(|companion| &companion.source))
     }
 
     /// The last part of the path, for messages.

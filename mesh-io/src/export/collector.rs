@@ -18,7 +18,7 @@ pub(crate) fn content(reader: &Reader, source: &Source) -> Result<Content, ReadE
 
 /// Collects all that a reader hands on.
 #[derive(Default)]
-pub(crate) struct Collector {
+struct Collector {
     content: Content,
     map: Option<TagMap>,
     columns: Vec<Column>,
@@ -29,7 +29,7 @@ pub(crate) struct Collector {
     /// The last set of cells of a dimension and region, as long as the groups they stand within are the same.
     last: HashMap<(u8, [i64; 2]), u32>,
     names: HashMap<(String, Option<u8>, i64), String>,
-    vertex_numbers: HashMap<(String, i64), usize>,
+    vertex_numbers: HashMap<(String, Label), usize>,
     /// The array that was announced last.
     announced: Option<Announced>,
     /// How many data have the same name, for names with more than one.
@@ -65,7 +65,7 @@ fn common(what: &str) -> String {
 
 impl Collector {
     /// Returns the description after all was handed on.
-    pub(crate) fn finish(self) -> Content {
+    fn finish(self) -> Content {
         let Self { mut content, names, by_tag, .. } = self;
         for group in &mut content.groups {
             let Label::Tag(tag) = group.label else { continue };
@@ -254,11 +254,12 @@ impl Sink for Collector {
         self.last.clear();
     }
 
-    fn node_within(&mut self, node: u32, what: &str, tag: i64) {
+    fn node_within(&mut self, node: u32, what: &str, label: &Label) {
         let groups = &mut self.content.vertex_groups;
-        let number = *self.vertex_numbers.entry((what.to_owned(), tag)).or_insert(groups.len());
+        let key = (what.to_owned(), label.clone());
+        let number = *self.vertex_numbers.entry(key).or_insert(groups.len());
         if number == groups.len() {
-            let (what, label) = (common(what), Label::Tag(tag));
+            let (what, label) = (common(what), label.clone());
             groups.push((Group { what, dimension: 0, label, name: None }, Vec::new()));
         }
         groups[number].1.push(node);

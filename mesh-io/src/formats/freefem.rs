@@ -3,6 +3,7 @@
 //! The format: <https://doc.freefem.org/documentation/mesh-generation.html>, "Data Structures and Read/Write Statements
 //! for a Mesh". All numbers start at one.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -49,7 +50,7 @@ impl Walk for FreeFem {
                 let label = before.item(label, &mut None)?;
                 // A vertex without a label has the label 0.
                 if label != 0 {
-                    sink.node_within(vertex as u32, "label", label);
+                    sink.node_within(vertex as u32, "label", &Label::Tag(label));
                 }
             }
         }

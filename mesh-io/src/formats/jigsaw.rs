@@ -4,6 +4,7 @@
 //! `KEY=COUNT` and may stand in any order. Numbers are separated by semicolons, and points counted from zero. Each point and
 //! element ends in a tag.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -143,7 +144,7 @@ fn tags(points: &List<'_>, dimensions: u64, sink: &mut dyn Sink) -> Result<(), R
         cursor.tokens(dimensions);
         match tag(cursor)? {
             0 => {}
-            tag => sink.node_within(point as u32, "tag", tag),
+            tag => sink.node_within(point as u32, "tag", &Label::Tag(tag)),
         }
     }
     Ok(())

@@ -4,6 +4,7 @@
 //! first row has the kind of data, its unit, the number of nodes and the projection; before 2012 only the latter two. A
 //! node has a height and a code: 0 inside, 1 at land, more at open boundaries.
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -69,7 +70,7 @@ fn codes(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -> Result<(),
         cursor.tokens(4);
         let code = if cursor.is_at_end() { 0 } else { cursor.signed("the code of a node")? };
         if code != 0 {
-            sink.node_within(node as u32, "code", code);
+            sink.node_within(node as u32, "code", &Label::Tag(code));
         }
     }
     Ok(())

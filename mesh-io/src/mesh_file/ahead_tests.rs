@@ -1,7 +1,7 @@
 //! Reads files with long lists both on all threads and item by item. The meshes and the errors must be the same.
 
-use crate::detect::{self, Content};
-use crate::disk::source::Source;
+use crate::detect;
+use crate::disk::source::{Companion, Source};
 use crate::edit::numbers::Places;
 use crate::visit::assemble::parse_by;
 use crate::visit::parsed::Parsed;
@@ -47,8 +47,11 @@ impl Binary {
     }
 }
 
-/// Returns meshes in the formats that have records, each with the offsets where its lists start and end. Some elements
-/// are of another kind than most.
+/// The separator of the `.node` and the `.ele` of a Triangle mesh.
+const NEXT_FILE: &[u8] = b"# next file\n";
+
+/// Returns meshes in the formats that have records, and one of Triangle, whose two files are separated by
+/// [`NEXT_FILE`]. Some elements are of another kind than most.
 fn files() -> Vec<(&'static str, Vec<u8>)> {
     let points: Vec<[f64; 2]> = (0..SIDE * SIDE)
         .map(|v| [(v % SIDE) as f64 + 1.0 / (v + 2) as f64, (v / SIDE) as f64])
@@ -61,6 +64,18 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
     let in_space = || points.iter().flat_map(|&[x, y]| [x, y, 2.0]);
     let region = |t: usize| 3 + usize::from(t > 20_000) + usize::from(t % 1000 == 999);
     let mut files = Vec::new();
+
+    let mut file = Binary(Vec::new(), false);
+    file.text(&format!("{n} 2 1 1\n"));
+    for (v, [x, y]) in points.iter().enumerate() {
+        file.text(&format!("{} {x:?} {y:?} 0.5 {}\n", v + 1, v % 2));
+    }
+    file.0.extend_from_slice(NEXT_FILE);
+    file.text(&format!("{m} 3 1\n"));
+    for (t, [a, b, c]) in triangles.iter().enumerate() {
+        file.text(&format!("{} {} {} {} {}\n", t + 1, a + 1, b + 1, c + 1, region(t)));
+    }
+    files.push(("m.node", file.0));
 
     let mut file = Binary(Vec::new(), false);
     file.ints([1, 2, 3, 20, 2, 4, 32 + 20 * n, n]);
@@ -233,9 +248,14 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
 
 /// Reads a file. Returns the mesh with the offsets of its coordinates, or the error.
 fn read(name: &str, bytes: &[u8], ahead: bool) -> Result<impl PartialEq, String> {
-    let source = Source::new(name.as_ref(), bytes.to_vec()).map_err(|e| e.to_string())?;
-    let content = detect::content(&source).map_err(|e| e.to_string())?;
-    let Content::Of(reader) = content else { panic!("{name} is of two files") };
+    let next_file = memchr::memmem::find(bytes, NEXT_FILE);
+    let (main, other) = bytes.split_at(next_file.unwrap_or(bytes.len()));
+    let mut source = Source::new(name.as_ref(), main.to_vec()).map_err(|e| e.to_string())?;
+    if !other.is_empty() {
+        let other = Source::new("m.ele".as_ref(), other.to_vec()).map_err(|e| e.to_string())?;
+        source.companions.push(Companion::by_convention(other));
+    }
+    let reader = detect::reader(&source).map_err(|e| e.to_string())?;
     let parsed = parse_by(reader, &source, ahead).map_err(|e| e.to_string())?;
     let Parsed { points, triangles, constraints, x_at, regions, notes, .. } = parsed;
     let places: Vec<usize> = (0..points.len()).map(|v| x_at.at(v)).collect();

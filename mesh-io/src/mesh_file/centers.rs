@@ -2,7 +2,6 @@
 
 use crate::content::tags::TagMap;
 use crate::error::FieldError;
-use crate::families::Family;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
@@ -40,11 +39,10 @@ impl MeshFile {
         if points.len() != old.len() {
             return Err(FieldError::PointCount { expected: old.len(), given: points.len() });
         }
-        let reader = Family::of(self.format()).reader.as_ref().filter(|_| self.has_centers());
         let mut seeker = Seeker::default();
-        if let Some(reader) = reader {
+        if self.has_centers() {
             // Reading the file again cannot fail, as it was read before.
-            _ = (reader.walk)(&self.sources()[0], &mut seeker);
+            _ = (self.reader().walk)(self.source(), &mut seeker);
         }
         let map = TagMap::new(&seeker.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
         let (mut fields, mut others) = (Vec::new(), Vec::new());

@@ -175,9 +175,9 @@ impl MeshFile {
             Some(points) => points.ranges(),
         };
         if part == 0 {
-            // Files beside it may have other names.
-            let beside = self.sources().iter().flat_map(|source| &source.beside);
-            ranges.extend(beside.flat_map(|beside| beside.named_at.iter().cloned()));
+            // Companions may have other names.
+            let named_at = self.source().companions.iter().flat_map(|own| &own.named_at);
+            ranges.extend(named_at.cloned());
         }
         let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
         let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.home));

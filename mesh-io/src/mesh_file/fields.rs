@@ -2,8 +2,6 @@
 
 use crate::content::group::distance;
 use crate::error::ReadError;
-use crate::families::Family;
-use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
@@ -35,7 +33,7 @@ impl MeshFile {
     pub fn point_fields(&self, names: Option<&[String]>) -> Result<Vec<PointField>, ReadError> {
         let PointData { fields, known } =
             self.data_of(names.map_or(Wanted::Real, Wanted::Named))?;
-        let source = &self.sources()[0];
+        let source = self.source();
         for name in names.unwrap_or_default() {
             let shown = quoted(name.as_bytes());
             match known.iter().find(|(known, _)| known == name) {
@@ -77,7 +75,7 @@ impl MeshFile {
     /// [`ReadError`] if there is no such array, if its data are damaged, or if it does not have one number for each
     /// vertex.
     pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
-        let source = &self.sources()[0];
+        let source = self.source();
         let PointData { fields, known } = self.data_of(Wanted::Named(&[name.to_owned()]))?;
         let vertices = self.points().len();
         let shown = quoted(name.as_bytes());
@@ -97,16 +95,12 @@ impl MeshFile {
     }
 
     fn data_of(&self, wanted: Wanted<'_>) -> Result<PointData, ReadError> {
-        let sources = self.sources();
-        match &Family::of(self.format()).reader {
-            Some(reader) => point_data::point_data(reader, &sources[0], wanted),
-            None => triangle::point_data(&sources[0], wanted),
-        }
+        point_data::point_data(self.reader(), self.source(), wanted)
     }
 
     fn damaged(&self, name: &str) -> ReadError {
         let problem = format!("the array '{}' is damaged or cut off", quoted(name.as_bytes()));
-        self.sources()[0].error(problem, "Write the mesh again")
+        self.source().error(problem, "Write the mesh again")
     }
 
     fn unknown(&self, name: &str, mut known: Vec<String>) -> ReadError {
@@ -116,6 +110,6 @@ impl MeshFile {
             [] => "The file has no point data".to_owned(),
             _ => format!("There are {}", known.join(", ")),
         };
-        self.sources()[0].error(problem, remedy)
+        self.source().error(problem, remedy)
     }
 }

@@ -8,6 +8,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::visit::parsed::Parsed;
+use crate::visit::sink::Reader;
 use std::fmt;
 use std::path::Path;
 
@@ -64,9 +65,9 @@ pub struct MeshFile {
     encoded: Option<Box<dyn Encoded>>,
     regions: Option<Vec<u32>>,
     constraints: Constraints,
-    /// All files of the mesh, the one with the vertices first. For a Triangle mesh, these are the `.node`, the `.ele`
-    /// and, if there is one, the `.poly`.
-    sources: Vec<Source>,
+    reader: &'static Reader,
+    /// The main file, with its companions. The main file of a Triangle mesh is the `.node`.
+    source: Source,
 }
 
 impl MeshFile {
@@ -74,7 +75,11 @@ impl MeshFile {
     ///
     /// # Errors
     /// [`ReadError::Format`] if there is no triangle.
-    pub(crate) fn new(parsed: Parsed, sources: Vec<Source>) -> Result<MeshFile, ReadError> {
+    pub(crate) fn new(
+        parsed: Parsed,
+        reader: &'static Reader,
+        source: Source,
+    ) -> Result<MeshFile, ReadError> {
         let Parsed {
             format,
             points,
@@ -94,7 +99,7 @@ impl MeshFile {
         if triangles.is_empty() {
             let problem = format!("{} vertices, but no triangle", points.len());
             let remedy = "Meshes are read by their triangles: mesh the surface with triangles, and save all its elements";
-            return Err(sources[0].error(problem, remedy));
+            return Err(source.error(problem, remedy));
         }
         Ok(MeshFile {
             points,
@@ -111,13 +116,14 @@ impl MeshFile {
             encoded,
             regions,
             constraints,
-            sources,
+            reader,
+            source,
         })
     }
 
     /// Returns the path of the file that was read; for a Triangle mesh, that of its `.node`.
     pub fn path(&self) -> &Path {
-        &self.sources[0].path
+        &self.source.path
     }
 
     /// All files that were read: of a Triangle mesh its `.node`, `.ele` and, if there is one, `.poly`; of an XDMF the files beside it
@@ -177,16 +183,22 @@ impl MeshFile {
         self.format
     }
 
-    pub(crate) fn sources(&self) -> &[Source] {
-        &self.sources
+    /// Returns the reader by which the file was read.
+    pub(crate) fn reader(&self) -> &'static Reader {
+        self.reader
     }
 
-    /// All files of the mesh, each of the sources with those beside it.
+    /// Returns the main file, with its companions.
+    pub(crate) fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// Returns all files of the mesh, the main file first.
     pub(crate) fn parts(&self) -> Vec<&Source> {
-        self.sources.iter().flat_map(Source::parts).collect()
+        self.source.parts().collect()
     }
 
-    /// Which of the parts has the coordinates.
+    /// Returns the index of the file that has the coordinates, in the order of [`parts`](Self::parts).
     pub(crate) fn part(&self) -> usize {
         self.part
     }

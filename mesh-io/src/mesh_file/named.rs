@@ -4,8 +4,6 @@ use crate::content::group::Groups;
 use crate::content::tags::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::families::Family;
-use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::gather;
@@ -40,11 +38,7 @@ impl MeshFile {
     /// [`ReadError`] if the names of groups, such as gmsh's `$Entities`, are damaged. Reading the mesh does not need
     /// them.
     pub fn groups(&self) -> Result<Groups, ReadError> {
-        let sources = self.sources();
-        let table = match &Family::of(self.format()).reader {
-            Some(reader) => gather::groups(reader, &sources[0])?,
-            None => triangle::groups(&sources[0], &sources[1], sources.get(2))?,
-        };
+        let table = gather::groups(self.reader(), self.source())?;
         Ok(table.finish(self.triangles(), self.points().len()))
     }
 
@@ -79,16 +73,6 @@ impl MeshFile {
     }
 
     fn vertex_labels(&self) -> Result<Vec<u64>, ReadError> {
-        let source = &self.sources()[0];
-        match &Family::of(self.format()).reader {
-            Some(reader) => gather::labels(reader, source),
-            None => {
-                let places = triangle::vertex_places(
-                    source,
-                    (0..self.points().len()).map(|vertex| self.x_at().at(vertex)),
-                );
-                Ok(places.into_iter().map(|(_, label)| label).collect())
-            }
-        }
+        gather::labels(self.reader(), self.source())
     }
 }

@@ -1,7 +1,6 @@
 //! Parameters of vertices on surfaces of a model, which gmsh's files may have.
 
 use crate::error::FieldError;
-use crate::families::Family;
 use crate::mesh_file::mesh::MeshFile;
 use crate::mesh_file::parametric;
 use crate::visit::field::PointField;
@@ -24,10 +23,9 @@ impl MeshFile {
         if points.len() != old.len() {
             return Err(FieldError::PointCount { expected: old.len(), given: points.len() });
         }
-        let reader = Family::of(self.format()).reader.as_ref().filter(|_| self.has_parameters());
         // Reading the file again cannot fail, as it was read before.
-        let fields =
-            reader.and_then(|reader| parametric::parameters(reader, &self.sources()[0]).ok());
+        let read = || parametric::parameters(self.reader(), self.source()).ok();
+        let fields = self.has_parameters().then(read).flatten();
         let (mut plane, mut others) = (Vec::new(), 0);
         for mut field in fields.unwrap_or_default() {
             let Some(slopes) = slopes(old, field.values()) else {

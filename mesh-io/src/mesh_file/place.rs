@@ -1,9 +1,6 @@
 //! Finds where a file has its vertices and triangles, for messages.
 
 use crate::error::Location;
-use crate::families::Family;
-use crate::format::Format;
-use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
 use crate::visit::assemble;
 use std::collections::BTreeMap;
@@ -45,14 +42,8 @@ impl MeshFile {
     pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
         let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
         keep_ascending(&mut wanted, self.points().len());
-        let source = &self.sources()[0];
-        let found = match &Family::of(self.format()).reader {
-            None => {
-                let x_at = wanted.iter().map(|&v| self.x_at().at(v));
-                of_one_file(triangle::vertex_places(source, x_at))
-            }
-            Some(reader) => assemble::vertex_places(reader, source, &wanted),
-        };
+        let source = self.source();
+        let found = assemble::vertex_places(self.reader(), source, &wanted);
         let place = |(location, label, part)| {
             let path = source.parts().nth(part).unwrap_or(source).path.clone();
             Place { path, location, label }
@@ -80,22 +71,14 @@ impl MeshFile {
     ) -> BTreeMap<usize, Place> {
         let mut wanted: Vec<usize> = indices.into_iter().collect();
         keep_ascending(&mut wanted, self.triangles().len());
-        let source = &self.sources()[usize::from(self.format() == Format::Triangle)];
-        let found = match &Family::of(self.format()).reader {
-            None => of_one_file(triangle::triangle_places(source, &wanted)),
-            Some(reader) => assemble::triangle_places(reader, source, &wanted),
-        };
+        let source = self.source();
+        let found = assemble::triangle_places(self.reader(), source, &wanted);
         let place = |(location, label, part)| {
             let path = source.parts().nth(part).unwrap_or(source).path.clone();
             Place { path, location, label }
         };
         wanted.iter().copied().zip(found.into_iter().map(place)).collect()
     }
-}
-
-/// Places that are all in the first file.
-fn of_one_file(places: Vec<(Location, u64)>) -> Vec<(Location, u64, usize)> {
-    places.into_iter().map(|(location, label)| (location, label, 0)).collect()
 }
 
 /// Sorts indices, each once, and drops those that are not below `count`.

@@ -1,15 +1,10 @@
 //! Reads a mesh from its file, or from memory.
 
-use crate::detect::{self, Content};
-use crate::disk::replace::same_file;
-use crate::disk::source::{Beside, Named, Source};
-use crate::error::{Location, ReadError};
-use crate::families::TRIANGLE;
+use crate::detect;
+use crate::disk::source::Source;
+use crate::error::ReadError;
 use crate::formats::triangle;
-use crate::formats::triangle::names::Names;
 use crate::mesh_file::mesh::MeshFile;
-use crate::text::cursor::CORRECT;
-use crate::text::token::quoted;
 use crate::visit::assemble;
 use crate::visit::sink::Reader;
 use std::path::Path;
@@ -40,24 +35,11 @@ impl MeshFile {
     }
 
     fn read_as(path: &Path, welds: bool) -> Result<MeshFile, ReadError> {
-        let names = Names::of(path);
-        let has_half = names.node.is_file() || names.ele.is_file();
-        let has_ending = TRIANGLE.has_ending_of(path);
-        if has_half && !has_ending && !path.is_file() {
-            return Self::read_as(&names.node, welds);
-        }
-        let mut given = match Source::load(path) {
-            Err(_) if has_half && has_ending && !path.exists() => half_missing(path, &names)?,
-            given => given?,
-        };
+        let mut given =
+            triangle::files::load_by_stem(path).unwrap_or_else(|| Source::load(path))?;
         given.welds = welds;
-        match content(&given)? {
-            Content::Of(reader) => {
-                load_beside(reader, &mut given)?;
-                of_one_file(reader, given)
-            }
-            Content::Triangle(names) => Self::read_triangle(given, &names),
-        }
+        let reader = reader(&given)?;
+        parsed(reader, (reader.load_companions)(given)?)
     }
 
     /// Reads a mesh from memory, such as what a program got by its standard input. `name` stands for it in messages.
@@ -80,100 +62,22 @@ impl MeshFile {
     }
 
     fn of_source(given: Source) -> Result<MeshFile, ReadError> {
-        match content(&given)? {
-            Content::Of(reader) => {
-                if let Some(named) = (reader.beside)(&given)?.first() {
-                    let name = quoted(named.name.as_bytes());
-                    let problem = format!("its numbers are in {name}, a file beside it");
-                    return Err(given.error(problem, "Name the file, so that both are read"));
-                }
-                of_one_file(reader, given)
-            }
-            Content::Triangle(_) => {
-                let problem = "one of the two files of a Triangle mesh";
-                Err(given.error(problem, "Name its .node, so that both are read"))
-            }
-        }
-    }
-
-    fn read_triangle(given: Source, names: &Names) -> Result<MeshFile, ReadError> {
-        let load = |path: &Path| match Source::load(path) {
-            Err(_) if !path.exists() => half_missing(path, names),
-            loaded => loaded,
-        };
-        let (node, ele) = if given.path == names.ele {
-            (load(&names.node)?, given)
-        } else {
-            (given, load(&names.ele)?)
-        };
-        let poly = names.poly.exists().then(|| Source::load(&names.poly)).transpose()?;
-        if let Some(packed) = [&node, &ele].into_iter().chain(&poly).find(|s| s.packed.is_some()) {
-            let problem =
-                "files of Triangle are not read compressed, as there are several to a mesh";
-            return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
-        }
-        if let Some(error) = [&node, &ele].into_iter().chain(&poly).find_map(ends_by_returns) {
-            return Err(error);
-        }
-        let parsed = triangle::parse(&node, &ele, poly.as_ref())?;
-        let sources = [node, ele].into_iter().chain(poly).collect();
-        MeshFile::new(parsed, sources)
+        let reader = reader(&given)?;
+        (reader.require_single)(&given)?;
+        parsed(reader, given)
     }
 }
 
-/// Finds the format of a file, or explains why it has none that is read.
-fn content(given: &Source) -> Result<Content, ReadError> {
-    detect::content(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
+/// Finds the reader of a file, or explains why the file has no format that is read.
+fn reader(given: &Source) -> Result<&'static Reader, ReadError> {
+    detect::reader(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
 }
 
-/// Reads the files that a file names, each once.
-fn load_beside(reader: &Reader, given: &mut Source) -> Result<(), ReadError> {
-    let named = (reader.beside)(given)?;
-    if !named.is_empty() && given.packed.is_some() {
-        let problem = "it is compressed, but a mesh of several files";
-        return Err(given.error(problem, "Decompress it first (gunzip, unzstd)"));
-    }
-    for Named { name, at } in named {
-        if let Some(known) = given.beside.iter_mut().find(|own| own.names.contains(&name)) {
-            known.named_at.push(at);
-            continue;
-        }
-        let path = given.path.parent().unwrap_or(Path::new("")).join(&name);
-        if same_file(&path, &given.path) {
-            let place = Location::Line(given.line_of(at.start));
-            let problem = "it names itself as a file of numbers";
-            return Err(given.error_at(place, problem, CORRECT));
-        }
-        // By another name.
-        if let Some(known) = given.beside.iter_mut().find(|own| same_file(&own.source.path, &path))
-        {
-            known.names.push(name);
-            known.named_at.push(at);
-            continue;
-        }
-        let source = match Source::load(&path) {
-            Err(_) if !path.exists() => {
-                let place = Location::Line(given.line_of(at.start));
-                let shown = quoted(name.as_bytes());
-                let problem = format!("its numbers are in {shown}, which is not there");
-                return Err(given.error_at(place, problem, "Put the file beside it"));
-            }
-            loaded => loaded?,
-        };
-        if source.packed.is_some() {
-            let problem = "it is compressed, but one of the files of a mesh";
-            return Err(source.error(problem, "Decompress it first (gunzip, unzstd)"));
-        }
-        given.beside.push(Beside { names: vec![name], named_at: vec![at], source });
-    }
-    Ok(())
-}
-
-fn of_one_file(reader: &Reader, given: Source) -> Result<MeshFile, ReadError> {
+fn parsed(reader: &'static Reader, source: Source) -> Result<MeshFile, ReadError> {
     // Formats that are read by words may have any line ends.
-    let ends = ends_by_returns(&given);
-    let read = assemble::parse(reader, &given);
-    let made = read.and_then(|parsed| MeshFile::new(parsed, vec![given]));
+    let ends = source.parts().find_map(ends_by_returns);
+    let read = assemble::parse(reader, &source);
+    let made = read.and_then(|parsed| MeshFile::new(parsed, reader, source));
     made.map_err(|error| ends.unwrap_or(error))
 }
 
@@ -186,15 +90,4 @@ fn ends_by_returns(source: &Source) -> Option<ReadError> {
         let problem = "its lines end in carriage returns alone, as on old Macintosh systems";
         source.error(problem, "Make them line feeds first: tr '\\r' '\\n' < IN > OUT")
     })
-}
-
-/// Returns the error for a Triangle mesh whose file `missing` does not exist, though the other one does.
-fn half_missing(missing: &Path, names: &Names) -> Result<Source, ReadError> {
-    let there = if missing == names.node { &names.ele } else { &names.node };
-    let remedy = format!(
-        "A Triangle mesh is two files: put it beside {} (Triangle writes both)",
-        there.display()
-    );
-    let source = std::io::Error::new(std::io::ErrorKind::NotFound, "not found");
-    Err(ReadError::Io { path: missing.to_owned(), source, remedy })
 }

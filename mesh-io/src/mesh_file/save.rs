@@ -4,14 +4,11 @@ use crate::compress::packed::Packing;
 use crate::detect;
 use crate::disk::replace;
 use crate::disk::replace::Job;
-use crate::edit::beside;
 use crate::edit::column::Column;
 use crate::edit::numbers::{Encoded, Splice};
 use crate::edit::rewrite::Rewrite;
 use crate::error::WriteError;
-use crate::families::{Family, TRIANGLE};
-use crate::format::Format;
-use crate::formats::triangle::names::Names;
+use crate::families::Family;
 use crate::mesh_file::mesh::MeshFile;
 use crate::visit::field::PointField;
 use crate::visit::sink::{Home, Stored};
@@ -52,7 +49,7 @@ impl MeshFile {
         self.check_points(path, points)?;
         self.check_destination(path)?;
         let packs = self.packs(path);
-        let renamed = &beside::renamed(&self.sources()[0], path);
+        let renamed = &(self.reader().renames)(self.source(), path);
         let job = |(part, destination)| -> Job<'_> {
             let content = (points, fields);
             (
@@ -75,7 +72,7 @@ impl MeshFile {
     /// Whether what the first file becomes stands there already.
     fn is_written(&self, (path, _): &Job<'_>, renamed: &[Splice]) -> bool {
         let mut new = Vec::new();
-        let bytes = &self.sources()[0].bytes;
+        let bytes = &self.source().bytes;
         let written = Rewrite { bytes, columns: &[], splices: renamed }.write(&mut new);
         written.is_ok() && std::fs::read(path).is_ok_and(|old| old == new)
     }
@@ -113,7 +110,7 @@ impl MeshFile {
             let remedy = "Name a file to write to".to_owned();
             return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
         }
-        let packs = self.sources()[0].packed.as_ref().map(|packed| packed.packing);
+        let packs = self.source().packed.as_ref().map(|packed| packed.packing);
         self.put(0, (points, fields), packs, out).and_then(|()| out.flush()).map_err(|source| {
             let remedy = "Write to a file instead".to_owned();
             WriteError::Io { path: name.to_owned(), source, remedy }
@@ -123,7 +120,7 @@ impl MeshFile {
     /// Returns the compression of what is written to a path, by its ending. A file that was compressed without such an
     /// ending stays compressed under any name.
     fn packs(&self, path: &Path) -> Option<Packing> {
-        let source = &self.sources()[0];
+        let source = self.source();
         match Packing::of(path) {
             None if Packing::of(&source.path).is_none() => {
                 source.packed.as_ref().map(|packed| packed.packing)
@@ -264,50 +261,7 @@ impl MeshFile {
                 format!("A run keeps the format: end the name in {usual}, and convert the result"),
             );
         }
-        Ok(match self.format() {
-            Format::Triangle if Packing::of(path).is_some() => {
-                let problem =
-                    "a Triangle mesh is of several files, which are not written compressed";
-                return refused(problem.into(), "End the name in .node".into());
-            }
-            Format::Triangle => {
-                if path.is_file() && !TRIANGLE.has_ending_of(path) {
-                    let name = path.display();
-                    let problem = format!(
-                        "a file of this name is there, and would be read in place of {name}.node"
-                    );
-                    return refused(problem, "End the name in .node, or take another".into());
-                }
-                let Names { node, ele, poly } = Names::of(path);
-                if self.sources().len() == 2 && poly.exists() {
-                    let problem = format!(
-                        "{} of another mesh is there, and would be read with this one",
-                        poly.display()
-                    );
-                    return refused(problem, "Remove it, or take another name".into());
-                }
-                [node, ele, poly].into_iter().take(self.sources().len()).collect()
-            }
-            _ if self.parts().len() > 1 => {
-                let all = beside::destinations(&self.sources()[0], path);
-                if Packing::of(path).is_some() {
-                    let problem = "the mesh is of several files, which are not written compressed";
-                    return refused(problem.into(), format!("End the name in {usual}"));
-                }
-                // Each file of the mesh may be replaced by what it becomes, and by nothing else.
-                for (part, own) in all.iter().enumerate() {
-                    let mut others = self.paths().enumerate().filter(|(other, _)| *other != part);
-                    if others.any(|(_, other)| replace::same_file(own, other)) {
-                        let name = own.display();
-                        let problem =
-                            format!("{name}, from which the mesh was read, would be overwritten");
-                        return refused(problem, "Take another name".into());
-                    }
-                }
-                all
-            }
-            _ => vec![path.to_owned()],
-        })
+        (self.reader().destinations)(self.source(), path)
     }
 
     fn check_points(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {

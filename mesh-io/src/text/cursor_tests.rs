@@ -8,7 +8,7 @@ pub(crate) fn source(text: &[u8]) -> Source {
         bytes: text.to_vec(),
         packed: None,
         welds: false,
-        beside: Vec::new(),
+        companions: Vec::new(),
     }
 }
 

@@ -123,8 +123,8 @@ impl Sink for Gatherer {
         self.within_groups = [None, None, None];
     }
 
-    fn node_within(&mut self, node: u32, what: &str, tag: i64) {
-        let group = self.table.number(what, 0, &Label::Tag(tag));
+    fn node_within(&mut self, node: u32, what: &str, label: &Label) {
+        let group = self.table.number(what, 0, label);
         self.table.add_vertex(group, node);
     }
 

@@ -2,13 +2,14 @@
 
 use crate::content::constraints::Affine;
 use crate::content::label::Label;
-use crate::disk::source::{Named, Source};
-use crate::edit::numbers::{Encoded, Form, Numbers, Places};
-use crate::error::ReadError;
+use crate::disk::source::Source;
+use crate::edit::numbers::{Encoded, Form, Numbers, Places, Splice};
+use crate::error::{ReadError, WriteError};
 use crate::format::Format;
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
 use crate::visit::records::{NodeRecords, TriangleRecords};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The kinds of elements: triangles, which are smoothed, and others, whose vertices stay fixed.
@@ -178,8 +179,8 @@ pub(crate) trait Sink {
     /// Takes the groups that the elements after this call belong to besides those of their regions, until the next
     /// call.
     fn within(&mut self, _groups: &[Within<'_>]) {}
-    /// Takes the tag of a group that a node belongs to. `node` is the index of the node in the order of the file.
-    fn node_within(&mut self, _node: u32, _what: &str, _tag: i64) {}
+    /// Takes the label of a group that a node belongs to. `node` is the index of the node in the order of the file.
+    fn node_within(&mut self, _node: u32, _what: &str, _label: &Label) {}
     /// Takes the name of the groups with a tag, in one dimension or (for `None`) in all.
     fn name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 
@@ -287,7 +288,7 @@ pub(crate) struct Layout {
     pub(crate) encoded: Option<Box<dyn Encoded>>,
     /// Where the coordinates stand, if a vertex may have them in several places.
     pub(crate) copies: Option<Copies>,
-    /// Which file of the mesh has the coordinates: 0, or the one beside it of this number, counted from one.
+    /// The index of the file that has the coordinates, in the order of [`Source::parts`].
     pub(crate) part: usize,
 }
 
@@ -306,35 +307,61 @@ impl Layout {
     }
 }
 
-/// The reader of a format of one file.
+/// The reader of a format.
 pub(crate) trait Walk {
     /// Names the file's list of vertices in messages.
     const VERTICES: &'static str;
-    /// The files that it names, in which it has numbers.
+    /// Loads the other files of the mesh that `given` belongs to. Returns the main file, with the other files as
+    /// companions.
     ///
     /// # Errors
-    /// If it is damaged.
-    fn beside(_source: &Source) -> Result<Vec<Named>, ReadError> {
-        Ok(Vec::new())
+    /// If `given` is damaged, or if another file is missing or cannot be read.
+    fn load_companions(given: Source) -> Result<Source, ReadError> {
+        Ok(given)
     }
-    /// Feeds the file's nodes and elements to the sink.
+    /// Refuses bytes that were not read from a file, if the mesh has other files.
+    ///
+    /// # Errors
+    /// If the mesh has other files, or if the bytes are damaged.
+    fn require_single(_source: &Source) -> Result<(), ReadError> {
+        Ok(())
+    }
+    /// Returns the files to which the mesh is written for `path`, in the order of [`Source::parts`].
+    ///
+    /// # Errors
+    /// If `path` does not suit the format, or if a file of another mesh is in the way.
+    fn destinations(_source: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+        Ok(vec![path.to_owned()])
+    }
+    /// Returns the edits of the main file that rename its companions for `path`.
+    fn renames(_source: &Source, _path: &Path) -> Vec<Splice> {
+        Vec::new()
+    }
+    /// Feeds the nodes and elements of the mesh to the sink.
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError>;
 }
 
-/// The reader of a format of one file, as a value. All that is read of a file goes through this one walk. It takes any
-/// sink, so that it is compiled once.
+/// The reader of a format, as a value: the functions of a [`Walk`] under their names. A file is read by this walk alone.
+/// It takes any sink, so that it is compiled once.
 pub(crate) struct Reader {
-    /// [`Walk::walk`].
     pub(crate) walk: fn(&Source, &mut dyn Sink) -> Result<Layout, ReadError>,
-    /// [`Walk::beside`].
-    pub(crate) beside: fn(&Source) -> Result<Vec<Named>, ReadError>,
-    /// [`Walk::VERTICES`].
+    pub(crate) load_companions: fn(Source) -> Result<Source, ReadError>,
+    pub(crate) require_single: fn(&Source) -> Result<(), ReadError>,
+    pub(crate) destinations: fn(&Source, &Path) -> Result<Vec<PathBuf>, WriteError>,
+    pub(crate) renames: fn(&Source, &Path) -> Vec<Splice>,
     pub(crate) vertices: &'static str,
 }
 
 impl Reader {
     pub(crate) const fn of<W: Walk>() -> Reader {
-        Reader { walk: W::walk, beside: W::beside, vertices: W::VERTICES }
+        Reader {
+            walk: W::walk,
+            load_companions: W::load_companions,
+            require_single: W::require_single,
+            destinations: W::destinations,
+            renames: W::renames,
+            vertices: W::VERTICES,
+        }
     }
 }
 

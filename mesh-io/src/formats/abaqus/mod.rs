@@ -13,6 +13,7 @@ mod sets;
 mod types;
 pub(crate) mod write;
 
+use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -215,7 +216,7 @@ impl Nodes {
             if !nodes.is_empty() {
                 sink.name("nset", Some(0), tag, &name);
             }
-            nodes.into_iter().for_each(|node| sink.node_within(node, "nset", tag));
+            nodes.into_iter().for_each(|node| sink.node_within(node, "nset", &Label::Tag(tag)));
         }
         Ok(())
     }

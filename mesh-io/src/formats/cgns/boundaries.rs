@@ -93,7 +93,7 @@ impl<'a> File<'a> {
                             tag += 1;
                             sink.name(what, Some(0), tag, name.as_bytes());
                             for vertex in (1..=vertices).filter(|&v| points.has(v as i64)) {
-                                sink.node_within(vertex as u32 - 1, what, tag);
+                                sink.node_within(vertex as u32 - 1, what, &Label::Tag(tag));
                             }
                         }
                     }

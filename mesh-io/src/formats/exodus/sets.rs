@@ -81,7 +81,7 @@ impl File<'_> {
                     let problem = format!("node set {number} has node {node}");
                     return Err(cursor.error(problem, "There is no such node: correct the set"));
                 };
-                sink.node_within(index, "nodeset", id);
+                sink.node_within(index, "nodeset", &Label::Tag(id));
             }
         }
         Ok(())

@@ -65,7 +65,7 @@ impl Families {
     /// Tells that a node is of a family.
     pub(super) fn of_node(&self, node: u32, family: i64, sink: &mut dyn Sink) {
         for &group in self.of(family) {
-            sink.node_within(node, "group", group as i64 + 1);
+            sink.node_within(node, "group", &Label::Tag(group as i64 + 1));
         }
     }
 

@@ -234,7 +234,7 @@ fn vertices(
             let reference = widths.order.signed(&vertex[item - widths.integer..]);
             // A vertex without a reference has the reference 0.
             if reference != 0 {
-                sink.node_within(index, "reference", reference);
+                sink.node_within(index, "reference", &Label::Tag(reference));
             }
         }
     }

@@ -253,7 +253,7 @@ fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Res
             let reference = before.item(reference, &mut None)?;
             // A vertex without a reference has the reference 0.
             if reference != 0 {
-                sink.node_within(vertex as u32, "reference", reference);
+                sink.node_within(vertex as u32, "reference", &Label::Tag(reference));
             }
         }
     }

@@ -1,8 +1,9 @@
 //! The items of an XDMF file: what its tags say of them, and where their text stands.
 
 use crate::binary::order::Order;
-use crate::disk::source::{Named, Source};
+use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
+use crate::formats::xdmf::companions::Reference;
 use crate::hdf5::Number;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF};
@@ -48,12 +49,12 @@ impl Item {
         (!self.dimensions.is_empty()).then(|| product().unwrap_or(u64::MAX))
     }
 
-    /// The file beside the XML that it names, and where.
-    pub(super) fn named(self) -> Option<Named> {
+    /// Returns the reference to the file that holds the numbers. `None` if the XML itself holds them.
+    pub(super) fn reference(self) -> Option<Reference> {
         match self.content {
             Content::Text(_) => None,
             Content::Hdf5 { file, named_at, .. } | Content::Raw { file, named_at, .. } => {
-                Some(Named { name: file, at: named_at })
+                Some(Reference { name: file, at: named_at })
             }
         }
     }

@@ -1,8 +1,8 @@
-//! Numbers that do not stand in the XML: in HDF5 or raw, in files beside it.
+//! Numbers that do not stand in the XML: in HDF5 or raw, in files companion it.
 
 use super::document::{Content, Item};
 use crate::binary::order::Order;
-use crate::disk::source::{Beside, Source};
+use crate::disk::source::{Companion, Source};
 use crate::edit::numbers::{Encoded, Form, Places};
 use crate::error::ReadError;
 use crate::hdf5::{Array, Encoding, Hdf5, Number};
@@ -13,10 +13,10 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The files beside an XDMF.
+/// The files companion an XDMF.
 pub(super) struct Heavy<'a> {
     /// Each with its tree, if it is HDF5.
-    files: Vec<(&'a Beside, Option<Hdf5<'a>>)>,
+    files: Vec<(&'a Companion, Option<Hdf5<'a>>)>,
 }
 
 /// The numbers of an item.
@@ -35,18 +35,18 @@ pub(super) struct Numbers<'a> {
 }
 
 impl<'a> Heavy<'a> {
-    /// Opens the files that a source has beside it.
+    /// Opens the companions of a source.
     pub(super) fn open(source: &'a Source) -> Result<Heavy<'a>, ReadError> {
         let mut files = Vec::new();
-        for beside in &source.beside {
-            files.push((beside, Hdf5::open_any(&beside.source)?));
+        for companion in &source.companions {
+            files.push((companion, Hdf5::open_any(&companion.source)?));
         }
         Ok(Heavy { files })
     }
 
     /// The file of a name.
     fn file(&self, name: &str) -> Option<usize> {
-        self.files.iter().position(|(beside, _)| beside.names.iter().any(|own| own == name))
+        self.files.iter().position(|(companion, _)| companion.names.iter().any(|own| own == name))
     }
 
     /// The type of the numbers of an item that does not stand in the XML. None if it is not known.
@@ -74,10 +74,10 @@ impl<'a> Heavy<'a> {
         let Some(index) = self.file(name) else {
             let problem =
                 format!("its numbers are in {}, which was not read", quoted(name.as_bytes()));
-            return Err(cursor.error(problem, "Put the file beside it"));
+            return Err(cursor.error(problem, "Put the file companion it"));
         };
-        let (beside, tree) = &self.files[index];
-        let source = &beside.source;
+        let (companion, tree) = &self.files[index];
+        let source = &companion.source;
         let (part, file) = (index + 1, index);
         let numbers = match (&item.content, tree) {
             (Content::Hdf5 { path, .. }, Some(tree)) => {

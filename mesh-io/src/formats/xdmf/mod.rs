@@ -4,29 +4,54 @@
 //! whose grids refer to the one with the mesh.
 
 mod cells;
+mod companions;
 mod document;
 mod heavy;
 mod points;
 pub(crate) mod write;
 
-use crate::disk::source::{Named, Source};
-use crate::error::ReadError;
+use crate::disk::source::Source;
+use crate::edit::numbers::Splice;
+use crate::error::{ReadError, WriteError};
 use crate::hdf5::Number;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
+use crate::text::token::quoted;
 use crate::visit::heights::TextNumbers;
 use crate::visit::sink::{Layout, PointNumbers, Sink, Walk};
 use document::{Content, Item};
 use heavy::Heavy;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 pub(crate) struct Xdmf;
 
 impl Walk for Xdmf {
     const VERTICES: &'static str = "Geometry";
 
-    fn beside(source: &Source) -> Result<Vec<Named>, ReadError> {
-        Ok(document::items(source)?.into_iter().filter_map(Item::named).collect())
+    fn load_companions(mut given: Source) -> Result<Source, ReadError> {
+        let references = document::items(&given)?.into_iter().filter_map(Item::reference);
+        companions::load(&mut given, references.collect())?;
+        Ok(given)
+    }
+
+    fn require_single(source: &Source) -> Result<(), ReadError> {
+        match document::items(source)?.into_iter().find_map(Item::reference) {
+            None => Ok(()),
+            Some(reference) => {
+                let name = quoted(reference.name.as_bytes());
+                let problem = format!("its numbers are in {name}, a file beside it");
+                Err(source.error(problem, "Name the file, so that both are read"))
+            }
+        }
+    }
+
+    fn destinations(source: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+        companions::destinations(source, path)
+    }
+
+    fn renames(source: &Source, path: &Path) -> Vec<Splice> {
+        companions::renames(source, path)
     }
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {

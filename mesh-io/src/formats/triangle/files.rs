@@ -1,0 +1,131 @@
+//! The files of a Triangle mesh: a `.node` with the vertices, an `.ele` with the triangles, and perhaps a `.poly` with
+//! segments.
+
+use crate::compress::packed::{self, Packing};
+use crate::disk::source::{Companion, Source, file_name};
+use crate::error::{ReadError, WriteError};
+use crate::formats::triangle::names::{Names, appended};
+use crate::formats::triangle::rows::rows;
+use crate::text::token::integer;
+use std::path::{Path, PathBuf};
+
+/// Returns whether a path ends in `.node` or `.ele`, before the ending of a compressed file.
+fn is_named_as_triangle(path: &Path) -> bool {
+    let name = file_name(path).to_ascii_lowercase();
+    let name = packed::inner_name(&name);
+    name.ends_with(".node") || name.ends_with(".ele")
+}
+
+/// Returns the names of the files of the mesh that `source` belongs to. If the name of `source` has another ending, the
+/// first row tells which file it is, and `None` means that the mesh has no other file.
+pub(crate) fn names(source: &Source) -> Option<Names> {
+    let path = &source.path;
+    if is_named_as_triangle(path) {
+        return Some(Names::of(path));
+    }
+    let mut cursor = rows(source);
+    let second = cursor.next_row().then(|| cursor.token().and_then(|_| cursor.token()));
+    match second.flatten().and_then(integer) {
+        Some(2) => counterpart(path, ".ele").map(|stem| Names {
+            node: path.clone(),
+            ele: appended(&stem, ".ele"),
+            poly: appended(&stem, ".poly"),
+        }),
+        Some(3 | 6) => counterpart(path, ".node").map(|stem| Names {
+            node: appended(&stem, ".node"),
+            ele: path.clone(),
+            poly: appended(&stem, ".poly"),
+        }),
+        _ => None,
+    }
+}
+
+/// Finds the file with this ending that belongs to a file of another ending. Returns its path without the ending.
+fn counterpart(path: &Path, ending: &str) -> Option<PathBuf> {
+    [path.with_extension(""), path.to_owned()]
+        .into_iter()
+        .find(|stem| appended(stem, ending).is_file())
+}
+
+/// Loads a file of the mesh that `path` names without an ending, or explains that one of the two files of a mesh is
+/// missing. Returns `None` if `path` exists or names no Triangle mesh.
+pub(crate) fn load_by_stem(path: &Path) -> Option<Result<Source, ReadError>> {
+    let names = Names::of(path);
+    if !names.node.is_file() && !names.ele.is_file() {
+        return None;
+    }
+    match is_named_as_triangle(path) {
+        true if path.exists() => None,
+        true => Some(Err(missing_file(path, &names))),
+        false if path.is_file() => None,
+        false => Some(load(&names.node, &names)),
+    }
+}
+
+/// Loads the other files of the mesh that `given` belongs to. Returns the `.node`, with the other files as companions.
+pub(super) fn load_companions(given: Source) -> Result<Source, ReadError> {
+    let Some(names) = names(&given) else {
+        return Err(given.error(ONE_OF_TWO, "Name its .node, so that both are read"));
+    };
+    let (mut node, ele) = match given.path == names.ele {
+        true => (load(&names.node, &names)?, given),
+        false => (given, load(&names.ele, &names)?),
+    };
+    let poly = names.poly.exists().then(|| Source::load(&names.poly)).transpose()?;
+    let others = [ele].into_iter().chain(poly);
+    node.companions.extend(others.map(Companion::by_convention));
+    if let Some(packed) = node.parts().find(|source| source.packed.is_some()) {
+        let problem = "files of Triangle are not read compressed, as there are several to a mesh";
+        return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
+    }
+    Ok(node)
+}
+
+const ONE_OF_TWO: &str = "one of the two files of a Triangle mesh";
+
+/// Refuses a file that was not read from the disk, where its companions are.
+pub(super) fn require_single(source: &Source) -> Result<(), ReadError> {
+    Err(source.error(ONE_OF_TWO, "Name its .node, so that both are read"))
+}
+
+fn load(path: &Path, names: &Names) -> Result<Source, ReadError> {
+    match Source::load(path) {
+        Err(_) if !path.exists() => Err(missing_file(path, names)),
+        loaded => loaded,
+    }
+}
+
+/// Returns the error that the file `missing` of a mesh does not exist, though the other file does.
+fn missing_file(missing: &Path, names: &Names) -> ReadError {
+    let there = if missing == names.node { &names.ele } else { &names.node };
+    let remedy = format!(
+        "A Triangle mesh is two files: put it beside {} (Triangle writes both)",
+        there.display()
+    );
+    let source = std::io::Error::new(std::io::ErrorKind::NotFound, "not found");
+    ReadError::Io { path: missing.to_owned(), source, remedy }
+}
+
+/// Returns the files that are written for `path`, in the order of [`Source::parts`].
+pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+    let refused = |problem: String, remedy: &str| {
+        Err(WriteError::Format { path: path.to_owned(), problem, remedy: remedy.into() })
+    };
+    if Packing::of(path).is_some() {
+        let problem = "a Triangle mesh is of several files, which are not written compressed";
+        return refused(problem.into(), "End the name in .node");
+    }
+    if path.is_file() && !is_named_as_triangle(path) {
+        let name = path.display();
+        let problem =
+            format!("a file of this name is there, and would be read in place of {name}.node");
+        return refused(problem, "End the name in .node, or take another");
+    }
+    let Names { node: to_node, ele, poly } = Names::of(path);
+    if node.companions.len() == 1 && poly.exists() {
+        let problem =
+            format!("{} of another mesh is there, and would be read with this one", poly.display());
+        return refused(problem, "Remove it, or take another name");
+    }
+    Ok([to_node, ele, poly].into_iter().take(1 + node.companions.len()).collect())
+}

@@ -1,0 +1,317 @@
+//! Reads Triangle's `.node` and `.ele`, with the segments of a `.poly` if there is one.
+//!
+//! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this reader ignores text after the
+//! announced rows and columns.
+
+use crate::content::label::Label;
+use crate::content::regions::Numbering;
+use crate::disk::source::Source;
+use crate::edit::numbers;
+use crate::error::{ReadError, WriteError};
+use crate::format::Format;
+use crate::formats::triangle::files;
+use crate::formats::triangle::rows::{Numbers, header, rows, vertex_header};
+use crate::formats::triangle::segments::{Segments, listed_vertices};
+use crate::precision::Precision;
+use crate::text::cursor::Cursor;
+use crate::text::token::float;
+use crate::visit::heights::TextNumbers;
+use crate::visit::parsed::fixed_note;
+use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row};
+use std::path::{Path, PathBuf};
+
+/// The reader. The source is the `.node`; its companions are the `.ele` and, if there is one, the `.poly`.
+pub(crate) struct Triangle;
+
+impl Walk for Triangle {
+    const VERTICES: &'static str = "the .node";
+
+    fn load_companions(given: Source) -> Result<Source, ReadError> {
+        files::load_companions(given)
+    }
+
+    fn require_single(source: &Source) -> Result<(), ReadError> {
+        files::require_single(source)
+    }
+
+    fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+        files::destinations(node, path)
+    }
+
+    fn walk(node: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let mut others = node.companions.iter().map(|companion| &companion.source);
+        let (ele, poly) = (others.next().unwrap_or(node), others.next());
+        let vertices = Vertices::read(node, poly, sink)?;
+        triangles(ele, node, &vertices.numbers, sink)?;
+        vertices.send_markers(sink)?;
+        if let Some(poly) = poly {
+            segments(poly, node, &vertices.numbers, sink)?;
+        }
+        Ok(Layout::in_place(Format::Triangle, numbers::Numbers::TEXT))
+    }
+}
+
+/// The list of vertices of a `.node`.
+struct Vertices<'s> {
+    numbers: Numbers,
+    /// The number of attributes of each vertex.
+    attributes: u64,
+    has_markers: bool,
+    /// Stands before the first vertex.
+    before: Cursor<'s>,
+}
+
+impl<'s> Vertices<'s> {
+    /// Reads the list, and hands vertices and attributes to the sink.
+    fn read(
+        node: &'s Source,
+        poly: Option<&Source>,
+        sink: &mut dyn Sink,
+    ) -> Result<Self, ReadError> {
+        let cursor = &mut rows(node);
+        let count = vertex_header(cursor)?;
+        if count == 0 {
+            return Err(cursor.error("no vertices are announced", "Write the mesh again"));
+        }
+        // A wrong number in the header must not prevent the vertices from being read.
+        let attributes = cursor.integer_or(0, "the number of attributes per vertex").unwrap_or(0);
+        // A row cannot hold more attributes than the file has bytes.
+        let attributes = cursor.capacity(attributes, 1) as u64;
+        let has_markers = cursor.integer_or(0, "whether vertices have markers").unwrap_or(0) != 0;
+        let before = cursor.clone();
+        sink.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
+        let listed = poly.map_or(0, listed_vertices);
+        let mut numbers = Numbers { first: 0, count };
+        let read = |cursor: &mut Cursor<'_>| {
+            let number = cursor.integer("the number of a vertex")?;
+            Ok((number, cursor.point(format_args!("vertex {number}"))?))
+        };
+        each_row(cursor, count, "vertices", sink, read, |cursor, sink, row, vertex| {
+            let (number, (x_at, at)) = vertex;
+            numbers.check(cursor, row, number)?;
+            // A vertex of the outline is a point of the model, which has the dimension 0.
+            let dimension = if row < listed { 0 } else { 2 };
+            sink.node(cursor, number, dimension, x_at, at);
+            Ok(())
+        })?;
+        sink.end_nodes(cursor)?;
+        for (column, name) in
+            (0..attributes).map(|column| (column, column_name(column, attributes)))
+        {
+            if sink.point_array(name.as_bytes(), 1, true) {
+                let mut values = TextNumbers::default();
+                values.column(before.clone(), count, 3 + column)?;
+                sink.point_numbers(values.finish(Precision::Double, None));
+            }
+        }
+        Ok(Vertices { numbers, attributes, has_markers, before })
+    }
+
+    /// Hands the markers of vertices to a sink that asks for groups.
+    fn send_markers(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
+        if !self.has_markers || !sink.asks_for_groups() {
+            return Ok(());
+        }
+        let mut cursor = self.before.clone();
+        for row in 0..self.numbers.count {
+            cursor.row(row, self.numbers.count, "vertices")?;
+            cursor.tokens(self.attributes.saturating_add(3));
+            if let Some(label) = cursor.token().and_then(marker) {
+                sink.node_within(row as u32, "marker", &label);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns the name of one of `columns` attributes.
+fn column_name(column: u64, columns: u64) -> String {
+    match columns {
+        1 => "attribute".to_owned(),
+        _ => format!("attribute{}", column + 1),
+    }
+}
+
+/// Returns the label that an attribute stands for.
+fn attribute(token: &[u8]) -> Label {
+    float(token).map_or_else(|| Label::name(token), Label::number)
+}
+
+/// Returns the label that a marker stands for. Zero is no marker.
+fn marker(token: &[u8]) -> Option<Label> {
+    (float(token) != Some(0.0)).then(|| attribute(token))
+}
+
+/// Reads the triangles and hands them to the sink, each with the region and the groups of its attributes.
+fn triangles(
+    ele: &Source,
+    node: &Source,
+    numbers: &Numbers,
+    sink: &mut dyn Sink,
+) -> Result<(), ReadError> {
+    let cursor = &mut rows(ele);
+    header(cursor, "triangles")?;
+    let count = cursor.integer("the number of triangles")?;
+    match cursor.integer_or(3, "the number of vertices per triangle")? {
+        3 => {}
+        6 => {
+            let problem = "the triangles have 6 nodes, and mid-side nodes are not moved";
+            return Err(cursor.error(problem, "Make the mesh with 3-node triangles (without -o2)"));
+        }
+        4 => {
+            let problem = "the elements have 4 nodes: tetrahedra";
+            return Err(cursor.error(problem, "Only triangles of the plane are read"));
+        }
+        other => {
+            let problem = format!("the triangles have {other} nodes");
+            return Err(cursor.error(problem, "Make the mesh with 3-node triangles"));
+        }
+    }
+    let columns = cursor.integer_or(0, "the number of attributes per triangle")?;
+    sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
+    let mut attributes = Attributes { columns, ..Attributes::default() };
+    let read = |cursor: &mut _| triangle(cursor, node, numbers, columns);
+    each_row(cursor, count, "triangles", sink, read, |cursor, sink, _, triangle| {
+        let (tag, [a, b, c], text) = triangle;
+        let region = [i64::from(attributes.region(text, sink)), 0];
+        sink.element(cursor, &Element { tag, kind: Kind::Triangle, region, nodes: [a, b, c, 0] })
+    })?;
+    sink.within(&[]);
+    Ok(())
+}
+
+/// Reads a triangle's row: its number, the numbers of its vertices, and the text of its attributes, which are `columns`
+/// tokens.
+#[inline]
+fn triangle<'a>(
+    cursor: &mut Cursor<'a>,
+    node: &Source,
+    numbers: &Numbers,
+    columns: u64,
+) -> Result<(u64, [u64; 3], &'a [u8]), ReadError> {
+    let number = cursor.integer("the number of a triangle")?;
+    let mut corners = [0; 3];
+    for corner in &mut corners {
+        *corner = numbers.vertex(cursor, node, format_args!("triangle {number}"))?;
+    }
+    let [a, b, c] = corners;
+    if a == b || b == c || c == a {
+        let twice = if b == c { b } else { a };
+        let problem = format!("triangle {number} lists vertex {twice} twice");
+        return Err(cursor.error(problem, "Remove the triangle, or correct its vertices"));
+    }
+    Ok((number, corners, cursor.tokens(columns)))
+}
+
+/// Numbers the regions: triangles with equal attributes are of one region.
+#[derive(Default)]
+struct Attributes<'a> {
+    /// The number of attributes of each triangle.
+    columns: u64,
+    texts: Numbering<&'a [u8]>,
+    /// The region of each text.
+    regions: Vec<u32>,
+    names: Numbering<String>,
+    /// The text whose groups the sink has.
+    last: Option<&'a [u8]>,
+}
+
+impl<'a> Attributes<'a> {
+    /// Returns the region of triangles with these attributes, and hands their groups to a sink that asks for groups.
+    #[inline]
+    fn region(&mut self, text: &'a [u8], sink: &mut dyn Sink) -> u32 {
+        if self.last != Some(text) {
+            self.last = Some(text);
+            if self.columns > 0 && sink.asks_for_groups() {
+                self.send_groups(text, sink);
+            }
+        }
+        self.number(text)
+    }
+
+    #[inline]
+    fn number(&mut self, text: &'a [u8]) -> u32 {
+        let number = self.texts.number(text) as usize;
+        if number == self.regions.len() {
+            self.regions.push(self.names.number(normalized(text)));
+        }
+        self.regions[number]
+    }
+
+    fn send_groups(&self, text: &[u8], sink: &mut dyn Sink) {
+        let kinds: Vec<String> =
+            (0..self.columns).map(|column| column_name(column, self.columns)).collect();
+        let labels = tokens(text).map(attribute);
+        let groups = kinds.iter().zip(labels);
+        let groups: Vec<Within<'_>> = groups
+            .map(|(what, label)| Within { what: what.as_str(), label, dimension: None })
+            .collect();
+        sink.within(&groups);
+    }
+}
+
+/// Returns the tokens of a row's rest. A comma at the end of a token is not part of the token.
+fn tokens(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let is_between = |&byte: &u8| byte <= b' ' || byte == b',';
+    text.split(is_between).filter(|token| !token.is_empty())
+}
+
+/// Normalizes the text of attributes, so that equal numbers have equal texts.
+fn normalized(attributes: &[u8]) -> String {
+    let normalized = tokens(attributes).map(|token| match float(token) {
+        // Adding zero makes a negative zero positive.
+        Some(number) => format!("{:?} ", number + 0.0),
+        None => format!("{} ", String::from_utf8_lossy(token)),
+    });
+    normalized.collect()
+}
+
+/// Hands the segments of a `.poly` to the sink.
+fn segments(
+    poly: &Source,
+    node: &Source,
+    numbers: &Numbers,
+    sink: &mut dyn Sink,
+) -> Result<(), ReadError> {
+    let mut segments = Segments::new(poly, node, numbers)?;
+    let has_markers = sink.asks_for_groups()
+        && segments.cursor.integer_or(0, "whether segments have markers")? != 0;
+    let mut last = None;
+    for row in 0..segments.count {
+        let (tag, [a, b]) = segments.segment(row)?;
+        let label = segments.cursor.token().filter(|_| has_markers).and_then(marker);
+        if label != last {
+            let within = label.iter().map(|label| Within {
+                what: "marker",
+                label: label.clone(),
+                dimension: None,
+            });
+            sink.within(&within.collect::<Vec<_>>());
+            last = label;
+        }
+        let nodes = [a, b, 0, 0];
+        let element = Element { tag, kind: Kind::Line, region: [0; 2], nodes };
+        sink.element(&segments.cursor, &element)?;
+    }
+    sink.within(&[]);
+    sink.note(&fixed_note(segments.count, "segment", &format!(" of {}", poly.name())));
+    // Holes and regions matter only to the mesh generator.
+    let cursor = &mut segments.cursor;
+    if cursor.next_row() && cursor.integer("the number of holes").is_ok_and(|holes| holes > 0) {
+        sink.leaves_out("holes of the .poly");
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attributes_are_numbers_however_they_are_written() {
+        let mut attributes = Attributes::default();
+        let texts = ["1 2", "1.0\t 2e0", "2 1", "1", "0", "-0.0", "land", "sea", "+1 2", "land"];
+        let regions = texts.map(|text| attributes.number(text.as_bytes()));
+        assert_eq!(regions, [0, 0, 1, 2, 3, 3, 4, 5, 0, 4]);
+    }
+}

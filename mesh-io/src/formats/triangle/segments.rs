@@ -1,0 +1,64 @@
+//! The segments of a `.poly`.
+
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::formats::triangle::rows::{Numbers, header, rows, vertex_header};
+use crate::text::cursor::Cursor;
+
+/// Returns how many vertices a `.poly` lists, or 0 if its first row is damaged. They are the first vertices of the mesh.
+pub(super) fn listed_vertices(poly: &Source) -> u64 {
+    vertex_header(&mut rows(poly)).unwrap_or(0)
+}
+
+/// Reads the segments of a `.poly` row by row.
+pub(super) struct Segments<'s> {
+    /// Stands after the number of segments at first, then after the vertices of the last segment.
+    pub(super) cursor: Cursor<'s>,
+    /// The number of segments.
+    pub(super) count: u64,
+    node: &'s Source,
+    /// The numbering of the `.poly`.
+    own: Numbers,
+    /// The number of the first vertex in the `.node`.
+    first: u64,
+}
+
+impl<'s> Segments<'s> {
+    /// Checks the vertices that the `.poly` lists, and moves to its segments. `numbers` is the numbering of the `.node`.
+    pub(super) fn new(
+        poly: &'s Source,
+        node: &'s Source,
+        numbers: &Numbers,
+    ) -> Result<Self, ReadError> {
+        let mut cursor = rows(poly);
+        let listed = vertex_header(&mut cursor)?;
+        // The `.poly` may number its vertices from another number on than the mesh.
+        let mut own = Numbers { first: numbers.first, count: numbers.count };
+        for row in 0..listed {
+            cursor.row(row, listed, "vertices")?;
+            let number = cursor.integer("the number of a vertex")?;
+            own.check(&cursor, row, number)?;
+            if row >= numbers.count {
+                let problem =
+                    format!("more vertices than the {} of {}", numbers.count, node.name());
+                return Err(cursor.error(problem, "Take files of one mesh"));
+            }
+        }
+        header(&mut cursor, "segments")?;
+        let count = cursor.integer("the number of segments")?;
+        Ok(Self { cursor, count, node, own, first: numbers.first })
+    }
+
+    /// Reads the segment in row `row` of the list. Returns its number, and the numbers of its vertices in the `.node`.
+    pub(super) fn segment(&mut self, row: u64) -> Result<(u64, [u64; 2]), ReadError> {
+        let Self { cursor, count, node, own, first } = self;
+        cursor.row(row, *count, "segments")?;
+        let number = cursor.integer("the number of a segment")?;
+        let mut vertices = [0; 2];
+        for vertex in &mut vertices {
+            let of_poly = own.vertex(cursor, node, format_args!("segment {number}"))?;
+            *vertex = of_poly - own.first + *first;
+        }
+        Ok((number, vertices))
+    }
+}

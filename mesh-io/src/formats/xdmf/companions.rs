@@ -1,0 +1,172 @@
+//! The files of numbers that an XDMF file refers to: their loading, and their names when the mesh is written.
+
+use crate::compress::packed::Packing;
+use crate::disk::replace::same_file;
+use crate::disk::source::{Companion, Source, file_name};
+use crate::edit::numbers::Splice;
+use crate::error::{Location, ReadError, WriteError};
+use crate::text::cursor::CORRECT;
+use crate::text::token::quoted;
+use quick_xml::escape::escape;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The name of another file in the main file of a mesh.
+pub(super) struct Reference {
+    pub(super) name: String,
+    /// The bytes of the main file that hold the name.
+    pub(super) at: Range<usize>,
+}
+
+/// Loads the files that `main` refers to, each once, and adds them to the companions of `main`.
+///
+/// # Errors
+/// If a file is missing or cannot be read, is compressed, or is `main` itself, and if `main` is compressed but refers to
+/// other files.
+pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), ReadError> {
+    if !references.is_empty() && main.packed.is_some() {
+        let problem = "it is compressed, but a mesh of several files";
+        return Err(main.error(problem, "Decompress it first (gunzip, unzstd)"));
+    }
+    for Reference { name, at } in references {
+        if let Some(known) = main.companions.iter_mut().find(|own| own.names.contains(&name)) {
+            known.named_at.push(at);
+            continue;
+        }
+        let path = main.path.parent().unwrap_or(Path::new("")).join(&name);
+        if same_file(&path, &main.path) {
+            let place = Location::Line(main.line_of(at.start));
+            let problem = "it names itself as a file of numbers";
+            return Err(main.error_at(place, problem, CORRECT));
+        }
+        // Two names may stand for the same file.
+        if let Some(known) =
+            main.companions.iter_mut().find(|own| same_file(&own.source.path, &path))
+        {
+            known.names.push(name);
+            known.named_at.push(at);
+            continue;
+        }
+        let source = match Source::load(&path) {
+            Err(_) if !path.exists() => {
+                let place = Location::Line(main.line_of(at.start));
+                let shown = quoted(name.as_bytes());
+                let problem = format!("its numbers are in {shown}, which is not there");
+                return Err(main.error_at(place, problem, "Put the file beside it"));
+            }
+            loaded => loaded?,
+        };
+        if source.packed.is_some() {
+            let problem = "it is compressed, but one of the files of a mesh";
+            return Err(source.error(problem, "Decompress it first (gunzip, unzstd)"));
+        }
+        main.companions.push(Companion { names: vec![name], named_at: vec![at], source });
+    }
+    Ok(())
+}
+
+/// Returns the files to which the mesh is written for `path`: `path`, then one file for each companion.
+///
+/// Companions keep their paths if `path` is the file that was read. Otherwise `in.h5` beside `in.xdmf` becomes `out.h5`,
+/// and the name of any other companion is prefixed: `mesh.h5` becomes `out_mesh.h5`.
+///
+/// # Errors
+/// If `path` is that of a compressed file, or if a file would replace another file of the mesh that was read.
+pub(super) fn destinations(source: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
+    let refused = |problem: String, remedy: &str| {
+        Err(WriteError::Format { path: path.to_owned(), problem, remedy: remedy.into() })
+    };
+    if source.companions.is_empty() {
+        return Ok(vec![path.to_owned()]);
+    }
+    if Packing::of(path).is_some() {
+        let problem = "the mesh is of several files, which are not written compressed";
+        return refused(problem.into(), "End the name in .xdmf");
+    }
+    let all = paths(source, path);
+    for (part, own) in all.iter().enumerate() {
+        let mut others = source.parts().enumerate().filter(|(other, _)| *other != part);
+        if others.any(|(_, other)| same_file(own, &other.path)) {
+            let name = own.display();
+            let problem = format!("{name}, from which the mesh was read, would be overwritten");
+            return refused(problem, "Take another name");
+        }
+    }
+    Ok(all)
+}
+
+fn paths(source: &Source, path: &Path) -> Vec<PathBuf> {
+    let mut all = vec![path.to_owned()];
+    if same_file(&source.path, path) {
+        all.extend(source.companions.iter().map(|companion| companion.source.path.clone()));
+        return all;
+    }
+    let stem = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let (old, new) = (stem(&source.path), stem(path));
+    for companion in &source.companions {
+        let own = file_name(&companion.source.path);
+        let mut name = match own.strip_prefix(&old) {
+            Some(rest) => format!("{new}{rest}"),
+            None => format!("{new}_{own}"),
+        };
+        while all.iter().any(|path| file_name(path) == name) {
+            name = format!("{new}_{name}");
+        }
+        all.push(path.with_file_name(name));
+    }
+    all
+}
+
+/// Returns the edits of the main file that name its companions as they are written for `path`.
+pub(super) fn renames(source: &Source, path: &Path) -> Vec<Splice> {
+    if same_file(&source.path, path) {
+        return Vec::new();
+    }
+    let new = paths(source, path);
+    let mut splices = Vec::new();
+    for (companion, path) in source.companions.iter().zip(&new[1..]) {
+        let name = file_name(path);
+        for range in &companion.named_at {
+            let bytes = escape(name.as_str()).as_bytes().to_vec();
+            if source.bytes.get(range.clone()) != Some(&bytes) {
+                splices.push(Splice { range: range.clone(), bytes });
+            }
+        }
+    }
+    splices
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(name: &str, companions: &[&str]) -> Source {
+        let mut source = Source::new(Path::new(name), Vec::new()).unwrap();
+        source.companions = companions
+            .iter()
+            .map(|name| {
+                let source = Source::new(Path::new(name), Vec::new()).unwrap();
+                Companion { names: vec![(*name).to_owned()], named_at: Vec::new(), source }
+            })
+            .collect();
+        source
+    }
+
+    #[test]
+    fn companions_are_named_after_the_mesh() {
+        for (given, companions, out, expected) in [
+            ("a/in.xdmf", &["a/in.h5"][..], "b/out.xdmf", &["b/out.h5"][..]),
+            ("in.xdmf", &["in0.bin", "in1.bin"], "out.xmf", &["out0.bin", "out1.bin"]),
+            ("in.xdmf", &["mesh.h5", "d/u.h5"], "out.xdmf", &["out_mesh.h5", "out_u.h5"]),
+            ("in.xdmf", &["a/mesh.h5", "b/mesh.h5"], "o.xdmf", &["o_mesh.h5", "o_o_mesh.h5"]),
+            ("in.xdmf", &["in.h5"], "out", &["out.h5"]),
+            ("in.xdmf", &["in"], "out.", &["out"]),
+            ("none/in.xdmf", &["none/in.h5"], "none/in.xdmf", &["none/in.h5"]),
+        ] {
+            let all = paths(&source(given, companions), Path::new(out));
+            assert_eq!(all[0], Path::new(out));
+            let expected: Vec<PathBuf> = expected.iter().map(PathBuf::from).collect();
+            assert_eq!(all[1..], expected, "{given} to {out}");
+        }
+    }
+}
