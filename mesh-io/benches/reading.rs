@@ -13,7 +13,7 @@
 
 #![allow(clippy::print_stdout)]
 
-use mesh_io::MeshFile;
+use mesh_io::ReadOptions;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,8 @@ fn measure(path: &Path) {
     let mut most = None;
     for _ in 0..RUNS {
         let (start, before) = (Instant::now(), times());
-        let file = MeshFile::read_welded(path).unwrap_or_else(|error| panic!("{error}"));
+        let file =
+            ReadOptions::new().weld(true).read(path).unwrap_or_else(|error| panic!("{error}"));
         clock = clock.min(start.elapsed().as_secs_f64());
         let [all, main] = [0, 1].map(|of| times()[of] - before[of]);
         processor = processor.min(main.max(all / 2.0));

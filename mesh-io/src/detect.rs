@@ -167,13 +167,14 @@ fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::disk::source::ReadOptions;
 
     fn problem(name: &str, content_bytes: &[u8]) -> String {
         let source = Source {
             path: name.into(),
             bytes: content_bytes.to_vec(),
             packed: None,
-            welds: false,
+            options: ReadOptions::new(),
             companions: Vec::new(),
         };
         match reader(&source) {

@@ -56,6 +56,16 @@ pub enum ReadError {
         /// What the user can do about it.
         remedy: String,
     },
+    /// An STL was read without [`ReadOptions::weld`](crate::ReadOptions::weld).
+    #[error(
+        "{}: an STL lists corners of triangles, and has no vertices that these share. Have corners at the same place joined: \
+         ReadOptions::weld",
+        path.display()
+    )]
+    Unwelded {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 /// A file could not be written. A file that was there before is unchanged.

@@ -38,7 +38,9 @@ mod visit;
 
 pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs};
 pub use crate::content::group::{Group, Groups};
+pub use crate::content::remark::Remark;
 pub use crate::convert::Conversion;
+pub use crate::disk::source::ReadOptions;
 pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
 pub use crate::format::Format;
 pub use crate::formats::side::solution::Solution;

@@ -1,12 +1,12 @@
 //! Remarks on a mesh that was read.
 
-use mesh_io::Format;
+use mesh_io::{Format, Remark};
 
 use crate::load::LoadedMesh;
 
 /// Lists the remarks on a mesh, one line each. If vertices slide, those between regions are not said to stay fixed.
 pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
-    let mut remarks = file.source.notes().to_vec();
+    let mut remarks: Vec<String> = file.source.remarks().iter().map(worded).collect();
     match file.interface_vertices().len() {
         0 => {}
         _ if slides => {}
@@ -18,6 +18,21 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
         )),
     }
     remarks
+}
+
+/// Words a remark of the file by what a run does with the vertices.
+fn worded(remark: &Remark) -> String {
+    match remark {
+        Remark::OtherElements { count, .. } => {
+            let their = if *count == 1 { "its" } else { "their" };
+            format!("{remark}: {their} vertices stay fixed")
+        }
+        Remark::AllOnModelCurves => format!("{remark}: all of them stay fixed"),
+        Remark::UnlistedPairs { count, list } => format!(
+            "periodic pairs that name a node which {list} does not list do not slide: {count}"
+        ),
+        _ => remark.to_string(),
+    }
 }
 
 /// Words a remark if a mesh in a format of coastal models seems to be in longitude and latitude, at latitudes where a degree of

@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use mesh_io::{MeshFile, PointField};
+use mesh_io::{MeshFile, PointField, ReadError, ReadOptions};
 
 use crate::args::ReadArgs;
 use crate::load::LoadedMesh;
@@ -15,14 +15,18 @@ pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, String> {
 }
 
 fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, String> {
+    let options = ReadOptions::new().weld(args.weld);
     if !is_standard(path) {
-        let read = if args.weld { MeshFile::read_welded } else { MeshFile::read };
-        return read(path).map_err(|error| error.to_string());
+        return options.read(path).map_err(worded);
     }
     let mut bytes = Vec::new();
     std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
-    let read = if args.weld { MeshFile::from_bytes_welded } else { MeshFile::from_bytes };
-    read(Path::new("standard input"), bytes).map_err(|error| error.to_string())
+    options.from_bytes(Path::new("standard input"), bytes).map_err(worded)
+}
+
+/// Words an error of reading. A remedy names the option of the command line.
+fn worded(error: ReadError) -> String {
+    error.to_string().replace("ReadOptions::weld", "--weld")
 }
 
 /// Whether a name stands for the standard input or output.

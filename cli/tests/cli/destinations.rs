@@ -64,7 +64,7 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
         ("in.msh out.node", &["out.node: its ending is that of Triangle", "end the name in .msh"]),
         (
             "in.msh out.vtk",
-            &["out.vtk: its ending is that of legacy VTK", "and convert the result"],
+            &["out.vtk: its ending is that of legacy VTK", "or convert the mesh"],
         ),
         ("in.node locked", &["locked.ele: the file is read-only", "Make it writable"]),
         ("in.node dir", &["dir: not the name of a file. Add a name like out.node"]),

@@ -76,7 +76,7 @@ fn a_killed_process_leaves_all_files_old_or_all_new() {
         for entry in fs::read_dir(&folder.0).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
             if name.ends_with(".tmp") {
-                assert!(name.starts_with(".gpu-smooth-"));
+                assert!(name.starts_with(".mesh-io-"));
                 fs::remove_file(folder.path(&name)).unwrap();
                 temporaries += 1;
             }

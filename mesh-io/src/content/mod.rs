@@ -4,4 +4,5 @@ pub(crate) mod constraints;
 pub(crate) mod group;
 pub(crate) mod label;
 pub(crate) mod regions;
+pub(crate) mod remark;
 pub(crate) mod tags;

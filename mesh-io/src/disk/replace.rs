@@ -313,7 +313,7 @@ impl<'d> Temporary<'d> {
     fn unused_name(directory: &Path) -> PathBuf {
         static COUNTER: AtomicU64 = AtomicU64::new(0);
         let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-        directory.join(format!(".gpu-smooth-{}-{number}.tmp", std::process::id()))
+        directory.join(format!(".mesh-io-{}-{number}.tmp", std::process::id()))
     }
 }
 

@@ -9,14 +9,42 @@ use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+/// How a mesh is read.
+///
+/// ```no_run
+/// use mesh_io::ReadOptions;
+/// use std::path::Path;
+///
+/// let file = ReadOptions::new().weld(true).read(Path::new("part.stl"))?;
+/// # Ok::<(), mesh_io::ReadError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    pub(crate) welds: bool,
+}
+
+impl ReadOptions {
+    /// Makes the options by which [`MeshFile::read`](crate::MeshFile::read) reads.
+    pub fn new() -> ReadOptions {
+        ReadOptions::default()
+    }
+
+    /// Sets whether the corners of triangles at the same place become one vertex, for STL, which has no vertices. The
+    /// corners must have one common third coordinate. Vertices are numbered in the order in which the file first has
+    /// them, and a moved vertex is written wherever the file has it. Off by default.
+    #[must_use]
+    pub fn weld(self, welds: bool) -> ReadOptions {
+        ReadOptions { welds }
+    }
+}
+
 /// A file as it was read.
 pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
     /// The compressed bytes of the file, if it is compressed.
     pub(crate) packed: Option<Packed>,
-    /// Whether corners at the same place become one vertex, for formats without vertices.
-    pub(crate) welds: bool,
+    pub(crate) options: ReadOptions,
     /// The other files of the mesh.
     pub(crate) companions: Vec<Companion>,
 }
@@ -60,7 +88,7 @@ impl Source {
             path: path.to_owned(),
             bytes,
             packed: None,
-            welds: false,
+            options: ReadOptions::new(),
             companions: Vec::new(),
         };
         match packed::unpack(&source.bytes) {

@@ -4,6 +4,7 @@
 //! order. Nodes of node strings (NS) stay fixed.
 
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -86,7 +87,7 @@ impl Walk for Sms {
         if !strings.is_empty() {
             strings.sort_unstable();
             strings.dedup();
-            sink.note(&format!("{} nodes of node strings stay fixed", strings.len()));
+            sink.remark(Remark::elements(strings.len() as u64, "node", " of node strings"));
         }
         Ok(Layout::in_place(Format::Sms2dm, Numbers::TEXT))
     }
@@ -128,7 +129,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         b"NS" => return string(cursor),
         b"MAT" => return Ok(material(cursor)),
         b"E6T" | b"E8Q" | b"E9Q" | b"E3L" => {
-            let problem = "elements with nodes on their sides, which are not moved with them";
+            let problem = "elements with nodes on their sides, which are not read";
             return Err(cursor.error(problem, "Save linear elements (E3T, E4Q)"));
         }
         b"E4T" | b"E6W" | b"E8H" | b"E5P" => {

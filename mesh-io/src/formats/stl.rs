@@ -5,6 +5,7 @@
 
 use crate::binary::order::Order;
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -54,10 +55,8 @@ impl Walk for Stl {
     const VERTICES: &'static str = "the list of corners";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        if !source.welds {
-            let problem = "an STL lists corners of triangles, and has no vertices that these share";
-            let remedy = "Have corners at the same place joined: --weld, or MeshFile::read_welded";
-            return Err(source.error(problem, remedy));
+        if !source.options.welds {
+            return Err(ReadError::Unwelded { path: source.path.clone() });
         }
         let is_binary = is_binary(&source.bytes);
         let (soup, format, numbers) = match is_binary {
@@ -237,7 +236,7 @@ fn hand_on(
             vertices.push(vertices[first as usize]);
         }
     }
-    sink.note(&format!("{} corners are joined to {count} vertices", corners.len()));
+    sink.remark(Remark::Text(format!("{} corners are joined to {count} vertices", corners.len())));
     sink.end_nodes(&place)?;
     if let Some(z) = z.filter(|&z| z != 0.0)
         && sink.asks_for_data()

@@ -257,10 +257,10 @@ fn read(name: &str, bytes: &[u8], ahead: bool) -> Result<impl PartialEq, String>
     }
     let reader = detect::reader(&source).map_err(|e| e.to_string())?;
     let parsed = parse_by(reader, &source, ahead).map_err(|e| e.to_string())?;
-    let Parsed { points, triangles, constraints, x_at, regions, notes, .. } = parsed;
+    let Parsed { points, triangles, constraints, x_at, regions, remarks, .. } = parsed;
     let places: Vec<usize> = (0..points.len()).map(|v| x_at.at(v)).collect();
     let is_regular = matches!(x_at, Places::Regular { .. });
-    Ok(((points, triangles, constraints), places, regions, notes, is_regular))
+    Ok(((points, triangles, constraints), places, regions, remarks, is_regular))
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::content::constraints::{Constraints, edges_between_regions};
 use crate::content::regions::interface_vertices;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Encoded, Numbers, Places};
 use crate::error::ReadError;
@@ -49,7 +50,7 @@ pub struct MeshFile {
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
     format: Format,
-    notes: Vec<String>,
+    remarks: Vec<Remark>,
     data: Vec<String>,
     has_parameters: bool,
     has_centers: bool,
@@ -91,7 +92,7 @@ impl MeshFile {
             encoded,
             regions,
             constraints,
-            notes,
+            remarks,
             data,
             has_parameters,
             has_centers,
@@ -105,7 +106,7 @@ impl MeshFile {
             points,
             triangles,
             format,
-            notes,
+            remarks,
             data,
             has_parameters,
             has_centers,
@@ -225,9 +226,9 @@ impl MeshFile {
         self.numbers.precision()
     }
 
-    /// Returns remarks for the user on what the file holds besides triangles, one line each.
-    pub fn notes(&self) -> &[String] {
-        &self.notes
+    /// Returns remarks for the user, such as on elements other than triangles.
+    pub fn remarks(&self) -> &[Remark] {
+        &self.remarks
     }
 
     /// Returns the names of the real numbers that the file gives vertices besides x and y: depths, third coordinates

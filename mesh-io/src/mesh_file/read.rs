@@ -1,7 +1,7 @@
 //! Reads a mesh from its file, or from memory.
 
 use crate::detect;
-use crate::disk::source::Source;
+use crate::disk::source::{ReadOptions, Source};
 use crate::error::ReadError;
 use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
@@ -18,50 +18,40 @@ impl MeshFile {
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of [`Format`](crate::Format),
     /// does not follow its format, has elements other than first-order elements of the plane, or has no triangle. An
-    /// STL is refused, too: see [`read_welded`](Self::read_welded).
+    /// STL is [`ReadError::Unwelded`] unless [`ReadOptions::weld`] is set.
     pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
-        Self::read_as(path, false)
+        ReadOptions::new().read(path)
     }
 
-    /// Reads a mesh as [`read`](Self::read) does, and an STL by joining corners of triangles at the same place to one
-    /// vertex. Vertices are numbered in the order in which the file first has them. Each is written wherever the file
-    /// has it.
+    /// Reads a mesh from memory, such as what a program got by its standard input. `name` stands for the file in
+    /// messages. The ending of `name` helps to tell the format if the content is not enough.
     ///
     /// # Errors
-    /// [`ReadError`] for the reasons of [`read`](Self::read), and if the corners of an STL have different third
-    /// coordinates.
-    pub fn read_welded(path: &Path) -> Result<MeshFile, ReadError> {
-        Self::read_as(path, true)
+    /// [`ReadError`] for the reasons of [`read`](Self::read), and for a mesh of several files.
+    pub fn from_bytes(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
+        ReadOptions::new().from_bytes(name, bytes)
     }
+}
 
-    fn read_as(path: &Path, welds: bool) -> Result<MeshFile, ReadError> {
+impl ReadOptions {
+    /// Reads a mesh as [`MeshFile::read`] does, with these options.
+    ///
+    /// # Errors
+    /// [`ReadError`] for the reasons of [`MeshFile::read`].
+    pub fn read(self, path: &Path) -> Result<MeshFile, ReadError> {
         let mut given =
             triangle::files::load_by_stem(path).unwrap_or_else(|| Source::load(path))?;
-        given.welds = welds;
+        given.options = self;
         let reader = reader(&given)?;
         parsed(reader, (reader.load_companions)(given)?)
     }
 
-    /// Reads a mesh from memory, such as what a program got by its standard input. `name` stands for it in messages.
-    /// Its ending helps to tell the format if the content is not enough.
+    /// Reads a mesh from memory as [`MeshFile::from_bytes`] does, with these options.
     ///
     /// # Errors
-    /// [`ReadError`] for the reasons of [`read`](Self::read), and for a Triangle mesh, which has two files.
-    pub fn from_bytes(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
-        Self::of_source(Source::new(name, bytes)?)
-    }
-
-    /// Reads a mesh from memory as [`from_bytes`](Self::from_bytes) does, and an STL as
-    /// [`read_welded`](Self::read_welded) does.
-    ///
-    /// # Errors
-    /// [`ReadError`] for the reasons of [`read_welded`](Self::read_welded), and for a Triangle mesh, which has two
-    /// files.
-    pub fn from_bytes_welded(name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
-        Self::of_source(Source { welds: true, ..Source::new(name, bytes)? })
-    }
-
-    fn of_source(given: Source) -> Result<MeshFile, ReadError> {
+    /// [`ReadError`] for the reasons of [`MeshFile::from_bytes`].
+    pub fn from_bytes(self, name: &Path, bytes: Vec<u8>) -> Result<MeshFile, ReadError> {
+        let given = Source { options: self, ..Source::new(name, bytes)? };
         let reader = reader(&given)?;
         (reader.require_single)(&given)?;
         parsed(reader, given)

@@ -258,7 +258,7 @@ impl MeshFile {
                 format!("its ending is that of {owner}, but the mesh is {}", self.format());
             return refused(
                 problem,
-                format!("A run keeps the format: end the name in {usual}, and convert the result"),
+                format!("The format is kept: end the name in {usual}, or convert the mesh"),
             );
         }
         (self.reader().destinations)(self.source(), path)

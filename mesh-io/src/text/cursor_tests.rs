@@ -7,7 +7,7 @@ pub(crate) fn source(text: &[u8]) -> Source {
         path: "m.txt".into(),
         bytes: text.to_vec(),
         packed: None,
-        welds: false,
+        options: crate::ReadOptions::new(),
         companions: Vec::new(),
     }
 }

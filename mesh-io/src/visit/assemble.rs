@@ -2,12 +2,13 @@
 
 use crate::content::constraints::{Constraints, PeriodicPairs};
 use crate::content::regions::{Numbering, Regions};
+use crate::content::remark::Remark;
 use crate::content::tags::{FoundTags, TagMap};
 use crate::disk::source::Source;
 use crate::edit::numbers::{FoundPlaces, Places};
 use crate::error::{Location, ReadError};
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::parsed::{Parsed, fixed_note};
+use crate::visit::parsed::Parsed;
 use crate::visit::records::{NodeRecords, TriangleRecords};
 use crate::visit::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
 
@@ -27,13 +28,12 @@ pub(crate) fn parse_by(
     let Layout { format, numbers, encoded, copies, part } = (reader.walk)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
     let Assembler { mut points, triangles, x_at, regions, constraints, .. } = assembler;
-    let Assembler { quadrilaterals, mut notes, data, on_lower, .. } = assembler;
+    let Assembler { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
     if quadrilaterals > 0 {
-        notes.insert(0, fixed_note(quadrilaterals, "quadrilateral", ""));
+        remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
     }
     if on_lower > 0 && on_lower == points.len() {
-        let note = "every vertex lies on a point or curve of the model: all of them stay fixed";
-        notes.push(note.into());
+        remarks.push(Remark::AllOnModelCurves);
     }
     let precision = numbers.precision();
     for (vertex, point) in points.iter_mut().enumerate() {
@@ -62,7 +62,7 @@ pub(crate) fn parse_by(
         encoded,
         regions,
         constraints,
-        notes,
+        remarks,
         data,
         has_parameters,
         has_centers,
@@ -101,7 +101,7 @@ struct Assembler {
     regions: Regions,
     constraints: Constraints,
     quadrilaterals: u64,
-    notes: Vec<String>,
+    remarks: Vec<Remark>,
     /// The names of the real numbers that the file gives vertices besides x and y.
     data: Vec<String>,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
@@ -196,7 +196,7 @@ impl Sink for Assembler {
                 match (index(a), index(b)) {
                     (Some(a), Some(b)) => pairs.push([a, b]),
                     (a, b) => {
-                        // The node of the pair that is known does not slide.
+                        // The known node of the pair cannot move along its curve.
                         unlisted += 1;
                         anchored.extend(a.into_iter().chain(b));
                     }
@@ -207,16 +207,14 @@ impl Sink for Assembler {
             }
         }
         if unlisted > 0 {
-            let list = self.vertices_of;
-            self.note(&format!(
-                "periodic pairs that name a node which {list} does not list do not slide: {unlisted}"
-            ));
+            let list = self.vertices_of.to_owned();
+            self.remark(Remark::UnlistedPairs { count: unlisted, list });
         }
     }
 
-    fn note(&mut self, note: &str) {
-        if !self.notes.iter().any(|before| before == note) {
-            self.notes.push(note.to_owned());
+    fn remark(&mut self, remark: Remark) {
+        if !self.remarks.contains(&remark) {
+            self.remarks.push(remark);
         }
     }
 

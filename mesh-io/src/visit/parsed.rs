@@ -1,6 +1,7 @@
 //! What the reader of a format returns.
 
 use crate::content::constraints::Constraints;
+use crate::content::remark::Remark;
 use crate::edit::numbers::{Encoded, Numbers, Places};
 use crate::format::Format;
 
@@ -25,18 +26,11 @@ pub(crate) struct Parsed {
     pub(crate) regions: Option<Vec<u32>>,
     /// Lines, points and periodic pairs of the file.
     pub(crate) constraints: Constraints,
-    /// One-line remarks for the user.
-    pub(crate) notes: Vec<String>,
+    pub(crate) remarks: Vec<Remark>,
     /// The names of real numbers that the file gives vertices besides x and y, each once.
     pub(crate) data: Vec<String>,
     /// Whether the file gives vertices parameters on surfaces of a model, at offsets that are known.
     pub(crate) has_parameters: bool,
     /// Whether the file gives elements centers.
     pub(crate) has_centers: bool,
-}
-
-/// Words the remark that elements other than triangles keep their vertices fixed.
-pub(crate) fn fixed_note(count: u64, what: &str, of: &str) -> String {
-    let (s, their) = if count == 1 { ("", "its") } else { ("s", "their") };
-    format!("{count} {what}{s}{of}: {their} vertices stay fixed")
 }

@@ -2,6 +2,7 @@
 
 use crate::content::constraints::Affine;
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Encoded, Form, Numbers, Places, Splice};
 use crate::error::{ReadError, WriteError};
@@ -12,7 +13,7 @@ use crate::visit::records::{NodeRecords, TriangleRecords};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The kinds of elements: triangles, which are smoothed, and others, whose vertices stay fixed.
+/// The kinds of elements. The vertices of all elements but triangles are constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Point,
@@ -136,7 +137,7 @@ pub(crate) trait Sink {
     fn triangle_records(&mut self, _records: &TriangleRecords<'_>) -> usize {
         0
     }
-    /// Takes a polygon of more than four corners. Its vertices stay fixed.
+    /// Takes a polygon of more than four corners. Its vertices are constraints.
     fn polygon(
         &mut self,
         cursor: &Cursor<'_>,
@@ -148,7 +149,7 @@ pub(crate) trait Sink {
             self.element(cursor, &Element { tag, kind: Kind::Corner, region, nodes })
         })
     }
-    /// Takes a line through any number of nodes, which stay fixed.
+    /// Takes a line through any number of nodes, which are constraints.
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
@@ -167,8 +168,8 @@ pub(crate) trait Sink {
     }
     /// Takes the periodic pairs of the file; `None` if they could not be read.
     fn pairs(&mut self, _pairs: Option<Vec<Pairs>>) {}
-    /// Takes a remark for the user, one line.
-    fn note(&mut self, _note: &str) {}
+    /// Takes a remark for the user.
+    fn remark(&mut self, _remark: Remark) {}
 
     /// Whether the sink asks for groups. If not, readers may leave out the calls on groups below.
     fn asks_for_groups(&self) -> bool {

@@ -1,7 +1,7 @@
 //! Input files of Abaqus and CalculiX: sets and surfaces, parts, what is left out or included, and how numbers are written.
 
 use super::Folder;
-use super::facts::fixed;
+use super::facts::{fixed, remarks};
 use super::layouts::{assert_refused, assert_same};
 use mesh_io::Precision;
 use mesh_io::{Group, MeshFile};
@@ -128,8 +128,8 @@ fn elements_that_are_no_triangles_hold_their_vertices() {
     assert_eq!(held("*ELEMENT, TYPE=U12\n7, 1, 2, 3,\n4, 5\n"), [0, 1, 2, 3, 4]);
     assert_eq!(held("*SURFACE, NAME=S\n2, S2\n1, SPOS\n"), [2, 4]);
     assert_eq!(held("*SURFACE, NAME=S, TYPE=NODE\n5, 1.\n"), []);
-    let notes = read(&[&deck(), "*ELEMENT, TYPE=SPRING1\n7, 5\n"].concat()).notes().to_vec();
-    assert_eq!(notes, ["1 element of the type SPRING1: its vertices stay fixed"]);
+    let notes = remarks(&read(&[&deck(), "*ELEMENT, TYPE=SPRING1\n7, 5\n"].concat()));
+    assert_eq!(notes, ["1 element of the type SPRING1"]);
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn vertices_between_sections_are_held() {
     let shell = section("B").replace("SOLID", "shell");
     assert_eq!(between(&[sets, &section("Left"), &shell].concat()), [4]);
     let text = [&one[..], &section("elsewhere")].concat();
-    assert!(read(&text).notes()[0].contains("set ELSEWHERE, which is not here"));
+    assert!(remarks(&read(&text))[0].contains("set ELSEWHERE, which is not here"));
 }
 
 /// meshio writes sets without sections, and lists of elements without sets.
@@ -233,7 +233,7 @@ fn included_files_must_not_hold_a_part_of_the_mesh() {
         let folder =
             Folder::new(&[("a.inp", &main), ("more.inp", more), ("last.inp", "*NGEN\n1, 2\n")]);
         MeshFile::read(&folder.path("a.inp"))
-            .map(|file| file.notes().to_vec())
+            .map(|file| remarks(&file))
             .map_err(|error| error.to_string())
     };
     assert_eq!(with("*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"), Ok(vec![]));
@@ -256,10 +256,10 @@ fn included_files_must_not_hold_a_part_of_the_mesh() {
     assert_eq!(with(&"*INCLUDE, INPUT=more.inp\n".repeat(50)), Ok(vec![]));
     let two = read(&[&main[..], "*INCLUDE, INPUT=other.inp\n*INCLUDE, INPUT=other.inp\n"].concat());
     assert!(
-        two.notes()[0].starts_with("2 files such as more.inp, which are included, are not there")
+        remarks(&two)[0].starts_with("2 files such as more.inp, which are included, are not there")
     );
     assert_eq!(
-        read(&main).notes(),
+        remarks(&read(&main)),
         ["more.inp, which is included, is not there: no part of the mesh is taken to be in it"]
     );
 }
@@ -285,8 +285,8 @@ fn coordinates_are_written_in_20_characters() {
     let file = read(&long);
     assert_eq!(file.precision(), Precision::Text20);
     let note = "1 node has a coordinate of more than 20 characters: CalculiX reads the first 20 only, and so another number";
-    assert_eq!(file.notes(), [note]);
-    assert_eq!(read(&deck()).notes(), [""; 0]);
+    assert_eq!(remarks(&file), [note]);
+    assert_eq!(remarks(&read(&deck())), [""; 0]);
     assert_eq!(file.points()[4], [-1.234_567_890_123_457e-3, 1.234_567_890_123_456_7]);
     let written = |points: &[[f64; 2]]| {
         let mut out = Vec::new();

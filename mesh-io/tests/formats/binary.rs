@@ -1,6 +1,6 @@
 //! gmsh's `.msh` in binary: the meshes of the text samples, with numbers in either byte order.
 
-use super::facts::mesh_of;
+use super::facts::{mesh_of, remarks};
 use super::long::{points, triangles};
 use super::support::Mesh;
 use super::support::{Binary, write_msh22_binary, write_msh41_binary};
@@ -88,7 +88,7 @@ fn binary_files_hold_what_those_in_text_do() {
             let (_folder, file) = read(&binary(big));
             assert_eq!(file.format(), format);
             assert_eq!(mesh_of(&file), mesh_of(&of_text));
-            assert_eq!(file.notes(), of_text.notes());
+            assert_eq!(remarks(&file), remarks(&of_text));
         }
     }
 }

@@ -157,7 +157,7 @@ fn files_of_formats_that_are_not_read_are_refused_by_name() {
     let formats = "Formats read: Triangle .node/.ele, gmsh, legacy VTK, SU2, Medit, binary Medit, \
                    Wavefront OBJ, OFF, ADCIRC or SCHISM grid, SMS 2dm, MIKE (DHI), FVCOM, \
                    MFEM, JIGSAW, FreeFem .msh, SELAFIN";
-    assert_error(&[("a.stl", "solid part\n")], &["a.stl: an STL lists corners", "--weld"]);
+    assert_error(&[("a.stl", "solid part\n")], &["a.stl: an STL lists corners", "ReadOptions::weld"]);
     assert_error(&[("a.k", "*KEYWORD\n")], &["LS-DYNA is not read. Export the mesh "]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);
     let folder = Folder::new(&[]);
@@ -187,7 +187,7 @@ fn destinations_that_cannot_work_are_refused_and_left_alone() {
             assert!(write.contains(part), "no {part:?} in {write:?}");
         }
     };
-    let converted = "A run keeps the format: end the name in .node, and convert the result";
+    let converted = "The format is kept: end the name in .node, or convert the mesh";
     refused("la.1", "out.msh", &["out.msh: ", "that of gmsh", "mesh is Triangle", converted]);
     refused("la.1", "out.vtk", &["that of legacy VTK", converted]);
     refused("la.1", "old.node", &["old.ele: is a directory", "Give the name of a file"]);

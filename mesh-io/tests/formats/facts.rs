@@ -27,3 +27,8 @@ pub(crate) fn mesh_of(file: &MeshFile) -> Mesh {
 pub(crate) fn freed(file: &MeshFile) -> Mesh {
     Mesh { fixed: file.constraints().vertices.clone(), ..mesh_of(file) }
 }
+
+/// Returns the remarks on a file, in words.
+pub(super) fn remarks(file: &MeshFile) -> Vec<String> {
+    file.remarks().iter().map(ToString::to_string).collect()
+}

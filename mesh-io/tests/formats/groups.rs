@@ -1,7 +1,7 @@
 //! What has a name in each format: groups, vertices by their numbers, arrays of point data.
 
 use super::Folder;
-use super::facts::{between_regions, fixed};
+use super::facts::{between_regions, fixed, remarks};
 use super::grouped::{
     ELE, FREEFEM, GMSH22, GMSH40, MEDIT, NODE, OBJ, PLY, POLY, SMS, SU2, VTK, VTU, gmsh41,
     gmsh41_binary, gmsh41_partitioned, meditb, vtk_binary,
@@ -155,7 +155,7 @@ fn vertices_of_required_triangles_stay() {
         fixed.dedup();
         assert_eq!(fixed, [0, 1, 2, 3, 4], "{name}");
         assert!(between_regions(&file).is_empty(), "{name}");
-        assert_eq!(file.notes(), ["1 required triangle: its vertices stay fixed"]);
+        assert_eq!(remarks(&file), ["1 required triangle"]);
         let list = "RequiredTriangles = list surface RequiredTriangles: [0, 0, 0, 0] [2, 3, 4]";
         let told = told(&file);
         assert!(told.contains(&list.to_owned()), "{told:?}");

@@ -124,7 +124,7 @@ fn items_of_medit_stand_anywhere_on_lines() {
         |keyword: &str, count: u32| MEDIT.replace("Normals\n1\n", &format!("{keyword}\n{count}\n"));
     for keyword in ["TrianglesP2", "EdgesP2", "QuadrilateralsQ2", "TrianglesP3"] {
         let problem = format!(
-            "a.mesh:21: {keyword} are of higher order, and only corners are moved. Save linear"
+            "a.mesh:21: {keyword} are of higher order, which is not read. Save linear"
         );
         assert_refused("a.mesh", &p2(keyword, 1), &[&problem]);
         assert_same("a.mesh", MEDIT, &p2(keyword, 0).replace("\n0\n0 0\n", "\n0\n"));
@@ -136,8 +136,8 @@ fn items_of_medit_stand_anywhere_on_lines() {
         &["a.mesh:21: TetrahedraP2 make this a volume mesh"],
     );
     for (keyword, count, part) in [
-        (24, 1, "elements of higher order (keyword 24), of which only corners are moved"),
-        (93, 1, "elements of higher order (keyword 93), of which only corners are moved"),
+        (24, 1, "elements of higher order (keyword 24), which are not read"),
+        (93, 1, "elements of higher order (keyword 93), which are not read"),
         (96, 1, "elements of a volume make this a volume mesh"),
         (24, 0, "it has no list of Vertices"),
     ] {

@@ -34,7 +34,7 @@ mod ugrid;
 mod vtu;
 mod words;
 
-use facts::fixed;
+use facts::{fixed, remarks};
 use mesh_io::{Format, Location, MeshFile};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -98,7 +98,7 @@ fn triangle_is_read_by_any_of_its_names() {
         assert_eq!(file.points(), [[0., 0.], [1., 0.], [1., 1.], [0., 1.], [0.25, 0.5]]);
         assert_eq!(file.triangles(), [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
         assert_eq!(fixed(&file), [0, 1, 1, 4]);
-        assert_eq!(file.notes(), ["2 segments of la.1.poly: their vertices stay fixed"]);
+        assert_eq!(remarks(&file), ["2 segments of la.1.poly"]);
     }
     let odd = Folder::new(&[("points.txt", NODE), ("points.ele", ELE)]);
     assert_eq!(odd.read("points.txt").triangles().len(), 4);
@@ -126,14 +126,14 @@ fn gmsh_maps_tags_and_fixes_what_is_not_a_triangle() {
     assert_eq!(file.points()[4], [0.25, 0.5]);
     assert_eq!(file.triangles(), [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
     assert_eq!(fixed(&file), [1, 0, 1, 1, 5, 5, 2]);
-    assert_eq!(file.notes(), ["1 quadrilateral: its vertices stay fixed"]);
+    assert_eq!(remarks(&file), ["1 quadrilateral"]);
 
     let file = folder.read("b.msh");
     assert_eq!(file.format(), Format::Gmsh41);
     assert_eq!(file.triangles(), [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
     // Vertex 0 is also in a block of a point of the model.
     assert_eq!(fixed(&file), [0, 0, 1]);
-    assert!(file.notes().is_empty() && file.has_parameters());
+    assert!(remarks(&file).is_empty() && file.has_parameters());
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn gmsh_parameters_are_kept_and_noted() {
     {
         let folder = Folder::new(&[("a.msh", text)]);
         let file = folder.read("a.msh");
-        let notes = file.notes().join("\n");
+        let notes = remarks(&file).join("\n");
         let told = file.has_parameters() || notes.contains("nodes have parameters on surfaces");
         assert_eq!(told, tells, "{notes}");
     }
@@ -160,7 +160,11 @@ fn gmsh_vertices_on_curves_of_the_model_are_fixed() {
     let folder = Folder::new(&[("a.msh", &text)]);
     let file = folder.read("a.msh");
     assert_eq!(fixed(&file), [0, 1, 2, 3, 4, 0, 1]);
-    assert!(file.notes().join("").contains("all of them stay fixed"), "{:?}", file.notes());
+    assert!(
+        remarks(&file).join("").contains("every vertex lies on a point"),
+        "{:?}",
+        remarks(&file)
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Bulk data of Nastran: fields in every form, what holds vertices, properties, what is refused, and how numbers are written.
 
 use super::Folder;
-use super::facts::{between_regions, fixed};
+use super::facts::{between_regions, fixed, remarks};
 use super::layouts::{assert_refused, assert_same};
 use mesh_io::Precision;
 use mesh_io::{Group, MeshFile};
@@ -205,10 +205,10 @@ fn elements_that_are_no_triangles_hold_their_vertices() {
     assert_eq!(held("RBE3,7,,5,123,1.,123,1,2,,\n,.5,12,3\n,UM,4,3"), [0, 1, 2, 4]);
     assert_eq!(held("RBE1,7,1,123,2,12,,,\n,UM,3,123,5,12"), [0, 1, 2, 4]);
     assert_eq!(held("RBAR,7,1,5,123456"), [0, 4]);
-    let notes = |cards: &str| read(&one().replace("ENDDATA", cards)).notes().to_vec();
-    assert_eq!(notes("CONM2,7,5,,1."), ["1 element called CONM2: its vertices stay fixed"]);
+    let notes = |cards: &str| remarks(&read(&one().replace("ENDDATA", cards)));
+    assert_eq!(notes("CONM2,7,5,,1."), ["1 element called CONM2"]);
     let both = notes("RBE2,7,5,1,2\nCONM2,7,5");
-    assert_eq!(both, ["2 elements such as CONM2: their vertices stay fixed"]);
+    assert_eq!(both, ["2 elements such as CONM2"]);
 }
 
 #[test]
@@ -332,9 +332,9 @@ fn the_smallest_field_gives_the_precision() {
     assert_eq!(file.precision(), Precision::Text8);
     assert_eq!(file.points()[3], [0.123_456_8, 2.0]);
     let note = "1 node has coordinates of more than 8 characters, beside fields of 8: they count as rounded to 8";
-    assert_eq!(file.notes(), [note]);
+    assert_eq!(remarks(&file), [note]);
     assert_eq!(written(&file, file.points()), text);
-    assert!(read(&one()).notes().is_empty());
+    assert!(remarks(&read(&one())).is_empty());
 }
 
 /// Every comment was once a row that looked for its continuation among all comments after it.

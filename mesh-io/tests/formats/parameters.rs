@@ -1,6 +1,7 @@
 //! Parameters of nodes on plane surfaces of a gmsh model: they change as the nodes move.
 
 use super::Folder;
+use super::facts::remarks;
 use super::support::Binary;
 use mesh_io::FieldError;
 use mesh_io::MeshFile;
@@ -69,7 +70,7 @@ fn parameters_on_a_plane_move_with_the_nodes() {
     let before = text(false);
     let folder = Folder::new(&[("in.msh", &before)]);
     let file = folder.read("in.msh");
-    assert!(file.has_parameters() && file.notes().is_empty());
+    assert!(file.has_parameters() && remarks(&file).is_empty());
     let (fields, others) = file.plane_parameters(&moved()).unwrap();
     assert_eq!((fields.len(), others), (1, 0));
     file.write_with(&folder.path("out.msh"), &moved(), &fields).unwrap();

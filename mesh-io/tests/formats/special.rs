@@ -1,7 +1,7 @@
 //! Details of the formats of other programs, one by one.
 
 use super::Folder;
-use super::facts::fixed;
+use super::facts::{fixed, remarks};
 use super::made::{all, base};
 use mesh_io::{Format, MeshFile};
 use std::fs;
@@ -84,7 +84,7 @@ fn lines_and_points_of_an_obj_are_no_faces() {
         fixed.sort_unstable();
         expected.sort_unstable();
         assert_eq!(fixed, expected, "{row}");
-        assert!(!file.notes().join("").contains("quadrilateral"), "{:?}", file.notes());
+        assert!(!remarks(&file).join("").contains("quadrilateral"), "{:?}", remarks(&file));
     }
 }
 
@@ -245,5 +245,5 @@ fn only_the_mesh_of_an_sms_file_is_read() {
     let rows = "MAT 1 \"sea\"\n  # by hand\nNS 1 3 -2 7 \"1 2 3\"\n\nGE 1 1 2 3\nE3TX 9 9 9 9\n";
     let file = assert_square("a.2dm", &format!("{SMS}{rows}"), Format::Sms2dm);
     assert_eq!(fixed(&file), [0, 2, 1]);
-    assert_eq!(file.notes(), ["3 nodes of node strings stay fixed"]);
+    assert_eq!(remarks(&file), ["3 nodes of node strings"]);
 }

@@ -5,13 +5,13 @@ use super::damage::{self, damaged, random};
 use super::facts::mesh_of;
 use super::made::{Made, all, base};
 use super::others::{folder, for_each};
-use mesh_io::{Format, Location, MeshFile};
+use mesh_io::{Format, Location, MeshFile, ReadOptions};
 use std::fs;
 use std::time::Instant;
 
 /// Reads a file that may be damaged: it must give a mesh whose parts have places, or an error of one line with its name.
 pub(crate) fn mesh_or_error(folder: &Folder, name: &str) -> Result<MeshFile, String> {
-    match MeshFile::read_welded(&folder.path(name)) {
+    match ReadOptions::new().weld(true).read(&folder.path(name)) {
         Ok(file) => {
             let length = fs::metadata(folder.path(name)).unwrap().len() as usize;
             let mesh = mesh_of(&file);

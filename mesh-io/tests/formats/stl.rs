@@ -2,13 +2,13 @@
 
 use super::Folder;
 use super::damage::{damaged, random, rounds};
-use super::facts::{between_regions, freed};
+use super::facts::{between_regions, freed, remarks};
 use super::made::base;
 use super::spoiled::mesh_or_error;
 use super::support::Mesh;
 use super::support::{Binary, check};
 use mesh_io::Precision;
-use mesh_io::{Format, Location, MeshFile};
+use mesh_io::{Format, Location, MeshFile, ReadOptions};
 use std::fs;
 
 /// The mesh with its vertices numbered in the order in which its triangles first use them.
@@ -67,7 +67,7 @@ fn binary(mesh: &Mesh, points: &[[f64; 2]], z: f64) -> Vec<u8> {
 fn read(name: &str, bytes: &[u8]) -> (Folder, MeshFile) {
     let folder = Folder::new(&[]);
     fs::write(folder.path(name), bytes).unwrap();
-    let file = MeshFile::read_welded(&folder.path(name)).unwrap();
+    let file = ReadOptions::new().weld(true).read(&folder.path(name)).unwrap();
     (folder, file)
 }
 
@@ -89,9 +89,9 @@ fn corners_are_joined_where_that_is_asked_for() {
         assert_eq!(file.triangles(), mesh.triangles);
         let points: Vec<_> = mesh.points.iter().map(|p| p.map(rounded)).collect();
         assert_eq!(file.points(), points);
-        assert_eq!(file.notes(), ["120 corners are joined to 30 vertices"]);
+        assert_eq!(remarks(&file), ["120 corners are joined to 30 vertices"]);
         let error = MeshFile::read(&folder.path("in.stl")).unwrap_err().to_string();
-        assert!(error.contains("no vertices") && error.contains("--weld"), "{error}");
+        assert!(error.contains("no vertices") && error.contains("ReadOptions::weld"), "{error}");
         // Two solids are two regions.
         assert_eq!(file.regions().is_some(), format == Format::Stl);
         assert_eq!(between_regions(&file).is_empty(), format == Format::StlBinary);
@@ -120,7 +120,7 @@ fn every_copy_of_a_moved_corner_is_written() {
         }
         file.write(&folder.path("out.stl"), &moved).unwrap();
         let written = fs::read(folder.path("out.stl")).unwrap();
-        let again = MeshFile::read_welded(&folder.path("out.stl")).unwrap();
+        let again = ReadOptions::new().weld(true).read(&folder.path("out.stl")).unwrap();
         let rounded = |p: &[f64; 2]| p.map(|x| file.precision().rounded(x));
         assert_eq!(again.points(), moved.iter().map(rounded).collect::<Vec<_>>());
         assert_eq!(again.triangles(), mesh.triangles);
@@ -145,7 +145,7 @@ fn every_copy_of_a_moved_corner_is_written() {
         };
         torn[at] ^= 1;
         fs::write(folder.path("out.stl"), torn).unwrap();
-        let torn = MeshFile::read_welded(&folder.path("out.stl")).unwrap();
+        let torn = ReadOptions::new().weld(true).read(&folder.path("out.stl")).unwrap();
         assert!(file.difference(&torn).is_some());
     }
 }

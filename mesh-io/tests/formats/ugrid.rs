@@ -1,6 +1,7 @@
 //! UGRID: data of nodes, what stays as it is, and refused files.
 
 use super::Folder;
+use super::facts::remarks;
 use super::hdf5;
 use super::made::{Made, all, base};
 use super::others::folder;
@@ -52,7 +53,7 @@ fn centers_of_faces_follow_the_vertices() {
     for made in samples() {
         let folder = folder(&made, &made.bytes);
         let file = folder.read(made.name);
-        assert!(file.has_centers() && file.notes().iter().all(|note| !note.contains("face_")));
+        assert!(file.has_centers() && remarks(&file).iter().all(|note| !note.contains("face_")));
         let to = hdf5::moved(&file, 0.0);
         let (mut fields, others) = file.centers(&to).unwrap();
         let names: Vec<_> = fields.iter().map(|field| field.name()).collect();

@@ -6,11 +6,11 @@ use super::deck::Deck;
 use super::sets::{Effort, Numbered, Sets};
 use super::{rows, types};
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::parsed::fixed_note;
 use crate::visit::sink::{Element, Kind, Sink, Within};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -48,7 +48,7 @@ impl Found {
             of_sections.iter().find(|&n| !listed.contains(n) && !of_lists.contains(n))
         {
             let name = quoted(name);
-            sink.note(&format!("a section is of the set {name}, which is not here: vertices at its ends are not held"));
+            sink.remark(Remark::Text(format!("a section is of the set {name}, which is not here: vertices at its ends are no constraints")));
         }
         // Sections of lists of elements need no look at the elements: the lists' sets tell them apart.
         let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));
@@ -205,7 +205,11 @@ impl Found {
         }
         if let Some(first) = types_of.first() {
             let word = if types_of.len() == 1 { "the type" } else { "types such as" };
-            sink.note(&fixed_note(holding, "element", &format!(" of {word} {}", quoted(first))));
+            sink.remark(Remark::elements(
+                holding,
+                "element",
+                &format!(" of {word} {}", quoted(first)),
+            ));
         }
         lines.sort_by_key(|&(surface, _)| surface);
         for of_surface in lines.chunk_by(|a, b| a.0 == b.0) {

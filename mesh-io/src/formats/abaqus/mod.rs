@@ -14,6 +14,7 @@ mod types;
 pub(crate) mod write;
 
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -49,7 +50,7 @@ impl Walk for Abaqus {
     const VERTICES: &'static str = "*NODE";
 
     fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let deck = &Deck::read(source)?;
+        let deck = &mut Deck::read(source)?;
         if deck.of_mesh("NODE").next().is_none() {
             let problem = "it has no *NODE, so it is no mesh of Abaqus or CalculiX";
             return Err(source.error(problem, "Save the mesh with its nodes and elements"));
@@ -58,7 +59,8 @@ impl Walk for Abaqus {
         let cursor = &mut Cursor::new(source).of(Syntax::KEYWORDS);
         let mut nodes = Nodes::default();
         nodes.send(cursor.clone(), deck, numbers, sink)?;
-        deck.notes.iter().for_each(|note| sink.note(note));
+        deck.notes.drain(..).for_each(|note| sink.remark(Remark::Text(note)));
+        let deck = &*deck;
         if sink.asks_for_data() {
             leave_out(deck, sink);
         }
@@ -146,7 +148,7 @@ fn class(source: &Source, block: &Block<'_>, of: &[u8]) -> Result<Option<Kind>, 
         }
         Some(Class::SecondOrder) => {
             let problem = format!(
-                "elements of the type {shown} have nodes on their sides, which are not moved with them"
+                "elements of the type {shown} have nodes on their sides, which are not read"
             );
             Err(block.error(source, problem, "Save linear elements (CPS3, CPE3, CAX3, S3)"))
         }
@@ -195,7 +197,9 @@ impl Nodes {
             let (s, have) = if counted.long == 1 { ("", "has") } else { ("s", "have") };
             let nodes =
                 format!("{} node{s} {have} a coordinate of more than 20 characters", counted.long);
-            sink.note(&format!("{nodes}: CalculiX reads the first 20 only, and so another number"));
+            sink.remark(Remark::Text(format!(
+                "{nodes}: CalculiX reads the first 20 only, and so another number"
+            )));
         }
         heights.send("z", numbers.into(), sink);
         Ok(())

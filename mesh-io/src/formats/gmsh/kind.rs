@@ -23,7 +23,7 @@ fn refusal(cursor: &Cursor<'_>, number: u64) -> ReadError {
             "Save a mesh of the plane only (gmsh -2)",
         ),
         8..=10 | 16 | 20..=28 | 36..=66 => cursor.error(
-            format!("element type {number} is of higher order, and only corners are moved"),
+            format!("element type {number} is of higher order, which is not read"),
             "Make the mesh of first order (Mesh.ElementOrder=1)",
         ),
         _ => cursor.error(

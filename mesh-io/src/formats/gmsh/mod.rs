@@ -19,6 +19,7 @@ mod words;
 pub(crate) mod write;
 
 use crate::binary::order::Order;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::{Location, ReadError};
@@ -247,7 +248,7 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
 
 /// Tells the sink that nodes have parameters, which stay as they are.
 fn note_parameters(sink: &mut dyn Sink) {
-    sink.note(PARAMETRIC);
+    sink.remark(Remark::Text(PARAMETRIC.into()));
     sink.leaves_out("parameters of nodes on surfaces");
 }
 

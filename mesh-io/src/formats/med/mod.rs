@@ -8,6 +8,7 @@ mod families;
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
@@ -115,9 +116,8 @@ impl<'a> File<'a> {
         }
         sink.within(&[]);
         if self.hdf5.find(b"CHA").is_some() {
-            sink.note(
-                "its fields (CHA) stay as they are: those at nodes no longer fit where these move",
-            );
+            let text = "its fields (CHA) are kept as they are, and do not fit nodes that move";
+            sink.remark(Remark::Text(text.into()));
             if sink.asks_for_data() {
                 sink.leaves_out("fields");
             }

@@ -7,6 +7,7 @@
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
@@ -14,7 +15,6 @@ use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::heights::Heights;
-use crate::visit::parsed::fixed_note;
 use crate::visit::records::{NodeRecords, Region, Tags, TriangleRecords};
 use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
 
@@ -105,7 +105,7 @@ impl Walk for MeditBinary {
                 24..=25 | 27 | 88..=93 => {
                     if integer(cursor, widths, widths.integer, "a count")? > 0 {
                         let problem = format!(
-                            "elements of higher order (keyword {keyword}), of which only corners are moved"
+                            "elements of higher order (keyword {keyword}), which are not read"
                         );
                         return Err(cursor.error(problem, "Save linear elements (Triangles)"));
                     }
@@ -251,7 +251,7 @@ fn hold_required(
 ) -> Result<(), ReadError> {
     required.sort_unstable();
     required.dedup();
-    sink.note(&fixed_note(required.len() as u64, "required triangle", ""));
+    sink.remark(Remark::elements(required.len() as u64, "required triangle", ""));
     let label = Label::name(b"RequiredTriangles");
     sink.within(&[Within { what: "list", label, dimension: None }]);
     let size = widths.integer;

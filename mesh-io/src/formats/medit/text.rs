@@ -5,6 +5,7 @@
 //! edges and ridges need no reading, as they are among the edges.
 
 use crate::content::label::Label;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
@@ -13,7 +14,6 @@ use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
 use crate::visit::heights::Heights;
-use crate::visit::parsed::fixed_note;
 use crate::visit::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
@@ -106,10 +106,8 @@ impl Walk for Medit {
                 }
                 keyword if is_of_higher_order(keyword) => {
                     if value(cursor, "a count")? > 0 {
-                        let problem = format!(
-                            "{} are of higher order, and only corners are moved",
-                            quoted(keyword)
-                        );
+                        let problem =
+                            format!("{} are of higher order, which is not read", quoted(keyword));
                         return Err(cursor.error(problem, "Save linear elements (Triangles)"));
                     }
                 }
@@ -163,7 +161,7 @@ fn hold_required(
 ) -> Result<(), ReadError> {
     required.sort_unstable();
     required.dedup();
-    sink.note(&fixed_note(required.len() as u64, "required triangle", ""));
+    sink.remark(Remark::elements(required.len() as u64, "required triangle", ""));
     let label = Label::name(b"RequiredTriangles");
     sink.within(&[Within { what: "list", label, dimension: None }]);
     let mut left = required.as_slice();

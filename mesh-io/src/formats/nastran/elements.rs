@@ -2,12 +2,12 @@
 
 use super::nodes::whole;
 use super::types::{Class, Listed, class};
+use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::card;
 use crate::text::card::{Line, Name, letters};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
-use crate::visit::parsed::fixed_note;
 use crate::visit::sink::{Column, Element, Kind, Sink, all_rows, volume};
 use std::collections::{BTreeSet, HashSet};
 
@@ -42,7 +42,11 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadErr
     })?;
     if let Some(first) = names.first() {
         let word = if names.len() == 1 { "called" } else { "such as" };
-        sink.note(&fixed_note(holding, "element", &format!(" {word} {}", quoted(letters(first)))));
+        sink.remark(Remark::elements(
+            holding,
+            "element",
+            &format!(" {word} {}", quoted(letters(first))),
+        ));
     }
     others.retain(|name| !matches!(letters(name), b"" | b"GRDSET"));
     if let Some(first) = others.first() {
@@ -109,10 +113,8 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
         Class::Rigid(listed) => return Ok(Card::Holds(name, rigid(words, listed))),
         Class::Volume => return Err(volume(cursor, &format!("{} elements", shown()))),
         Class::SecondOrder => {
-            let problem = format!(
-                "{} elements may have nodes on their sides, which are not moved with them",
-                shown()
-            );
+            let problem =
+                format!("{} elements may have nodes on their sides, which are not read", shown());
             return Err(cursor.error(problem, "Save linear elements (CTRIA3, CQUAD4)"));
         }
     };

@@ -1,5 +1,6 @@
 //! The nodes: GRID, with what GRDSET says of all of them.
 
+use crate::content::remark::Remark;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::precision::Precision;
@@ -98,7 +99,9 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<Numbers, Re
         let most = if precision == Precision::Text8 { 8 } else { 16 };
         let (s, have) = if longer == 1 { ("", "has") } else { ("s", "have") };
         let nodes = format!("{longer} node{s} {have} coordinates of more than {most} characters");
-        sink.note(&format!("{nodes}, beside fields of {most}: they count as rounded to {most}"));
+        sink.remark(Remark::Text(format!(
+            "{nodes}, beside fields of {most}: they count as rounded to {most}"
+        )));
     }
     let numbers = Numbers::Fields { precision };
     heights.send("z", numbers.into(), sink);

@@ -5,6 +5,7 @@
 
 use crate::content::label::Label;
 use crate::content::regions::Numbering;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers;
 use crate::error::{ReadError, WriteError};
@@ -16,7 +17,6 @@ use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::float;
 use crate::visit::heights::TextNumbers;
-use crate::visit::parsed::fixed_note;
 use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row};
 use std::path::{Path, PathBuf};
 
@@ -155,7 +155,7 @@ fn triangles(
     match cursor.integer_or(3, "the number of vertices per triangle")? {
         3 => {}
         6 => {
-            let problem = "the triangles have 6 nodes, and mid-side nodes are not moved";
+            let problem = "the triangles have 6 nodes, and mid-side nodes are not read";
             return Err(cursor.error(problem, "Make the mesh with 3-node triangles (without -o2)"));
         }
         4 => {
@@ -294,7 +294,7 @@ fn segments(
         sink.element(&segments.cursor, &element)?;
     }
     sink.within(&[]);
-    sink.note(&fixed_note(segments.count, "segment", &format!(" of {}", poly.name())));
+    sink.remark(Remark::elements(segments.count, "segment", &format!(" of {}", poly.name())));
     // Holes and regions matter only to the mesh generator.
     let cursor = &mut segments.cursor;
     if cursor.next_row() && cursor.integer("the number of holes").is_ok_and(|holes| holes > 0) {

@@ -3,6 +3,7 @@
 use super::centers::Tables;
 use super::mesh::Mesh;
 use super::table::Table;
+use crate::content::remark::Remark;
 use crate::formats::netcdf_points::{Parts, PointData};
 use crate::netcdf::{Number, Variable};
 use crate::visit::sink::Sink;
@@ -47,10 +48,10 @@ impl<'h, 'a> Mesh<'h, 'a> {
         let left = self.centers(tables, &places, &mut points, sink);
         if !left.is_empty() {
             let names: Vec<_> = left.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
-            sink.note(&format!(
+            sink.remark(Remark::Text(format!(
                 "{}: places of edges or faces, which stay as they are",
                 names.join(", ")
-            ));
+            )));
         }
     }
 
