@@ -1,7 +1,5 @@
 //! Words of a text and the numbers they stand for.
 
-use std::borrow::Cow;
-
 /// Where the line ends that holds this byte, after its line feed.
 pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
     memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
@@ -13,24 +11,13 @@ pub(crate) fn quoted(token: &[u8]) -> String {
 }
 
 /// Shortens a text to `most` characters and escapes its control characters, for a message of one line.
-fn on_one_line(text: &[u8], most: usize) -> String {
+pub(crate) fn on_one_line(text: &[u8], most: usize) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(4 * most)]);
     let mut shown: String = text.chars().take(most).flat_map(char::escape_debug).collect();
     if text.chars().nth(most).is_some() {
         shown.push_str("...");
     }
     shown
-}
-
-/// Words the error of the XML parser. It may quote a tag, of any length and over several lines.
-pub(crate) fn ill_formed_xml(error: &quick_xml::Error) -> String {
-    format!("it is not XML: {}", on_one_line(error.to_string().as_bytes(), 120))
-}
-
-/// The text that an attribute or the content of an element in XML stands for: `a"b` for `a&quot;b`. What stands for nothing stays as it is.
-pub(crate) fn xml_text(value: &[u8]) -> String {
-    let text = String::from_utf8_lossy(value).into_owned();
-    quick_xml::escape::unescape(&text).map(Cow::into_owned).unwrap_or(text)
 }
 
 /// Where the next number starts, on this line or a later one, behind a comment too: some formats break lines between x
@@ -253,17 +240,6 @@ mod tests {
             short += u32::from(found.is_some());
         }
         assert!(short > 20_000, "{short}");
-    }
-
-    #[test]
-    fn values_of_xml_are_the_text_that_they_stand_for() {
-        for (value, text) in [
-            ("a &quot;b&quot; &lt; &amp;amp; &#233;", "a \"b\" < &amp; \u{e9}"),
-            ("R&D", "R&D"),
-            ("&none;", "&none;"),
-        ] {
-            assert_eq!(xml_text(value.as_bytes()), text);
-        }
     }
 
     #[test]
