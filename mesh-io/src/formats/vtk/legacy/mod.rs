@@ -4,13 +4,9 @@
 //! numbers are big-endian. Points of the type `float` have single precision in text too, as VTK reads them so. Arrays
 //! that name the cells' regions are read with the mesh, other data when they are asked for.
 
-mod cells;
 mod data;
 mod lists;
 mod passed;
-
-pub(crate) use cells::{Cell, Triangles, Tries};
-pub(crate) use data::names_regions;
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
@@ -18,13 +14,13 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::formats::vtk::regions::RegionNumbers;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::sink::{Layout, Sink, Walk, each_row};
-use data::Regions;
 use lists::{Cells, List};
 
 pub(crate) struct Vtk;
@@ -48,7 +44,7 @@ impl Walk for Vtk {
         let mut cells: Vec<Cells<'_>> = Vec::new();
         let mut precision = None;
         let mut heights = None;
-        let mut regions: Vec<Regions> = Vec::new();
+        let (mut columns, mut regions) = (Vec::new(), Vec::new());
         while cursor.next_word() {
             // VTK ignores the case of keywords.
             let keyword = cursor.token().unwrap_or_default().to_ascii_uppercase();
@@ -93,7 +89,7 @@ impl Walk for Vtk {
                 }
                 // Data of points and cells go on to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
-                    regions = data::regions(cursor, binary, &keyword, sink);
+                    (columns, regions) = data::regions(cursor, binary, &keyword, sink);
                     break;
                 }
                 other => {
@@ -113,7 +109,8 @@ impl Walk for Vtk {
             };
             heights.send("z", form, sink);
         }
-        sink.columns(regions.iter().map(Regions::column).collect());
+        sink.columns(columns);
+        let regions = RegionNumbers::from_iter(regions);
         let mut tag = 0;
         for cells in &cells {
             cells.send(cursor, &regions, &mut tag, sink)?;
