@@ -44,24 +44,43 @@ pub(crate) fn number_end(bytes: &[u8], mut at: usize) -> usize {
     at
 }
 
+/// Returns the text between quotation marks; `None` if there are none around it.
+pub(crate) fn in_quotes(text: &[u8]) -> Option<&[u8]> {
+    text.trim_ascii().strip_prefix(b"\"")?.strip_suffix(b"\"")
+}
+
+/// Removes the blanks around a text, and then quotation marks around it.
+pub(crate) fn unquoted(text: &[u8]) -> &[u8] {
+    in_quotes(text).unwrap_or(text.trim_ascii())
+}
+
+/// Returns the two sides of the first equals sign of a row, without blanks around them. If there is no equals sign, the value
+/// is empty.
+pub(crate) fn key_value(row: &[u8]) -> (&[u8], &[u8]) {
+    let equals = memchr::memchr(b'=', row).unwrap_or(row.len());
+    (row[..equals].trim_ascii(), row.get(equals + 1..).unwrap_or_default().trim_ascii())
+}
+
+/// Reads digits from `at` on, after those that `number` stands for. Returns the number modulo 2^64, and the end of the
+/// digits. Numbers of up to 19 digits are below 2^64.
+#[inline]
+pub(crate) fn parse_digits(bytes: &[u8], mut at: usize, mut number: u64) -> (u64, usize) {
+    while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+        number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+        at += 1;
+    }
+    (number, at)
+}
+
+/// Returns the whole number that a token stands for, if it is less than 2^64.
 #[inline]
 pub(crate) fn integer(token: &[u8]) -> Option<u64> {
     let digits = token.strip_prefix(b"+").unwrap_or(token);
-    if digits.is_empty() {
-        return None;
+    match parse_digits(digits, 0, 0) {
+        (number, end @ 1..=19) if end == digits.len() => Some(number),
+        (_, end) if end == digits.len() => str::from_utf8(digits).ok()?.parse().ok(),
+        _ => None,
     }
-    // This many digits cannot overflow.
-    if digits.len() < 20 && digits.iter().all(u8::is_ascii_digit) {
-        let append = |number: u64, &byte: &u8| 10 * number + u64::from(byte - b'0');
-        return Some(digits.iter().fold(0, append));
-    }
-    digits.iter().try_fold(0_u64, |number, &byte| {
-        let digit = byte.wrapping_sub(b'0');
-        if digit > 9 {
-            return None;
-        }
-        number.checked_mul(10)?.checked_add(u64::from(digit))
-    })
 }
 
 #[inline]
@@ -90,19 +109,11 @@ pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     ];
     let is_negative = bytes.get(at) == Some(&b'-');
     let start = at + usize::from(is_negative);
-    let mut number = 0_u64;
-    let mut digits = |mut at: usize| {
-        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
-            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-            at += 1;
-        }
-        at
-    };
-    let mut end = digits(start);
+    let (mut number, mut end) = parse_digits(bytes, start, 0);
     let (mut count, mut power) = (end - start, 0);
     if bytes.get(end) == Some(&b'.') {
         let point = end;
-        end = digits(point + 1);
+        (number, end) = parse_digits(bytes, point + 1, number);
         power = point as i32 + 1 - end as i32;
         count += end - point - 1;
     }
@@ -163,6 +174,16 @@ mod tests {
         assert_eq!(integer(b"18446744073709551615"), Some(u64::MAX));
         for wrong in ["", "+", "-1", "1.0", "1e3", "18446744073709551616", "7a", ":"] {
             assert_eq!(integer(wrong.as_bytes()), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn quotation_marks_and_equals_signs_are_removed() {
+        for (text, name) in [("\"a b\" ", "a b"), ("\"a", "\"a"), (" a", "a"), ("\"", "\"")] {
+            assert_eq!(unquoted(text.as_bytes()), name.as_bytes(), "{text}");
+        }
+        for (row, key, value) in [(" A = b=c ", "A", "b=c"), ("A=", "A", ""), (" A ", "A", "")] {
+            assert_eq!(key_value(row.as_bytes()), (key.as_bytes(), value.as_bytes()), "{row}");
         }
     }
 

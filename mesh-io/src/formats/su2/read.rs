@@ -13,7 +13,7 @@ use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;
-use crate::text::token::{integer, quoted};
+use crate::text::token::{integer, key_value, quoted};
 use crate::visit::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
@@ -198,14 +198,8 @@ fn skip_send_to(cursor: &mut Cursor<'_>) {
 /// Returns the two sides of the equals sign of a row, without comments. If there is no equals sign, returns the row and
 /// nothing.
 fn key_and_values<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
-    let row = cursor.rest();
-    match memchr::memchr(b'=', row) {
-        None => (row, &[]),
-        Some(at) => {
-            let values = row[at + 1..].split(|&byte| byte == b'%').next().unwrap_or_default();
-            (row[..at].trim_ascii(), values.trim_ascii())
-        }
-    }
+    let (key, values) = key_value(cursor.rest());
+    (key, values.split(|&byte| byte == b'%').next().unwrap_or_default().trim_ascii())
 }
 
 /// Returns the first of several values.
