@@ -1,6 +1,6 @@
 //! Data of nodes and elements: `$NodeData` and `$ElementData`.
 
-use super::form;
+use super::encoding::form;
 use crate::binary::order::Order;
 use crate::edit::numbers::Places;
 use crate::precision::Precision;

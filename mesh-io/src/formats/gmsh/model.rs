@@ -1,7 +1,8 @@
 //! The names of physical groups, and the entities of the model with their physical groups.
 
+use super::encoding::{Encoding, Version};
+use super::lists::row;
 use super::words::Words;
-use super::{Encoding, Version, row};
 use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::error::ReadError;

@@ -4,8 +4,7 @@
 use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::edit::numbers::{Form, Places};
-use crate::formats::vtk::legacy::passed::{array_name, pass, size_of};
-use crate::formats::vtk::legacy::take;
+use crate::formats::vtk::legacy::passed::{array_name, pass, size_of, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;

@@ -1,6 +1,6 @@
 //! Lists of cells of a legacy VTK file.
 
-use super::take;
+use super::passed::take;
 use crate::binary::order::Order;
 use crate::binary::whole::Whole;
 use crate::error::ReadError;

@@ -22,6 +22,7 @@ use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::sink::{Layout, Sink, Walk, each_row};
 use lists::{Cells, List};
+use passed::take;
 
 pub(crate) struct Vtk;
 
@@ -226,18 +227,5 @@ fn finite(cursor: &Cursor<'_>, point: [f64; 2]) -> Result<[f64; 2], ReadError> {
     match point.iter().all(|x| x.is_finite()) {
         true => Ok(point),
         false => Err(cursor.error("a coordinate is not a finite number", "Write the mesh again")),
-    }
-}
-
-/// Takes `count` items of `size` bytes. The line that announced them must be read to its end.
-fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Result<&'a [u8], ReadError> {
-    let bytes = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
-    let problem = format!("the file ends before {count} items of {size} bytes");
-    match bytes {
-        None => Err(cursor.error(problem, CUT_OFF)),
-        Some(bytes) => {
-            let start = cursor.clone();
-            cursor.take(bytes).ok_or_else(|| start.error(problem, CUT_OFF))
-        }
     }
 }
