@@ -35,6 +35,7 @@ mod parallel;
 mod precision;
 mod text;
 mod visit;
+mod xml;
 
 pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs};
 pub use crate::content::group::{Group, Groups};

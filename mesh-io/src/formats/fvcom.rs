@@ -11,7 +11,7 @@ use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
-use crate::text::token::integer;
+use crate::text::token::{integer, key_value};
 use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
 
 pub(crate) struct Fvcom;
@@ -41,11 +41,7 @@ impl Walk for Fvcom {
 /// Reads the next row, which must be `KEY = NUMBER`.
 fn number_of(cursor: &mut Cursor<'_>, key: &str) -> Result<u64, ReadError> {
     cursor.row(0, 1, "lines of counts")?;
-    let row = cursor.rest();
-    let (before, after) = match memchr::memchr(b'=', row) {
-        Some(at) => (row[..at].trim_ascii(), row[at + 1..].trim_ascii_start()),
-        None => (row, &[][..]),
-    };
+    let (before, after) = key_value(cursor.rest());
     // A comment may follow.
     let number = after.split(|byte| byte.is_ascii_whitespace() || *byte == b'!').next();
     let is_it = before.eq_ignore_ascii_case(key.as_bytes());

@@ -13,7 +13,7 @@ use crate::formats::numbered_nodes::counted_nodes;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
-use crate::text::token::{integer, quoted};
+use crate::text::token::{integer, key_value, quoted};
 use crate::visit::heights::TextNumbers;
 use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
 
@@ -45,10 +45,9 @@ impl Walk for Jigsaw {
             if !cursor.is_at_letter() {
                 continue;
             }
-            let row = cursor.rest();
-            let equals = memchr::memchr(b'=', row).unwrap_or(row.len());
-            let key = row[..equals].trim_ascii().to_ascii_uppercase();
-            let mut values = row.get(equals + 1..).unwrap_or_default().split(|&byte| byte == b';');
+            let (key, values) = key_value(cursor.rest());
+            let key = key.to_ascii_uppercase();
+            let mut values = values.split(|&byte| byte == b';');
             let first = values.next().unwrap_or_default().trim_ascii();
             let second = values.next().unwrap_or_default().trim_ascii();
             match key.as_slice() {

@@ -10,6 +10,7 @@ use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::unquoted;
 use crate::visit::heights::Heights;
 use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
 
@@ -156,7 +157,7 @@ fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         nodes.push(node.unsigned_abs());
         match node {
             0 => return Err(cursor.error("a node string has node 0", CORRECT)),
-            ..0 => return Ok(Row::String(nodes, End::Last(unquoted(cursor.rest())))),
+            ..0 => return Ok(Row::String(nodes, End::Last(unquoted(cursor.rest()).to_vec()))),
             _ => {}
         }
     }
@@ -168,15 +169,9 @@ fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
 fn material(cursor: &mut Cursor<'_>) -> Row {
     match cursor.signed("a material") {
         Ok(tag) => match unquoted(cursor.rest()) {
-            name if name.is_empty() => Row::Other,
-            name => Row::Material(tag, name),
+            [] => Row::Other,
+            name => Row::Material(tag, name.to_vec()),
         },
         Err(_) => Row::Other,
     }
-}
-
-/// Removes the quotes around a name.
-fn unquoted(name: &[u8]) -> Vec<u8> {
-    let inner = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
-    inner.unwrap_or(name).to_vec()
 }

@@ -1,10 +1,8 @@
 //! What is done to a chunk before it is stored, and the way back.
 
 use super::bytes::{Bytes, Fault};
-use flate2::Compression;
-use flate2::read::{ZlibDecoder, ZlibEncoder};
+use crate::compress::zlib;
 use std::borrow::Cow;
-use std::io::Read;
 
 /// A filter that chunks go through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,9 +14,6 @@ pub(super) enum Filter {
     /// A checksum at the end.
     Fletcher,
 }
-
-/// The most bytes that a compressed one may stand for. More is no compressor's work; counts that say so are wrong.
-const MOST: usize = 1100;
 
 /// Reads a filter message.
 pub(super) fn read(mut bytes: Bytes<'_>) -> Result<Vec<Filter>, Fault> {
@@ -75,13 +70,10 @@ pub(super) fn unfiltered<'a>(
             Filter::Deflate(_) => {
                 // Checksums may stand beside the items.
                 let most = length.checked_add(4 * filters.len())?;
-                if length > bytes.len().saturating_mul(MOST) {
+                if !zlib::can_expand(bytes.len(), length) {
                     return None;
                 }
-                let mut whole = Vec::new();
-                let limit = most as u64 + 1;
-                ZlibDecoder::new(&bytes[..]).take(limit).read_to_end(&mut whole).ok()?;
-                whole.into()
+                zlib::decompress(&bytes, most + 1)?.into()
             }
             Filter::Shuffle(size) => shuffled(&bytes, *size, false).into(),
             Filter::Fletcher => {
@@ -103,12 +95,7 @@ pub(super) fn unfiltered<'a>(
 /// What is stored of a chunk.
 pub(super) fn filtered(filters: &[Filter], mask: u32, chunk: Vec<u8>) -> Vec<u8> {
     used(filters, mask).fold(chunk, |mut bytes, filter| match filter {
-        Filter::Deflate(level) => {
-            let mut out = Vec::new();
-            let mut encoder = ZlibEncoder::new(&bytes[..], Compression::new(*level));
-            encoder.read_to_end(&mut out).expect("memory can be read");
-            out
-        }
+        Filter::Deflate(level) => zlib::compress(&bytes, *level),
         Filter::Shuffle(size) => shuffled(&bytes, *size, true),
         Filter::Fletcher => {
             bytes.extend(fletcher(&bytes).to_le_bytes());

@@ -1,6 +1,6 @@
 //! Attributes of variables.
 
-use super::header::Number;
+use super::types::Number;
 use crate::binary::order::Order;
 
 /// An attribute: its name, and its content as it stands in the file.

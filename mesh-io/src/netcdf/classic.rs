@@ -4,7 +4,8 @@
 //! first. Variables of the record dimension come at the end, one record after another.
 
 use super::attribute::Attribute;
-use super::header::{Content, Header, Number, Variable};
+use super::header::{Content, Header, Variable};
+use super::types::Number;
 use crate::binary::order::Order;
 use crate::disk::source::Source;
 use crate::error::ReadError;

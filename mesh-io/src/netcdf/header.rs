@@ -1,11 +1,11 @@
 //! What a netCDF file holds, whichever format it is in: dimensions and variables by name.
 
 use super::attribute::Attribute;
+use super::types::Number;
 use crate::binary::order::Order;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Dataset, Hdf5};
-use crate::precision::Precision;
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -42,26 +42,6 @@ pub(super) enum Content {
         stride: usize,
     },
     Dataset(Dataset),
-}
-
-/// The types of numbers that are told apart.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Number {
-    Text,
-    Whole(usize),
-    Real(Precision),
-    /// None of these.
-    Other(usize),
-}
-
-impl Number {
-    pub(crate) fn bytes(self) -> usize {
-        match self {
-            Number::Text => 1,
-            Number::Whole(bytes) | Number::Other(bytes) => bytes,
-            Number::Real(precision) => precision.bytes(),
-        }
-    }
 }
 
 impl Variable {

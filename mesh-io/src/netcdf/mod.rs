@@ -3,6 +3,7 @@
 mod attribute;
 mod classic;
 mod header;
+mod types;
 mod version4;
 pub(crate) mod write;
 
@@ -10,7 +11,8 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::SIGNATURE;
 
-pub(crate) use header::{Header, Items, Number, Variable};
+pub(crate) use header::{Header, Items, Variable};
+pub(crate) use types::Number;
 
 /// Reads the header of a file.
 ///

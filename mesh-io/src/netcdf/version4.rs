@@ -4,7 +4,8 @@
 //! dataset too, as long as the dimension.
 
 use super::attribute::Attribute;
-use super::header::{Content, Header, Number, Variable};
+use super::header::{Content, Header, Variable};
+use super::types::Number;
 use crate::binary::order::Order;
 use crate::disk::source::Source;
 use crate::error::ReadError;

@@ -3,7 +3,7 @@
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::syntax::Commas;
-use crate::text::token::{float, fortran_float, integer, quoted, short_float};
+use crate::text::token::{float, fortran_float, integer, parse_digits, quoted, short_float};
 use std::fmt::Display;
 
 /// The third coordinate of a point that has only two in the file.
@@ -18,12 +18,7 @@ impl<'a> Cursor<'a> {
     pub(crate) fn integer(&mut self, what: impl Display) -> Result<u64, ReadError> {
         let bytes = self.bytes;
         let start = self.skip_blanks(self.at);
-        let mut at = start;
-        let mut number = 0_u64;
-        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
-            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-            at += 1;
-        }
+        let (number, at) = parse_digits(bytes, start, 0);
         // This many digits cannot overflow. Other numbers are rare.
         if (1..=19).contains(&(at - start)) && self.is_word_end(at) {
             self.at = at;
@@ -36,19 +31,11 @@ impl<'a> Cursor<'a> {
     /// Reads a signed whole number, called `what` in messages.
     #[inline]
     pub(crate) fn signed(&mut self, what: impl Display) -> Result<i64, ReadError> {
-        let bytes = self.bytes;
-        let start = self.skip_blanks(self.at);
-        let first = start + usize::from(bytes.get(start) == Some(&b'-'));
-        let mut at = first;
-        let mut number = 0_i64;
-        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
-            number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
-            at += 1;
-        }
-        // This many digits cannot overflow. Other numbers are rare.
-        if (1..=18).contains(&(at - first)) && self.is_word_end(at) {
-            self.at = at;
-            return Ok(if first > start { -number } else { number });
+        if let Some((number, end)) = self.short_signed()
+            && self.is_word_end(end)
+        {
+            self.at = end;
+            return Ok(number);
         }
         let token = self.token();
         let number = token.and_then(|token| str::from_utf8(token).ok()?.parse().ok());
@@ -59,21 +46,24 @@ impl<'a> Cursor<'a> {
     /// cursor does not move.
     #[inline]
     pub(crate) fn signed_up_to(&mut self, stop: u8) -> Option<i64> {
-        let bytes = self.bytes;
-        let start = self.skip_blanks(self.at);
-        let first = start + usize::from(bytes.get(start) == Some(&b'-'));
-        let mut at = first;
-        let mut number = 0_i64;
-        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
-            number = number.wrapping_mul(10).wrapping_add(i64::from(digit - b'0'));
-            at += 1;
-        }
-        let ends = self.is_word_end(at) || bytes[at] == stop;
-        // This many digits cannot overflow.
-        ((1..=18).contains(&(at - first)) && ends).then(|| {
-            self.at = self.word_end(at);
-            if first > start { -number } else { number }
+        let (number, end) = self.short_signed()?;
+        (self.is_word_end(end) || self.bytes[end] == stop).then(|| {
+            self.at = self.word_end(end);
+            number
         })
+    }
+
+    /// Returns the whole number at the start of the next token, and its end. `None` if it has no digit, or more than 18:
+    /// they might overflow.
+    #[inline]
+    fn short_signed(&self) -> Option<(i64, usize)> {
+        let start = self.skip_blanks(self.at);
+        let first = start + usize::from(self.bytes.get(start) == Some(&b'-'));
+        let (number, end) = parse_digits(self.bytes, first, 0);
+        let number = number.cast_signed();
+        (1..=18)
+            .contains(&(end - first))
+            .then(|| (if first > start { -number } else { number }, end))
     }
 
     /// Reads a number as [`integer`](Self::integer) does. Returns `absent` if the row has no token left.

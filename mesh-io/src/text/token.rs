@@ -1,7 +1,5 @@
 //! Words of a text and the numbers they stand for.
 
-use std::borrow::Cow;
-
 /// Where the line ends that holds this byte, after its line feed.
 pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
     memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
@@ -13,24 +11,13 @@ pub(crate) fn quoted(token: &[u8]) -> String {
 }
 
 /// Shortens a text to `most` characters and escapes its control characters, for a message of one line.
-fn on_one_line(text: &[u8], most: usize) -> String {
+pub(crate) fn on_one_line(text: &[u8], most: usize) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(4 * most)]);
     let mut shown: String = text.chars().take(most).flat_map(char::escape_debug).collect();
     if text.chars().nth(most).is_some() {
         shown.push_str("...");
     }
     shown
-}
-
-/// Words the error of the XML parser. It may quote a tag, of any length and over several lines.
-pub(crate) fn ill_formed_xml(error: &quick_xml::Error) -> String {
-    format!("it is not XML: {}", on_one_line(error.to_string().as_bytes(), 120))
-}
-
-/// The text that an attribute or the content of an element in XML stands for: `a"b` for `a&quot;b`. What stands for nothing stays as it is.
-pub(crate) fn xml_text(value: &[u8]) -> String {
-    let text = String::from_utf8_lossy(value).into_owned();
-    quick_xml::escape::unescape(&text).map(Cow::into_owned).unwrap_or(text)
 }
 
 /// Where the next number starts, on this line or a later one, behind a comment too: some formats break lines between x
@@ -57,24 +44,43 @@ pub(crate) fn number_end(bytes: &[u8], mut at: usize) -> usize {
     at
 }
 
+/// Returns the text between quotation marks; `None` if there are none around it.
+pub(crate) fn in_quotes(text: &[u8]) -> Option<&[u8]> {
+    text.trim_ascii().strip_prefix(b"\"")?.strip_suffix(b"\"")
+}
+
+/// Removes the blanks around a text, and then quotation marks around it.
+pub(crate) fn unquoted(text: &[u8]) -> &[u8] {
+    in_quotes(text).unwrap_or(text.trim_ascii())
+}
+
+/// Returns the two sides of the first equals sign of a row, without blanks around them. If there is no equals sign, the value
+/// is empty.
+pub(crate) fn key_value(row: &[u8]) -> (&[u8], &[u8]) {
+    let equals = memchr::memchr(b'=', row).unwrap_or(row.len());
+    (row[..equals].trim_ascii(), row.get(equals + 1..).unwrap_or_default().trim_ascii())
+}
+
+/// Reads digits from `at` on, after those that `number` stands for. Returns the number modulo 2^64, and the end of the
+/// digits. Numbers of up to 19 digits are below 2^64.
+#[inline]
+pub(crate) fn parse_digits(bytes: &[u8], mut at: usize, mut number: u64) -> (u64, usize) {
+    while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
+        number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+        at += 1;
+    }
+    (number, at)
+}
+
+/// Returns the whole number that a token stands for, if it is less than 2^64.
 #[inline]
 pub(crate) fn integer(token: &[u8]) -> Option<u64> {
     let digits = token.strip_prefix(b"+").unwrap_or(token);
-    if digits.is_empty() {
-        return None;
+    match parse_digits(digits, 0, 0) {
+        (number, end @ 1..=19) if end == digits.len() => Some(number),
+        (_, end) if end == digits.len() => str::from_utf8(digits).ok()?.parse().ok(),
+        _ => None,
     }
-    // This many digits cannot overflow.
-    if digits.len() < 20 && digits.iter().all(u8::is_ascii_digit) {
-        let append = |number: u64, &byte: &u8| 10 * number + u64::from(byte - b'0');
-        return Some(digits.iter().fold(0, append));
-    }
-    digits.iter().try_fold(0_u64, |number, &byte| {
-        let digit = byte.wrapping_sub(b'0');
-        if digit > 9 {
-            return None;
-        }
-        number.checked_mul(10)?.checked_add(u64::from(digit))
-    })
 }
 
 #[inline]
@@ -103,19 +109,11 @@ pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     ];
     let is_negative = bytes.get(at) == Some(&b'-');
     let start = at + usize::from(is_negative);
-    let mut number = 0_u64;
-    let mut digits = |mut at: usize| {
-        while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
-            number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-            at += 1;
-        }
-        at
-    };
-    let mut end = digits(start);
+    let (mut number, mut end) = parse_digits(bytes, start, 0);
     let (mut count, mut power) = (end - start, 0);
     if bytes.get(end) == Some(&b'.') {
         let point = end;
-        end = digits(point + 1);
+        (number, end) = parse_digits(bytes, point + 1, number);
         power = point as i32 + 1 - end as i32;
         count += end - point - 1;
     }
@@ -176,6 +174,16 @@ mod tests {
         assert_eq!(integer(b"18446744073709551615"), Some(u64::MAX));
         for wrong in ["", "+", "-1", "1.0", "1e3", "18446744073709551616", "7a", ":"] {
             assert_eq!(integer(wrong.as_bytes()), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn quotation_marks_and_equals_signs_are_removed() {
+        for (text, name) in [("\"a b\" ", "a b"), ("\"a", "\"a"), (" a", "a"), ("\"", "\"")] {
+            assert_eq!(unquoted(text.as_bytes()), name.as_bytes(), "{text}");
+        }
+        for (row, key, value) in [(" A = b=c ", "A", "b=c"), ("A=", "A", ""), (" A ", "A", "")] {
+            assert_eq!(key_value(row.as_bytes()), (key.as_bytes(), value.as_bytes()), "{row}");
         }
     }
 
@@ -253,17 +261,6 @@ mod tests {
             short += u32::from(found.is_some());
         }
         assert!(short > 20_000, "{short}");
-    }
-
-    #[test]
-    fn values_of_xml_are_the_text_that_they_stand_for() {
-        for (value, text) in [
-            ("a &quot;b&quot; &lt; &amp;amp; &#233;", "a \"b\" < &amp; \u{e9}"),
-            ("R&D", "R&D"),
-            ("&none;", "&none;"),
-        ] {
-            assert_eq!(xml_text(value.as_bytes()), text);
-        }
     }
 
     #[test]

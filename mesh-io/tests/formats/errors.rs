@@ -157,7 +157,10 @@ fn files_of_formats_that_are_not_read_are_refused_by_name() {
     let formats = "Formats read: Triangle .node/.ele, gmsh, legacy VTK, SU2, Medit, binary Medit, \
                    Wavefront OBJ, OFF, ADCIRC or SCHISM grid, SMS 2dm, MIKE (DHI), FVCOM, \
                    MFEM, JIGSAW, FreeFem .msh, SELAFIN";
-    assert_error(&[("a.stl", "solid part\n")], &["a.stl: an STL lists corners", "ReadOptions::weld"]);
+    assert_error(
+        &[("a.stl", "solid part\n")],
+        &["a.stl: an STL lists corners", "ReadOptions::weld"],
+    );
     assert_error(&[("a.k", "*KEYWORD\n")], &["LS-DYNA is not read. Export the mesh "]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);
     let folder = Folder::new(&[]);

@@ -123,9 +123,8 @@ fn items_of_medit_stand_anywhere_on_lines() {
     let p2 =
         |keyword: &str, count: u32| MEDIT.replace("Normals\n1\n", &format!("{keyword}\n{count}\n"));
     for keyword in ["TrianglesP2", "EdgesP2", "QuadrilateralsQ2", "TrianglesP3"] {
-        let problem = format!(
-            "a.mesh:21: {keyword} are of higher order, which is not read. Save linear"
-        );
+        let problem =
+            format!("a.mesh:21: {keyword} are of higher order, which is not read. Save linear");
         assert_refused("a.mesh", &p2(keyword, 1), &[&problem]);
         assert_same("a.mesh", MEDIT, &p2(keyword, 0).replace("\n0\n0 0\n", "\n0\n"));
         assert_same("a.mesh", MEDIT, &p2(&format!("{keyword}Ordering"), 1));

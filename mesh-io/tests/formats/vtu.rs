@@ -287,6 +287,10 @@ fn hostile_xml_takes_no_memory_and_no_time() {
     };
     let deep = refused(format!("{opening}{}", "<a>".repeat(1_000_000)));
     assert!(deep.starts_with("a.vtu:3: elements are nested more than 100 deep"), "{deep}");
+    let text = format!("<Xdmf>\n<Domain>\n{}", "<Grid>".repeat(1_000_000));
+    let deep = MeshFile::from_bytes(std::path::Path::new("a.xdmf"), text.into_bytes());
+    let deep = deep.unwrap_err().to_string();
+    assert!(deep.starts_with("a.xdmf:3: elements are nested more than 100 deep"), "{deep}");
     let entities =
         "<!DOCTYPE v [<!ENTITY a \"9999999999\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;\">]>\n";
     let text = opening.replacen('\n', &format!("\n{entities}"), 1);

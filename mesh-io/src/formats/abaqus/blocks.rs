@@ -3,7 +3,7 @@
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::text::token::line_end;
+use crate::text::token::{key_value, line_end, unquoted};
 use std::ops::Range;
 
 /// A keyword with what belongs to it.
@@ -92,11 +92,10 @@ fn block(bytes: &[u8], at: usize) -> Block<'_> {
     }
     let mut pieces = lines.into_iter().flat_map(split);
     let keyword = pieces.next().map(plain).unwrap_or_default();
-    let parameters =
-        pieces.filter(|piece| !piece.is_empty()).map(|piece| match memchr::memchr(b'=', piece) {
-            Some(equals) => (plain(&piece[..equals]), unquoted(&piece[equals + 1..])),
-            None => (plain(piece), &piece[..0]),
-        });
+    let parameters = pieces.filter(|piece| !piece.is_empty()).map(|piece| {
+        let (name, value) = key_value(piece);
+        (plain(name), unquoted(value))
+    });
     let parameters = parameters.collect();
     let start = end - usize::from(bytes[..end].ends_with(b"\n"));
     Block { keyword, parameters, at, data: start..bytes.len() }
@@ -116,13 +115,6 @@ fn split(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 fn plain(word: &[u8]) -> Vec<u8> {
     let letters = word.iter().filter(|byte| !byte.is_ascii_whitespace());
     letters.map(u8::to_ascii_uppercase).collect()
-}
-
-/// Removes the quotation marks around a name.
-pub(super) fn unquoted(name: &[u8]) -> &[u8] {
-    let name = name.trim_ascii();
-    let inner = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
-    inner.unwrap_or(name)
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The elements of a mesh, with the sections, sets and surfaces that they are of.
 
-use super::List;
 use super::blocks::Block;
 use super::deck::Deck;
+use super::lists::List;
 use super::sets::{Effort, Numbered, Sets};
 use super::{rows, types};
 use crate::content::label::Label;

@@ -8,6 +8,7 @@
 mod blocks;
 mod deck;
 mod elements;
+mod lists;
 mod rows;
 mod sets;
 mod types;
@@ -24,27 +25,14 @@ use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Kind, Layout, Sink, Walk, volume};
+use crate::visit::sink::{Layout, Sink, Walk};
 use blocks::Block;
 use deck::Deck;
 use elements::Found;
 use rows::Counted;
 use sets::{Effort, Numbered, Sets};
-use types::Class;
 
 pub(crate) struct Abaqus;
-
-/// A list of elements of one type.
-struct List<'d, 'a> {
-    block: &'d Block<'a>,
-    /// The type, in capital letters.
-    of: Vec<u8>,
-    /// `None` for elements that only hold their nodes.
-    kind: Option<Kind>,
-    /// The number of the set that the list names, counted from 1; 0 if it names none.
-    set: i64,
-    of_assembly: bool,
-}
 
 impl Walk for Abaqus {
     const VERTICES: &'static str = "*NODE";
@@ -65,7 +53,7 @@ impl Walk for Abaqus {
             leave_out(deck, sink);
         }
         let mut sets = Sets::default();
-        let lists = lists(source, deck, &mut sets)?;
+        let lists = lists::lists(source, deck, &mut sets)?;
         let sections: Vec<&Block<'_>> = sections(deck).collect();
         let found = Found::new((source, deck), cursor, (&lists, sets, &sections), sink)?;
         found.send(deck, cursor, &lists, sink)?;
@@ -108,59 +96,6 @@ fn leave_out(deck: &Deck<'_>, sink: &mut dyn Sink) {
             0 => format!("what *{first} says"),
             more => format!("what *{first} and {more} more keywords say"),
         });
-    }
-}
-
-/// Lists the elements of the mesh, and checks their types.
-fn lists<'d, 'a>(
-    source: &Source,
-    deck: &'d Deck<'a>,
-    sets: &mut Sets,
-) -> Result<Vec<List<'d, 'a>>, ReadError> {
-    let mut lists = Vec::new();
-    for block in deck.of_mesh("ELEMENT") {
-        let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
-        let kind = class(source, block, &of)?;
-        let set = block.name("ELSET").map_or(0, |name| sets.number(false, name) as i64 + 1);
-        lists.push(List { block, of, kind, set, of_assembly: false });
-    }
-    for block in deck.of_assembly("ELEMENT") {
-        let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
-        if matches!(class(source, block, &of)?, Some(Kind::Triangle | Kind::Quadrilateral)) {
-            let problem = "an assembly has elements of its own beside those of a part";
-            let remedy = "Write the input file without parts and assemblies";
-            return Err(block.error(source, problem, remedy));
-        }
-        lists.push(List { block, of, kind: None, set: 0, of_assembly: true });
-    }
-    Ok(lists)
-}
-
-/// Returns the kind of the elements of a type; `None` if they only hold their nodes.
-fn class(source: &Source, block: &Block<'_>, of: &[u8]) -> Result<Option<Kind>, ReadError> {
-    let shown = quoted(of);
-    match types::class(of) {
-        Some(Class::Is(kind)) => Ok(Some(kind)),
-        Some(Class::Held) => Ok(None),
-        Some(Class::Volume) => {
-            let cursor = Cursor::standing_at(source, block.at);
-            Err(volume(&cursor, &format!("elements of the type {shown}")))
-        }
-        Some(Class::SecondOrder) => {
-            let problem = format!(
-                "elements of the type {shown} have nodes on their sides, which are not read"
-            );
-            Err(block.error(source, problem, "Save linear elements (CPS3, CPE3, CAX3, S3)"))
-        }
-        None if of.is_empty() => {
-            Err(block.error(source, "*ELEMENT has no TYPE", "Name the type of the elements"))
-        }
-        None => {
-            let problem = format!("the type of elements {shown} is not known");
-            let remedy =
-                "Triangles such as CPS3, CPE3, CAX3 and S3 are read, beside CPS4, B21 and T2D2";
-            Err(block.error(source, problem, remedy))
-        }
     }
 }
 

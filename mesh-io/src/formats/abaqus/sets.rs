@@ -1,10 +1,10 @@
 //! Sets of elements or nodes: those of `*ELSET` and `*NSET`, and those that lists of elements and nodes name.
 
-use super::blocks::{Block, unquoted};
+use super::blocks::Block;
 use super::deck::Deck;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::text::token::integer;
+use crate::text::token::{integer, unquoted};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! Boundary conditions of a zone, and the families that these are of: groups of elements or of vertices.
 
-use super::{File, labeled};
+use super::file::{File, labeled};
 use crate::content::label::Label;
 use crate::hdf5::Object;
 use crate::visit::sink::{Sink, Within};

@@ -5,6 +5,7 @@
 //! stand in sections, each with a range of numbers that all of them share.
 
 mod boundaries;
+mod file;
 mod sections;
 
 use crate::disk::source::Source;
@@ -12,21 +13,13 @@ use crate::edit::numbers::{Encoded, Form, Places};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::Axes;
-use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, Object, SIGNATURE};
-use crate::text::cursor::Cursor;
+use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, SIGNATURE};
 use crate::visit::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
 use boundaries::Boundaries;
+use file::{File, labeled};
 use std::sync::Arc;
 
 pub(crate) struct Cgns;
-
-/// A file with its base and its one zone.
-struct File<'a> {
-    source: &'a Source,
-    hdf5: &'a Hdf5<'a>,
-    base: &'a Object,
-    zone: &'a Object,
-}
 
 /// Whether a file is CGNS in HDF5.
 pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
@@ -43,29 +36,6 @@ impl Walk for Cgns {
 }
 
 impl<'a> File<'a> {
-    fn open(source: &'a Source, hdf5: &'a Hdf5<'a>) -> Result<File<'a>, ReadError> {
-        let refused = |problem: String, remedy| {
-            Err(Cursor::at_byte_of(source, hdf5.root().at).error(problem, remedy))
-        };
-        let bases = labeled(hdf5, hdf5.root(), b"CGNSBase_t");
-        let zones: Vec<_> = bases
-            .iter()
-            .flat_map(|&(_, base)| {
-                labeled(hdf5, base, b"Zone_t").into_iter().map(move |zone| (base, zone))
-            })
-            .collect();
-        let &[(base, (_, zone))] = &zones[..] else {
-            let problem = format!("a CGNS file of {} zones is not read", zones.len());
-            return refused(problem, "Save a mesh of one unstructured zone, or as gmsh or VTK");
-        };
-        let file = File { source, hdf5, base, zone };
-        let kind = labeled(hdf5, zone, b"ZoneType_t").first().and_then(|(_, kind)| file.text(kind));
-        if kind.is_some_and(|kind| kind != b"Unstructured") {
-            return refused("a structured zone is not read".into(), "Save an unstructured mesh");
-        }
-        Ok(file)
-    }
-
     fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let (axes, count) = self.axes()?;
         let layout = axes.send(Format::Cgns, (count, 1), sink)?;
@@ -76,36 +46,6 @@ impl<'a> File<'a> {
         self.sections(&boundaries, sink)?;
         self.solutions(count, sink);
         Ok(layout)
-    }
-
-    fn cursor(&self, object: &Object) -> Cursor<'a> {
-        Cursor::at_byte_of(self.source, object.at)
-    }
-
-    /// The content of a node.
-    fn data(&self, node: &'a Object) -> Option<&'a Object> {
-        self.hdf5.child(node, b" data")
-    }
-
-    /// The whole numbers of a node; none if it has none.
-    fn integers(&self, node: &'a Object) -> Option<Vec<i64>> {
-        self.hdf5.integers(self.data(node)?)
-    }
-
-    /// The letters of a node.
-    fn text(&self, node: &'a Object) -> Option<Vec<u8>> {
-        let letters = self.integers(node)?;
-        let text: Vec<u8> = letters.into_iter().map(|letter| letter as u8).collect();
-        Some(text.trim_ascii().to_vec())
-    }
-
-    /// The real numbers of a node, and what they are.
-    fn reals(&self, node: &'a Object) -> Result<Option<(Dataset, Array<'a>)>, ReadError> {
-        let dataset = self.data(node).map(|data| self.hdf5.dataset(data)).transpose()?.flatten();
-        let dataset = dataset.filter(|dataset| matches!(dataset.number, Number::Real(..)));
-        dataset
-            .map(|dataset| Ok((self.hdf5.array(&dataset)?, dataset)).map(|(a, d)| (d, a)))
-            .transpose()
     }
 
     /// The coordinates, and how many vertices there are.
@@ -171,11 +111,4 @@ impl<'a> File<'a> {
             }
         }
     }
-}
-
-/// The nodes of a label in another, by name.
-fn labeled<'h>(file: &'h Hdf5<'_>, of: &'h Object, label: &[u8]) -> Vec<(&'h [u8], &'h Object)> {
-    let is =
-        |node: &Object| file.attribute(node, b"label").is_some_and(|own| own.text() == Some(label));
-    file.children(of).filter(|(_, node)| is(node)).collect()
 }

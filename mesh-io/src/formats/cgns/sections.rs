@@ -1,7 +1,7 @@
 //! The sections of elements of a zone.
 
 use super::boundaries::Boundaries;
-use super::{File, labeled};
+use super::file::{File, labeled};
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::content::label::Label;

@@ -2,9 +2,9 @@
 //! in blocks of one kind.
 
 use super::kind::kind_of;
+use super::lists::{block_fits, row};
 use super::text2::columns;
 use super::words::Words;
-use super::{block_fits, row};
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::error::ReadError;

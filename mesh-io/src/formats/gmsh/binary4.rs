@@ -1,9 +1,10 @@
 //! The sections of version 4.1 in binary, and the elements of 4.0. There is a block for each entity of the model.
 
+use super::encoding::{Version, form};
 use super::kind::kind_of;
+use super::lists::{all_in_blocks, block_fits, has_parameters};
 use super::model::Model;
 use super::words::Words;
-use super::{Version, all_in_blocks, block_fits};
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::edit::numbers::Places;
@@ -32,7 +33,7 @@ pub(super) fn nodes(
         let dimension = words.natural(cursor, "the dimension of a node block")?;
         let entity = i64::from(words.int());
         let parametric = words.int() != 0;
-        let wanted = parametric && dimension == 2 && super::has_parameters(sink, entity);
+        let wanted = parametric && dimension == 2 && has_parameters(sink, entity);
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
         let progress = (done, count, "nodes");
@@ -66,7 +67,7 @@ pub(super) fn nodes(
             }
         }
         if wanted {
-            let stored = Stored::in_place(Places::List(places), super::form(Some(order)));
+            let stored = Stored::in_place(Places::List(places), form(Some(order)));
             sink.parameter_numbers(PointNumbers { numbers, nodes: Some(own), stored });
         }
         done += size;

@@ -2,8 +2,9 @@
 //! bytes before its coordinates.
 
 use super::binary4::{BLOCK_HEADER, counts};
+use super::encoding::Version;
+use super::lists::{all_in_blocks, block_fits, note_parameters};
 use super::words::Words;
-use super::{Version, all_in_blocks, block_fits};
 use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -30,7 +31,7 @@ pub(super) fn nodes(
         let dimension = words.natural(cursor, "the dimension of a node block")?;
         let parametric = words.int() != 0;
         if parametric && dimension >= 2 {
-            super::note_parameters(sink);
+            note_parameters(sink);
         }
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;

@@ -1,10 +1,11 @@
 //! Data of nodes and elements: `$NodeData` and `$ElementData`.
 
-use super::form;
+use super::encoding::form;
 use crate::binary::order::Order;
 use crate::edit::numbers::Places;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
+use crate::text::token::unquoted;
 use crate::visit::heights::TextNumbers;
 use crate::visit::sink::{PointNumbers, Sink, Stored};
 
@@ -50,8 +51,7 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
         cursor.next_row().then_some(())?;
         let text = cursor.rest();
         if place == 0 {
-            let inner = text.strip_prefix(b"\"").and_then(|text| text.strip_suffix(b"\""));
-            name = Some(inner.unwrap_or(text));
+            name = Some(unquoted(text));
         }
     }
     // Real tags, of which the first is a time.

@@ -1,11 +1,13 @@
 //! The names of physical groups, and the entities of the model with their physical groups.
 
+use super::encoding::{Encoding, Version};
+use super::lists::row;
 use super::words::Words;
-use super::{Encoding, Version, row};
 use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::token::in_quotes;
 use crate::visit::sink::{Kind, Sink, Within};
 use std::collections::HashMap;
 
@@ -28,8 +30,7 @@ pub(super) fn physical_names(
                 (Some(dimension), cursor.signed("the tag of a physical group")?)
             }
         };
-        let text = cursor.rest();
-        let name = text.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
+        let name = in_quotes(cursor.rest());
         let name = name.ok_or_else(|| cursor.error("a name without quotes", CORRECT))?;
         if dimension.is_none_or(|dimension| dimension <= 2) && !name.is_empty() {
             sink.name("physical", dimension, tag, name);

@@ -1,6 +1,6 @@
 //! The nodes that belong together in pairs, from the section `$Periodic`.
 
-use super::{Encoding, Version};
+use super::encoding::{Encoding, Version};
 use crate::binary::order::Order;
 use crate::content::constraints::Affine;
 use crate::precision::Precision;

@@ -1,7 +1,7 @@
 //! The sections of version 2.2 as text: one line for each node and element.
 
 use super::kind::{kind_of, node_tags};
-use super::{counts, each};
+use super::lists::{counts, each};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::heights::Heights;

@@ -1,8 +1,9 @@
 //! The sections of version 4.1 as text, and the elements of 4.0. There is a block for each entity of the model.
 
+use super::encoding::Version;
 use super::kind::{kind_of, node_tags};
+use super::lists::{all_in_blocks, block_fits, by_rows, counts, each, has_parameters, head, row};
 use super::model::Model;
-use super::{Version, all_in_blocks, block_fits, by_rows, counts, each, head, row};
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
@@ -38,7 +39,7 @@ pub(super) fn nodes(
         };
         let head = head(cursor, (block, blocks, "node blocks"), read)?;
         let (dimension, entity, parametric, size) = head;
-        let wanted = parametric && dimension == 2 && super::has_parameters(sink, entity);
+        let wanted = parametric && dimension == 2 && has_parameters(sink, entity);
         block_fits(cursor, size, count - done, "nodes")?;
         tags.clear();
         tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));

@@ -1,7 +1,7 @@
 //! The nodes of version 4.0 as text. There is a block for each entity of the model, and each node has its tag before
 //! its coordinates.
 
-use super::{all_in_blocks, block_fits, by_rows, counts, each, head};
+use super::lists::{all_in_blocks, block_fits, by_rows, counts, each, head, note_parameters};
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::heights::Heights;
@@ -28,7 +28,7 @@ pub(super) fn nodes(
         };
         let (dimension, parametric, size) = head(cursor, (block, blocks, "node blocks"), read)?;
         if parametric && dimension >= 2 {
-            super::note_parameters(sink);
+            note_parameters(sink);
         }
         block_fits(cursor, size, count - done, "nodes")?;
         let read = |cursor: &mut Cursor<'_>, _| {

@@ -7,11 +7,11 @@
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::content::label::Label;
-use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::formats::medit::required::hold_required;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::heights::Heights;
@@ -157,9 +157,18 @@ impl Walk for MeditBinary {
         for list in &lists {
             elements(list, widths, sink)?;
         }
-        if !required.is_empty() {
-            hold_required(&lists, required, widths, sink)?;
-        }
+        lists.retain(|list| list.kind == Kind::Triangle);
+        let size = 4 * widths.integer;
+        let counts: Vec<u64> = lists.iter().map(|list| (list.bytes.len() / size) as u64).collect();
+        hold_required(required, &counts, sink, |list, index| {
+            let List { cursor, bytes, .. } = &lists[list];
+            let at = index as usize * size;
+            let mut numbers = bytes[at..at + size].chunks_exact(widths.integer);
+            let numbers =
+                [(); 4].map(|()| numbers.next().map_or(0, |own| widths.order.signed(own)));
+            let place = Cursor::at_byte_of(cursor.source, cursor.taken() + at);
+            Ok((place, numbers.map(|number| u64::try_from(number).unwrap_or(0)), numbers[3]))
+        })?;
         let numbers = Numbers::adjacent(order, widths.precision);
         Ok(Layout::in_place(Format::MeditBinary, numbers))
     }
@@ -237,39 +246,6 @@ fn vertices(
                 sink.node_within(index, "reference", &Label::Tag(reference));
             }
         }
-    }
-    Ok(())
-}
-
-/// Hands on the corners of the required triangles, which are not to be changed. `required` are their numbers, counted
-/// from 1.
-fn hold_required(
-    lists: &[List<'_>],
-    mut required: Vec<u64>,
-    widths: Widths,
-    sink: &mut dyn Sink,
-) -> Result<(), ReadError> {
-    required.sort_unstable();
-    required.dedup();
-    sink.remark(Remark::elements(required.len() as u64, "required triangle", ""));
-    let label = Label::name(b"RequiredTriangles");
-    sink.within(&[Within { what: "list", label, dimension: None }]);
-    let size = widths.integer;
-    let mut before = 0;
-    for List { cursor, bytes, .. } in lists.iter().filter(|list| list.kind == Kind::Triangle) {
-        let count = (bytes.len() / (4 * size)) as u64;
-        let own = required.iter().filter(|&&tag| tag > before && tag - before <= count);
-        for &tag in own {
-            let at = (tag - before - 1) as usize * 4 * size;
-            let number = |index: usize| widths.order.signed(&bytes[at + index * size..][..size]);
-            let (corners, region) = ([0, 1, 2].map(number), [number(3), 0]);
-            let place = &Cursor::at_byte_of(cursor.source, cursor.taken() + at);
-            for corner in corners {
-                let nodes = [u64::try_from(corner).unwrap_or(0), 0, 0, 0];
-                sink.element(place, &Element { tag, kind: Kind::Corner, region, nodes })?;
-            }
-        }
-        before += count;
     }
     Ok(())
 }

@@ -5,11 +5,11 @@
 //! edges and ridges need no reading, as they are among the edges.
 
 use crate::content::label::Label;
-use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::formats::medit::required::hold_required;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
@@ -133,11 +133,25 @@ impl Walk for Medit {
             let problem = "it has no list of Vertices";
             return Err(source.error(problem, "Save the mesh again"));
         }
-        let triangles = lists.into_iter().filter(|list| list.kind == Kind::Triangle);
-        let triangles: Vec<_> = triangles.map(|list| (list.cursor, list.count)).collect();
-        if !required.is_empty() {
-            hold_required(triangles, required, sink)?;
-        }
+        lists.retain(|list| list.kind == Kind::Triangle);
+        let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
+        // The list and the index in it of the next triangle.
+        let mut next = (0, 0);
+        hold_required(required, &counts, sink, |list, index| {
+            if next.0 != list {
+                next = (list, 0);
+            }
+            let List { cursor, count, .. } = &mut lists[list];
+            loop {
+                cursor.row(next.1, *count, "elements")?;
+                let triangle = |cursor: &mut Cursor<'_>| element(cursor, Kind::Triangle);
+                let (nodes, reference) = cursor.item(triangle, &mut None)?;
+                next.1 += 1;
+                if next.1 > index {
+                    return Ok((cursor.clone(), nodes, reference));
+                }
+            }
+        })?;
         Ok(Layout::in_place(Format::Medit, Numbers::TEXT))
     }
 }
@@ -148,42 +162,6 @@ fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadEr
     for done in 0..count {
         cursor.row(done, count, "required triangles")?;
         numbers.push(cursor.integer("the number of a triangle")?);
-    }
-    Ok(())
-}
-
-/// Hands on the corners of the required triangles, which are not to be changed. `required` are their numbers, counted
-/// from 1.
-fn hold_required(
-    triangles: Vec<(Cursor<'_>, u64)>,
-    mut required: Vec<u64>,
-    sink: &mut dyn Sink,
-) -> Result<(), ReadError> {
-    required.sort_unstable();
-    required.dedup();
-    sink.remark(Remark::elements(required.len() as u64, "required triangle", ""));
-    let label = Label::name(b"RequiredTriangles");
-    sink.within(&[Within { what: "list", label, dimension: None }]);
-    let mut left = required.as_slice();
-    let mut before = 0;
-    for (mut cursor, count) in triangles {
-        let cursor = &mut cursor;
-        for done in 0..count {
-            cursor.row(done, count, "elements")?;
-            let triangle = |cursor: &mut Cursor<'_>| element(cursor, Kind::Triangle);
-            let (corners, reference) = cursor.item(triangle, &mut None)?;
-            let tag = before + done + 1;
-            if left.first() != Some(&tag) {
-                continue;
-            }
-            left = &left[1..];
-            let region = [reference, 0];
-            for &corner in &corners[..3] {
-                let (kind, nodes) = (Kind::Corner, [corner, 0, 0, 0]);
-                sink.element(cursor, &Element { tag, kind, region, nodes })?;
-            }
-        }
-        before += count;
     }
     Ok(())
 }

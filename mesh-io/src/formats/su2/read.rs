@@ -9,10 +9,11 @@ use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::su2::motions::Motions;
+use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;
-use crate::text::token::{integer, quoted};
+use crate::text::token::{integer, key_value, quoted};
 use crate::visit::sink::{
     Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
 };
@@ -197,14 +198,8 @@ fn skip_send_to(cursor: &mut Cursor<'_>) {
 /// Returns the two sides of the equals sign of a row, without comments. If there is no equals sign, returns the row and
 /// nothing.
 fn key_and_values<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
-    let row = cursor.rest();
-    match memchr::memchr(b'=', row) {
-        None => (row, &[]),
-        Some(at) => {
-            let values = row[at + 1..].split(|&byte| byte == b'%').next().unwrap_or_default();
-            (row[..at].trim_ascii(), values.trim_ascii())
-        }
-    }
+    let (key, values) = key_value(cursor.rest());
+    (key, values.split(|&byte| byte == b'%').next().unwrap_or_default().trim_ascii())
 }
 
 /// Returns the first of several values.
@@ -225,17 +220,18 @@ fn wrong(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> ReadError {
 /// Reads the row of an element, which starts with VTK's number of its type.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, [u64; 4]), ReadError> {
-    let kind = match cursor.integer("the type of an element")? {
-        1 => Kind::Point,
-        3 => Kind::Line,
-        5 => Kind::Triangle,
-        9 => Kind::Quadrilateral,
-        10..=14 => return Err(volume(cursor, "elements of a volume")),
-        other => {
-            let problem = format!("element type {other} is not known");
-            let remedy = "Lines (3), triangles (5) and quadrilaterals (9) are read";
-            return Err(cursor.error(problem, remedy));
-        }
-    };
-    Ok((kind, nodes(cursor, kind)?))
+    let number = cursor.integer("the type of an element")?;
+    match types::kind_of(number) {
+        Some(kind) => Ok((kind, nodes(cursor, kind)?)),
+        None => Err(not_read(cursor, number)),
+    }
+}
+
+#[cold]
+fn not_read(cursor: &Cursor<'_>, number: u64) -> ReadError {
+    if let types::TETRA..=types::PYRAMID = number {
+        return volume(cursor, "elements of a volume");
+    }
+    let problem = format!("element type {number} is not known");
+    cursor.error(problem, "Lines (3), triangles (5) and quadrilaterals (9) are read")
 }

@@ -2,7 +2,7 @@
 
 use crate::export::job::Job;
 use crate::export::put;
-use crate::visit::sink::Kind;
+use crate::formats::vtk::types;
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ pub(crate) fn write(job: &Job<'_>) -> String {
     let is_inside = |cell: &usize| content.cells.kinds[*cell].dimension() == 2;
     let mut out = format!("NDIME= 2\nNELEM= {}\n", job.cells().filter(is_inside).count());
     for (index, cell) in job.cells().filter(is_inside).enumerate() {
-        let kind = if content.cells.kinds[cell] == Kind::Triangle { 5 } else { 9 };
+        let kind = types::number_of(content.cells.kinds[cell]);
         put!(out, "{kind} {} {index}\n", job.places(cell, 0));
     }
     put!(out, "NPOIN= {}\n", content.points.len());
@@ -35,7 +35,7 @@ pub(crate) fn write(job: &Job<'_>) -> String {
     for (name, cells) in markers {
         put!(out, "MARKER_TAG= {name}\nMARKER_ELEMS= {}\n", cells.len());
         for cell in cells {
-            put!(out, "3 {}\n", job.places(cell, 0));
+            put!(out, "{} {}\n", types::LINE, job.places(cell, 0));
         }
     }
     out

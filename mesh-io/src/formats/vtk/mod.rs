@@ -1,5 +1,8 @@
 //! VTK files: the legacy format, the XML formats, and the writers of both.
 
+pub(crate) mod cells;
 pub(crate) mod legacy;
+pub(crate) mod regions;
+pub(crate) mod types;
 pub(crate) mod write;
 pub(crate) mod xml;

@@ -3,21 +3,10 @@
 use crate::export::content::Data;
 use crate::export::job::Job;
 use crate::export::put;
-use crate::visit::sink::Kind;
+use crate::formats::vtk::types::number_of;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;
-
-/// Returns VTK's number for a kind of element.
-fn kind_of(kind: Kind) -> u8 {
-    match kind {
-        Kind::Point => 1,
-        Kind::Line => 3,
-        Kind::Triangle => 5,
-        Kind::Corner => 7,
-        Kind::Quadrilateral => 9,
-    }
-}
 
 /// Returns the name that an array usually has for a kind of group.
 fn array_name(what: &str) -> &str {
@@ -120,7 +109,7 @@ pub(crate) fn write_legacy(job: &Job<'_>) -> String {
         put!(out, "{} {}\n", content.cells.of(cell).len(), job.places(cell, 0));
     }
     put!(out, "CELL_TYPES {}\n", cells.len());
-    cells.iter().for_each(|&cell| put!(out, "{}\n", kind_of(content.cells.kinds[cell])));
+    cells.iter().for_each(|&cell| put!(out, "{}\n", number_of(content.cells.kinds[cell])));
     for (keyword, count, arrays) in [
         ("CELL_DATA", cells.len(), of_cells(job, &cells)),
         ("POINT_DATA", content.points.len(), of_points(job)),
@@ -186,7 +175,7 @@ pub(crate) fn write_xml(job: &Job<'_>) -> String {
         end
     });
     let ends = ends.collect();
-    let types = cells.iter().map(|&cell| i64::from(kind_of(content.cells.kinds[cell]))).collect();
+    let types = cells.iter().map(|&cell| number_of(content.cells.kinds[cell]) as i64).collect();
     let sections = [
         ("PointData", of_points(job)),
         ("CellData", of_cells(job, &cells)),

@@ -5,14 +5,13 @@ use super::document::Item;
 use super::heavy;
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
-use crate::formats::vtk::legacy;
+use crate::formats::vtk::cells::Cell;
+use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
+use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::records::TriangleRecords;
 use crate::visit::sink::{Column, Sink};
-
-/// How many arrays tell regions at most.
-const MOST: usize = 2;
 
 /// The whole numbers of a topology, one after another.
 enum Words<'a> {
@@ -60,25 +59,23 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The numbers of cells in an array that tells regions.
-type Regions<'i> = Vec<(&'i Item, Vec<i64>)>;
-
 impl<'a> File<'a> {
     /// Hands on the elements and their data.
     pub(super) fn elements(&self, item: &Item, sink: &mut dyn Sink) -> Result<(), ReadError> {
-        let is_region =
-            |item: &&Item| !self.is_real(item) && legacy::names_regions(item.name.as_bytes());
-        let mut regions: Regions<'_> = Vec::new();
+        let is_region = |item: &&Item| !self.is_real(item) && names_regions(item.name.as_bytes());
+        let (mut of_regions, mut regions): (Vec<&Item>, Vec<Vec<i64>>) = (Vec::new(), Vec::new());
         for own in self.attributes("cell").filter(is_region) {
-            let known = regions.iter().any(|(other, _)| other.name == own.name);
-            if regions.len() < MOST
+            let known = of_regions.iter().any(|other| other.name == own.name);
+            if regions.len() < MAX_ARRAYS
                 && !known
                 && let Ok(numbers) = self.integers(own)
             {
-                regions.push((own, numbers));
+                of_regions.push(own);
+                regions.push(numbers);
             }
         }
-        sink.columns(regions.iter().map(|(own, _)| Column::tags(&own.name, 0)).collect());
+        let regions = RegionNumbers::from_iter(regions);
+        sink.columns(of_regions.iter().map(|own| Column::tags(&own.name, 0)).collect());
         let words = &mut self.words(item)?;
         let (mut tag, mut count) = self.triangles(item, words, &regions, sink);
         let mut points = Vec::new();
@@ -97,11 +94,8 @@ impl<'a> File<'a> {
                 points.push(words.take("a node of a cell")?);
             }
             count += corners;
-            let mut region = [0; MOST];
-            for (number, (_, of_cells)) in region.iter_mut().zip(&regions) {
-                *number = of_cells.get(tag as usize).copied().unwrap_or(0);
-            }
-            legacy::Cell { tag, cell_type, points: &points, region }.send(&own, sink)?;
+            let region = regions.of(tag as usize);
+            Cell { tag, cell_type, points: &points, region }.send(&own, sink)?;
             tag += 1;
         }
         let differs = |announced: Option<u64>, found: u64| announced.is_some_and(|n| n != found);
@@ -110,7 +104,6 @@ impl<'a> File<'a> {
             return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
         if sink.asks_for_data() {
-            let of_regions: Vec<&Item> = regions.iter().map(|(own, _)| *own).collect();
             self.cell_data(&of_regions, tag, sink);
         }
         Ok(())
@@ -135,7 +128,7 @@ impl<'a> File<'a> {
         &self,
         item: &Item,
         words: &mut Words<'_>,
-        regions: &Regions<'_>,
+        regions: &RegionNumbers,
         sink: &mut dyn Sink,
     ) -> (u64, u64) {
         let Words::Heavy { whole, taken, .. } = words else {
@@ -147,15 +140,12 @@ impl<'a> File<'a> {
         if item.kind != "triangle" {
             return (0, 0);
         }
-        let of = |place: usize| {
-            regions.get(place).map_or(Region::Same(0), |(_, numbers)| Region::List(numbers))
-        };
         let found = sink.triangle_records(&TriangleRecords {
             count: whole.len() / 3,
             corners: whole.field(0, 3),
             first: 0,
             below: u64::MAX,
-            regions: [of(0), of(1)],
+            regions: regions.from(0),
             expected: &[],
         });
         *taken = 3 * found;
@@ -166,15 +156,15 @@ impl<'a> File<'a> {
     fn uniform(&self, item: &Item, kind: &str) -> Result<(u64, u64), ReadError> {
         let several = item.corners.or_else(|| item.dimensions.get(1).copied());
         Ok(match kind {
-            "triangle" => (5, 3),
-            "quadrilateral" => (9, 4),
+            "triangle" => (types::TRIANGLE, 3),
+            "quadrilateral" => (types::QUAD, 4),
             "polyvertex" => of_several(1, several.unwrap_or(1).max(1)),
             "polyline" => of_several(2, several.unwrap_or(2).max(1)),
             "polygon" => of_several(3, several.unwrap_or(3).max(1)),
-            "tetrahedron" => (10, 4),
-            "hexahedron" => (12, 8),
-            "wedge" => (13, 6),
-            "pyramid" => (14, 5),
+            "tetrahedron" => (types::TETRA, 4),
+            "hexahedron" => (types::HEXAHEDRON, 8),
+            "wedge" => (types::WEDGE, 6),
+            "pyramid" => (types::PYRAMID, 5),
             other => {
                 let problem =
                     format!("a Topology of the type {} is not read", quoted(other.as_bytes()));
@@ -233,12 +223,12 @@ fn mixed(words: &mut Words<'_>, count: &mut u64) -> Result<(u64, u64), ReadError
             }
             of_several(number, words.take("a number of nodes")?)
         }
-        4 => (5, 3),
-        5 => (9, 4),
-        6 => (10, 4),
-        7 => (14, 5),
-        8 => (13, 6),
-        9 => (12, 8),
+        4 => (types::TRIANGLE, 3),
+        5 => (types::QUAD, 4),
+        6 => (types::TETRA, 4),
+        7 => (types::PYRAMID, 5),
+        8 => (types::WEDGE, 6),
+        9 => (types::HEXAHEDRON, 8),
         other => {
             let problem =
                 format!("a cell of the type {other} is not read, as it is not of first order");
@@ -251,11 +241,11 @@ fn mixed(words: &mut Words<'_>, count: &mut u64) -> Result<(u64, u64), ReadError
 /// The type in VTK of an element of any number of nodes: points, a line through them or a polygon. Returns that number too.
 fn of_several(number: u64, nodes: u64) -> (u64, u64) {
     let cell_type = match (number, nodes) {
-        (1, 1) => 1,
-        (1, _) => 2,
-        (2, 2) => 3,
-        (2, _) => 4,
-        _ => 7,
+        (1, 1) => types::VERTEX,
+        (1, _) => types::POLY_VERTEX,
+        (2, 2) => types::LINE,
+        (2, _) => types::POLY_LINE,
+        _ => types::POLYGON,
     };
     (cell_type, nodes)
 }

@@ -7,9 +7,8 @@ use crate::formats::xdmf::companions::Reference;
 use crate::hdf5::Number;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF};
-use crate::text::token::{ill_formed_xml, quoted, xml_text};
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
+use crate::text::token::quoted;
+use crate::xml::{Tag, Tags, plain_text};
 use std::ops::Range;
 
 /// Where the numbers of an item stand.
@@ -60,55 +59,46 @@ impl Item {
     }
 }
 
-/// A section that may have items, with what its tag says.
-#[derive(Clone, Default)]
+/// An element with its attributes.
 struct Section {
     name: String,
     attributes: Vec<(String, String)>,
 }
 
 impl Section {
-    /// The value of an attribute of one of these names.
+    fn of(tag: &Tag<'_>) -> Result<Section, ReadError> {
+        let attributes = tag.attributes().map(|attribute| {
+            let (name, value) = attribute?;
+            Ok((name.into_owned(), value))
+        });
+        Ok(Section {
+            name: tag.name().into_owned(),
+            attributes: attributes.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Returns the value of the first attribute that has one of these names.
     fn value(&self, names: &[&str]) -> Option<&str> {
         let found = self.attributes.iter().find(|(name, _)| names.contains(&name.as_str()));
         found.map(|(_, value)| value.as_str())
     }
 }
 
-/// The items of a file, in its order, but for those that refer to others.
+/// Returns the items of a file in order, without those that refer to others.
 pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
-    let begin = source.begin();
-    let mut reader = Reader::from_reader(&source.bytes[begin..]);
-    reader.config_mut().check_end_names = false;
-    let mut open: Vec<Section> = Vec::new();
+    let mut tags = Tags::new(source);
     let mut items = Vec::new();
     let mut seen = false;
-    loop {
-        let at = begin + reader.buffer_position() as usize;
-        let event = reader
-            .read_event()
-            .map_err(|error| error_at(source, at, &ill_formed_xml(&error), CORRECT))?;
-        let after = begin + reader.buffer_position() as usize;
-        match event {
-            Event::Eof => break,
-            Event::End(_) => _ = open.pop(),
-            Event::Start(tag) | Event::Empty(tag) => {
-                let is_empty = source.bytes[at..after].ends_with(b"/>");
-                let section = section(source, at, &tag)?;
-                seen |= section.name == "Xdmf";
-                if section.name == "DataItem"
-                    && let Some(of) = open.last()
-                    && ["Geometry", "Topology", "Attribute"].contains(&of.name.as_str())
-                    && section.value(&["Reference"]).is_none()
-                    && !is_empty
-                {
-                    items.push(item(source, at, after, &section, of)?);
-                }
-                if !is_empty {
-                    open.push(section);
-                }
-            }
-            _ => {}
+    while let Some(tag) = tags.next()? {
+        let own = Section::of(&tag)?;
+        seen |= own.name == "Xdmf";
+        if own.name == "DataItem"
+            && let Some(parent) = tags.parent()
+            && ["Geometry", "Topology", "Attribute"].contains(&&*parent.name())
+            && own.value(&["Reference"]).is_none()
+            && !tag.is_empty()
+        {
+            items.push(item(source, &tag, &own, &Section::of(parent)?)?);
         }
     }
     match seen {
@@ -117,32 +107,13 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
     }
 }
 
-fn section(source: &Source, at: usize, tag: &BytesStart<'_>) -> Result<Section, ReadError> {
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    let mut attributes = Vec::new();
-    for attribute in tag.attributes().with_checks(false) {
-        let attribute = attribute
-            .map_err(|error| error_at(source, at, &format!("an attribute: {error}"), CORRECT))?;
-        attributes.push((text(attribute.key.as_ref()), xml_text(&attribute.value)));
-    }
-    Ok(Section { name: text(tag.name().as_ref()), attributes })
-}
-
-/// The item of this tag, in this section.
-fn item(
-    source: &Source,
-    at: usize,
-    after: usize,
-    tag: &Section,
-    of: &Section,
-) -> Result<Item, ReadError> {
-    let Some(length) = memchr::memchr(b'<', &source.bytes[after..]) else {
-        return Err(error_at(source, at, "the file ends within a DataItem", CUT_OFF));
-    };
+/// Reads an item, given its attributes and the section that it is in.
+fn item(source: &Source, xml: &Tag<'_>, tag: &Section, of: &Section) -> Result<Item, ReadError> {
+    let text = xml.text().ok_or_else(|| xml.error("the file ends within a DataItem", CUT_OFF))?;
     let number = |text: &str| {
         text.trim().parse::<u64>().map_err(|_| {
             let problem = format!("`{}` is not a whole number", quoted(text.as_bytes()));
-            error_at(source, at, &problem, CORRECT)
+            xml.error(problem, CORRECT)
         })
     };
     let optional = |section: &Section, names: &[&str]| section.value(names).map(number).transpose();
@@ -154,7 +125,6 @@ fn item(
         Some(8) => Precision::Double,
         _ => Precision::Single,
     };
-    let text = after..after + length;
     let format = tag.value(&["Format"]).unwrap_or("XML").to_ascii_uppercase();
     let content = match format.as_str() {
         "XML" => Content::Text(text),
@@ -162,7 +132,7 @@ fn item(
         "BINARY" => {
             if tag.value(&["Compression"]).is_some_and(|c| !c.eq_ignore_ascii_case("raw")) {
                 let problem = "numbers in a compressed raw file beside it are not read";
-                return Err(error_at(source, at, problem, SAVE));
+                return Err(xml.error(problem, SAVE));
             }
             let precision = optional(tag, &["Precision"])?.unwrap_or(4);
             let order = match small(tag, &["Endian"]).as_str() {
@@ -177,7 +147,7 @@ fn item(
                 ("int" | "uint", 1 | 2 | 4 | 8) => Number::Whole(precision as usize, order),
                 _ => {
                     let problem = format!("numbers of {precision} bytes are not read");
-                    return Err(error_at(source, at, &problem, SAVE));
+                    return Err(xml.error(problem, SAVE));
                 }
             };
             let seek = optional(tag, &["Seek"])?.unwrap_or(0);
@@ -187,7 +157,7 @@ fn item(
         other => {
             let problem =
                 format!("numbers of the format {} are not read", quoted(other.as_bytes()));
-            return Err(error_at(source, at, &problem, SAVE));
+            return Err(xml.error(problem, SAVE));
         }
     };
     let dimensions = tag.value(&["Dimensions"]).unwrap_or_default();
@@ -202,7 +172,7 @@ fn item(
         dimensions,
         precision: (is_real.is_empty() || is_real == "float").then_some(precision),
         content,
-        at,
+        at: xml.at(),
     })
 }
 
@@ -214,7 +184,7 @@ fn name(source: &Source, text: Range<usize>) -> (String, Range<usize>) {
     let own = &source.bytes[text.clone()];
     let start = text.start + (own.len() - own.trim_ascii_start().len());
     let name = own.trim_ascii();
-    (xml_text(name), start..start + name.len())
+    (plain_text(name), start..start + name.len())
 }
 
 /// A file and the path of a dataset in it, with a colon between.
@@ -225,15 +195,10 @@ fn in_hdf5(source: &Source, text: Range<usize>) -> Result<Content, ReadError> {
     let Some(colon) = slash.or_else(|| memchr::memrchr(b':', own)).filter(|&colon| colon > 0)
     else {
         let problem = format!("`{}` names no dataset of an HDF5 file", quoted(own));
-        return Err(error_at(source, all.start, &problem, SAVE));
+        let place = Location::Line(source.line_of(all.start));
+        return Err(source.error_at(place, problem, SAVE));
     };
     let named_at = all.start..all.start + colon;
-    let (file, path) = (xml_text(&own[..colon]), xml_text(&own[colon + 1..]));
+    let (file, path) = (plain_text(&own[..colon]), plain_text(&own[colon + 1..]));
     Ok(Content::Hdf5 { file, path, named_at })
-}
-
-#[cold]
-fn error_at(source: &Source, at: usize, problem: &str, remedy: &str) -> ReadError {
-    let place = Location::Line(source.line_of(at.min(source.bytes.len())));
-    source.error_at(place, problem, remedy)
 }

@@ -4,73 +4,26 @@
 use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::edit::numbers::{Form, Places};
-use crate::formats::vtk::legacy::passed::{array_name, pass, size_of};
-use crate::formats::vtk::legacy::take;
+use crate::formats::vtk::legacy::passed::{array_name, pass, size_of, take};
+use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::visit::heights::TextNumbers;
 use crate::visit::sink::{Column, PointNumbers, Sink, Stored};
 use std::borrow::Cow;
 
-/// Names of arrays that tell the regions of cells, in lower case. They are those of gmsh and meshio, of VTK's own
-/// readers, and of solvers, which call regions materials.
-const REGIONS: [&[u8]; 18] = [
-    b"gmsh:physical",
-    b"gmsh:geometrical",
-    b"medit:ref",
-    b"cell_tags",
-    b"cellentityids",
-    b"materialids",
-    b"material",
-    b"materials",
-    b"material_id",
-    b"elementblockids",
-    b"blockid",
-    b"region",
-    b"regions",
-    b"regionid",
-    b"regionids",
-    b"domain",
-    b"subdomain",
-    b"reference",
-];
-
-/// Whether an array of cell data with this name tells the regions of cells.
-pub(crate) fn names_regions(name: &[u8]) -> bool {
-    REGIONS.contains(&name.to_ascii_lowercase().as_slice())
-}
-
-/// The most arrays that tell regions.
-const MOST: usize = 2;
-
-/// An array of cell data that tells the regions of cells.
-pub(super) struct Regions {
-    name: String,
-    /// The number of each cell's region, or the bits of the number if the array has real numbers.
-    pub(super) names: Vec<i64>,
-    /// Returns the label that a number or its bits stand for.
-    label: fn(i64) -> Option<Label>,
-}
-
-impl Regions {
-    /// Returns the meaning of the array's numbers.
-    pub(super) fn column(&self) -> Column {
-        Column { what: self.name.clone(), from_dimension: 0, label: self.label }
-    }
-}
-
 /// Reads the regions of cells by the first two arrays that tell them, after a POINT_DATA or CELL_DATA that was just
-/// read. Damaged or unknown data end the search without an error, as the mesh does not depend on them.
+/// read. Returns the meanings and the numbers of the arrays. Damaged or unknown data end the search without an error, as the mesh does not depend on them.
 pub(super) fn regions(
     cursor: &mut Cursor<'_>,
     binary: bool,
     keyword: &[u8],
     sink: &mut dyn Sink,
-) -> Vec<Regions> {
+) -> (Vec<Column>, Vec<Vec<i64>>) {
     let of_cells = keyword == b"CELL_DATA";
-    let mut data = Data { binary, of_cells, count: 0, found: Vec::new(), sink };
+    let mut data = Data { binary, of_cells, count: 0, found: (Vec::new(), Vec::new()), sink };
     let Ok(count) = cursor.integer("a count") else {
-        return Vec::new();
+        return data.found;
     };
     data.count = count;
     while cursor.next_word() {
@@ -85,7 +38,8 @@ struct Data<'s> {
     binary: bool,
     of_cells: bool,
     count: u64,
-    found: Vec<Regions>,
+    /// The arrays that tell regions: their meanings and their numbers.
+    found: (Vec<Column>, Vec<Vec<i64>>),
     sink: &'s mut dyn Sink,
 }
 
@@ -171,7 +125,7 @@ impl Data<'_> {
             self.sink.point_numbers(numbers);
             return Some(());
         }
-        let is_region = components == 1 && names_regions(name) && self.found.len() < MOST;
+        let is_region = components == 1 && names_regions(name) && self.found.0.len() < MAX_ARRAYS;
         if self.of_cells
             && of_all
             && !is_region
@@ -185,7 +139,8 @@ impl Data<'_> {
         if !(self.of_cells && of_all && is_region) {
             return pass(cursor, self.binary, kind, count).ok();
         }
-        let name = String::from_utf8_lossy(name).into_owned();
+        let what = String::from_utf8_lossy(name).into_owned();
+        // The number of each cell's region, or the bits of the number if the array has real numbers.
         let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<Label>);
         if self.binary {
             let size = size_of(kind)?;
@@ -203,7 +158,8 @@ impl Data<'_> {
                 names.push((number + 0.0).to_bits().cast_signed());
             }
         }
-        self.found.push(Regions { name, names, label });
+        self.found.0.push(Column { what, from_dimension: 0, label });
+        self.found.1.push(names);
         Some(())
     }
 

@@ -1,15 +1,15 @@
 //! Lists of cells of a legacy VTK file.
 
-use super::cells::{Cell, Triangles, Tries};
-use super::data::Regions;
-use super::take;
+use super::passed::take;
 use crate::binary::order::Order;
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
+use crate::formats::vtk::cells::{Cell, Triangles, Tries};
+use crate::formats::vtk::regions::RegionNumbers;
+use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::quoted;
-use crate::visit::records::Region;
 use crate::visit::sink::Sink;
 use std::ops::Range;
 
@@ -171,7 +171,7 @@ impl Cells<'_> {
     pub(super) fn send(
         &self,
         cursor: &Cursor<'_>,
-        regions: &[Regions],
+        regions: &RegionNumbers,
         tag: &mut u64,
         sink: &mut dyn Sink,
     ) -> Result<(), ReadError> {
@@ -201,10 +201,7 @@ impl Cells<'_> {
             }
             points.clear();
             points.extend(self.numbers.range(own.clone()));
-            let mut region = [0; 2];
-            for (number, regions) in region.iter_mut().zip(regions) {
-                *number = regions.names.get(*tag as usize).copied().unwrap_or(0);
-            }
+            let region = regions.of(*tag as usize);
             let cell =
                 Cell { tag: *tag, cell_type: self.cell_type(index), points: &points, region };
             if sink.takes_ahead() {
@@ -228,7 +225,7 @@ impl Cells<'_> {
         &'c self,
         index: usize,
         own: Range<usize>,
-        regions: &'c [Regions],
+        regions: &'c RegionNumbers,
         tag: u64,
     ) -> Option<Triangles<'c>> {
         let types = match (&self.types, self.kind) {
@@ -236,10 +233,6 @@ impl Cells<'_> {
             (None, List::Polygons) => None,
             _ => return None,
         };
-        let mut of = [Region::Same(0); 2];
-        for (region, regions) in of.iter_mut().zip(regions) {
-            *region = Region::List(regions.names.get(tag as usize..).unwrap_or_default());
-        }
         Some(Triangles {
             count: self.count - index,
             numbers: &self.numbers,
@@ -247,7 +240,7 @@ impl Cells<'_> {
             ends: self.offsets.as_ref().map(|offsets| offsets.field(index + 1, 1)),
             types,
             points: (0, u64::MAX),
-            regions: of,
+            regions: regions.from(tag as usize),
         })
     }
 
@@ -263,11 +256,10 @@ impl Cells<'_> {
     fn cell_type(&self, index: usize) -> u64 {
         match (&self.types, self.kind) {
             (Some(types), _) => types.at(index),
-            (None, List::Polygons) => 7,
-            (None, List::Strips) => 6,
-            // A polyline, and a group of points.
-            (None, List::Lines) => 4,
-            (None, _) => 2,
+            (None, List::Polygons) => types::POLYGON,
+            (None, List::Strips) => types::TRIANGLE_STRIP,
+            (None, List::Lines) => types::POLY_LINE,
+            (None, _) => types::POLY_VERTEX,
         }
     }
 

@@ -4,13 +4,9 @@
 //! numbers are big-endian. Points of the type `float` have single precision in text too, as VTK reads them so. Arrays
 //! that name the cells' regions are read with the mesh, other data when they are asked for.
 
-mod cells;
 mod data;
 mod lists;
 mod passed;
-
-pub(crate) use cells::{Cell, Triangles, Tries};
-pub(crate) use data::names_regions;
 
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
@@ -18,14 +14,15 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Form, Numbers};
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::formats::vtk::regions::RegionNumbers;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::sink::{Layout, Sink, Walk, each_row};
-use data::Regions;
 use lists::{Cells, List};
+use passed::take;
 
 pub(crate) struct Vtk;
 
@@ -48,7 +45,7 @@ impl Walk for Vtk {
         let mut cells: Vec<Cells<'_>> = Vec::new();
         let mut precision = None;
         let mut heights = None;
-        let mut regions: Vec<Regions> = Vec::new();
+        let (mut columns, mut regions) = (Vec::new(), Vec::new());
         while cursor.next_word() {
             // VTK ignores the case of keywords.
             let keyword = cursor.token().unwrap_or_default().to_ascii_uppercase();
@@ -93,7 +90,7 @@ impl Walk for Vtk {
                 }
                 // Data of points and cells go on to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
-                    regions = data::regions(cursor, binary, &keyword, sink);
+                    (columns, regions) = data::regions(cursor, binary, &keyword, sink);
                     break;
                 }
                 other => {
@@ -113,7 +110,8 @@ impl Walk for Vtk {
             };
             heights.send("z", form, sink);
         }
-        sink.columns(regions.iter().map(Regions::column).collect());
+        sink.columns(columns);
+        let regions = RegionNumbers::from_iter(regions);
         let mut tag = 0;
         for cells in &cells {
             cells.send(cursor, &regions, &mut tag, sink)?;
@@ -229,18 +227,5 @@ fn finite(cursor: &Cursor<'_>, point: [f64; 2]) -> Result<[f64; 2], ReadError> {
     match point.iter().all(|x| x.is_finite()) {
         true => Ok(point),
         false => Err(cursor.error("a coordinate is not a finite number", "Write the mesh again")),
-    }
-}
-
-/// Takes `count` items of `size` bytes. The line that announced them must be read to its end.
-fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Result<&'a [u8], ReadError> {
-    let bytes = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
-    let problem = format!("the file ends before {count} items of {size} bytes");
-    match bytes {
-        None => Err(cursor.error(problem, CUT_OFF)),
-        Some(bytes) => {
-            let start = cursor.clone();
-            cursor.take(bytes).ok_or_else(|| start.error(problem, CUT_OFF))
-        }
     }
 }

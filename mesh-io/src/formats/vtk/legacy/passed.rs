@@ -1,7 +1,6 @@
-//! Skips arrays of a legacy VTK file.
+//! Takes or skips arrays of a legacy VTK file.
 
 use crate::error::ReadError;
-use crate::formats::vtk::legacy::take;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
 
@@ -92,4 +91,21 @@ pub(super) fn pass_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), Re
         pass(cursor, binary, kind, components.saturating_mul(tuples))?;
     }
     Ok(())
+}
+
+/// Takes `count` items of `size` bytes. The line that announced them must be read to its end.
+pub(super) fn take<'a>(
+    cursor: &mut Cursor<'a>,
+    count: u64,
+    size: usize,
+) -> Result<&'a [u8], ReadError> {
+    let bytes = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
+    let problem = format!("the file ends before {count} items of {size} bytes");
+    match bytes {
+        None => Err(cursor.error(problem, CUT_OFF)),
+        Some(bytes) => {
+            let start = cursor.clone();
+            cursor.take(bytes).ok_or_else(|| start.error(problem, CUT_OFF))
+        }
+    }
 }

@@ -1,13 +1,11 @@
 //! Decodes and encodes arrays of a VTK XML file: base64, and compressed blocks.
 
 use crate::binary::order::Order;
+use crate::compress::zlib;
 use crate::parallel::map_parts;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use flate2::Compression;
-use flate2::read::{ZlibDecoder, ZlibEncoder};
 use std::borrow::Cow;
-use std::io::Read;
 
 /// The compression of blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,9 +43,6 @@ impl<'a> Unwrapped<'a> {
         (bytes, Unwrapped { bytes: Cow::default(), taken, block, header_apart })
     }
 }
-
-/// The most bytes that one compressed byte may stand for. No compressor reaches this, so counts beyond it are wrong.
-const MOST: usize = 1100;
 
 impl Wrapping {
     /// Decodes the array at the start of `input`. `None` if it is damaged or ends too early.
@@ -109,7 +104,7 @@ impl Wrapping {
             let (block, rest) = left.split_at_checked(length)?;
             left = rest;
             let expected = if index + 1 == blocks && last > 0 { last } else { size };
-            if expected > length.saturating_mul(MOST) {
+            if !zlib::can_expand(length, expected) {
                 return None;
             }
             packed.push((block, expected));
@@ -183,23 +178,14 @@ fn decode(text: &[u8]) -> Option<Vec<u8>> {
 
 fn decompress(compressor: Compressor, block: &[u8], expected: usize) -> Option<Vec<u8>> {
     match compressor {
-        Compressor::Zlib => {
-            let mut bytes = Vec::new();
-            ZlibDecoder::new(block).take(expected as u64).read_to_end(&mut bytes).ok()?;
-            Some(bytes)
-        }
+        Compressor::Zlib => zlib::decompress(block, expected),
         Compressor::Lz4 => lz4_flex::block::decompress(block, expected).ok(),
     }
 }
 
 fn compress(compressor: Compressor, block: &[u8]) -> Vec<u8> {
     match compressor {
-        Compressor::Zlib => {
-            let mut out = Vec::new();
-            let mut encoder = ZlibEncoder::new(block, Compression::default());
-            encoder.read_to_end(&mut out).expect("memory can be read");
-            out
-        }
+        Compressor::Zlib => zlib::compress(block, zlib::USUAL_LEVEL),
         Compressor::Lz4 => lz4_flex::block::compress(block),
     }
 }

@@ -4,13 +4,11 @@ use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
-use crate::formats::vtk::legacy;
+use crate::formats::vtk::cells::{Cell, Triangles, Tries};
+use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
+use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::records::Region;
 use crate::visit::sink::{Column, Sink};
-
-/// The most arrays that tell regions.
-const MOST: usize = 2;
 
 /// The types of the cells of a list.
 enum Types<'a> {
@@ -43,18 +41,18 @@ impl File<'_> {
                 self.cell_arrays(piece, &regions, cells, sink);
             }
             sink.expect_elements(count);
-            let of_cells: Vec<Vec<i64>> =
+            let of_cells: RegionNumbers =
                 regions.iter().map(|name| self.regions(piece, name)).collect();
             let mut index = 0;
             let mut points: Vec<u64> = Vec::new();
             for List { connectivity, offsets, types, at } in &lists {
                 let cursor = &Cursor::standing_at(self.source, *at);
                 let (mut start, mut own) = (0, 0);
-                let mut tries = legacy::Tries::NEW;
+                let mut tries = Tries::NEW;
                 while own < offsets.len() {
                     let end = offsets.at(own) as usize;
                     let of_triangles = match types {
-                        Types::Same(7) => Some(None),
+                        Types::Same(types::POLYGON) => Some(None),
                         Types::Same(_) => None,
                         Types::Listed(types) => Some(Some(types.field(own, 1))),
                     };
@@ -62,18 +60,14 @@ impl File<'_> {
                         && tries.is_due(own)
                         && let Some(types) = of_triangles
                     {
-                        let mut of = [Region::Same(0); MOST];
-                        for (region, regions) in of.iter_mut().zip(&of_cells) {
-                            *region = Region::List(regions.get(index..).unwrap_or_default());
-                        }
-                        let triangles = legacy::Triangles {
+                        let triangles = Triangles {
                             count: offsets.len() - own,
                             numbers: connectivity,
                             own: start..end,
                             ends: Some(offsets.field(own, 1)),
                             types,
                             points: (first_point, announced.points),
-                            regions: of,
+                            regions: of_cells.from(index),
                         };
                         let (taken, last) = triangles.send(sink);
                         tries.done(own, taken);
@@ -97,12 +91,9 @@ impl File<'_> {
                         points.push(first_point + point);
                     }
                     (start, own) = (end, own + 1);
-                    let mut region = [0; MOST];
-                    for (number, regions) in region.iter_mut().zip(&of_cells) {
-                        *number = regions.get(index).copied().unwrap_or(0);
-                    }
+                    let region = of_cells.of(index);
                     let tag = first_cell + index as u64;
-                    legacy::Cell { tag, cell_type, points: &points, region }.send(cursor, sink)?;
+                    Cell { tag, cell_type, points: &points, region }.send(cursor, sink)?;
                     index += 1;
                 }
             }
@@ -118,9 +109,12 @@ impl File<'_> {
         let sections: &[(&str, Option<u64>)] = match self.document.content {
             Content::Grid => &[("Cells", None)],
             // The sections of polygonal data, with the type of their cells.
-            Content::Polygons => {
-                &[("Verts", Some(2)), ("Lines", Some(4)), ("Strips", Some(6)), ("Polys", Some(7))]
-            }
+            Content::Polygons => &[
+                ("Verts", Some(types::POLY_VERTEX)),
+                ("Lines", Some(types::POLY_LINE)),
+                ("Strips", Some(types::TRIANGLE_STRIP)),
+                ("Polys", Some(types::POLYGON)),
+            ],
         };
         let mut lists = Vec::new();
         for (&(section, cell_type), &cells) in sections.iter().zip(&announced.cells) {
@@ -162,7 +156,7 @@ impl File<'_> {
     fn region_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for array in self.document.arrays.iter().filter(|array| tells_regions(array)) {
-            if names.len() < MOST
+            if names.len() < MAX_ARRAYS
                 && !names.contains(&array.name)
                 && self.signed_integers(array).is_ok()
             {
@@ -240,6 +234,6 @@ impl File<'_> {
 }
 
 fn tells_regions(array: &Array) -> bool {
-    let named = legacy::names_regions(array.name.as_bytes());
+    let named = names_regions(array.name.as_bytes());
     array.section == "CellData" && array.components == 1 && named
 }

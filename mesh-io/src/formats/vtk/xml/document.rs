@@ -3,12 +3,11 @@
 use crate::binary::order::Order;
 use crate::disk::source::Source;
 use crate::edit::numbers::Offset;
-use crate::error::{Location, ReadError};
+use crate::error::ReadError;
 use crate::formats::vtk::xml::blocks::Compressor;
-use crate::text::cursor::{CORRECT, CUT_OFF};
-use crate::text::token::{ill_formed_xml, quoted, xml_text};
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
+use crate::text::cursor::CUT_OFF;
+use crate::text::token::quoted;
+use crate::xml::{Tag, Tags};
 use std::ops::Range;
 
 /// The content of a file's tags.
@@ -72,14 +71,8 @@ pub(super) struct Appended {
     pub(super) base64: bool,
 }
 
-/// The most elements that may be nested. VTK nests no more than seven, and each takes memory until it ends.
-const DEEPEST: usize = 100;
-
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
-        let begin = source.begin();
-        let mut reader = Reader::from_reader(&source.bytes[begin..]);
-        reader.config_mut().check_end_names = false;
         let mut document = Document {
             order: Order::Little,
             header: 4,
@@ -89,51 +82,24 @@ impl Document {
             arrays: Vec::new(),
             appended: None,
         };
-        let mut open: Vec<String> = Vec::new();
+        let mut tags = Tags::new(source);
         let mut seen = false;
-        loop {
-            let at = begin + reader.buffer_position() as usize;
-            let event = reader.read_event().map_err(|error| {
-                let place = Location::Line(source.line_of(at.min(source.bytes.len())));
-                source.error_at(place, ill_formed_xml(&error), CORRECT)
-            })?;
-            let after = begin + reader.buffer_position() as usize;
-            match event {
-                Event::Eof => break,
-                Event::End(_) => {
-                    open.pop();
+        while let Some(tag) = tags.next()? {
+            match &*tag.name() {
+                "VTKFile" => {
+                    seen = true;
+                    document.header_of(&tag)?;
                 }
-                Event::Start(tag) | Event::Empty(tag) => {
-                    let tag = Tag { source, at, tag };
-                    let name = String::from_utf8_lossy(tag.tag.name().as_ref()).into_owned();
-                    let is_empty = source.bytes[at..after].ends_with(b"/>");
-                    match name.as_str() {
-                        "VTKFile" => {
-                            seen = true;
-                            document.header_of(&tag)?;
-                        }
-                        "Piece" => document.piece(&tag)?,
-                        "DataArray" | "Array" => {
-                            let section = open.last().cloned().unwrap_or_default();
-                            let piece = document.pieces.len().saturating_sub(1);
-                            let array = tag.array((section, piece), after, is_empty)?;
-                            document.arrays.push(array);
-                        }
-                        "AppendedData" => {
-                            document.appended = Some(tag.appended(after)?);
-                            // The data after this tag need not be XML.
-                            break;
-                        }
-                        _ => {}
-                    }
-                    if !is_empty {
-                        open.push(name);
-                    }
-                    if open.len() > DEEPEST {
-                        let place = Location::Line(source.line_of(at));
-                        let problem = format!("elements are nested more than {DEEPEST} deep");
-                        return Err(source.error_at(place, problem, CORRECT));
-                    }
+                "Piece" => document.piece(&tag)?,
+                "DataArray" | "Array" => {
+                    let section = tags.parent().map(|parent| parent.name().into_owned());
+                    let piece = document.pieces.len().saturating_sub(1);
+                    document.arrays.push(array(&tag, section.unwrap_or_default(), piece)?);
+                }
+                "AppendedData" => {
+                    document.appended = Some(appended(&tag, source)?);
+                    // The data after this tag need not be XML.
+                    break;
                 }
                 _ => {}
             }
@@ -204,125 +170,62 @@ impl Document {
     }
 }
 
-/// A tag and its offset.
-struct Tag<'a> {
-    source: &'a Source,
-    at: usize,
-    tag: BytesStart<'a>,
+fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadError> {
+    let format = match tag.attribute("format")?.as_deref() {
+        Some("binary") => Coding::Base64,
+        Some("appended") => Coding::Appended,
+        None | Some("ascii") => Coding::Ascii,
+        Some(other) => {
+            let problem =
+                format!("an array of the format {} is not read", quoted(other.as_bytes()));
+            return Err(tag.error(problem, "Save the mesh again"));
+        }
+    };
+    let content = match tag.is_empty() {
+        true => tag.end()..tag.end(),
+        false => tag.text().ok_or_else(|| tag.error("the file ends within an array", CUT_OFF))?,
+    };
+    let offset = match format {
+        Coding::Appended => {
+            let value = tag.number("offset")?;
+            let offset = usize::try_from(value).unwrap_or(usize::MAX);
+            Some((offset, tag.place_of_value("offset")?))
+        }
+        _ => None,
+    };
+    // VTK takes an empty number for one that is not there.
+    let components = match tag.attribute("NumberOfComponents")?.as_deref().map(str::trim) {
+        None | Some("") => 1,
+        Some(_) => tag.number("NumberOfComponents")?,
+    };
+    Ok(Array {
+        piece,
+        section,
+        name: tag.attribute("Name")?.unwrap_or_default(),
+        number: tag.attribute("type")?.unwrap_or_default(),
+        components,
+        format,
+        content,
+        offset,
+        at: tag.at(),
+    })
 }
 
-impl Tag<'_> {
-    fn attribute(&self, name: &str) -> Result<Option<String>, ReadError> {
-        for attribute in self.tag.attributes().with_checks(false) {
-            let attribute =
-                attribute.map_err(|error| self.error(format!("an attribute: {error}"), CORRECT))?;
-            if attribute.key.as_ref() == name.as_bytes() {
-                return Ok(Some(xml_text(&attribute.value)));
-            }
+fn appended(tag: &Tag<'_>, source: &Source) -> Result<Appended, ReadError> {
+    let base64 = match tag.attribute("encoding")?.as_deref() {
+        Some("raw") => false,
+        None | Some("base64") => true,
+        Some(other) => {
+            let problem =
+                format!("appended data encoded as {} are not read", quoted(other.as_bytes()));
+            return Err(tag.error(problem, "Save as raw or base64"));
         }
-        Ok(None)
-    }
-
-    fn number(&self, name: &str) -> Result<u64, ReadError> {
-        let text = self.attribute(name)?.unwrap_or_default();
-        text.trim().parse().map_err(|_| {
-            let problem = format!("{name} is `{}`, not a whole number", quoted(text.as_bytes()));
-            self.error(problem, CORRECT)
-        })
-    }
-
-    fn array(
-        &self,
-        (section, piece): (String, usize),
-        after: usize,
-        is_empty: bool,
-    ) -> Result<Array, ReadError> {
-        let bytes = &self.source.bytes;
-        let format = match self.attribute("format")?.as_deref() {
-            Some("binary") => Coding::Base64,
-            Some("appended") => Coding::Appended,
-            None | Some("ascii") => Coding::Ascii,
-            Some(other) => {
-                let problem =
-                    format!("an array of the format {} is not read", quoted(other.as_bytes()));
-                return Err(self.error(problem, "Save the mesh again"));
-            }
-        };
-        let end = match is_empty {
-            true => after,
-            false => match memchr::memchr(b'<', &bytes[after..]) {
-                Some(length) => after + length,
-                None => return Err(self.error("the file ends within an array", CUT_OFF)),
-            },
-        };
-        let offset = match format {
-            Coding::Appended => {
-                let value = self.number("offset")?;
-                let offset = usize::try_from(value).unwrap_or(usize::MAX);
-                Some((offset, self.place_of_value("offset", after)?))
-            }
-            _ => None,
-        };
-        // VTK takes an empty number for one that is not there.
-        let components = match self.attribute("NumberOfComponents")?.as_deref().map(str::trim) {
-            None | Some("") => 1,
-            Some(_) => self.number("NumberOfComponents")?,
-        };
-        Ok(Array {
-            piece,
-            section,
-            name: self.attribute("Name")?.unwrap_or_default(),
-            number: self.attribute("type")?.unwrap_or_default(),
-            components,
-            format,
-            content: after..end,
-            offset,
-            at: self.at,
-        })
-    }
-
-    /// Returns the range of an attribute's value. The tag must have the attribute.
-    fn place_of_value(&self, name: &str, after: usize) -> Result<Range<usize>, ReadError> {
-        let tag = &self.source.bytes[self.at..after];
-        let found = memchr::memmem::find_iter(tag, name).find_map(|at| {
-            let blank_before = at > 0 && tag[at - 1] <= b' ';
-            let rest = &tag[at + name.len()..];
-            let equals = rest.iter().position(|&byte| byte > b' ')?;
-            let quote_at = equals + 1 + rest[equals + 1..].iter().position(|&byte| byte > b' ')?;
-            let quote = rest[quote_at];
-            let is_value = blank_before && rest[equals] == b'=' && matches!(quote, b'"' | b'\'');
-            let start = at + name.len() + quote_at + 1;
-            let length = memchr::memchr(quote, &tag[start..])?;
-            is_value.then_some(self.at + start..self.at + start + length)
-        });
-        found.ok_or_else(|| {
-            self.error(format!("the attribute {name} is not written as name=\"value\""), CORRECT)
-        })
-    }
-
-    fn appended(&self, after: usize) -> Result<Appended, ReadError> {
-        let bytes = &self.source.bytes;
-        let base64 = match self.attribute("encoding")?.as_deref() {
-            Some("raw") => false,
-            None | Some("base64") => true,
-            Some(other) => {
-                let problem =
-                    format!("appended data encoded as {} are not read", quoted(other.as_bytes()));
-                return Err(self.error(problem, "Save as raw or base64"));
-            }
-        };
-        let start = bytes[after..].iter().position(|&byte| byte > b' ');
-        match start {
-            Some(start) if bytes[after + start] == b'_' => {
-                Ok(Appended { start: after + start + 1, base64 })
-            }
-            _ => Err(self.error("no underscore stands before the appended data", CUT_OFF)),
+    };
+    let after = &source.bytes[tag.end()..];
+    match after.iter().position(|&byte| byte > b' ') {
+        Some(start) if after[start] == b'_' => {
+            Ok(Appended { start: tag.end() + start + 1, base64 })
         }
-    }
-
-    #[cold]
-    fn error(&self, problem: impl Into<String>, remedy: &str) -> ReadError {
-        let place = Location::Line(self.source.line_of(self.at));
-        self.source.error_at(place, problem, remedy)
+        _ => Err(tag.error("no underscore stands before the appended data", CUT_OFF)),
     }
 }

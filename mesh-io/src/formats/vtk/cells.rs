@@ -3,6 +3,7 @@
 use crate::binary::number_field::Field;
 use crate::binary::whole::Whole;
 use crate::error::ReadError;
+use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::records::{Expected, LONG, Region, TriangleRecords};
 use crate::visit::sink::{Element, Kind, Sink, volume};
@@ -32,7 +33,7 @@ impl Cell<'_> {
         }
         match (kind, cell_type) {
             (Kind::Corner, _) => sink.polygon(cursor, (tag, region), points),
-            (_, 4) => sink.polyline(cursor, (tag, region), points),
+            (_, types::POLY_LINE) => sink.polyline(cursor, (tag, region), points),
             _ => points.iter().try_for_each(|&point| {
                 let nodes = [point, 0, 0, 0];
                 sink.element(cursor, &Element { tag, kind, region, nodes })
@@ -69,7 +70,7 @@ impl Triangles<'_> {
                 None => return (0, own.end),
             },
         };
-        let triangles = types.map(|types| (types, Expected::Is(5)));
+        let triangles = types.map(|types| (types, Expected::Is(types::TRIANGLE)));
         let expected: Vec<_> = [counts].into_iter().chain(triangles).collect();
         let corners = numbers.field(own.start, stride);
         let (first, below) = points;
@@ -114,21 +115,20 @@ fn kind_of(
     points: usize,
 ) -> Result<Kind, ReadError> {
     let kind = match cell_type {
-        0 | 2 | 4 => return Ok(Kind::Point),
-        7 => return Ok(Kind::of_polygon(points as u64).unwrap_or(Kind::Corner)),
-        1 => Kind::Point,
-        3 => Kind::Line,
-        5 => Kind::Triangle,
-        8 | 9 => Kind::Quadrilateral,
-        10..=16 | 41..=42 => return Err(volume(cursor, "cells of a volume")),
-        6 => {
+        types::EMPTY | types::POLY_VERTEX | types::POLY_LINE => return Ok(Kind::Point),
+        types::POLYGON => return Ok(Kind::of_polygon(points as u64).unwrap_or(Kind::Corner)),
+        types::PIXEL => Kind::Quadrilateral,
+        types::TRIANGLE_STRIP => {
             let problem = format!("cell {tag} is a strip of triangles");
             return Err(cursor.error(problem, "Save strips as triangles"));
         }
-        _ => {
-            let problem = format!("cell {tag} is of type {cell_type}, not of first order");
-            return Err(cursor.error(problem, "Save a mesh of linear triangles (type 5)"));
+        number if types::is_of_volume(number) => {
+            return Err(volume(cursor, "cells of a volume"));
         }
+        number => types::kind_of(number).ok_or_else(|| {
+            let problem = format!("cell {tag} is of type {number}, not of first order");
+            cursor.error(problem, "Save a mesh of linear triangles (type 5)")
+        })?,
     };
     if points != kind.nodes() {
         let problem = format!("cell {tag}, a {}, has {points} points", kind.name());

@@ -1,0 +1,76 @@
+//! The lists of elements of the mesh, each of one type.
+
+use super::blocks::Block;
+use super::deck::Deck;
+use super::sets::Sets;
+use super::types::{self, Class};
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::text::token::quoted;
+use crate::visit::sink::{Kind, volume};
+
+/// A list of elements of one type.
+pub(super) struct List<'d, 'a> {
+    pub(super) block: &'d Block<'a>,
+    /// The type, in capital letters.
+    pub(super) of: Vec<u8>,
+    /// `None` for elements that only hold their nodes.
+    pub(super) kind: Option<Kind>,
+    /// The number of the set that the list names, counted from 1; 0 if it names none.
+    pub(super) set: i64,
+    pub(super) of_assembly: bool,
+}
+
+/// Lists the elements of the mesh, and checks their types.
+pub(super) fn lists<'d, 'a>(
+    source: &Source,
+    deck: &'d Deck<'a>,
+    sets: &mut Sets,
+) -> Result<Vec<List<'d, 'a>>, ReadError> {
+    let mut lists = Vec::new();
+    for block in deck.of_mesh("ELEMENT") {
+        let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
+        let kind = class(source, block, &of)?;
+        let set = block.name("ELSET").map_or(0, |name| sets.number(false, name) as i64 + 1);
+        lists.push(List { block, of, kind, set, of_assembly: false });
+    }
+    for block in deck.of_assembly("ELEMENT") {
+        let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
+        if matches!(class(source, block, &of)?, Some(Kind::Triangle | Kind::Quadrilateral)) {
+            let problem = "an assembly has elements of its own beside those of a part";
+            let remedy = "Write the input file without parts and assemblies";
+            return Err(block.error(source, problem, remedy));
+        }
+        lists.push(List { block, of, kind: None, set: 0, of_assembly: true });
+    }
+    Ok(lists)
+}
+
+/// Returns the kind of the elements of a type; `None` if they only hold their nodes.
+fn class(source: &Source, block: &Block<'_>, of: &[u8]) -> Result<Option<Kind>, ReadError> {
+    let shown = quoted(of);
+    match types::class(of) {
+        Some(Class::Is(kind)) => Ok(Some(kind)),
+        Some(Class::Held) => Ok(None),
+        Some(Class::Volume) => {
+            let cursor = Cursor::standing_at(source, block.at);
+            Err(volume(&cursor, &format!("elements of the type {shown}")))
+        }
+        Some(Class::SecondOrder) => {
+            let problem = format!(
+                "elements of the type {shown} have nodes on their sides, which are not read"
+            );
+            Err(block.error(source, problem, "Save linear elements (CPS3, CPE3, CAX3, S3)"))
+        }
+        None if of.is_empty() => {
+            Err(block.error(source, "*ELEMENT has no TYPE", "Name the type of the elements"))
+        }
+        None => {
+            let problem = format!("the type of elements {shown} is not known");
+            let remedy =
+                "Triangles such as CPS3, CPE3, CAX3 and S3 are read, beside CPS4, B21 and T2D2";
+            Err(block.error(source, problem, remedy))
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! The sections of a file, one after another, and the version that tells how they are read.
+
+use super::encoding::{Encoding, Version, form};
+use super::lists::{note_parameters, row};
+use super::model::Model;
+use super::{binary2, binary4, binary40, data, model, periodic, text2, text4, text40, words};
+use crate::disk::source::Source;
+use crate::edit::numbers::Numbers;
+use crate::error::{Location, ReadError};
+use crate::format::Format;
+use crate::precision::Precision;
+use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::text::syntax::Syntax;
+use crate::text::token::quoted;
+use crate::visit::heights::Heights;
+use crate::visit::sink::{Layout, Sink, Walk};
+
+/// The reader of gmsh's `.msh`.
+pub(crate) struct Gmsh;
+
+impl Walk for Gmsh {
+    const VERTICES: &'static str = "$Nodes";
+
+    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        let Encoding { version, order } = walk(source, sink)?;
+        let format = match (version, order) {
+            (Version::V2, None) => Format::Gmsh22,
+            (Version::V2, Some(_)) => Format::Gmsh22Binary,
+            (Version::V40, None) => Format::Gmsh40,
+            (Version::V40, Some(_)) => Format::Gmsh40Binary,
+            (Version::V4, None) => Format::Gmsh41,
+            (Version::V4, Some(_)) => Format::Gmsh41Binary,
+        };
+        let numbers = match order {
+            None => Numbers::TEXT,
+            Some(order) => Numbers::adjacent(order, Precision::Double),
+        };
+        Ok(Layout::in_place(format, numbers))
+    }
+}
+
+/// Hands a file's nodes and elements to the sink.
+fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
+    let cursor = &mut Cursor::new(source);
+    let mut encoding = None;
+    let (mut nodes, mut elements) = (false, false);
+    let mut node_count = 0;
+    let mut model = Model::default();
+    while cursor.next_row() {
+        // Like gmsh, ignore all text between sections.
+        let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
+            continue;
+        };
+        let opened = cursor.location();
+        match name {
+            b"MeshFormat" => {
+                encoding = Some(mesh_format(cursor)?);
+                end_of_section(cursor, "MeshFormat", opened, "one line")?;
+            }
+            b"Nodes" | b"ParametricNodes" => {
+                once(cursor, &mut nodes, "Nodes")?;
+                let Encoding { version, order } = known(cursor, encoding)?;
+                let parametric = name == b"ParametricNodes";
+                if parametric {
+                    note_parameters(sink);
+                }
+                let mut seen = Heights::new(sink);
+                let heights = &mut seen;
+                let count = match (version, order) {
+                    (Version::V2, None) => text2::nodes(cursor, heights, sink)?,
+                    (Version::V40, None) => text40::nodes(cursor, heights, sink)?,
+                    (Version::V40, Some(order)) => binary40::nodes(cursor, order, heights, sink)?,
+                    (Version::V4, None) => text4::nodes(cursor, heights, sink)?,
+                    (Version::V2, Some(order)) => {
+                        binary2::nodes(cursor, (order, parametric), heights, sink)?
+                    }
+                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, sink)?,
+                };
+                node_count = count;
+                let name = str::from_utf8(name).unwrap_or_default();
+                end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
+                cursor.syntax = Syntax::PLAIN;
+                sink.end_nodes(cursor)?;
+                seen.send("z", form(order), sink);
+            }
+            b"Elements" => {
+                once(cursor, &mut elements, "Elements")?;
+                if !nodes {
+                    let problem = "$Elements stands before $Nodes";
+                    return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
+                }
+                let Encoding { version, order } = known(cursor, encoding)?;
+                let count = match (version, order) {
+                    (Version::V2, None) => text2::elements(cursor, sink)?,
+                    (Version::V40 | Version::V4, None) => {
+                        text4::elements(cursor, version, &model, sink)?
+                    }
+                    (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
+                    (Version::V40 | Version::V4, Some(order)) => {
+                        binary4::elements(cursor, (version, order), &model, sink)?
+                    }
+                };
+                end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
+                cursor.syntax = Syntax::PLAIN;
+            }
+            b"PhysicalNames" if sink.asks_for_groups() => {
+                let count = model::physical_names(cursor, sink)?;
+                end_of_section(cursor, "PhysicalNames", opened, &format!("{count} names"))?;
+            }
+            b"Entities" | b"PartitionedEntities" if sink.asks_for_groups() => {
+                let partitioned = name == b"PartitionedEntities";
+                model.read(cursor, known(cursor, encoding)?, partitioned)?;
+                let name = str::from_utf8(name).unwrap_or_default();
+                end_of_section(cursor, name, opened, "entities")?;
+            }
+            b"NodeData" | b"ElementData" => {
+                let order = known(cursor, encoding)?.order;
+                let nodes = (name == b"NodeData").then_some(node_count);
+                data::read(cursor, nodes, order, sink);
+                skip_section(cursor, name, opened)?;
+            }
+            name if name.starts_with(b"End") => {
+                let problem = format!("${} ends a section that never began", quoted(name));
+                return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
+            }
+            name => {
+                if name == b"Periodic" && sink.asks_for_pairs() {
+                    sink.pairs(encoding.and_then(|encoding| periodic::read(cursor, encoding)));
+                }
+                let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
+                if sink.asks_for_data() && !is_told {
+                    sink.leaves_out(&format!("the section ${}", quoted(name)));
+                }
+                skip_section(cursor, name, opened)?;
+            }
+        }
+    }
+    let missing = if !nodes { "$Nodes" } else { "$Elements" };
+    match encoding {
+        Some(encoding) if nodes && elements => Ok(encoding),
+        _ => Err(source.error(
+            format!("it has no {missing} section"),
+            "The file is cut off or was saved without its mesh: save it again",
+        )),
+    }
+}
+
+fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
+    row(cursor, 0, 1, "format lines")?;
+    let name = cursor.token().unwrap_or_default();
+    let version = match name {
+        b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
+        b"4" | b"4.0" => Version::V40,
+        b"4.1" => Version::V4,
+        _ => {
+            let problem = format!("gmsh's format version {} is not read", quoted(name));
+            let remedy = "Save as version 4.1 or 2.2 (gmsh old.msh -save -format msh41 -o new.msh)";
+            return Err(cursor.error(problem, remedy));
+        }
+    };
+    match cursor.integer("the file type")? {
+        0 => Ok(Encoding { version, order: None }),
+        1 => match cursor.integer("the size of a number")? {
+            8 => Ok(Encoding { version, order: Some(words::byte_order(cursor)?) }),
+            size => {
+                let problem =
+                    format!("its numbers have {size} bytes, and only those of 8 are read");
+                Err(cursor.error(problem, "Save as ASCII (Mesh.Binary=0)"))
+            }
+        },
+        other => {
+            let problem = format!("the file type is {other}, neither 0 nor 1");
+            Err(cursor.error(problem, "Save the mesh again with gmsh"))
+        }
+    }
+}
+
+fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {
+    let problem = "no $MeshFormat section stands before this one";
+    encoding.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
+}
+
+fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {
+    if std::mem::replace(seen, true) {
+        let problem = format!("this is the second ${name} section");
+        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+    }
+    Ok(())
+}
+
+/// Moves past the line that ends a section, after all announced rows were read.
+fn end_of_section(
+    cursor: &mut Cursor<'_>,
+    name: &str,
+    opened: Location,
+    announced: &str,
+) -> Result<(), ReadError> {
+    let is_more = if cursor.syntax.is_of_words() { cursor.next_word() } else { cursor.next_row() };
+    if is_more && !cursor.is_at(b'$') {
+        let problem = format!("${name} goes on after the {announced} it announces");
+        return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
+    }
+    match cursor.token().and_then(|token| token.strip_prefix(b"$End")) {
+        Some(end) if end == name.as_bytes() => Ok(()),
+        _ => Err(no_end(cursor, name, opened)),
+    }
+}
+
+fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: Location) -> Result<(), ReadError> {
+    while cursor.next_row() {
+        if cursor.is_at(b'$') && cursor.token().and_then(|t| t.strip_prefix(b"$End")) == Some(name)
+        {
+            return Ok(());
+        }
+    }
+    Err(no_end(cursor, &quoted(name), opened))
+}
+
+fn no_end(cursor: &Cursor<'_>, name: &str, opened: Location) -> ReadError {
+    let problem = format!("${name} has no $End{name}");
+    cursor.source.error_at(opened, problem, CUT_OFF)
+}

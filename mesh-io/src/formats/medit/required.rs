@@ -1,0 +1,38 @@
+//! Triangles that are not to be changed, which both of Medit's formats list by their numbers.
+
+use crate::content::label::Label;
+use crate::content::remark::Remark;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::sink::{Element, Kind, Sink, Within};
+
+/// Hands on the corners of the required triangles. `required` are the numbers of the triangles, counted from 1 through all
+/// lists. `counts` are the lengths of the lists of triangles. `triangle` reads the triangle with an index in a list, counted
+/// from 0, and is called in ascending order. It returns the location, the nodes and the reference.
+pub(super) fn hold_required<'a>(
+    mut required: Vec<u64>,
+    counts: &[u64],
+    sink: &mut dyn Sink,
+    mut triangle: impl FnMut(usize, u64) -> Result<(Cursor<'a>, [u64; 4], i64), ReadError>,
+) -> Result<(), ReadError> {
+    if required.is_empty() {
+        return Ok(());
+    }
+    required.sort_unstable();
+    required.dedup();
+    sink.remark(Remark::elements(required.len() as u64, "required triangle", ""));
+    let label = Label::name(b"RequiredTriangles");
+    sink.within(&[Within { what: "list", label, dimension: None }]);
+    let mut before = 0;
+    for (list, &count) in counts.iter().enumerate() {
+        for &tag in required.iter().filter(|&&tag| tag > before && tag - before <= count) {
+            let (place, nodes, reference) = triangle(list, tag - before - 1)?;
+            for &corner in &nodes[..3] {
+                let (kind, nodes, region) = (Kind::Corner, [corner, 0, 0, 0], [reference, 0]);
+                sink.element(&place, &Element { tag, kind, region, nodes })?;
+            }
+        }
+        before += count;
+    }
+    Ok(())
+}
