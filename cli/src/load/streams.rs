@@ -6,23 +6,26 @@ use std::path::Path;
 use mesh_io::{MeshFile, PointField};
 
 use crate::args::ReadArgs;
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::terminal::tell;
 
 /// Reads a mesh from a file, or from the standard input if its name is `-`.
-pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, String> {
+pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, CliError> {
     read_source(path, args).map(LoadedMesh::new)
 }
 
-fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, String> {
+fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, CliError> {
     if !is_standard(path) {
         let read = if args.weld { MeshFile::read_welded } else { MeshFile::read };
-        return read(path).map_err(|error| error.to_string());
+        return Ok(read(path)?);
     }
     let mut bytes = Vec::new();
-    std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
+    std::io::stdin()
+        .read_to_end(&mut bytes)
+        .map_err(|error| CliError::input(format!("standard input: {error}")))?;
     let read = if args.weld { MeshFile::from_bytes_welded } else { MeshFile::from_bytes };
-    read(Path::new("standard input"), bytes).map_err(|error| error.to_string())
+    Ok(read(Path::new("standard input"), bytes)?)
 }
 
 /// Whether a name stands for the standard input or output.
@@ -36,7 +39,7 @@ pub(crate) fn write(
     out: &Path,
     points: &[[f64; 2]],
     fields: &[PointField],
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let written = match is_standard(out) {
         true => {
             let name = Path::new("standard output");
@@ -44,7 +47,7 @@ pub(crate) fn write(
         }
         false => file.write_with(out, points, fields),
     };
-    written.map_err(|error| error.to_string())
+    Ok(written?)
 }
 
 /// Prints a text to the standard output, or to the standard error if the mesh goes to the standard output.

@@ -10,6 +10,7 @@ use gpu_smooth::{Checkpoint, GpuError, Keeper, Stop};
 use mesh_io::atomic;
 
 use crate::args::SmoothArgs;
+use crate::error::CliError;
 use crate::run::engine;
 use crate::run::observer::Follow;
 
@@ -24,30 +25,27 @@ pub(crate) fn file(args: &SmoothArgs) -> Option<&Path> {
 pub(crate) fn check<'p>(
     args: &SmoothArgs,
     mut others: impl Iterator<Item = &'p Path>,
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let Some(path) = file(args) else { return Ok(()) };
     let name = path.display();
     if others.any(|other| atomic::same_file(other, path)) {
-        return Err(format!(
-            "{name}: the checkpoint would replace this file. Give --checkpoint another name"
-        ));
+        return Err(CliError::output(format!("{name}: the checkpoint would replace this file"))
+            .with_remedy("Give --checkpoint another name"));
     }
     let is_continued = args.continued.as_deref().is_some_and(|from| atomic::same_file(from, path));
     match begins(path) {
         _ if is_continued => {}
         None => {}
         Some(true) => {
-            return Err(format!(
-                "{name}: this file is the checkpoint of another run. Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file"
-            ));
+            let text = format!("{name}: this file is the checkpoint of another run");
+            return Err(CliError::output(text).with_remedy(format!("Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file")));
         }
         Some(false) => {
-            return Err(format!(
-                "{name}: exists and is not a checkpoint. Give --checkpoint another name"
-            ));
+            return Err(CliError::output(format!("{name}: exists and is not a checkpoint"))
+                .with_remedy("Give --checkpoint another name"));
         }
     }
-    atomic::check(path).map_err(|error| format!("checkpoints cannot be saved: {error}"))
+    atomic::check(path).map_err(|error| CliError::from(error).within("checkpoints cannot be saved"))
 }
 
 /// Whether the file at a path begins as a checkpoint does; `None` if there is none.
@@ -57,20 +55,24 @@ fn begins(path: &Path) -> Option<bool> {
     Some(read.is_ok() && start == *Checkpoint::MAGIC)
 }
 
+const WITHOUT_CONTINUE: &str = "Without --continue the run starts anew";
+
 /// Reads the checkpoint to go on from, if the command line names one.
-pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, String> {
+pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, CliError> {
     let Some(path) = &args.continued else { return Ok(None) };
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => {
-            format!("{name}: there is no such file. A run that came to its end has removed its checkpoint. Without --continue the run starts anew")
-        }
-        _ => format!("{name}: {error}"),
+        ErrorKind::NotFound => CliError::input(format!(
+            "{name}: there is no such file. A run that came to its end has removed its checkpoint"
+        ))
+        .with_remedy(WITHOUT_CONTINUE),
+        _ => CliError::input(format!("{name}: {error}")),
     })?;
     let refused = || {
-        format!(
-            "{name}: not a checkpoint of this version of gpu-smooth, or damaged. Without --continue the run starts anew"
-        )
+        CliError::input(format!(
+            "{name}: not a checkpoint of this version of gpu-smooth, or damaged"
+        ))
+        .with_remedy(WITHOUT_CONTINUE)
     };
     Checkpoint::from_bytes(&bytes).map(Some).ok_or_else(refused)
 }
@@ -160,7 +162,7 @@ mod tests {
     impl Follow for Remarks {
         fn stage(&mut self, _: Stage) {}
 
-        fn has_read(&mut self, _: &LoadedMesh) -> Result<(), String> {
+        fn has_read(&mut self, _: &LoadedMesh) -> Result<(), CliError> {
             Ok(())
         }
 
@@ -170,7 +172,7 @@ mod tests {
 
         fn sweep(&mut self, _: &Progress) {}
 
-        fn has_smoothed(&mut self) -> Result<(), String> {
+        fn has_smoothed(&mut self) -> Result<(), CliError> {
             Ok(())
         }
     }

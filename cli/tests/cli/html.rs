@@ -167,6 +167,11 @@ fn pages_that_would_replace_something_are_refused() {
     for (options, part) in [
         ("--html page.txt", "page.txt: a page is HTML. End its name in .html"),
         ("--html page", "End its name in .html"),
+    ] {
+        folder.line(&format!("in out {options}")).misused(&[part]);
+        assert!(!folder.path("out.node").exists());
+    }
+    for (options, part) in [
         ("--html none/page.html", "the page cannot be written"),
         ("--html r.html --report r.html", "r.html: the page would replace this file"),
     ] {

@@ -192,16 +192,20 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
     let folder = small();
     let before = folder.content();
     for (line, parts) in [
-        ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is PNG or SVG"]),
         ("in out --engine cpu --picture none/p.png", ["the picture cannot be written: ", "none"]),
-        ("quality in --picture p", ["p: ", "is PNG or SVG"]),
-        ("quality in in --picture p.png", ["p.png: ", "give only one"]),
         (
             "in out --engine cpu --picture p.svg --report p.svg",
             ["p.svg: ", "would replace this file"],
         ),
     ] {
         folder.line(line).refused(&parts);
+    }
+    for (line, parts) in [
+        ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is PNG or SVG"]),
+        ("quality in --picture p", ["p: ", "is PNG or SVG"]),
+        ("quality in in --picture p.png", ["p.png: ", "give only one"]),
+    ] {
+        folder.line(line).misused(&parts);
     }
     for (line, part) in [
         ("in out --picture-size 900", "--picture <FILE>"),

@@ -1,6 +1,7 @@
 //! `gpu-smooth MESH... --out-dir DIR`: many meshes in one call.
 
 use crate::commands::batch::{listing, table, workers};
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::path::Path;
 use std::time::Instant;
@@ -27,7 +28,7 @@ use crate::terminal::tell;
 const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogForm::Text };
 
 /// Smooths all meshes. Returns an error at the end if one of them failed.
-pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), String> {
+pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let list = listing::list(args.meshes(), directory)?;
     let files = list.iter().flat_map(|mesh| mesh.inputs.iter().chain(&mesh.outputs));
@@ -63,28 +64,26 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
         tell::say(&table::text(&entries, seconds, columns::of_terminal()));
     }
     match table::failures(&entries) {
-        Some(text) if interrupt::is_requested() => {
-            tell::error(&text);
+        Some(error) if interrupt::is_requested() => {
+            tell::error(&error);
             Ok(())
         }
-        Some(text) => Err(text),
+        Some(error) => Err(error),
         None => match entries.iter().filter(|entry| entry.told.fell_short()).count() {
-            short if short > 0 && args.strict => Err(format!(
+            short if short > 0 && args.strict => Err(CliError::run(format!(
                 "{short} of {} runs neither converged nor reached their goal; --strict makes this an error",
                 entries.len()
-            )),
+            ))),
             _ => Ok(()),
         },
     }
 }
 
 /// Makes the directory if it does not exist.
-fn make(directory: &Path) -> Result<(), String> {
+fn make(directory: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(directory).map_err(|error| {
-        format!(
-            "{}: the directory cannot be made: {error}. Give another one to --out-dir",
-            directory.display()
-        )
+        CliError::output(format!("{}: the directory cannot be made: {error}", directory.display()))
+            .with_remedy("Give another one to --out-dir")
     })
 }
 
@@ -98,7 +97,8 @@ struct Watched<'a> {
 
 impl Watch for Watched<'_> {
     fn done(&mut self, mesh: usize, told: Told) {
-        self.tally.add(&self.list[mesh].input, told.problem(), &told.text());
+        let problem = told.problem();
+        self.tally.add(&self.list[mesh].input, problem.as_deref(), &told.text());
         self.told[mesh] = Some(told);
     }
 
@@ -132,19 +132,22 @@ struct Followed<'a> {
 }
 
 impl Follow for Followed<'_> {
-    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), String> {
+    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
         let out = &self.mesh.out;
         if interrupt::is_requested() {
-            return Err("interrupted".into());
+            return Err(CliError::run("interrupted"));
         }
-        file.source.check_destination(out).map_err(|error| error.to_string())?;
-        let written = file.source.destinations(out).map_err(|error| error.to_string())?;
+        file.source.check_destination(out)?;
+        let written = file.source.destinations(out)?;
         // A file may have two names, which the list could not tell.
         match written
             .iter()
             .find(|path| file.source.paths().any(|own| atomic::same_file(own, path)))
         {
-            Some(path) => Err(format!("{}: the mesh itself would be replaced", path.display())),
+            Some(path) => {
+                let text = format!("{}: the mesh itself would be replaced", path.display());
+                Err(CliError::output(text))
+            }
             None => Ok(()),
         }
     }
@@ -157,18 +160,21 @@ impl Follow for Followed<'_> {
 
     fn sweep(&mut self, _: &Progress) {}
 
-    fn has_smoothed(&mut self) -> Result<(), String> {
+    fn has_smoothed(&mut self) -> Result<(), CliError> {
         match interrupt::is_requested() {
-            true => Err("interrupted".into()),
+            true => Err(CliError::run("interrupted")),
             false => Ok(()),
         }
     }
 }
 
 /// Writes the report on all meshes if it was asked for.
-fn write_report(args: &SmoothArgs, entries: &[Entry], seconds: f64) -> Result<(), String> {
+fn write_report(args: &SmoothArgs, entries: &[Entry], seconds: f64) -> Result<(), CliError> {
     let Some(path) = &args.report else { return Ok(()) };
     let text = table::report(entries, seconds)?;
-    atomic::replace(path, text.as_bytes())
-        .map_err(|error| format!("the report was not written: {error}. The meshes were written"))
+    atomic::replace(path, text.as_bytes()).map_err(|error| {
+        CliError::from(error)
+            .within("the report was not written")
+            .followed_by("The meshes were written")
+    })
 }

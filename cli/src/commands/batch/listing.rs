@@ -7,6 +7,7 @@ use std::time::SystemTime;
 
 use mesh_io::atomic;
 
+use crate::error::CliError;
 use crate::load::streams::is_standard;
 
 /// A mesh that is to be smoothed.
@@ -21,10 +22,11 @@ pub(crate) struct Listed {
 }
 
 impl Listed {
-    fn new(input: &Path, directory: &Path) -> Result<Self, String> {
+    fn new(input: &Path, directory: &Path) -> Result<Self, CliError> {
         let name = input.file_name().filter(|_| !is_standard(input) && !input.is_dir());
         let name = name.ok_or_else(|| {
-            format!("{}: not a file. --out-dir takes meshes in files, and names each result as its mesh", input.display())
+            CliError::usage(format!("{}: not a file", input.display()))
+                .with_remedy("--out-dir takes meshes in files, and names each result as its mesh")
         })?;
         let out = directory.join(name);
         let inputs = parts(input);
@@ -107,7 +109,7 @@ fn parts(path: &Path) -> Vec<PathBuf> {
 pub(crate) fn list<'p>(
     paths: impl Iterator<Item = &'p PathBuf>,
     directory: &Path,
-) -> Result<Vec<Listed>, String> {
+) -> Result<Vec<Listed>, CliError> {
     let mut listed: Vec<Listed> = Vec::new();
     let mut by_out: HashMap<PathBuf, usize> = HashMap::new();
     for path in paths {
@@ -117,10 +119,8 @@ pub(crate) fn list<'p>(
             false => Listed::new(path, directory)?,
         };
         if let Some(own) = mesh.outputs.iter().find(|out| is_any(out, &mesh.inputs)) {
-            return Err(format!(
-                "{}: the mesh itself would be replaced. Give another directory to --out-dir",
-                own.display()
-            ));
+            let text = format!("{}: the mesh itself would be replaced", own.display());
+            return Err(CliError::usage(text).with_remedy("Give another directory to --out-dir"));
         }
         let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
@@ -131,12 +131,13 @@ pub(crate) fn list<'p>(
                 }
             }
             Some(known) => {
-                return Err(format!(
-                    "{} and {} would both be written to {}. Rename one, or smooth them into different directories",
+                return Err(CliError::usage(format!(
+                    "{} and {} would both be written to {}",
                     known.input.display(),
                     mesh.input.display(),
                     mesh.out.display()
-                ));
+                ))
+                .with_remedy("Rename one, or smooth them into different directories"));
             }
             None => {
                 by_out.insert(key, listed.len());
@@ -186,7 +187,7 @@ mod tests {
         folder
     }
 
-    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<Listed>, String> {
+    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<Listed>, CliError> {
         let paths: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
         list(paths.iter(), &folder.path().join("out"))
     }
@@ -216,7 +217,7 @@ mod tests {
         let listed = of(&folder, &["a.xdmf", "a.xdmf", "b.xdmf"]).unwrap();
         assert_eq!(listed.iter().map(|mesh| mesh.inputs.len()).collect::<Vec<_>>(), [2, 1]);
         assert_eq!(listed[0].bytes(), 2);
-        let error = of(&folder, &["a.xdmf", "a.xmf"]).err().unwrap();
+        let error = of(&folder, &["a.xdmf", "a.xmf"]).err().unwrap().to_string();
         assert!(error.contains("would both be written to"), "{error}");
     }
 
@@ -224,11 +225,11 @@ mod tests {
     fn two_meshes_of_one_name_are_refused() {
         let folder = folder(&["a/m.msh", "b/m.msh", "a/t.node", "a/t.ele", "b/t.ele", "b/t.node"]);
         for names in [["a/m.msh", "b/m.msh"], ["a/t.node", "b/t.ele"]] {
-            let error = of(&folder, &names).err().unwrap();
+            let error = of(&folder, &names).err().unwrap().to_string();
             assert!(error.contains("would both be written to"), "{error}");
         }
         let own = list([folder.path().join("a/m.msh")].iter(), &folder.path().join("b/../a"));
-        assert!(own.err().unwrap().contains("the mesh itself would be replaced"));
+        assert!(own.err().unwrap().to_string().contains("the mesh itself would be replaced"));
     }
 
     #[test]

@@ -6,18 +6,19 @@ use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
 use crate::commands::quality::sheet::Sheet;
 use crate::commands::quality::{json, text};
+use crate::error::CliError;
 
 use crate::render::picture;
 use crate::terminal::tell;
 
 /// Prints how good meshes are. Returns an error if a mesh cannot be read, or if a triangle passes a threshold.
-pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
+pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     if let Some(picture) = &args.picture.picture {
         if args.meshes.len() > 1 {
-            return Err(format!(
+            return Err(CliError::usage(format!(
                 "{}: --picture draws a single mesh: give only one",
                 picture.display()
-            ));
+            )));
         }
         picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
     }
@@ -31,9 +32,11 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
     } else {
         tell::say(&text::text(&sheets, &style));
     }
-    let violations: Vec<String> =
-        sheets.iter().flat_map(|sheet| violations(sheet, &style)).collect();
-    if violations.is_empty() { Ok(()) } else { Err(violations.join("\n  ")) }
+    let mut violations = sheets.iter().flat_map(|sheet| violations(sheet, &style));
+    match violations.next() {
+        None => Ok(()),
+        Some(first) => Err(CliError::run(first).with_details(violations.collect())),
+    }
 }
 
 /// Words a sentence for each threshold that triangles of a mesh have passed.

@@ -1,5 +1,6 @@
 //! All numbers that are shown of a mesh.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -86,7 +87,7 @@ pub(crate) struct Violation {
 
 impl Sheet {
     /// Reads a mesh and measures it.
-    pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, String> {
+    pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, CliError> {
         let mut file = read(path, args.reading)?;
         let laid_out = args.surface.lay_out(&mut file)?;
         let (file, surface) = (file, args.surface.surface());
@@ -138,7 +139,7 @@ fn unused(file: &LoadedMesh, measured: &Measured<'_>) -> usize {
     unused.iter().filter(|v| !used.contains(v)).count()
 }
 
-fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, String> {
+fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, CliError> {
     let zeros;
     let regions = match file.source.regions() {
         Some(regions) => regions,
@@ -155,7 +156,7 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, St
     let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
     let places = file.source.triangle_places(first.iter().copied());
     let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
-    let groups = file.source.groups().map_err(|error| error.to_string())?;
+    let groups = file.source.groups()?;
     let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<Named>)| Region {
         first: places[first].clone(),
         groups,

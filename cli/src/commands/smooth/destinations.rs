@@ -1,5 +1,6 @@
 //! Checks, before the work is done, that all files of a run can be written.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::path::{Path, PathBuf};
 
@@ -13,19 +14,21 @@ use crate::run::checkpoint;
 
 /// Returns the files that the smoothed mesh is written to; none for the standard output. Returns an error if they
 /// cannot be written.
-pub(crate) fn of_mesh(file: &LoadedMesh, out: &Path) -> Result<Vec<PathBuf>, String> {
+pub(crate) fn of_mesh(file: &LoadedMesh, out: &Path) -> Result<Vec<PathBuf>, CliError> {
     if !is_standard(out) {
-        file.source.check_destination(out).map_err(|error| error.to_string())?;
-        return file.source.destinations(out).map_err(|error| error.to_string());
+        file.source.check_destination(out)?;
+        return Ok(file.source.destinations(out)?);
     }
     match file.source.paths().count() {
         1 => Ok(Vec::new()),
-        _ => Err("the mesh has several files and cannot go to standard output: name OUT".into()),
+        _ => Err(CliError::output(
+            "the mesh has several files and cannot go to standard output: name OUT",
+        )),
     }
 }
 
 /// Refuses files that cannot be written, or that would replace each other or the mesh.
-pub(crate) fn check(args: &SmoothArgs, file: &LoadedMesh, out: &Path) -> Result<(), String> {
+pub(crate) fn check(args: &SmoothArgs, file: &LoadedMesh, out: &Path) -> Result<(), CliError> {
     let written = of_mesh(file, out)?;
     let of_meshes = || file.source.paths().chain(written.iter().map(PathBuf::as_path));
     let report = args.report.as_deref();
@@ -37,10 +40,11 @@ pub(crate) fn check(args: &SmoothArgs, file: &LoadedMesh, out: &Path) -> Result<
     checkpoint::check(args, of_meshes().chain(named.into_iter().flatten()))?;
     let is_own = |path: &PathBuf| file.source.paths().any(|own| atomic::same_file(own, path));
     match (checkpoint::file(args), written.iter().find(|path| is_own(path))) {
-        (Some(_), Some(path)) => Err(format!(
-            "{}: a run can only be continued while IN is as it was. With a checkpoint, OUT must be another file",
+        (Some(_), Some(path)) => Err(CliError::output(format!(
+            "{}: a run can only be continued while IN is as it was",
             path.display()
-        )),
+        ))
+        .with_remedy("With a checkpoint, OUT must be another file")),
         _ => Ok(()),
     }
 }
@@ -49,20 +53,22 @@ pub(crate) fn check(args: &SmoothArgs, file: &LoadedMesh, out: &Path) -> Result<
 pub(crate) fn check_report<'p>(
     args: &SmoothArgs,
     mut meshes: impl Iterator<Item = &'p Path>,
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let Some(report) = &args.report else { return Ok(()) };
     let is_mesh = ["node", "ele", "poly", "msh"]
         .iter()
         .any(|ending| report.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)));
     if is_mesh || meshes.any(|path| atomic::same_file(path, report)) {
         let name = report.display();
-        return Err(format!("{name}: the report is JSON, not a mesh. End its name in .json"));
+        return Err(CliError::output(format!("{name}: the report is JSON, not a mesh"))
+            .with_remedy("End its name in .json"));
     }
     can_write_report(args)
 }
 
 /// Checks whether the report can be written, as this may have changed during a long run.
-pub(crate) fn can_write_report(args: &SmoothArgs) -> Result<(), String> {
+pub(crate) fn can_write_report(args: &SmoothArgs) -> Result<(), CliError> {
     let Some(report) = &args.report else { return Ok(()) };
-    atomic::check(report).map_err(|error| format!("the report cannot be written: {error}"))
+    atomic::check(report)
+        .map_err(|error| CliError::from(error).within("the report cannot be written"))
 }

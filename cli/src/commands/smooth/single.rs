@@ -1,5 +1,6 @@
 //! Smooths one mesh and shows the run to the user.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::path::Path;
 
@@ -25,9 +26,9 @@ use crate::terminal::interrupt;
 use crate::terminal::progress::{Display, Stage};
 use crate::terminal::tell;
 
-pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
+pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), CliError> {
     let (Some(input), Some(out)) = (&args.input, &args.output) else {
-        return Err("IN and OUT are needed".into());
+        return Err(CliError::usage("IN and OUT are needed"));
     };
     interrupt::watch(show.quiet);
     let resumed = checkpoint::resumed(args)?;
@@ -40,9 +41,7 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
     let done = std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let engine = move |size| match opening {
-            Some(opening) => {
-                opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())?
-            }
+            Some(opening) => opening.join().map_err(|_| engine::driver_crashed())?,
             None => Ok(match resumed {
                 Some(checkpoint) => engine::of_checkpoint(checkpoint),
                 None => engine::choose(args, size),
@@ -70,7 +69,7 @@ impl Follow for Shown<'_> {
         self.display.stage(stage);
     }
 
-    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), String> {
+    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
         destinations::check(self.args, file, self.out)
     }
 
@@ -85,7 +84,7 @@ impl Follow for Shown<'_> {
         self.display.sweep(progress);
     }
 
-    fn has_smoothed(&mut self) -> Result<(), String> {
+    fn has_smoothed(&mut self) -> Result<(), CliError> {
         if interrupt::is_requested() {
             let text =
                 "interrupted: writing the best mesh so far (interrupt again to end without it)";
@@ -97,13 +96,13 @@ impl Follow for Shown<'_> {
 }
 
 /// Writes and prints the results of a run that were asked for.
-fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
+fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
     let Task { args, show, out, .. } = *task;
     let Done { file, smoother, outcome, report, .. } = done;
     write_report(args, report)
         .and_then(|()| draw(args, file, smoother, outcome))
         .and_then(|()| html::write(args.html.as_deref(), task, done))
-        .map_err(|problem| format!("{problem}. The mesh was written"))?;
+        .map_err(|error| error.followed_by("The mesh was written"))?;
     let say = |text: &str| streams::say_beside(out, text);
     if show.verbose {
         sweeps(report).for_each(|line| say(&line));
@@ -121,7 +120,8 @@ fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
     match report.fell_short().filter(|_| args.strict) {
         None => Ok(()),
         Some(ending) => {
-            Err(format!("{ending}. The mesh was written; --strict makes this an error"))
+            let text = format!("{ending}. The mesh was written; --strict makes this an error");
+            Err(CliError::run(text))
         }
     }
 }
@@ -134,16 +134,15 @@ fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
     })
 }
 
-/// Returns the message why a mesh is not smoothed. If triangles are inverted or flat, also lists all of them in the
+/// Returns the error why a mesh is not smoothed. If triangles are inverted or flat, also lists all of them in the
 /// report that was asked for.
-fn told_with_report(args: &SmoothArgs, Failure { message, triangles }: Failure) -> String {
+fn told_with_report(args: &SmoothArgs, Failure { error, triangles }: Failure) -> CliError {
     if triangles.is_empty() {
-        return message;
+        return error;
     }
-    let first_line = message.lines().next().unwrap_or_default().to_owned();
-    match write_report(args, &Refusal { error: first_line, triangles }) {
-        Ok(()) => message,
-        Err(problem) => format!("{message}\n  {problem}"),
+    match write_report(args, &Refusal { error: error.headline(), triangles }) {
+        Ok(()) => error,
+        Err(problem) => error.with_detail(problem.to_string()),
     }
 }
 
@@ -153,17 +152,17 @@ fn draw(
     file: &LoadedMesh,
     smoother: &Smoother<'_>,
     outcome: &Outcome,
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let shot = |title: &str, points| Shot { title: title.to_owned(), points };
     let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
     let surface = args.target.surface();
     picture::write(&args.picture, file, (smoother.topology(), surface), &shots)
 }
 
-fn write_report(args: &SmoothArgs, report: &impl Serialize) -> Result<(), String> {
+fn write_report(args: &SmoothArgs, report: &impl Serialize) -> Result<(), CliError> {
     let Some(path) = &args.report else { return Ok(()) };
-    let mut text = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
+    let mut text = serde_json::to_string_pretty(report)?;
     text.push('\n');
     atomic::replace(path, text.as_bytes())
-        .map_err(|error| format!("the report was not written: {error}"))
+        .map_err(|error| CliError::from(error).within("the report was not written"))
 }

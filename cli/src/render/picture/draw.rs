@@ -1,6 +1,7 @@
 //! `--picture`: a mesh colored by its quality, before and after a run.
 
 use crate::args::PictureArgs;
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::render::picture::{color, png, svg};
 use std::path::Path;
@@ -30,15 +31,13 @@ enum Kind {
     Svg,
 }
 
-fn kind(path: &Path) -> Result<Kind, String> {
+fn kind(path: &Path) -> Result<Kind, CliError> {
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
     match ending.as_deref() {
         Some("png") => Ok(Kind::Png),
         Some("svg") => Ok(Kind::Svg),
-        _ => Err(format!(
-            "{}: a picture is PNG or SVG. End its name in .png or .svg",
-            path.display()
-        )),
+        _ => Err(CliError::usage(format!("{}: a picture is PNG or SVG", path.display()))
+            .with_remedy("End its name in .png or .svg")),
     }
 }
 
@@ -46,13 +45,15 @@ fn kind(path: &Path) -> Result<Kind, String> {
 pub(crate) fn check<'p>(
     args: &PictureArgs,
     mut others: impl Iterator<Item = &'p Path>,
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let Some(path) = &args.picture else { return Ok(()) };
     kind(path)?;
     if others.any(|other| atomic::same_file(other, path)) {
-        return Err(format!("{}: the picture would replace this file", path.display()));
+        let text = format!("{}: the picture would replace this file", path.display());
+        return Err(CliError::output(text));
     }
-    atomic::check(path).map_err(|error| format!("the picture cannot be written: {error}"))
+    atomic::check(path)
+        .map_err(|error| CliError::from(error).within("the picture cannot be written"))
 }
 
 /// Draws the picture that was asked for: one panel for each shot, all on one color scale.
@@ -61,17 +62,16 @@ pub(crate) fn write(
     file: &LoadedMesh,
     (topology, surface): (&Topology<'_>, Surface),
     shots: &[Shot<'_>],
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let Some(path) = &args.picture else { return Ok(()) };
-    let failed = |problem: String| format!("the picture was not written: {problem}");
+    let failed = |error: CliError| error.within("the picture was not written");
     if args.picture_arrows && shots.len() < 2 {
-        return Err(failed(
-            "--picture-arrows needs a run, as arrows go from the old place of a vertex to the new one".into(),
-        ));
+        return Err(failed(CliError::usage(
+            "--picture-arrows needs a run, as arrows go from the old place of a vertex to the new one",
+        )));
     }
     let panels = shots.iter().map(|shot| panel(args, (topology, surface), shot));
-    let panels =
-        panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.to_string()))?;
+    let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
     let (before, after) = match shots {
         [first, .., last] => (first.points, last.points),
         _ => (&[][..], &[][..]),
@@ -97,7 +97,7 @@ pub(crate) fn write(
     let mut canvas = canvas.map_err(failed)?;
     scene.draw(&layout, canvas.as_mut());
     let bytes = canvas.finish().map_err(failed)?;
-    atomic::replace(path, &bytes).map_err(|error| failed(error.to_string()))
+    atomic::replace(path, &bytes).map_err(|error| failed(error.into()))
 }
 
 /// Draws the triangles alone as a PNG without background, colored by a measure. The longer side of the picture is
@@ -108,8 +108,8 @@ pub(crate) fn picture_of(
     measure: Measure,
     extent: Extent,
     longest: u32,
-) -> Result<Vec<u8>, String> {
-    let goodness = goodness_of(topology, state, measure).map_err(|error| error.to_string())?;
+) -> Result<Vec<u8>, CliError> {
+    let goodness = goodness_of(topology, state, measure)?;
     let [width, height] = extent.size();
     let scale = f64::from(longest) / width.max(height);
     let corner = [width, height].map(|size| (size * scale).ceil());
