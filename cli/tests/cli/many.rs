@@ -125,6 +125,23 @@ fn a_call_of_many_meshes_is_resumed() {
     assert_holds(&folder.line(line).clean().out, &["\n3 skipped of 3 meshes; 0 vertices"]);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_triangle_mesh_with_endings_of_a_capital_first_is_skipped_once_it_is_done() {
+    let folder = super::small();
+    for (from, to) in [("in.node", "A.Node"), ("in.ele", "A.Ele")] {
+        fs::rename(folder.path(from), folder.path(to)).unwrap();
+    }
+    for name in ["A.Node", "A.Ele"] {
+        let line = format!("{name} --out-dir out --engine cpu --resume");
+        let done =
+            if name == "A.Node" { "\n1 smoothed of 1 mesh" } else { "\n1 skipped of 1 mesh" };
+        assert_holds(&folder.line(&line).clean().out, &[done]);
+        assert_holds(&folder.line(&line).clean().out, &["\n1 skipped of 1 mesh"]);
+    }
+    assert_eq!(names(&folder, "out"), ["A.Ele", "A.Node"]);
+}
+
 #[test]
 fn files_that_would_be_overwritten_are_listed_before_any_work() {
     let folder = several();

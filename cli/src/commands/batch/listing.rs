@@ -95,12 +95,22 @@ fn parts(path: &Path) -> Vec<PathBuf> {
         let has_beside = is_xdmf(path) && beside.is_file();
         return [path.to_owned()].into_iter().chain(has_beside.then_some(beside)).collect();
     };
-    let is_upper = own.to_string_lossy().starts_with(char::is_uppercase);
-    let endings = match is_upper {
-        true => [".NODE", ".ELE", ".POLY"],
-        false => [".node", ".ele", ".poly"],
-    };
-    endings.into_iter().map(with).filter(|part| part.is_file()).collect()
+    let own = own.to_string_lossy();
+    let endings = ["node", "ele", "poly"].map(|ending| spelled_like(&own, ending));
+    let parts = endings.iter().map(|ending| with(&format!(".{ending}")));
+    parts.filter(|part| part.is_file()).collect()
+}
+
+/// Spells an ending of a Triangle mesh as mesh-io does beside a file with the ending `own`: in capitals, with a capital first,
+/// or in small letters. The given file keeps its spelling.
+fn spelled_like(own: &str, ending: &str) -> String {
+    let (first, rest) = ending.split_at(1);
+    match own {
+        _ if own.eq_ignore_ascii_case(ending) => own.to_owned(),
+        "NODE" | "ELE" | "POLY" => ending.to_uppercase(),
+        "Node" | "Ele" | "Poly" => first.to_uppercase() + rest,
+        _ => ending.to_owned(),
+    }
 }
 
 /// Lists the meshes that some paths name, each once, with the files in `directory` that they are written to.
@@ -208,6 +218,23 @@ mod tests {
         );
         // Two meshes, each given twice: one also without its ending.
         assert_eq!(of(&folder, &["a.1", "a.1.node", "b.msh", "b.msh"]).unwrap().len(), 2);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn endings_of_triangle_meshes_are_spelled_like_the_one_given() {
+        let folder = folder(&["a.Node", "a.Ele", "b.NODE", "b.ELE", "b.POLY", "c.nodE", "c.ele"]);
+        for (name, inputs) in [
+            ("a.Node", &["a.Node", "a.Ele"][..]),
+            ("a.Ele", &["a.Node", "a.Ele"]),
+            ("b.ELE", &["b.NODE", "b.ELE", "b.POLY"]),
+            ("c.nodE", &["c.nodE", "c.ele"]),
+        ] {
+            let listed = of(&folder, &[name]).unwrap();
+            let expected: Vec<PathBuf> =
+                inputs.iter().map(|part| folder.path().join(part)).collect();
+            assert_eq!(listed[0].inputs, expected, "{name}");
+        }
     }
 
     /// The files beside both would be called after them.
