@@ -36,7 +36,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     }
     if is_standard(&args.output) {
         let Some(content) = conversion.bytes() else {
-            return Err(CliError::usage(
+            return Err(CliError::output(
                 "a Triangle mesh has several files and cannot go to standard output: name OUT",
             ));
         };

@@ -71,11 +71,6 @@ impl TargetArgs {
     fn field_of_view(&self, path: &Path) -> Result<TargetField, CliError> {
         let view = View::read(path).map_err(|error| of_background(error.into()))?;
         let name = path.display();
-        if matches!(self.target, Target::Metric { .. }) {
-            return Err(of_background(CliError::input(format!(
-                "{name}: a view of gmsh holds sizes, not tensors: give size={name}"
-            ))));
-        }
         let told_of = |error: MeshError| {
             let text = format!("{name}: {error} (counted from 0, in the order of the file)");
             of_background(CliError::input(text))

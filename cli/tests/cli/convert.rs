@@ -87,7 +87,9 @@ fn conversions_that_cannot_work_are_refused() {
     folder.line("convert in.2dm out.slf").misused(&["out.slf: its ending names no format"]);
     folder.line("convert none.2dm out.msh").refused(&["none.2dm"]);
     folder.line("convert word out.msh").refused(&["word"]);
-    folder.line("convert in.2dm - --to triangle --lossy --quiet").misused(&["name OUT"]);
+    let run = folder.line("convert in.2dm - --to triangle --lossy --quiet");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["error: a Triangle mesh has several files", "name OUT"]);
     let run = folder.line("convert in.2dm out.msh --to word");
     assert_eq!(run.code, Some(2));
     assert_holds(&run.err, &["possible values: gmsh41, gmsh22, vtu, xdmf, vtk"]);

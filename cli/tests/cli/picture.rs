@@ -203,12 +203,13 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
     for (line, parts) in [
         ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is PNG or SVG"]),
         ("quality in --picture p", ["p: ", "is PNG or SVG"]),
-        ("quality in in --picture p.png", ["p.png: ", "give only one"]),
     ] {
         folder.line(line).misused(&parts);
     }
     for (line, part) in [
         ("in out --picture-size 900", "--picture <FILE>"),
+        ("quality in in --picture p.png", "p.png: --picture draws a single mesh: give only one"),
+        ("quality in --picture p.png --picture-arrows", "--picture-arrows needs a run"),
         ("quality in --picture p.png --picture-size 20", "400..=8000"),
         ("quality in --picture p.png --picture-measure round", "no measure is called 'round'"),
     ] {

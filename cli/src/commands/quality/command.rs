@@ -13,15 +13,7 @@ use crate::terminal::tell;
 
 /// Prints how good meshes are. Returns an error if a mesh cannot be read, or if a triangle passes a threshold.
 pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
-    if let Some(picture) = &args.picture.picture {
-        if args.meshes.len() > 1 {
-            return Err(CliError::usage(format!(
-                "{}: --picture draws a single mesh: give only one",
-                picture.display()
-            )));
-        }
-        picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
-    }
+    picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
     let style = Style::of_terminal(args.ascii);
     let sheets = args.meshes.iter().map(|path| Sheet::of(path, args));
     let sheets = sheets.collect::<Result<Vec<_>, _>>()?;

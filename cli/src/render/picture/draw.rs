@@ -65,11 +65,6 @@ pub(crate) fn write(
 ) -> Result<(), CliError> {
     let Some(path) = &args.picture else { return Ok(()) };
     let failed = |error: CliError| error.within("the picture was not written");
-    if args.picture_arrows && shots.len() < 2 {
-        return Err(failed(CliError::usage(
-            "--picture-arrows needs a run, as arrows go from the old place of a vertex to the new one",
-        )));
-    }
     let panels = shots.iter().map(|shot| panel(args, (topology, surface), shot));
     let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
     let (before, after) = match shots {
