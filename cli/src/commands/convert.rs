@@ -1,19 +1,24 @@
 //! `gpu-smooth convert IN OUT`: writes a mesh in another format.
 
 use std::io::Write;
+use std::slice;
 
-use mesh_io::{Conversion, Format, atomic};
+use mesh_io::{Conversion, Format};
 
 use crate::args::{ConvertArgs, OutputArgs};
-use crate::error::CliError;
-use crate::load::streams::{is_standard, read};
+use crate::error::{CliError, ErrorKind};
+use crate::load::streams::{self, is_standard};
+use crate::request::{MeshOutput, Outputs};
 use crate::terminal::tell;
 
 /// Writes a mesh in another format. Returns an error if the format does not hold all of the mesh, unless `--lossy` is
 /// given.
 pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError> {
     let format = format(args)?;
-    let file = read(&args.input, args.reading)?;
+    let outputs = Outputs::of_mesh(MeshOutput::Converted);
+    let (read, written) = (slice::from_ref(&args.input), slice::from_ref(&args.output));
+    outputs.check_files(read, written, ErrorKind::Usage)?;
+    let file = streams::read(&args.input, args.reading)?;
     let conversion = Conversion::new(&file.source, format)?;
     let (path, out) = (file.source.path().display(), args.output.display());
     let Some(mut conversion) = conversion else {
@@ -45,12 +50,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
         return written.map_err(|error| CliError::output(format!("standard output: {error}")));
     }
     let written = conversion.destinations(&args.output);
-    if let Some(same) =
-        written.iter().find(|own| file.source.paths().any(|p| atomic::same_file(p, own)))
-    {
-        return Err(CliError::output(format!("{} is the mesh that is read", same.display()))
-            .with_remedy("Give OUT another name"));
-    }
+    outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
     conversion.write(&args.output)?;
     if !show.quiet {
         let mesh = file.mesh();

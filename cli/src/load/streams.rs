@@ -1,7 +1,7 @@
 //! Reads and writes meshes. The name `-` stands for the standard input or output.
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mesh_io::{MeshFile, PointField};
 
@@ -48,6 +48,23 @@ pub(crate) fn write(
         false => file.write_with(out, points, fields),
     };
     Ok(written?)
+}
+
+/// Lists the files that a mesh is written to; none for the standard output.
+///
+/// # Errors
+/// If the mesh cannot be written there.
+pub(crate) fn destinations(file: &LoadedMesh, out: &Path) -> Result<Vec<PathBuf>, CliError> {
+    if !is_standard(out) {
+        file.source.check_destination(out)?;
+        return Ok(file.source.destinations(out)?);
+    }
+    match file.source.paths().count() {
+        1 => Ok(Vec::new()),
+        _ => Err(CliError::output(
+            "the mesh has several files and cannot go to standard output: name OUT",
+        )),
+    }
 }
 
 /// Prints a text to the standard output, or to the standard error if the mesh goes to the standard output.

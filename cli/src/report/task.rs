@@ -9,10 +9,13 @@ use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::load::explain::BadTriangleReport;
 use crate::report::Report;
+use crate::request::Outputs;
 
 /// A mesh that is to be smoothed.
 pub(crate) struct Task<'a> {
     pub(crate) args: &'a SmoothArgs,
+    /// The files that are written, the mesh excepted.
+    pub(crate) outputs: &'a Outputs,
     pub(crate) show: &'a OutputArgs,
     pub(crate) input: &'a Path,
     pub(crate) out: &'a Path,

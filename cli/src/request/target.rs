@@ -1,6 +1,6 @@
 //! The meaning of the options on targets and surfaces.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gpu_smooth::{Metric, Surface};
 
@@ -78,6 +78,16 @@ impl TargetArgs {
             Target::Size { source } | Target::Metric { source } => Some(source),
             Target::Equilateral | Target::KeepSize | Target::KeepShape => None,
         }
+    }
+
+    /// Returns the files that targets are read from, as far as they exist.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let files = match (self.background(), self.source()) {
+            (Some((mesh, data)), _) => vec![mesh, Path::new(data)],
+            (None, Some(source)) => vec![Path::new(source)],
+            (None, None) => Vec::new(),
+        };
+        files.into_iter().filter(|file| file.is_file()).map(Path::to_path_buf).collect()
     }
 
     /// Whether the source is a view of gmsh.

@@ -79,7 +79,7 @@ pub(super) fn write(
         true => Some(certificate(input, ready, riding, hashes)?),
         false => None,
     };
-    checkpoint::clear(args, ran.outcome.stop);
+    checkpoint::clear(input.task.outputs.checkpoint.as_ref(), ran.outcome.stop);
     Ok(Written { certificate, at: Instant::now() })
 }
 

@@ -69,7 +69,7 @@ pub(super) fn smooth(
     let mut clock =
         SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };
     let follow = RefCell::new(follow);
-    let mut kept = Kept::new(args, &follow);
+    let mut kept = Kept::new(input.task.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
             follow.borrow_mut().sweep(progress);

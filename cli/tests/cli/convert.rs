@@ -74,7 +74,7 @@ fn names_that_change_are_told_once() {
 #[test]
 fn conversions_that_cannot_work_are_refused() {
     let folder = Folder::new(&[("in.2dm", SMS), ("word", "1 2 x\n")]);
-    folder.line("convert in.2dm in.2dm").refused(&["in.2dm is the mesh that is read"]);
+    folder.line("convert in.2dm in.2dm").misused(&["in.2dm is the mesh that is read"]);
     folder
         .line("convert in.2dm out.xyz")
         .misused(&["out.xyz: its ending names no format", "gmsh22"]);

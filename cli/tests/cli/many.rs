@@ -148,8 +148,6 @@ fn files_that_would_be_overwritten_are_listed_before_any_work() {
     fs::create_dir(folder.path("other")).unwrap();
     fs::copy(folder.path("b.msh"), folder.path("other/b.msh")).unwrap();
     for (line, part) in [
-        ("b.msh --out-dir out --report c.msh", "c.msh: the report is JSON"),
-        ("b.msh --out-dir out --report out/b.msh", "b.msh: the report is JSON"),
         ("b.msh --out-dir c.msh", "c.msh: the directory cannot be made"),
         ("b.msh --out-dir out --adapter none-of-this-name", "no GPU adapter"),
     ] {
@@ -159,6 +157,8 @@ fn files_that_would_be_overwritten_are_listed_before_any_work() {
         ("b.msh other/b.msh --out-dir out", "b.msh and other/b.msh would both be written to out"),
         ("b.msh c.msh --out-dir .", "the mesh itself would be replaced. Give another directory"),
         ("b.msh other/../c.msh --out-dir other/..", "the mesh itself would be replaced"),
+        ("b.msh --out-dir out --report c.msh", "c.msh: the report is JSON"),
+        ("b.msh --out-dir out --report out/b.msh", "b.msh: the report is JSON"),
         ("b.msh - --out-dir out", "-: not a file. --out-dir"),
         ("b.msh other --out-dir out", "other: not a file. --out-dir"),
     ] {

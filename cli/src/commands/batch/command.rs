@@ -1,8 +1,8 @@
 //! `gpu-smooth MESH... --out-dir DIR`: many meshes in one call.
 
 use crate::commands::batch::{listing, table, workers};
-use crate::error::CliError;
-use crate::load::LoadedMesh;
+use crate::error::{CliError, ErrorKind};
+use crate::load::{LoadedMesh, streams};
 use std::path::Path;
 use std::time::Instant;
 
@@ -14,9 +14,9 @@ use crate::args::{LogForm, OutputArgs};
 use crate::commands::batch::entry::{Entry, Told};
 use crate::commands::batch::listing::Listed;
 use crate::commands::batch::workers::Watch;
-use crate::commands::smooth::check_report;
 use crate::render::columns;
 use crate::report::Task;
+use crate::request::Outputs;
 use crate::run::carry_out;
 use crate::run::engine::Engines;
 use crate::run::observer::Follow;
@@ -31,8 +31,12 @@ const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogFor
 pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let list = listing::list(args.meshes(), directory)?;
-    let files = list.iter().flat_map(|mesh| mesh.inputs.iter().chain(&mesh.outputs));
-    check_report(args, files.map(|path| path.as_path()))?;
+    let outputs = Outputs::of_run(args)?;
+    outputs.check_names()?;
+    for mesh in &list {
+        outputs.check_files(&mesh.inputs, &mesh.outputs, ErrorKind::Usage)?;
+    }
+    outputs.check_disk()?;
     interrupt::watch(show.quiet);
     // The first signal is left to the runs. Runs under way are then given up, and finished ones are reported.
     interrupt::has_result();
@@ -45,7 +49,7 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
         let engines = Engines::new(args)?;
         let tally = Tally::new(show, open.len());
         let mut watch = Watched { list: &list, show, tally, told: &mut told };
-        workers::run(&list, &open, &|mesh| smooth(args, &engines, mesh), &mut watch);
+        workers::run(&list, &open, &|mesh| smooth(args, &outputs, &engines, mesh), &mut watch);
         watch.tally.clear();
     }
     let entry = |(mesh, told): (Listed, Option<Told>)| {
@@ -114,9 +118,10 @@ impl Watch for Watched<'_> {
 }
 
 /// Smooths one of the meshes.
-fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
-    let task = Task { args, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
-    let mut follow = Followed { mesh, remarks: Vec::new() };
+fn smooth(args: &SmoothArgs, outputs: &Outputs, engines: &Engines<'_>, mesh: &Listed) -> Told {
+    let task =
+        Task { args, outputs, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
+    let mut follow = Followed { mesh, outputs, remarks: Vec::new() };
     let engine = |size| Ok(engines.take(size));
     match carry_out(&task, engine, &mut follow, |done| Ok(done.report)) {
         Ok(report) => Told::Smoothed { report: Box::new(report), remarks: follow.remarks },
@@ -128,28 +133,18 @@ fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
 /// Keeps the remarks on a mesh.
 struct Followed<'a> {
     mesh: &'a Listed,
+    outputs: &'a Outputs,
     remarks: Vec<String>,
 }
 
 impl Follow for Followed<'_> {
     fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
-        let out = &self.mesh.out;
         if interrupt::is_requested() {
             return Err(CliError::run("interrupted"));
         }
-        file.source.check_destination(out)?;
-        let written = file.source.destinations(out)?;
         // A file may have two names, which the list could not tell.
-        match written
-            .iter()
-            .find(|path| file.source.paths().any(|own| atomic::same_file(own, path)))
-        {
-            Some(path) => {
-                let text = format!("{}: the mesh itself would be replaced", path.display());
-                Err(CliError::output(text))
-            }
-            None => Ok(()),
-        }
+        let written = streams::destinations(file, &self.mesh.out)?;
+        self.outputs.check_files(&file.paths(), &written, ErrorKind::Output)
     }
 
     fn remark(&mut self, text: &str) {

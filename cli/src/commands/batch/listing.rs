@@ -115,7 +115,7 @@ fn spelled_like(own: &str, ending: &str) -> String {
 
 /// Lists the meshes that some paths name, each once, with the files in `directory` that they are written to.
 ///
-/// Returns an error if two meshes would be written to the same file, or if a mesh would replace itself.
+/// Returns an error if two meshes would be written to the same file.
 pub(crate) fn list<'p>(
     paths: impl Iterator<Item = &'p PathBuf>,
     directory: &Path,
@@ -128,10 +128,6 @@ pub(crate) fn list<'p>(
             true => Listed::new(&appended(path, ".node"), directory)?,
             false => Listed::new(path, directory)?,
         };
-        if let Some(own) = mesh.outputs.iter().find(|out| is_any(out, &mesh.inputs)) {
-            let text = format!("{}: the mesh itself would be replaced", own.display());
-            return Err(CliError::usage(text).with_remedy("Give another directory to --out-dir"));
-        }
         let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
             Some(known) if is_same(known, &mesh) => {
@@ -255,8 +251,6 @@ mod tests {
             let error = of(&folder, &names).err().unwrap().to_string();
             assert!(error.contains("would both be written to"), "{error}");
         }
-        let own = list([folder.path().join("a/m.msh")].iter(), &folder.path().join("b/../a"));
-        assert!(own.err().unwrap().to_string().contains("the mesh itself would be replaced"));
     }
 
     #[test]

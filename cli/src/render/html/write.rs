@@ -15,25 +15,6 @@ use crate::report::{Histogram, histogram};
 /// The measures with a histogram.
 const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
 
-/// Refuses a page that cannot be written, or that would replace one of the other files.
-pub(crate) fn check<'p>(
-    path: Option<&Path>,
-    mut others: impl Iterator<Item = &'p Path>,
-) -> Result<(), CliError> {
-    let Some(path) = path else { return Ok(()) };
-    let name = path.display();
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
-    if !matches!(ending.as_deref(), Some("html" | "htm")) {
-        return Err(
-            CliError::usage(format!("{name}: a page is HTML")).with_remedy("End its name in .html")
-        );
-    }
-    if others.any(|other| atomic::same_file(other, path)) {
-        return Err(CliError::output(format!("{name}: the page would replace this file")));
-    }
-    atomic::check(path).map_err(|error| CliError::from(error).within("the page cannot be written"))
-}
-
 /// Writes the page of a run, if it was asked for.
 pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
     let Some(path) = path else { return Ok(()) };

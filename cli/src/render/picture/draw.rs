@@ -1,10 +1,9 @@
 //! `--picture`: a mesh colored by its quality, before and after a run.
 
-use crate::args::PictureArgs;
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::render::picture::{color, png, svg};
-use std::path::Path;
+use crate::request::{PictureFormat, PictureRequest};
 
 use crate::render::picture::canvas::Canvas;
 use crate::render::picture::layout::{Extent, Frame};
@@ -25,56 +24,25 @@ pub(crate) struct Shot<'a> {
     pub(crate) points: &'a [[f64; 2]],
 }
 
-/// The kinds of picture files.
-enum Kind {
-    Png,
-    Svg,
-}
-
-fn kind(path: &Path) -> Result<Kind, CliError> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
-    match ending.as_deref() {
-        Some("png") => Ok(Kind::Png),
-        Some("svg") => Ok(Kind::Svg),
-        _ => Err(CliError::usage(format!("{}: a picture is PNG or SVG", path.display()))
-            .with_remedy("End its name in .png or .svg")),
-    }
-}
-
-/// Refuses, before anything is drawn, a picture that cannot be written or that would replace one of these files.
-pub(crate) fn check<'p>(
-    args: &PictureArgs,
-    mut others: impl Iterator<Item = &'p Path>,
-) -> Result<(), CliError> {
-    let Some(path) = &args.picture else { return Ok(()) };
-    kind(path)?;
-    if others.any(|other| atomic::same_file(other, path)) {
-        let text = format!("{}: the picture would replace this file", path.display());
-        return Err(CliError::output(text));
-    }
-    atomic::check(path)
-        .map_err(|error| CliError::from(error).within("the picture cannot be written"))
-}
-
 /// Draws the picture that was asked for: one panel for each shot, all on one color scale.
 pub(crate) fn write(
-    args: &PictureArgs,
+    request: Option<&PictureRequest>,
     file: &LoadedMesh,
     (topology, surface): (&Topology<'_>, Surface),
     shots: &[Shot<'_>],
 ) -> Result<(), CliError> {
-    let Some(path) = &args.picture else { return Ok(()) };
+    let Some(request) = request else { return Ok(()) };
     let failed = |error: CliError| error.within("the picture was not written");
-    let panels = shots.iter().map(|shot| panel(args, (topology, surface), shot));
+    let panels = shots.iter().map(|shot| panel(request.measure, (topology, surface), shot));
     let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
     let (before, after) = match shots {
         [first, .., last] => (first.points, last.points),
         _ => (&[][..], &[][..]),
     };
     let scene = Scene {
-        measure: args.picture_measure,
+        measure: request.measure,
         triangles: topology.triangles(),
-        with_arrows: args.picture_arrows,
+        with_arrows: request.with_arrows,
         outlines: Outlines::of(
             topology,
             &file.mesh().fixed,
@@ -83,16 +51,20 @@ pub(crate) fn write(
         ),
         panels,
     };
-    let layout = scene.layout(args.picture_size);
+    let layout = scene.layout(request.width);
     let [width, height] = layout.size;
-    let canvas = match kind(path)? {
-        Kind::Png => png::Png::new(width, height).map(|png| Box::new(png) as Box<dyn Canvas>),
-        Kind::Svg => svg::Svg::new(width, height).map(|svg| Box::new(svg) as Box<dyn Canvas>),
+    let canvas = match request.format {
+        PictureFormat::Png => {
+            png::Png::new(width, height).map(|png| Box::new(png) as Box<dyn Canvas>)
+        }
+        PictureFormat::Svg => {
+            svg::Svg::new(width, height).map(|svg| Box::new(svg) as Box<dyn Canvas>)
+        }
     };
     let mut canvas = canvas.map_err(failed)?;
     scene.draw(&layout, canvas.as_mut());
     let bytes = canvas.finish().map_err(failed)?;
-    atomic::replace(path, &bytes).map_err(|error| failed(error.into()))
+    atomic::replace(&request.path, &bytes).map_err(|error| failed(error.into()))
 }
 
 /// Draws the triangles alone as a PNG without background, colored by a measure. The longer side of the picture is
@@ -131,11 +103,10 @@ fn goodness_of(
 }
 
 fn panel<'a>(
-    args: &PictureArgs,
+    measure: Measure,
     (topology, surface): (&Topology<'_>, Surface),
     shot: &Shot<'a>,
 ) -> Result<Panel<'a>, MeshError> {
-    let measure = args.picture_measure;
     let measured = Measured::on(surface, shot.points, topology)?;
     let goodness = goodness_of(topology, &measured, measure)?;
     let unit = measure.definition().unit;
