@@ -7,6 +7,7 @@
 
 mod args;
 mod commands;
+mod error;
 mod load;
 mod render;
 mod report;
@@ -50,9 +51,9 @@ fn run() -> ExitCode {
     };
     match done {
         Ok(()) => interrupt::exit_code(),
-        Err(message) => {
-            tell::error(&message);
-            ExitCode::FAILURE
+        Err(error) => {
+            tell::error(&error);
+            error.kind.exit_code()
         }
     }
 }

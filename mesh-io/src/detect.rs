@@ -3,6 +3,7 @@
 use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
 use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
+use crate::format::Format;
 use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle;
@@ -22,12 +23,8 @@ pub(crate) fn reader(source: &Source) -> Result<&'static Reader, ReadError> {
     if ADCIRC.has_ending_of(&source.path) {
         return of(source, &ADCIRC);
     }
-    // Comment lines that start with `#` may come before the format's first words, but `# vtk` is itself the first line
-    // of VTK.
-    let heads = [head, &source.bytes, self::head(head, b"%#"), after_prolog(head)];
-    let opens = |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
     let promised = |family: &&&Family| family.has_ending_of(&source.path);
-    let by_content = || FAMILIES.iter().filter(|family| family.opens.iter().any(opens));
+    let by_content = || by_first_words(&source.bytes);
     let known = by_content().find(promised).or_else(|| by_content().next());
     // Nastran's may start with anything, such as a title.
     if known.is_none_or(|family| !family.is_read()) && nastran::opens(source) {
@@ -111,6 +108,30 @@ fn by_rows(source: &Source) -> Result<&'static Reader, ReadError> {
 pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
     let family = FAMILIES.iter().find(|family| family.has_ending_of(path));
     family.map(|family| family.name)
+}
+
+impl Format {
+    /// Returns the name of a format whose files end as `path` does, compressed or not, in capital or small letters. The format
+    /// need not be one that is read. `None` if the ending is that of no mesh.
+    pub fn name_of_ending(path: &Path) -> Option<&'static str> {
+        owner_of_ending(path)
+    }
+
+    /// Returns the name of a format whose files begin with the first words or bytes of `head`, which may be the beginning of a
+    /// file. The format need not be one that is read. `None` also for formats that only begin with numbers, such as Triangle.
+    pub fn name_of_content(head: &[u8]) -> Option<&'static str> {
+        by_first_words(head).next().map(|family| family.name)
+    }
+}
+
+/// Finds the formats whose files begin with the first words of some bytes.
+fn by_first_words(bytes: &[u8]) -> impl Iterator<Item = &'static &'static Family> {
+    let head = head(bytes, b"%");
+    // Comment lines that start with `#` may come before the format's first words, but `# vtk` is itself the first line
+    // of VTK.
+    let heads = [head, bytes, self::head(head, b"%#"), after_prolog(head)];
+    let opens = move |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
+    FAMILIES.iter().filter(move |family| family.opens.iter().any(opens))
 }
 
 fn of(source: &Source, family: &'static Family) -> Result<&'static Reader, ReadError> {
@@ -253,5 +274,20 @@ mod tests {
         assert_eq!(owner("fort.14"), Some("ADCIRC or SCHISM grid"));
         assert_eq!(owner("la.15"), None);
         assert_eq!(owner("la"), None);
+    }
+
+    #[test]
+    fn meshes_are_recognized_by_their_beginning_and_other_files_are_not() {
+        let name = Format::name_of_content;
+        assert_eq!(name(b"$MeshFormat\n4.1 0 8\n"), Some("gmsh"));
+        assert_eq!(name(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Unst"), Some("VTK XML"));
+        assert_eq!(name(b"# made by hand\n*NODE\n"), Some("Abaqus"));
+        assert_eq!(Format::name_of_ending(Path::new("a.vtu.gz")), Some("VTK XML"));
+        for head in
+            [&b"{ \"engine\": 1 }"[..], b"\x89PNG\r\n", b"<svg xmlns", b"<!DOCTYPE html><html>"]
+        {
+            assert_eq!(name(head), None);
+        }
+        assert_eq!(name(b"gpu-smooth checkpoint 1\n"), None);
     }
 }

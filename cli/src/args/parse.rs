@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use gpu_smooth::Desired;
+use gpu_smooth::{Desired, Scheme};
 
 /// Parses a number, and refuses it if `fits` does not hold. `range` describes the numbers that fit.
 pub(crate) fn number(text: &str, fits: impl Fn(f64) -> bool, range: &str) -> Result<f64, String> {
@@ -81,6 +81,14 @@ pub(crate) fn edges(text: &str) -> Result<f64, String> {
 /// Parses a factor of over-relaxation.
 pub(crate) fn omega(text: &str) -> Result<f64, String> {
     number(text, |w| w > 0.0 && w < 2.0, "above 0 and below 2")
+}
+
+/// Parses a scheme.
+pub(crate) fn scheme(text: &str) -> Result<Scheme, String> {
+    let scheme: Scheme = text.parse().map_err(|error| format!("{error}"))?;
+    let fits = scheme.period() <= Scheme::LONGEST;
+    let limit = || format!("a scheme can have {} metrics at most", Scheme::LONGEST);
+    if fits { Ok(scheme) } else { Err(limit()) }
 }
 
 /// Parses a desired f.

@@ -27,7 +27,7 @@ pub(crate) struct SmoothArgs {
     /// The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first judges
     /// convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94 (see `gpu-smooth metrics`)
     /// [default: imr; soft-size with --target keep-size or size=SOURCE]
-    #[arg(long, value_name = "A[+B...]", help_heading = "Metric and engine")]
+    #[arg(long, value_name = "A[+B...]", value_parser = parse::scheme, help_heading = "Metric and engine")]
     pub(crate) scheme: Option<Scheme>,
 
     /// Where to compute: on a GPU adapter, even if it is software (gpu), on the CPU (cpu), or where the run is estimated

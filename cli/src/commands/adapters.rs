@@ -4,11 +4,12 @@ use gpu_smooth::GpuError;
 use gpu_smooth::gpu::AdapterSummary;
 
 use crate::args::AdaptersArgs;
+use crate::error::CliError;
 use crate::run::driver_probe::{self, Tried};
 use crate::run::engine::{self, INSTALL};
 use crate::terminal::tell::{self, say};
 
-pub(crate) fn run(args: &AdaptersArgs) -> Result<(), String> {
+pub(crate) fn run(args: &AdaptersArgs) -> Result<(), CliError> {
     if let Some(name) = &args.name {
         let gpu = engine::open_adapter(Some(name))?;
         say(&line(gpu.adapter(), Ok(())));

@@ -1,6 +1,7 @@
 //! `gpu-smooth compare BEFORE AFTER`: proves that only vertices which may move have moved.
 
 use crate::args::{CompareArgs, OutputArgs};
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::load::explain;
 use crate::load::streams::read;
@@ -12,7 +13,7 @@ use crate::terminal::tell;
 const LISTED: usize = 10;
 
 /// Compares two files. Returns an error if they differ in anything but vertices that may move.
-pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
+pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
     let mut before = read(&args.before, args.reading)?;
     let mut after = read(&args.after, args.reading)?;
     let laid_out = args.surface.lay_out(&mut before)?;
@@ -20,7 +21,7 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let after = after;
     let choice = args.moving.apply(&mut before)?;
     if choice.nothing_to_do.is_some() {
-        before.fix_all_but(&[]).map_err(|error| error.to_string())?;
+        before.fix_all_but(&[])?;
     }
     for note in laid_out.iter().chain(&choice.notes).chain(&choice.nothing_to_do) {
         tell::note(show.quiet, note);
@@ -28,33 +29,38 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), String> {
     let (mut mine, mut theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
     mine.add_dependents(&before, &before.mesh().points)?;
     theirs.add_dependents(&after, &after.mesh().points)?;
-    let told = |error: gpu_smooth::MeshError| format!("{}: {error}", args.before.display());
+    let told = |error: gpu_smooth::MeshError| {
+        CliError::from(error).within(&args.before.display().to_string())
+    };
     let slide = args.sliding.slide(&before)?;
     let proof = Proof::of([&before, &after], [&mine, &theirs], slide.as_ref()).map_err(told)?;
     if proof.difference.is_some() {
-        return Err(proof.problem().unwrap_or_default());
+        return Err(CliError::run(proof.problem().unwrap_or_default()));
     }
     let (old, new) = (&before.mesh().points, &after.mesh().points);
     let Proof { moved, held, bad, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);
     problems.extend(proof.problem());
-    let mut list = String::new();
+    let mut list = Vec::new();
     for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
-        list += &format!("\n  {place}: vertex {}", place.label);
+        list.push(format!("{place}: vertex {}", place.label));
     }
     for place in
         after.source.triangle_places(bad.iter().map(|bad| bad.triangle).take(LISTED)).values()
     {
-        list += &format!("\n  {place}: triangle {}", place.label);
+        list.push(format!("{place}: triangle {}", place.label));
     }
     if !args.sliding.slide && !held.is_empty() {
-        list += "\n  if they slid along lines in a run with --slide, give --slide here too";
+        list.push(
+            "if they slid along lines in a run with --slide, give --slide here too".to_owned(),
+        );
     }
     if explain::are_across(&after, bad) {
-        list += "\n  --surface sphere continues longitudes across the line where they start again, as at 180 degrees";
+        list.push("--surface sphere continues longitudes across the line where they start again, as at 180 degrees".to_owned());
     }
     if !problems.is_empty() {
-        return Err(format!("{}: {}{list}", args.after.display(), problems.join(", ")));
+        let text = format!("{}: {}", args.after.display(), problems.join(", "));
+        return Err(CliError::run(text).with_details(list));
     }
     if !show.quiet {
         tell::say(&summary(&after, old, new, (moved, proof.slid, proof.pairs)));

@@ -5,14 +5,15 @@ use serde_json::json;
 use unicode_width::UnicodeWidthStr;
 
 use crate::args::GroupsArgs;
+use crate::error::CliError;
 use crate::load::streams::read;
 use crate::render::columns::{left, right};
 use crate::terminal::tell;
 
 /// Prints what can be named in a mesh, and the name that options take.
-pub(crate) fn run(args: &GroupsArgs) -> Result<(), String> {
+pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     let file = read(&args.mesh, args.reading)?;
-    let groups = file.source.groups().map_err(|error| error.to_string())?;
+    let groups = file.source.groups()?;
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {
         let spellings = groups.spellings();

@@ -2,10 +2,11 @@
 
 use gpu_smooth::Metric;
 
+use crate::error::CliError;
 use crate::terminal::tell::say;
 
 /// Prints the properties of all metrics, for `gpu-smooth metrics`.
-pub(crate) fn run() -> Result<(), String> {
+pub(crate) fn run() -> Result<(), CliError> {
     for metric in Metric::ALL {
         let row = metric.properties();
         say(&format!("{:<10} q = {}", row.name, row.formula));

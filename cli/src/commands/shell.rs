@@ -9,10 +9,11 @@ use clap_mangen::Man;
 use mesh_io::atomic;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs};
+use crate::error::CliError;
 use crate::terminal::tell;
 
 /// Prints the completions for a shell.
-pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), String> {
+pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
     let mut text = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "gpu-smooth", &mut text);
     tell::say(String::from_utf8_lossy(&text).trim_end());
@@ -20,14 +21,16 @@ pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), String> {
 }
 
 /// Prints the manual page of the program, or writes all pages into a directory.
-pub(crate) fn man(args: &ManArgs) -> Result<(), String> {
+pub(crate) fn man(args: &ManArgs) -> Result<(), CliError> {
     let mut program = Cli::command();
     program.build();
     let Some(directory) = &args.directory else {
         tell::say(String::from_utf8_lossy(&page(program)?).trim_end());
         return Ok(());
     };
-    let refused = |error| format!("{}: the directory cannot be made: {error}", directory.display());
+    let refused = |error| {
+        CliError::output(format!("{}: the directory cannot be made: {error}", directory.display()))
+    };
     fs::create_dir_all(directory).map_err(refused)?;
     let commands: Vec<Command> = program.get_subcommands().cloned().collect();
     write(directory, "gpu-smooth", program)?;
@@ -37,14 +40,14 @@ pub(crate) fn man(args: &ManArgs) -> Result<(), String> {
     Ok(())
 }
 
-fn write(directory: &Path, name: &str, command: Command) -> Result<(), String> {
+fn write(directory: &Path, name: &str, command: Command) -> Result<(), CliError> {
     let path = directory.join(format!("{name}.1"));
-    atomic::replace(&path, &page(command)?).map_err(|error| error.to_string())
+    Ok(atomic::replace(&path, &page(command)?)?)
 }
 
 /// Returns a page in roff, the language of manuals.
-fn page(command: Command) -> Result<Vec<u8>, String> {
+fn page(command: Command) -> Result<Vec<u8>, CliError> {
     let mut page = Vec::new();
-    Man::new(command).render(&mut page).map_err(|error| error.to_string())?;
+    Man::new(command).render(&mut page).map_err(|error| CliError::run(error.to_string()))?;
     Ok(page)
 }

@@ -1,5 +1,6 @@
 //! Words what is wrong with a mesh in the terms of its file.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{BadTriangle, Crossing, HangingNode, MeshError, Topology};
 use mesh_io::{Format, Location, Place};
@@ -62,35 +63,29 @@ pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTr
 
 /// Lists the first bad triangles, one a line. The last line counts the rest of `count`; `all` names the option that
 /// lists them.
-pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> String {
-    let line = |bad: &BadTriangleReport| format!("\n  {}: {}", bad.place, bad.statement());
-    let mut text: String = first.iter().take(TOLD).map(line).collect();
+pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> Vec<String> {
+    let line = |bad: &BadTriangleReport| format!("{}: {}", bad.place, bad.statement());
+    let mut lines: Vec<String> = first.iter().take(TOLD).map(line).collect();
     if count > TOLD {
-        text.push_str(&format!("\n  and {} more; {all} lists all", count - TOLD));
+        lines.push(format!("and {} more; {all} lists all", count - TOLD));
     }
-    text
+    lines
 }
 
-/// Words that edges cross and cannot move, tells the remedy, and lists the first pairs, one a line; `None` if there are none.
-pub(crate) fn crossings(
-    file: &LoadedMesh,
-    topology: &Topology<'_>,
-    remedy: &str,
-) -> Option<String> {
+/// Words that edges cross and cannot move, and lists the first pairs, one a line; `None` if there are none.
+pub(crate) fn crossings(file: &LoadedMesh, topology: &Topology<'_>) -> Option<CliError> {
     let found = topology.crossings(&file.mesh().points, TOLD + 1).ok()?;
     let places = file.vertex_places(found.iter().flat_map(|crossing| crossing.edges).flatten());
     let line = |crossing: &Crossing| {
         let [[a, b], [c, d]] = crossing.edges;
         let place = &places[&a];
         let [a, b, c, d] = [a, b, c, d].map(|v| places[&v].label);
-        format!(
-            "\n  {place}: the edge between vertices {a} and {b} crosses that between {c} and {d}"
-        )
+        format!("{place}: the edge between vertices {a} and {b} crosses that between {c} and {d}")
     };
-    let list: String = found.iter().take(TOLD).map(line).collect();
-    let more = if found.len() > TOLD { "\n  and more" } else { "" };
+    let mut list: Vec<String> = found.iter().take(TOLD).map(line).collect();
+    list.extend((found.len() > TOLD).then(|| "and more".to_owned()));
     let all = "edges between vertices that are not free, such as boundary edges, cross: triangles overlap there wherever free vertices are";
-    (!found.is_empty()).then(|| format!("{all}{remedy}{list}{more}"))
+    (!found.is_empty()).then(|| CliError::input(all).with_details(list))
 }
 
 /// Whether triangles seem inverted because they reach across the line where longitudes start again.
@@ -157,17 +152,17 @@ pub(crate) fn nothing_free(file: &LoadedMesh) -> MeshError {
     MeshError::NothingFree { vertices: file.source.points().len() }
 }
 
-/// File, place, problem and remedy, in one line unless several triangles are to be listed.
-pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> String {
+/// Words an error in the terms of a file: file, place, problem and remedy, in one line unless several triangles are listed.
+pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
     let name = |v: u32| file.vertex_place(v).label;
+    let path = file.source.path().display();
     match *error {
         MeshError::Infeasible { ref triangles } => {
             if let Some((axis, value)) = constant(&file.mesh().points) {
-                return format!(
-                    "{}: {axis} of all vertices is {value}, so that every triangle is flat in the plane of x and y, in which meshes are smoothed. \
-                     Turn the mesh into that plane",
-                    file.source.path().display()
-                );
+                return CliError::input(format!(
+                    "{path}: {axis} of all vertices is {value}, so that every triangle is flat in the plane of x and y, in which meshes are smoothed"
+                ))
+                .with_remedy("Turn the mesh into that plane");
             }
             let is_across = are_across(file, triangles);
             if !is_across && let Some(triangle) = closed_part(file) {
@@ -181,23 +176,25 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> String {
                 "Untangle the mesh first: --untangle. Smoothing alone keeps triangles from inverting, and cannot turn one back"
             };
             let count = triangles.len();
-            match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
-                [] => format!("{}: {error}. {remedy}", file.source.path().display()),
-                [one] if count == 1 => format!("{}: {}. {remedy}", one.place, one.statement()),
-                first => format!(
-                    "{}: {count} triangles are inverted or flat. {remedy}{}",
-                    first[0].file,
-                    list(first, count, "--report FILE")
+            let (text, details) = match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
+                [] => (format!("{path}: {error}"), Vec::new()),
+                [one] if count == 1 => {
+                    (format!("{}: {}", one.place, one.statement()), Vec::new())
+                }
+                first => (
+                    format!("{}: {count} triangles are inverted or flat", first[0].file),
+                    list(first, count, "--report FILE"),
                 ),
-            }
+            };
+            CliError::input(text).with_remedy(remedy).with_details(details)
         }
         MeshError::Closed { triangle } => {
             let place = file.source.triangle_place(triangle);
-            format!(
-                "{place}: triangle {} belongs to a part of the mesh without boundary: a closed surface in space. \
-                 Only meshes of the plane of x and y are smoothed",
+            CliError::input(format!(
+                "{place}: triangle {} belongs to a part of the mesh without boundary: a closed surface in space",
                 place.label
-            )
+            ))
+            .with_remedy("Only meshes of the plane of x and y are smoothed")
         }
         MeshError::EdgeOfThree { edge, ref triangles } => {
             let places = file.source.triangle_places(triangles.iter().copied());
@@ -212,56 +209,60 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> String {
                 (true, _) => "Some of them have the same vertices: remove these",
                 (false, _) => "In a 2D mesh an edge has one or two: remove the others",
             };
-            format!(
-                "{}: the edge between vertices {a} and {b} belongs to {} triangles ({}). {remedy}",
+            CliError::input(format!(
+                "{}: the edge between vertices {a} and {b} belongs to {} triangles ({})",
                 places.values().last().map(ToString::to_string).unwrap_or_default(),
                 labels.len(),
                 labels.join(", ")
-            )
+            ))
+            .with_remedy(remedy)
         }
         MeshError::NotFinite { vertex } => {
-            format!("{}: {error}. Correct it", file.vertex_place(vertex))
+            CliError::input(format!("{}: {error}", file.vertex_place(vertex)))
+                .with_remedy("Correct it")
         }
-        MeshError::NothingFree { .. } => format!(
-            "{}: {}: all are on the boundary, on constraint lines, between regions or of other \
-             elements. {}",
-            file.source.path().display(),
-            nothing_free(file),
-            match file.interface_vertices() {
-                [] =>
-                    "There is nothing to smooth, unless --slide lets some of them move along the boundary",
-                _ => "Let those between regions move: --free-interfaces",
+        MeshError::NothingFree { .. } => CliError::input(format!(
+            "{path}: {}: all are on the boundary, on constraint lines, between regions or of other elements",
+            nothing_free(file)
+        ))
+        .with_remedy(match file.interface_vertices() {
+            [] => {
+                "There is nothing to smooth, unless --slide lets some of them move along the boundary"
             }
-        ),
-        MeshError::OverlappingStar { vertex, turns } => format!(
-            "{}: the triangles around vertex {} overlap: they wind {turns} times around it. Only meshes that lie \
-             flat are smoothed: separate the layers there",
+            _ => "Let those between regions move: --free-interfaces",
+        }),
+        MeshError::OverlappingStar { vertex, turns } => CliError::input(format!(
+            "{}: the triangles around vertex {} overlap: they wind {turns} times around it",
             file.vertex_place(vertex),
             name(vertex)
-        ),
+        ))
+        .with_remedy("Only meshes that lie flat are smoothed: separate the layers there"),
         MeshError::BeyondPrecision { triangle, metric } => {
             let place = file.source.triangle_place(triangle);
-            format!(
+            CliError::input(format!(
                 "{place}: triangle {} is too flat, or too small beside the others, for double precision: \
-                 {metric} cannot judge it. Open it with --untangle if one of its vertices is free, correct it, or smooth by \
-                 area or rms first",
+                 {metric} cannot judge it",
                 place.label
+            ))
+            .with_remedy(
+                "Open it with --untangle if one of its vertices is free, correct it, or smooth by area or rms first",
             )
         }
         MeshError::Target { vertex, problem } => {
             let vertex = vertex as u32;
-            format!("{}: vertex {}: {problem}", file.vertex_place(vertex), name(vertex))
+            let place = file.vertex_place(vertex);
+            CliError::input(format!("{place}: vertex {}: {problem}", place.label))
         }
         MeshError::Pole { triangle } => {
             let place = file.source.triangle_place(triangle);
-            format!(
-                "{place}: triangle {} has a pole of the sphere inside of it or on an edge, where there is no direction east. \
-                 Smooth the mesh in a projection around that pole, or with a vertex at the pole itself",
+            CliError::input(format!(
+                "{place}: triangle {} has a pole of the sphere inside of it or on an edge, where there is no direction east",
                 place.label
-            )
+            ))
+            .with_remedy("Smooth the mesh in a projection around that pole, or with a vertex at the pole itself")
         }
         MeshError::OutOfRange { .. } => {
-            format!("{}: {error}. Write the mesh in another unit", file.source.path().display())
+            CliError::input(format!("{path}: {error}")).with_remedy("Write the mesh in another unit")
         }
         // The readers refuse such meshes, and the command does not ask for such runs.
         MeshError::Empty
@@ -270,6 +271,6 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> String {
         | MeshError::RepeatedVertex { .. }
         | MeshError::PointCount { .. }
         | MeshError::ValueCount { .. }
-        | MeshError::BoundNotANumber => format!("{}: {error}", file.source.path().display()),
+        | MeshError::BoundNotANumber => CliError::input(format!("{path}: {error}")),
     }
 }

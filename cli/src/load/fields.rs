@@ -1,8 +1,9 @@
 //! The interpolation of data of vertices at their new places: depths, third coordinates, point data.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{Interpolation, Topology};
-use mesh_io::{FieldError, PointField};
+use mesh_io::PointField;
 
 use crate::args::RidingArgs;
 
@@ -20,7 +21,7 @@ pub(crate) struct Riding {
 
 impl RidingArgs {
     /// Finds the data that the user named in a file.
-    pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<Riding, String> {
+    pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<Riding, CliError> {
         if self.interpolate.is_empty() {
             return Ok(Riding { fields: Vec::new(), data: 0, asked: false, all: false });
         }
@@ -32,7 +33,7 @@ impl RidingArgs {
         let names: Vec<String> = self.interpolate.iter().flat_map(split).collect();
         let all = names.iter().any(|name| name == "all");
         let fields = file.source.point_fields(if all { None } else { Some(&names) });
-        let mut fields = fields.map_err(|error| format!("{error} (--interpolate)"))?;
+        let mut fields = fields.map_err(|error| CliError::from(error).about("--interpolate"))?;
         if all {
             // Third coordinates that are all the same need no interpolation.
             fields.retain(|field| {
@@ -91,12 +92,13 @@ impl Riding {
     }
 
     /// Returns an error if data are to be interpolated from a mesh that has to be untangled.
-    pub(crate) fn check_untangled(&self) -> Result<(), String> {
+    pub(crate) fn check_untangled(&self) -> Result<(), CliError> {
         match self.data().is_empty() {
             true => Ok(()),
-            false => Err("--interpolate takes data from triangles that are not inverted, and some of this mesh are: \
-                          untangle it without --interpolate, and interpolate in a second run"
-                .into()),
+            false => Err(CliError::input(
+                "--interpolate takes data from triangles that are not inverted, and some of this mesh are: \
+                 untangle it without --interpolate, and interpolate in a second run",
+            )),
         }
     }
 
@@ -106,12 +108,10 @@ impl Riding {
         &mut self,
         file: &LoadedMesh,
         points: &[[f64; 2]],
-    ) -> Result<Vec<String>, String> {
+    ) -> Result<Vec<String>, CliError> {
         let mut remarks = Vec::new();
-        let told = |error: FieldError| error.to_string();
         if file.source.has_parameters() {
-            let (fields, others) =
-                file.source.plane_parameters(&file.given(points)).map_err(told)?;
+            let (fields, others) = file.source.plane_parameters(&file.given(points))?;
             self.fields.extend(fields);
             let surfaces = if others == 1 { "1 surface" } else { &format!("{others} surfaces") };
             if others > 0 {
@@ -121,7 +121,7 @@ impl Riding {
             }
         }
         if file.source.has_centers() {
-            let (fields, others) = file.source.centers(&file.given(points)).map_err(told)?;
+            let (fields, others) = file.source.centers(&file.given(points))?;
             self.fields.extend(fields);
             if !others.is_empty() {
                 let names = listed(others.iter().map(String::as_str));
@@ -139,22 +139,20 @@ impl Riding {
         file: &LoadedMesh,
         topology: &Topology<'_>,
         points: &[[f64; 2]],
-    ) -> Result<Option<String>, String> {
+    ) -> Result<Option<String>, CliError> {
         if self.fields.is_empty() {
             let none = "no data of the mesh differ from vertex to vertex: nothing to interpolate";
             return Ok(self.asked.then(|| none.into()));
         }
-        let told = |error: gpu_smooth::MeshError| error.to_string();
-        let interpolation =
-            Interpolation::new(topology, &file.mesh().points, points).map_err(told)?;
+        let interpolation = Interpolation::new(topology, &file.mesh().points, points)?;
         let mut left = 0;
         for field in &mut self.fields {
             let each = field.components();
             let copied = file.chart().map(|chart| chart.extended(field.values(), each));
             let old = copied.as_deref().unwrap_or(field.values());
-            let mut values = interpolation.apply(old, each).map_err(told)?;
+            let mut values = interpolation.apply(old, each)?;
             values.truncate(field.values().len());
-            left += field.set(values).map_err(|error| error.to_string())?;
+            left += field.set(values)?;
         }
         let names = listed(self.names().into_iter());
         let moved = match interpolation.moved() {

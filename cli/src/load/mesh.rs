@@ -5,7 +5,7 @@ use mesh_io::{MeshFile, Place, PointField, WriteError};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A mesh file and the mesh that is made from its facts: the vertices of constraints and those between regions are fixed, and
 /// longitudes may be continued across the date line.
@@ -36,6 +36,11 @@ impl LoadedMesh {
         let (points, triangles) = (source.points().to_vec(), source.triangles().to_vec());
         let mesh = Mesh { points, triangles, fixed };
         Self { source, mesh, chart: None, interfaces, has_free_interfaces: false, anchored }
+    }
+
+    /// Returns the files that were read.
+    pub(crate) fn paths(&self) -> Vec<PathBuf> {
+        self.source.paths().map(Path::to_path_buf).collect()
     }
 
     /// The mesh to smooth.

@@ -1,5 +1,6 @@
 //! The choice of the vertices of a mesh that may move.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{MeshError, Topology, select};
 use mesh_io::{Group, Groups};
@@ -32,7 +33,7 @@ impl MoveArgs {
     }
 
     /// Frees and fixes vertices of a mesh as the options say.
-    pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<Choice, String> {
+    pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<Choice, CliError> {
         if self.free_interfaces {
             file.free_interfaces();
         }
@@ -45,10 +46,9 @@ impl MoveArgs {
         choice.free_without = chooser.topology.free_count();
         let fixed = chooser.fixed(self, &mut choice)?;
         let movers = chooser.movers(self, &mut choice)?;
-        let told = |error: MeshError| error.to_string();
-        file.fix(&fixed).map_err(told)?;
+        file.fix(&fixed)?;
         for movers in movers {
-            file.fix_all_but(&movers).map_err(told)?;
+            file.fix_all_but(&movers)?;
         }
         Ok(choice)
     }
@@ -56,14 +56,13 @@ impl MoveArgs {
 
 impl Choice {
     /// Words the error if the options leave nothing to move.
-    pub(crate) fn nothing_free(&self, file: &LoadedMesh, error: &MeshError) -> Option<String> {
+    pub(crate) fn nothing_free(&self, file: &LoadedMesh, error: &MeshError) -> Option<CliError> {
         let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
         let path = file.source.path().display();
         is_it.then(|| {
             let error = explain::nothing_free(file);
-            format!(
-                "{path}: {error}. --fix, --only and the like leave nothing to smooth: let more move"
-            )
+            CliError::input(format!("{path}: {error}"))
+                .with_remedy("--fix, --only and the like leave nothing to smooth: let more move")
         })
     }
 }
@@ -87,7 +86,7 @@ struct Chooser<'f> {
 }
 
 impl<'f> Chooser<'f> {
-    fn new(file: &'f LoadedMesh) -> Result<Self, String> {
+    fn new(file: &'f LoadedMesh) -> Result<Self, CliError> {
         let topology =
             Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
         Ok(Self { file, topology })
@@ -99,7 +98,7 @@ impl<'f> Chooser<'f> {
     }
 
     /// Finds the vertices that the options keep fixed.
-    fn fixed(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<u32>, String> {
+    fn fixed(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<u32>, CliError> {
         let file = self.file;
         let mut fixed = Vec::new();
         let mut hold = |option: String, mut vertices: Vec<u32>| {
@@ -114,18 +113,18 @@ impl<'f> Chooser<'f> {
             for text in &args.fix {
                 for (name, group) in self.named(&groups, "--fix", text)? {
                     if group.vertices().is_empty() {
-                        return Err(self.refusal("--fix", format!("{group} has no elements")));
+                        return Err(self.refusal("--fix", &format!("{group} has no elements")));
                     }
                     hold(format!("--fix {name} ({group})"), group.vertices().to_vec());
                 }
             }
         }
         for list in &args.fix_vertices {
-            let vertices = file.source.read_vertices(list).map_err(|error| error.to_string())?;
+            let vertices = file.source.read_vertices(list)?;
             hold(format!("--fix-vertices {}", list.display()), vertices);
         }
         for name in &args.fix_array {
-            let numbers = file.source.point_array(name).map_err(|error| error.to_string())?;
+            let numbers = file.source.point_array(name)?;
             let set = (0..).zip(numbers).filter(|(_, number)| *number != 0.0);
             hold(format!("--fix-array {name}"), set.map(|(vertex, _)| vertex).collect());
         }
@@ -139,7 +138,7 @@ impl<'f> Chooser<'f> {
 
     /// Finds the vertices that the options let move, one list for each kind of option. A vertex may move if all lists
     /// have it.
-    fn movers(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<Vec<u32>>, String> {
+    fn movers(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<Vec<u32>>, CliError> {
         let mut lists = Vec::new();
         let of_all = self.topology.free_count();
         if !args.only.is_empty() {
@@ -148,7 +147,7 @@ impl<'f> Chooser<'f> {
             for text in &args.only {
                 for (name, group) in self.named(&groups, "--only", text)? {
                     if group.triangles().is_empty() {
-                        return Err(self.refusal("--only", format!("{group} has no triangles")));
+                        return Err(self.refusal("--only", &format!("{group} has no triangles")));
                     }
                     triangles.extend_from_slice(group.triangles());
                     named.push(format!("{name} ({group})"));
@@ -184,8 +183,8 @@ impl<'f> Chooser<'f> {
         Ok(lists)
     }
 
-    fn groups(&self) -> Result<Groups, String> {
-        self.file.source.groups().map_err(|error| error.to_string())
+    fn groups(&self) -> Result<Groups, CliError> {
+        Ok(self.file.source.groups()?)
     }
 
     /// Finds the groups that a text names: one, or several with commas between. Each comes with its part of the text.
@@ -194,7 +193,7 @@ impl<'f> Chooser<'f> {
         groups: &'g Groups,
         option: &str,
         text: &'t str,
-    ) -> Result<Vec<(&'t str, &'g Group)>, String> {
+    ) -> Result<Vec<(&'t str, &'g Group)>, CliError> {
         // A name may contain commas.
         let ends = |name: &str| name.contains(',') && text.ends_with(name);
         if groups.iter().any(|group| group.name.as_deref().is_some_and(ends))
@@ -204,14 +203,15 @@ impl<'f> Chooser<'f> {
         }
         let find = |name: &'t str| match groups.find(name.trim()) {
             Ok(group) => Ok((name.trim(), group)),
-            Err(error) => Err(self.refusal(option, error.to_string())),
+            Err(error) => Err(self.refusal(option, &error.to_string())),
         };
         text.split(',').map(find).collect()
     }
 
-    fn refusal(&self, option: &str, problem: String) -> String {
+    fn refusal(&self, option: &str, problem: &str) -> CliError {
         let path = self.file.source.path().display();
-        format!("{path}: {option}: {problem}. `gpu-smooth groups` lists what can be named")
+        CliError::input(format!("{path}: {option}: {problem}"))
+            .with_remedy("`gpu-smooth groups` lists what can be named")
     }
 }
 

@@ -1,5 +1,6 @@
 //! The vertices of a mesh that slide along lines, and the periodic pairs among them.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{Slide, Smoother, Topology};
 
@@ -8,7 +9,7 @@ use crate::load::explain;
 
 impl SlideArgs {
     /// Chooses what slides in a mesh, if anything may.
-    pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Option<Slide>, String> {
+    pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Option<Slide>, CliError> {
         if !self.slide {
             return Ok(None);
         }
@@ -41,22 +42,22 @@ impl SlideArgs {
         file: &LoadedMesh,
         topology: &Topology<'_>,
         slide: &mut Slide,
-    ) -> Result<(), String> {
+    ) -> Result<(), CliError> {
         if self.periodic.is_empty() {
             return Ok(());
         }
-        let groups = file.source.groups().map_err(|error| error.to_string())?;
+        let groups = file.source.groups()?;
         for names @ [a, b] in &self.periodic {
             let refusal = |problem: &str| {
-                format!(
+                CliError::input(format!(
                     "{}: --periodic {}: {problem}",
                     file.source.path().display(),
                     names.join(",")
-                )
+                ))
             };
             let find = |name: &str| {
                 let list = "`gpu-smooth groups` lists what can be named";
-                groups.find(name).map_err(|error| refusal(&format!("{error}. {list}")))
+                groups.find(name).map_err(|error| refusal(&error.to_string()).with_remedy(list))
             };
             let sides = [find(a)?.vertices(), find(b)?.vertices()];
             if slide.pair_sides(topology, &file.mesh().points, sides) == 0 {
@@ -74,9 +75,9 @@ impl SlideArgs {
         &self,
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
-    ) -> Result<Option<String>, String> {
+    ) -> Result<Option<String>, CliError> {
         let Some(slide) = self.slide(file)? else { return Ok(None) };
-        let count = smoother.set_slide(Some(&slide)).map_err(|error| error.to_string())?;
+        let count = smoother.set_slide(Some(&slide))?;
         let [pairs, unlike] = smoother.pairs();
         let mut text = match count {
             0 => "--slide: no vertex can slide, as all on lines are corners or fixed".to_owned(),

@@ -1,32 +1,30 @@
 //! Reads and writes meshes. The name `-` stands for the standard input or output.
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use mesh_io::{MeshFile, PointField, ReadError, ReadOptions};
+use mesh_io::{MeshFile, PointField, ReadOptions};
 
 use crate::args::ReadArgs;
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::terminal::tell;
 
 /// Reads a mesh from a file, or from the standard input if its name is `-`.
-pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, String> {
+pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, CliError> {
     read_source(path, args).map(LoadedMesh::new)
 }
 
-fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, String> {
+fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, CliError> {
     let options = ReadOptions::new().weld(args.weld);
     if !is_standard(path) {
-        return options.read(path).map_err(worded);
+        return Ok(options.read(path)?);
     }
     let mut bytes = Vec::new();
-    std::io::stdin().read_to_end(&mut bytes).map_err(|error| format!("standard input: {error}"))?;
-    options.from_bytes(Path::new("standard input"), bytes).map_err(worded)
-}
-
-/// Words an error of reading. A remedy names the option of the command line.
-fn worded(error: ReadError) -> String {
-    error.to_string().replace("ReadOptions::weld", "--weld")
+    std::io::stdin()
+        .read_to_end(&mut bytes)
+        .map_err(|error| CliError::input(format!("standard input: {error}")))?;
+    Ok(options.from_bytes(Path::new("standard input"), bytes)?)
 }
 
 /// Whether a name stands for the standard input or output.
@@ -40,7 +38,7 @@ pub(crate) fn write(
     out: &Path,
     points: &[[f64; 2]],
     fields: &[PointField],
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let written = match is_standard(out) {
         true => {
             let name = Path::new("standard output");
@@ -48,7 +46,24 @@ pub(crate) fn write(
         }
         false => file.write_with(out, points, fields),
     };
-    written.map_err(|error| error.to_string())
+    Ok(written?)
+}
+
+/// Lists the files that a mesh is written to; none for the standard output.
+///
+/// # Errors
+/// If the mesh cannot be written there.
+pub(crate) fn destinations(file: &LoadedMesh, out: &Path) -> Result<Vec<PathBuf>, CliError> {
+    if !is_standard(out) {
+        file.source.check_destination(out)?;
+        return Ok(file.source.destinations(out)?);
+    }
+    match file.source.paths().count() {
+        1 => Ok(Vec::new()),
+        _ => Err(CliError::output(
+            "the mesh has several files and cannot go to standard output: name OUT",
+        )),
+    }
 }
 
 /// Prints a text to the standard output, or to the standard error if the mesh goes to the standard output.

@@ -1,5 +1,6 @@
 //! The layout of a mesh on the surface that its coordinates are on.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{Chart, Surface};
 
@@ -8,7 +9,7 @@ use crate::load::explain;
 
 impl SurfaceArgs {
     /// Lays a mesh out on the surface. Returns remarks on what was done.
-    pub(crate) fn lay_out(&self, file: &mut LoadedMesh) -> Result<Vec<String>, String> {
+    pub(crate) fn lay_out(&self, file: &mut LoadedMesh) -> Result<Vec<String>, CliError> {
         if self.surface() == Surface::Plane {
             return Ok(Vec::new());
         }

@@ -1,5 +1,6 @@
 //! The targets of the elements of a mesh, from the mesh itself, other files or background meshes.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::path::Path;
 
@@ -19,7 +20,7 @@ impl TargetArgs {
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
         points: &[[f64; 2]],
-    ) -> Result<Option<String>, String> {
+    ) -> Result<Option<String>, CliError> {
         let told = |error: MeshError| explain::mesh_error(file, &error);
         if let Some((path, data)) = self.background() {
             let field = self.field(path, data)?;
@@ -48,13 +49,12 @@ impl TargetArgs {
     }
 
     /// Reads the targets that a background mesh carries.
-    fn field(&self, path: &Path, data: &str) -> Result<TargetField, String> {
+    fn field(&self, path: &Path, data: &str) -> Result<TargetField, CliError> {
         if data.is_empty() {
             return self.field_of_view(path);
         }
         let read = MeshFile::read(path);
-        let mut background =
-            LoadedMesh::new(read.map_err(|error| format!("the background of --target: {error}"))?);
+        let mut background = LoadedMesh::new(read.map_err(|error| of_background(error.into()))?);
         self.surface.lay_out(&mut background)?;
         let targets = match &self.target {
             Target::Metric { .. } => Targets::tensors(given(&background, data, 3)?.as_chunks().0),
@@ -68,17 +68,12 @@ impl TargetArgs {
     }
 
     /// Reads the sizes in a view of gmsh.
-    fn field_of_view(&self, path: &Path) -> Result<TargetField, String> {
-        let told = |problem: String| format!("the background of --target: {problem}");
-        let view = View::read(path).map_err(|error| told(error.to_string()))?;
+    fn field_of_view(&self, path: &Path) -> Result<TargetField, CliError> {
+        let view = View::read(path).map_err(|error| of_background(error.into()))?;
         let name = path.display();
-        if matches!(self.target, Target::Metric { .. }) {
-            return Err(told(format!(
-                "{name}: a view of gmsh holds sizes, not tensors: give size={name}"
-            )));
-        }
         let told_of = |error: MeshError| {
-            told(format!("{name}: {error} (counted from 0, in the order of the file)"))
+            let text = format!("{name}: {error} (counted from 0, in the order of the file)");
+            of_background(CliError::input(text))
         };
         let (points, triangles) = (view.points().to_vec(), view.triangles().to_vec());
         let mesh = Mesh { points, triangles, fixed: Vec::new() };
@@ -103,8 +98,8 @@ impl TargetArgs {
         file: &LoadedMesh,
         smoother: &Smoother<'_>,
         points: &[[f64; 2]],
-        told: impl Fn(MeshError) -> String,
-    ) -> Result<Option<(Targets, Surface)>, String> {
+        told: impl Fn(MeshError) -> CliError,
+    ) -> Result<Option<(Targets, Surface)>, CliError> {
         let surface = self.surface();
         let (topology, rings) = (smoother.topology(), self.rings());
         let in_coordinates = |targets| (targets, Surface::Plane);
@@ -142,32 +137,39 @@ fn remark(background: &Path, outside: Outside) -> Option<String> {
     ))
 }
 
+/// Words an error in the background mesh of a target.
+fn of_background(error: CliError) -> CliError {
+    error.within("the background of --target")
+}
+
 /// Reads `components` numbers for each vertex, from a file beside the mesh or from point data of the mesh.
-fn given(file: &LoadedMesh, source: &str, components: usize) -> Result<Vec<f64>, String> {
+fn given(file: &LoadedMesh, source: &str, components: usize) -> Result<Vec<f64>, CliError> {
     let (found, values) = match Path::new(source).exists() {
         true => {
-            let solution = Solution::read(Path::new(source)).map_err(|error| error.to_string())?;
+            let solution = Solution::read(Path::new(source))?;
             (solution.components(), solution.values().to_vec())
         }
         false => {
             let fields = file.source.point_fields(Some(&[source.to_owned()])).map_err(|error| {
-                format!("{source}: there is no such file, and {error} (--target)")
+                CliError::from(error)
+                    .about("--target")
+                    .after(&format!("{source}: there is no such file, and"))
             })?;
             (fields[0].components(), fields[0].values().to_vec())
         }
     };
     let vertices = file.source.points().len();
     if found != components {
-        return Err(format!(
-            "{source}: numbers per vertex: {found}, needed: {components}. --target size= takes one, metric= three (xx, xy, yy)"
-        ));
+        let text = format!("{source}: numbers per vertex: {found}, needed: {components}");
+        return Err(CliError::input(text)
+            .with_remedy("--target size= takes one, metric= three (xx, xy, yy)"));
     }
     if values.len() != components * vertices {
-        return Err(format!(
+        return Err(CliError::input(format!(
             "{source}: it has numbers for {} vertices, but {} has {vertices} vertices",
             values.len() / components,
             file.source.path().display()
-        ));
+        )));
     }
     Ok(match file.chart() {
         Some(chart) => chart.extended(&values, components),

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::args::{Target, TargetArgs};
+use crate::error::CliError;
 
 /// The target of the elements, if it is not equilateral in the plane.
 #[derive(Serialize)]
@@ -26,8 +27,8 @@ impl TargetArgs {
     pub(crate) fn report(
         &self,
         before: f64,
-        after: impl FnOnce() -> Result<f64, String>,
-    ) -> Result<Option<TargetReport>, String> {
+        after: impl FnOnce() -> Result<f64, CliError>,
+    ) -> Result<Option<TargetReport>, CliError> {
         if self.target == Target::Equilateral && self.is_on_plane() {
             return Ok(None);
         }

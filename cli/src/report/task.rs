@@ -5,13 +5,17 @@ use std::path::Path;
 use gpu_smooth::{Checkpoint, Outcome, Smoother};
 
 use crate::args::{OutputArgs, SmoothArgs};
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::load::explain::BadTriangleReport;
 use crate::report::Report;
+use crate::request::Outputs;
 
 /// A mesh that is to be smoothed.
 pub(crate) struct Task<'a> {
     pub(crate) args: &'a SmoothArgs,
+    /// The files that are written, the mesh excepted.
+    pub(crate) outputs: &'a Outputs,
     pub(crate) show: &'a OutputArgs,
     pub(crate) input: &'a Path,
     pub(crate) out: &'a Path,
@@ -31,14 +35,14 @@ pub(crate) struct Done<'a> {
 
 /// The reason why a mesh was not smoothed.
 pub(crate) struct Failure {
-    pub(crate) message: String,
+    pub(crate) error: CliError,
     /// All inverted and flat triangles in the order of the file, if they are the reason and a report was asked for;
     /// else empty.
     pub(crate) triangles: Vec<BadTriangleReport>,
 }
 
-impl From<String> for Failure {
-    fn from(message: String) -> Self {
-        Self { message, triangles: Vec::new() }
+impl From<CliError> for Failure {
+    fn from(error: CliError) -> Self {
+        Self { error, triangles: Vec::new() }
     }
 }

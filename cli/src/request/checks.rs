@@ -5,9 +5,11 @@ use std::ffi::OsString;
 
 use clap::error::ErrorKind;
 use clap::{Arg, Command, CommandFactory};
-use gpu_smooth::{Backend, Desired, Mesh, Precision, SmoothError, Smoother};
+use gpu_smooth::{
+    Backend, Desired, Mesh, Precision, Slide, Smoother, Surface, TargetField, Targets,
+};
 
-use crate::args::Cli;
+use crate::args::{Cli, SmoothArgs, Target};
 use crate::request::command_line::checked;
 
 /// A source of choices: random numbers, or bytes of the fuzzer.
@@ -111,14 +113,32 @@ fn small_mesh() -> Mesh {
 /// Parses command lines as the program does.
 pub(crate) struct Checker {
     program: Command,
-    smoother: Smoother<'static>,
+    mesh: Mesh,
 }
 
 impl Checker {
     pub(crate) fn new() -> Self {
         let mut program = Cli::command();
         program.build();
-        Self { program, smoother: Smoother::new(&small_mesh()).unwrap().into_owned() }
+        Self { program, mesh: small_mesh() }
+    }
+
+    /// Prepares the mesh with the kinds of sliding and of targets that options ask for.
+    fn smoother(&self, args: &SmoothArgs) -> Smoother<'_> {
+        let mut smoother = Smoother::new(&self.mesh).unwrap();
+        if args.sliding.slide {
+            smoother.set_slide(Some(&Slide::default())).unwrap();
+        }
+        let targets = Targets::equilateral(self.mesh.points.len());
+        if args.target.is_of_places() {
+            let field = TargetField::new(&self.mesh, &targets).unwrap();
+            smoother.set_target_field(field).unwrap();
+        } else if args.target.target != Target::Equilateral
+            || args.target.surface() != Surface::Plane
+        {
+            smoother.set_targets(&targets).unwrap();
+        }
+        smoother
     }
 
     /// Makes a command line by `choices`, checks it, and returns how it ended. Runs are limited to three sweeps.
@@ -140,9 +160,9 @@ impl Checker {
                 {
                     goal.desired = Desired::Value(1.0);
                 }
-                match self.smoother.run(&options, &Backend::Cpu) {
+                // What the library would refuse is refused before, in the words of the options.
+                match self.smoother(&cli.smooth).run(&options, &Backend::Cpu) {
                     Ok(_) => "run",
-                    Err(SmoothError::Option { .. }) => "options that do not go together",
                     Err(error) => panic!("{words:?}: {error}"),
                 }
             }

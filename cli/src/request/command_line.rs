@@ -6,7 +6,8 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
-use crate::args::Cli;
+use crate::args::{Cli, Command};
+use crate::request::conflicts::{self, OF_BENCH, OF_CONVERT, OF_QUALITY, OF_RUN};
 
 /// Reads the command line of this process. If it is wrong, or asks for help, prints that and ends the process.
 pub(crate) fn read() -> Cli {
@@ -32,10 +33,36 @@ pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, 
         );
         return refused(ErrorKind::UnknownArgument, text);
     }
-    match cli.smooth.contradiction() {
-        Some(text) => refused(ErrorKind::ArgumentConflict, text),
+    match contradiction(&cli) {
+        Some(text) => Err(command_of(&matches).error(ErrorKind::ArgumentConflict, text)),
         None => Ok(cli),
     }
+}
+
+/// Words what is wrong with options that contradict each other.
+fn contradiction(cli: &Cli) -> Option<String> {
+    match &cli.command {
+        None => conflicts::first(OF_RUN, &cli.smooth),
+        Some(Command::Quality(args)) => conflicts::first(OF_QUALITY, args),
+        Some(Command::Bench(args)) => conflicts::first(OF_BENCH, args),
+        Some(Command::Convert(args)) => conflicts::first(OF_CONVERT, args),
+        Some(
+            Command::Groups(_)
+            | Command::Compare(_)
+            | Command::Adapters(_)
+            | Command::Metrics
+            | Command::Completions(_)
+            | Command::Man(_),
+        ) => None,
+    }
+}
+
+/// Returns the definition of the command that a command line names, for the usage in an error.
+fn command_of(matches: &ArgMatches) -> clap::Command {
+    let mut program = Cli::command();
+    program.build();
+    let named = matches.subcommand_name().and_then(|name| program.find_subcommand(name));
+    named.cloned().unwrap_or(program)
 }
 
 /// Returns the error if a command comes after arguments of a run.

@@ -11,7 +11,6 @@ use crate::args::{
     DerivativesChoice, EdgeNorm, GuardChoice, History, MethodChoice, SmoothArgs, WorstArgs,
     WorstChoice,
 };
-use crate::request::conflicts::{self, CONFLICTS, WITHOUT_EFFECT};
 
 impl SmoothArgs {
     /// Returns the meshes for `--out-dir`.
@@ -28,28 +27,6 @@ impl SmoothArgs {
     pub(crate) fn estimated_end(&self) -> Option<f64> {
         let has_goal = self.fraction.is_some() || self.desired.is_some();
         (!has_goal).then_some(self.tolerance)
-    }
-
-    /// Words what is wrong with options that contradict each other.
-    pub(crate) fn contradiction(&self) -> Option<String> {
-        if self.target.is_of_sizes() && !self.scheme().metrics().iter().any(sees_sizes) {
-            let (scheme, target) = (self.scheme(), self.target.kind());
-            return Some(format!(
-                "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
-            ));
-        }
-        if let Some(text) = conflicts::first(CONFLICTS, self) {
-            return Some(text);
-        }
-        let has_edge = || self.scheme().metrics().contains(&Metric::Edge);
-        let idle = match self.edge_norm {
-            Some(_) if !has_edge() => Some(("--edge-norm", "edge in --scheme")),
-            _ => self.target.without_effect(),
-        };
-        if let Some((option, wanted)) = idle {
-            return Some(format!("{option} has no effect without {wanted}: drop it"));
-        }
-        conflicts::first(WITHOUT_EFFECT, self)
     }
 
     /// Returns the options of a run on a mesh whose file stores coordinates with precision `stored`.
@@ -97,10 +74,6 @@ impl SmoothArgs {
         };
         Options { sharpness, ..options }
     }
-}
-
-fn sees_sizes(metric: &Metric) -> bool {
-    !metric.properties().scale_invariant
 }
 
 /// Whether the exponent of edge's p-norm doubles anyway.

@@ -1,6 +1,6 @@
 //! The meaning of the options on targets and surfaces.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gpu_smooth::{Metric, Surface};
 
@@ -65,15 +65,6 @@ impl TargetArgs {
         self.target_rings.unwrap_or(2)
     }
 
-    /// The option that the target leaves without effect, and what would give it one.
-    pub(crate) fn without_effect(&self) -> Option<(&'static str, &'static str)> {
-        if self.target_rings.is_some() && !self.keeps() {
-            return Some(("--target-rings", "--target keep-size or keep-shape"));
-        }
-        let is_uniform = matches!(self.target, Target::Equilateral);
-        (self.target_of.is_some() && is_uniform).then_some(("--target-of", "another --target"))
-    }
-
     /// Whether targets belong to places, not to vertices.
     pub(crate) fn is_of_places(&self) -> bool {
         let is_uniform = matches!(self.target, Target::Equilateral);
@@ -81,12 +72,33 @@ impl TargetArgs {
         !is_uniform && self.target_of.unwrap_or(default) == Owner::Place
     }
 
+    /// Returns the source of sizes or tensors, if there is one.
+    pub(crate) fn source(&self) -> Option<&str> {
+        match &self.target {
+            Target::Size { source } | Target::Metric { source } => Some(source),
+            Target::Equilateral | Target::KeepSize | Target::KeepShape => None,
+        }
+    }
+
+    /// Returns the files that targets are read from, as far as they exist.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let files = match (self.background(), self.source()) {
+            (Some((mesh, data)), _) => vec![mesh, Path::new(data)],
+            (None, Some(source)) => vec![Path::new(source)],
+            (None, None) => Vec::new(),
+        };
+        files.into_iter().filter(|file| file.is_file()).map(Path::to_path_buf).collect()
+    }
+
+    /// Whether the source is a view of gmsh.
+    pub(crate) fn has_view(&self) -> bool {
+        self.source().is_some_and(is_view)
+    }
+
     /// Returns the background mesh and the name of its data, if the target is given on one. The name is empty for a
     /// view of gmsh.
     pub(crate) fn background(&self) -> Option<(&Path, &str)> {
-        let (Target::Size { source } | Target::Metric { source }) = &self.target else {
-            return None;
-        };
+        let source = self.source()?;
         if is_view(source) {
             return Some((Path::new(source), ""));
         }

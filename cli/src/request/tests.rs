@@ -25,9 +25,5 @@ fn command_lines_of_any_words_are_refused_or_can_be_carried_out() {
     for _ in 0..1000 * factor.unwrap_or(1) {
         *seen.entry(checker.check(&mut random)).or_default() += 1;
     }
-    assert!(
-        seen.len() >= 6
-            && seen.iter().all(|(kind, count)| kind.starts_with("options") || *count > 8),
-        "{seen:?}"
-    );
+    assert!(seen.len() >= 6 && seen.values().all(|count| *count > 8), "{seen:?}");
 }

@@ -1,83 +1,45 @@
 //! Keeps what a long run needs to go on: checkpoints, and another engine if a device fails.
 
 use std::cell::{Cell, RefCell};
-use std::fs::{self, File};
-use std::io::{ErrorKind, Read};
-use std::path::Path;
+use std::fs;
+use std::io::ErrorKind;
 use std::time::Instant;
 
 use gpu_smooth::{Checkpoint, GpuError, Keeper, Stop};
 use mesh_io::atomic;
 
 use crate::args::SmoothArgs;
+use crate::error::CliError;
+use crate::request::{CheckpointPlan, is_checkpoint};
 use crate::run::engine;
 use crate::run::observer::Follow;
 
-/// Returns the file that checkpoints are saved to: that of `--checkpoint`, else that of `--continue`, if either is
-/// given.
-pub(crate) fn file(args: &SmoothArgs) -> Option<&Path> {
-    args.checkpoint.as_deref().or(args.continued.as_deref())
-}
-
-/// Refuses a file for checkpoints that cannot be written, or that would replace one of the other files or the
-/// checkpoint of another run.
-pub(crate) fn check<'p>(
-    args: &SmoothArgs,
-    mut others: impl Iterator<Item = &'p Path>,
-) -> Result<(), String> {
-    let Some(path) = file(args) else { return Ok(()) };
-    let name = path.display();
-    if others.any(|other| atomic::same_file(other, path)) {
-        return Err(format!(
-            "{name}: the checkpoint would replace this file. Give --checkpoint another name"
-        ));
-    }
-    let is_continued = args.continued.as_deref().is_some_and(|from| atomic::same_file(from, path));
-    match begins(path) {
-        _ if is_continued => {}
-        None => {}
-        Some(true) => {
-            return Err(format!(
-                "{name}: this file is the checkpoint of another run. Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file"
-            ));
-        }
-        Some(false) => {
-            return Err(format!(
-                "{name}: exists and is not a checkpoint. Give --checkpoint another name"
-            ));
-        }
-    }
-    atomic::check(path).map_err(|error| format!("checkpoints cannot be saved: {error}"))
-}
-
-/// Whether the file at a path begins as a checkpoint does; `None` if there is none.
-fn begins(path: &Path) -> Option<bool> {
-    let mut start = [0; Checkpoint::MAGIC.len()];
-    let read = File::open(path).ok()?.read_exact(&mut start);
-    Some(read.is_ok() && start == *Checkpoint::MAGIC)
-}
+const WITHOUT_CONTINUE: &str = "Without --continue the run starts anew";
 
 /// Reads the checkpoint to go on from, if the command line names one.
-pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, String> {
+pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, CliError> {
     let Some(path) = &args.continued else { return Ok(None) };
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => {
-            format!("{name}: there is no such file. A run that came to its end has removed its checkpoint. Without --continue the run starts anew")
-        }
-        _ => format!("{name}: {error}"),
+        ErrorKind::NotFound => CliError::input(format!(
+            "{name}: there is no such file. A run that came to its end has removed its checkpoint"
+        ))
+        .with_remedy(WITHOUT_CONTINUE),
+        _ => CliError::input(format!("{name}: {error}")),
     })?;
     let refused = || {
-        format!(
-            "{name}: not a checkpoint of this version of gpu-smooth, or damaged. Without --continue the run starts anew"
-        )
+        CliError::input(format!(
+            "{name}: not a checkpoint of this version of gpu-smooth, or damaged"
+        ))
+        .with_remedy(WITHOUT_CONTINUE)
     };
     Checkpoint::from_bytes(&bytes).map(Some).ok_or_else(refused)
 }
 
 /// Keeps the state of a run as the command line asks.
 pub(crate) struct Kept<'a, 'f> {
-    args: &'a SmoothArgs,
+    /// Where and how often checkpoints are saved; `None` if they are not.
+    plan: Option<&'a CheckpointPlan>,
     follow: &'a RefCell<&'f mut dyn Follow>,
     /// When the next checkpoint is due; `None` if never.
     due: Option<Instant>,
@@ -87,16 +49,19 @@ pub(crate) struct Kept<'a, 'f> {
 }
 
 impl<'a, 'f> Kept<'a, 'f> {
-    pub(crate) fn new(args: &'a SmoothArgs, follow: &'a RefCell<&'f mut dyn Follow>) -> Self {
-        let due = Instant::now().checked_add(args.checkpoint_every);
-        Self { args, follow, due, saved: Cell::new(false), told_of_fault: false }
+    pub(crate) fn new(
+        plan: Option<&'a CheckpointPlan>,
+        follow: &'a RefCell<&'f mut dyn Follow>,
+    ) -> Self {
+        let due = plan.and_then(|plan| Instant::now().checked_add(plan.every));
+        Self { plan, follow, due, saved: Cell::new(false), told_of_fault: false }
     }
 
     /// Tells the user how to go on with a run that was left.
     pub(crate) fn left(&self) {
-        if let (true, Some(path)) = (self.saved.get(), file(self.args)) {
-            let text =
-                format!("to go on with the run from here, add --continue {}", path.display());
+        if let (true, Some(plan)) = (self.saved.get(), self.plan) {
+            let path = plan.file.display();
+            let text = format!("to go on with the run from here, add --continue {path}");
             self.follow.borrow_mut().remark(&text);
         }
     }
@@ -104,20 +69,19 @@ impl<'a, 'f> Kept<'a, 'f> {
 
 impl Keeper for Kept<'_, '_> {
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
-        file(self.args).is_some()
-            && (is_ending || self.due.is_some_and(|due| Instant::now() >= due))
+        self.plan.is_some() && (is_ending || self.due.is_some_and(|due| Instant::now() >= due))
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) {
-        let Some(path) = file(self.args) else { return };
-        match atomic::replace(path, &checkpoint.to_bytes()) {
+        let Some(plan) = self.plan else { return };
+        match atomic::replace(&plan.file, &checkpoint.to_bytes()) {
             Ok(()) => self.saved.set(true),
             Err(error) => {
                 let text = format!("no checkpoint was saved: {error}. The run goes on");
                 self.follow.borrow_mut().remark(&text);
             }
         }
-        self.due = Instant::now().checked_add(self.args.checkpoint_every);
+        self.due = Instant::now().checked_add(plan.every);
     }
 
     fn goes_on_without(&mut self, error: &GpuError, from: u32) -> bool {
@@ -136,21 +100,19 @@ impl Keeper for Kept<'_, '_> {
 }
 
 /// Removes the checkpoint of a run whose mesh is written, unless the run was left before its end.
-pub(crate) fn clear(args: &SmoothArgs, stop: Stop) {
-    let Some(path) = file(args) else { return };
-    if stop != Stop::Canceled && begins(path) == Some(true) {
+pub(crate) fn clear(plan: Option<&CheckpointPlan>, stop: Stop) {
+    let Some(CheckpointPlan { file, .. }) = plan else { return };
+    if stop != Stop::Canceled && is_checkpoint(file) {
         // A checkpoint that is left does no harm.
-        let _ = fs::remove_file(path);
+        let _ = fs::remove_file(file);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::Cli;
     use crate::load::LoadedMesh;
     use crate::terminal::progress::Stage;
-    use clap::Parser;
     use gpu_smooth::Progress;
 
     /// Collects remarks.
@@ -160,7 +122,7 @@ mod tests {
     impl Follow for Remarks {
         fn stage(&mut self, _: Stage) {}
 
-        fn has_read(&mut self, _: &LoadedMesh) -> Result<(), String> {
+        fn has_read(&mut self, _: &LoadedMesh) -> Result<(), CliError> {
             Ok(())
         }
 
@@ -170,17 +132,16 @@ mod tests {
 
         fn sweep(&mut self, _: &Progress) {}
 
-        fn has_smoothed(&mut self) -> Result<(), String> {
+        fn has_smoothed(&mut self) -> Result<(), CliError> {
             Ok(())
         }
     }
 
     #[test]
     fn the_cpu_takes_over_once_from_a_failed_device_but_not_at_a_start_without_memory() {
-        let cli = Cli::try_parse_from(["gpu-smooth", "in", "out"]).unwrap();
         let mut remarks = Remarks::default();
         let follow: RefCell<&mut dyn Follow> = RefCell::new(&mut remarks);
-        let mut kept = Kept::new(&cli.smooth, &follow);
+        let mut kept = Kept::new(None, &follow);
         assert!(!kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 0));
         assert!(kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 7));
         assert!(kept.goes_on_without(&GpuError::Lost("gone".into()), 0));

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
 use crate::args::{EngineChoice, SmoothArgs};
+use crate::error::CliError;
 use crate::run::driver_probe::{self, Tried};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
@@ -36,7 +37,7 @@ pub(crate) fn is_open(args: &SmoothArgs) -> bool {
 }
 
 /// Opens the engine that the command line asks for.
-pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, String> {
+pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, CliError> {
     let backend = match args.engine {
         EngineChoice::Cpu => Backend::Cpu,
         EngineChoice::Gpu | EngineChoice::Auto => {
@@ -96,7 +97,7 @@ struct Found {
 
 impl<'a> Engines<'a> {
     /// Opens the engine that the command line asks for, if it asks for one.
-    pub(crate) fn new(args: &'a SmoothArgs) -> Result<Self, String> {
+    pub(crate) fn new(args: &'a SmoothArgs) -> Result<Self, CliError> {
         let asked = match is_open(args) {
             true => None,
             false => Some(in_turns(open(args)?)),
@@ -152,7 +153,7 @@ fn in_turns(taken: Taken) -> Taken {
 }
 
 /// Opens an adapter, for a command that needs one.
-pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, String> {
+pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, CliError> {
     tried_and_opened(name).map_err(refusal)
 }
 
@@ -168,16 +169,24 @@ fn try_best() -> Result<(), GpuError> {
 }
 
 /// Words why there is no adapter, and what to do.
-pub(crate) fn refusal(error: GpuError) -> String {
+pub(crate) fn refusal(error: GpuError) -> CliError {
     match error {
         GpuError::NoAdapter { wanted: Some(name), available } if !available.is_empty() => {
-            format!("no GPU adapter has '{name}' in its name. There are: {available}")
+            CliError::device(format!("no GPU adapter has '{name}' in its name"))
+                .with_remedy(format!("There are: {available}"))
         }
-        GpuError::NoAdapter { .. } => format!("no GPU adapter was found. {INSTALL}"),
-        GpuError::Arithmetic { .. } => error.to_string(),
+        GpuError::NoAdapter { .. } => {
+            CliError::device("no GPU adapter was found").with_remedy(INSTALL)
+        }
+        GpuError::Arithmetic { .. } => error.into(),
         // There is a driver, but it fails.
-        error => format!("{error}. Use --engine cpu, or another driver"),
+        error => CliError::from(error).with_remedy("Use --engine cpu, or another driver"),
     }
+}
+
+/// The error if the thread that starts a driver ended by a panic.
+pub(crate) fn driver_crashed() -> CliError {
+    CliError::device("the graphics driver crashed on start")
 }
 
 /// Whether a run failed because the GPU cannot hold the mesh.

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use gpu_smooth::MeshSize;
 
+use crate::error::CliError;
 use crate::load::remarks;
 use crate::load::streams;
 use crate::load::{Choice, LoadedMesh, Riding};
@@ -32,9 +33,9 @@ struct ReadMesh {
 /// Reads a mesh, smooths it on the engine that `engine` returns for its size, and writes it. Then calls `finish`.
 pub(crate) fn carry_out<T>(
     task: &Task<'_>,
-    engine: impl FnOnce(MeshSize) -> Result<Taken, String> + Send,
+    engine: impl FnOnce(MeshSize) -> Result<Taken, CliError> + Send,
     follow: &mut dyn Follow,
-    finish: impl FnOnce(Done<'_>) -> Result<T, String>,
+    finish: impl FnOnce(Done<'_>) -> Result<T, CliError>,
 ) -> Result<T, Failure> {
     let began = Instant::now();
     let ReadMesh { file, choice, mut riding, bytes, at } = read(task, follow)?;
@@ -72,7 +73,7 @@ pub(crate) fn carry_out<T>(
 }
 
 /// Reads a mesh and chooses what may move in it. Tells the remarks on the mesh.
-fn read(task: &Task<'_>, follow: &mut dyn Follow) -> Result<ReadMesh, String> {
+fn read(task: &Task<'_>, follow: &mut dyn Follow) -> Result<ReadMesh, CliError> {
     let args = task.args;
     let bytes = size_of(task.input);
     follow.stage(Stage::Reading { bytes });

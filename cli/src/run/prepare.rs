@@ -5,10 +5,11 @@ use std::time::Instant;
 use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
 
 use crate::args::SmoothArgs;
+use crate::error::CliError;
 use crate::load::explain;
 use crate::load::{Choice, LoadedMesh, Riding};
 use crate::report::Failure;
-use crate::run::engine::Taken;
+use crate::run::engine::{self, Taken};
 use crate::run::input::Input;
 use crate::run::observer::Follow;
 use crate::run::untangle::{self, Mended};
@@ -23,7 +24,7 @@ pub(super) enum Prepared<'a> {
 /// The prepared mesh and the engine, each with the reason if there is none.
 pub(super) struct Opened<'a> {
     pub(super) prepared: Result<Prepared<'a>, Failure>,
-    pub(super) taken: Result<Taken, String>,
+    pub(super) taken: Result<Taken, CliError>,
 }
 
 /// The smoother of a mesh, and how the mesh was untangled before, if it was.
@@ -45,7 +46,7 @@ pub(super) struct Ready<'a> {
 
 impl<'a> Subject<'a> {
     /// Prepares a mesh that was untangled.
-    pub(super) fn of_mended(file: &LoadedMesh, mended: &'a Mended) -> Result<Self, String> {
+    pub(super) fn of_mended(file: &LoadedMesh, mended: &'a Mended) -> Result<Self, CliError> {
         let smoother = Smoother::new(&mended.mesh);
         let smoother = smoother.map_err(|error| explain::mesh_error(file, &error))?;
         Ok(Self { smoother, mended: Some(mended) })
@@ -56,7 +57,7 @@ impl<'a> Subject<'a> {
 pub(super) fn open<'a>(
     input: &Input<'a>,
     riding: &Riding,
-    engine: impl FnOnce(MeshSize) -> Result<Taken, String> + Send,
+    engine: impl FnOnce(MeshSize) -> Result<Taken, CliError> + Send,
     follow: &mut dyn Follow,
 ) -> Opened<'a> {
     let mesh = input.file.mesh();
@@ -65,7 +66,7 @@ pub(super) fn open<'a>(
     std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
         let prepared = prepared(input, riding, follow);
-        let taken = opening.join().map_err(|_| "the graphics driver crashed on start".to_owned());
+        let taken = opening.join().map_err(|_| engine::driver_crashed());
         Opened { prepared, taken: taken.and_then(|taken| taken) }
     })
 }
@@ -95,10 +96,9 @@ pub(super) fn set_up<'a>(
     subject: Subject<'a>,
     taken: Taken,
     follow: &mut dyn Follow,
-) -> Result<Ready<'a>, String> {
+) -> Result<Ready<'a>, CliError> {
     let Subject { mut smoother, mended } = subject;
     let (args, file, mesh) = (input.args(), input.file, input.file.mesh());
-    let told = |error: MeshError| error.to_string();
     let taken = match smoother.topology().free_count() {
         0 => Taken::new(Backend::Cpu, Some("no vertex is free, and sliding is on the CPU".into())),
         _ => taken,
@@ -107,7 +107,7 @@ pub(super) fn set_up<'a>(
     if let Some(remark) = mended.and_then(|mended| mended.remark.as_ref()) {
         follow.remark(remark);
     }
-    let hanging = smoother.topology().hanging_nodes(&mesh.points).map_err(told)?;
+    let hanging = smoother.topology().hanging_nodes(&mesh.points)?;
     if let Some(remark) = explain::hanging(file, &hanging) {
         follow.remark(&remark);
     }
@@ -118,7 +118,7 @@ pub(super) fn set_up<'a>(
         follow.remark(&remark);
     }
     let surface = args.target.surface();
-    let before = Quality::on(surface, &mesh.points, smoother.topology()).map_err(told)?;
+    let before = Quality::on(surface, &mesh.points, smoother.topology())?;
     Ok(Ready { smoother, mended, taken, before, at: Instant::now() })
 }
 
@@ -136,17 +136,18 @@ fn smoother<'f>(args: &SmoothArgs, file: &'f LoadedMesh) -> Result<Smoother<'f>,
 
 /// Words why a mesh is not smoothed, with its inverted and flat triangles if a report was asked for.
 fn refusal(args: &SmoothArgs, choice: &Choice, file: &LoadedMesh, error: &MeshError) -> Failure {
-    if let Some(message) = choice.nothing_free(file, error) {
-        return message.into();
+    if let Some(error) = choice.nothing_free(file, error) {
+        return error.into();
     }
-    let message = match error {
+    let refused = match error {
         MeshError::NothingFree { .. }
             if args.sliding.slide && file.interface_vertices().is_empty() =>
         {
             let (path, error) = (file.source.path().display(), explain::nothing_free(file));
-            format!(
-                "{path}: {error}, and none can slide, as all are corners or held. Refine the mesh, so that it has vertices between"
-            )
+            CliError::input(format!(
+                "{path}: {error}, and none can slide, as all are corners or held"
+            ))
+            .with_remedy("Refine the mesh, so that it has vertices between")
         }
         _ => explain::mesh_error(file, error),
     };
@@ -156,5 +157,5 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &LoadedMesh, error: &MeshEr
         }
         _ => Vec::new(),
     };
-    Failure { message, triangles }
+    Failure { error: refused, triangles }
 }

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use gpu_smooth::{Change, Quality};
 
+use crate::error::CliError;
 use crate::load::{Riding, streams};
 use crate::report::{Certificate, FileHash, TargetReport};
 use crate::run::checkpoint;
@@ -33,10 +34,6 @@ pub(super) struct Written {
     pub(super) at: Instant,
 }
 
-fn told(error: impl std::error::Error) -> String {
-    error.to_string()
-}
-
 /// Measures a smoothed mesh, and brings the data of its vertices to their new places.
 pub(super) fn measure(
     input: &Input<'_>,
@@ -44,14 +41,14 @@ pub(super) fn measure(
     ran: &Ran,
     riding: &mut Riding,
     follow: &mut dyn Follow,
-) -> Result<Measures, String> {
+) -> Result<Measures, CliError> {
     let (args, file, outcome) = (input.args(), input.file, &ran.outcome);
     let (topology, old) = (ready.smoother.topology(), &file.mesh().points);
-    let after = Quality::on(args.target.surface(), &outcome.points, topology).map_err(told)?;
-    let change = Change::between(topology, old, &outcome.points).map_err(told)?;
+    let after = Quality::on(args.target.surface(), &outcome.points, topology)?;
+    let change = Change::between(topology, old, &outcome.points)?;
     let base = args.scheme().base();
     let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
-    let f_after = || ready.smoother.f(base, &outcome.points).map_err(told);
+    let f_after = || Ok(ready.smoother.f(base, &outcome.points)?);
     let target = args.target.report(f_before, f_after)?;
     let interpolated = riding.carry(file, topology, &outcome.points)?;
     let left_over = riding.add_dependents(file, &outcome.points)?;
@@ -72,7 +69,7 @@ pub(super) fn write(
     ran: &Ran,
     riding: &Riding,
     follow: &mut dyn Follow,
-) -> Result<Written, String> {
+) -> Result<Written, CliError> {
     let (args, file, out) = (input.args(), input.file, input.task.out);
     follow.stage(Stage::Writing { bytes: input.bytes });
     // The files are hashed before the mesh is written, which may replace them.
@@ -82,7 +79,7 @@ pub(super) fn write(
         true => Some(certificate(input, ready, riding, hashes)?),
         false => None,
     };
-    checkpoint::clear(args, ran.outcome.stop);
+    checkpoint::clear(input.task.outputs.checkpoint.as_ref(), ran.outcome.stop);
     Ok(Written { certificate, at: Instant::now() })
 }
 
@@ -92,24 +89,22 @@ fn certificate(
     ready: &Ready<'_>,
     riding: &Riding,
     hashes: Vec<FileHash>,
-) -> Result<Certificate, String> {
+) -> Result<Certificate, CliError> {
     let (args, file, out) = (input.args(), input.file, input.task.out);
     let mut after = streams::read(out, args.reading)?;
     file.lay_out_likewise(&mut after);
     let after = after;
     let mut theirs = args.riding.choose(&after)?;
     theirs.add_dependents(&after, &after.mesh().points)?;
-    let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref());
-    let proof = proof.map_err(told)?;
+    let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref())?;
     if let Some(problem) = proof.problem() {
-        return Err(format!(
+        return Err(CliError::run(format!(
             "{}: the written mesh was read again, and it is wrong: {problem}",
             out.display()
-        ));
+        )));
     }
     let surface = args.target.surface();
-    let quality =
-        Quality::on(surface, &after.mesh().points, ready.smoother.topology()).map_err(told)?;
+    let quality = Quality::on(surface, &after.mesh().points, ready.smoother.topology())?;
     let f = quality.f(args.scheme().base());
     Ok(Certificate {
         connectivity_identical: proof.difference.is_none(),

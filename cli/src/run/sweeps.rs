@@ -8,6 +8,7 @@ use std::time::Instant;
 use gpu_smooth::{Backend, Options, Outcome, Phase, Precision, Progress, SmoothError, Stop};
 
 use crate::args::SmoothArgs;
+use crate::error::CliError;
 use crate::load::{Choice, LoadedMesh, explain};
 use crate::run::checkpoint::Kept;
 use crate::run::engine::{self, Taken};
@@ -61,14 +62,14 @@ pub(super) fn smooth(
     input: &Input<'_>,
     ready: &Ready<'_>,
     follow: &mut dyn Follow,
-) -> Result<Ran, String> {
+) -> Result<Ran, CliError> {
     let args = input.args();
     let options = options(args, input.choice, input.file.precision());
     follow.stage(Stage::Smoothing);
     let mut clock =
         SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };
     let follow = RefCell::new(follow);
-    let mut kept = Kept::new(args, &follow);
+    let mut kept = Kept::new(input.task.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
             follow.borrow_mut().sweep(progress);
@@ -87,7 +88,7 @@ pub(super) fn smooth(
         taken = Taken::new(Backend::Cpu, Some(error.to_string()));
         outcome = run(&taken.backend);
     }
-    let outcome = outcome.map_err(|error| worded(args, input.file, &error))?;
+    let outcome = outcome.map_err(|error| worded(args, input.file, error))?;
     clock.end(&outcome);
     let is_canceled = outcome.stop == Stop::Canceled;
     if is_canceled {
@@ -98,17 +99,17 @@ pub(super) fn smooth(
 }
 
 /// Words the error of a run in the terms of the file and the command line.
-fn worded(args: &SmoothArgs, file: &LoadedMesh, error: &SmoothError) -> String {
+fn worded(args: &SmoothArgs, file: &LoadedMesh, error: SmoothError) -> CliError {
     match error {
-        SmoothError::Mesh(error) => explain::mesh_error(file, error),
+        SmoothError::Mesh(error) => explain::mesh_error(file, &error),
         SmoothError::Checkpoint(_) => {
             let path = args.continued.as_deref().unwrap_or(Path::new(""));
-            format!("{}: {error}", path.display())
+            CliError::from(error).within(&path.display().to_string())
         }
-        error if engine::is_too_large(error) => {
-            format!("{error}. Smooth on the CPU: --engine cpu")
+        error if engine::is_too_large(&error) => {
+            CliError::from(error).with_remedy("Smooth on the CPU: --engine cpu")
         }
-        error => error.to_string(),
+        error => error.into(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! `--untangle`: untangles a mesh that has inverted or flat triangles.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -25,20 +26,17 @@ pub(crate) struct Mended {
 ///
 /// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before. The time limit
 /// counts from `began`.
-pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, String> {
+pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, CliError> {
     let Task { args, show, out, .. } = *task;
     let mesh = file.mesh();
     let told = |error: MeshError| explain::mesh_error(file, &error);
     let topology = Topology::by_area(mesh).map_err(told)?;
-    let remedy = match args.keep_going {
-        true => "",
-        false => {
-            ". Correct them, or untangle a mesh that is meant to lie over itself with --keep-going"
-        }
-    };
-    let crossings = explain::crossings(file, &topology, remedy);
+    let crossings = explain::crossings(file, &topology);
     if let (Some(crossings), false) = (&crossings, args.keep_going) {
-        return Err(format!("{}: {crossings}", file.source.path().display()));
+        let remedy =
+            "Correct them, or untangle a mesh that is meant to lie over itself with --keep-going";
+        let path = file.source.path().display().to_string();
+        return Err(crossings.clone().within(&path).with_remedy(remedy));
     }
     let mut ended = None;
     let mut observe = |progress: &Untangling| {
@@ -59,38 +57,39 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
     };
     let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(told)?;
     let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved } = untangled;
-    let mut message = match overlapping {
+    let mut error = match overlapping {
         None if left.is_empty() => {
             let mesh = Mesh { points, ..mesh.clone() };
-            return Ok(Mended { mesh, bad_before, sweeps, moved, remark: crossings });
+            let remark = crossings.map(|crossings| crossings.to_string());
+            return Ok(Mended { mesh, bad_before, sweeps, moved, remark });
         }
         Some(vertex) if left.is_empty() => overlaps(file, vertex, sweeps),
         _ => still_tangled(file, (&left, &hopeless), sweeps, ended.is_some()),
     };
     if let Some(ended) = ended {
-        message = format!("{ended}. {message}");
+        error = error.after(&format!("{ended}."));
     }
     if !args.keep_going {
-        return Err(message);
+        return Err(error);
     }
-    match streams::write(file, out, &points, &[]) {
-        Ok(()) => Err(format!("{message}\n  The best mesh found was written: {}", out.display())),
-        Err(error) => Err(format!("{message}\n  {error}")),
-    }
+    Err(error.with_detail(match streams::write(file, out, &points, &[]) {
+        Ok(()) => format!("The best mesh found was written: {}", out.display()),
+        Err(error) => error.to_string(),
+    }))
 }
 
 const KEPT: &str = "; --keep-going writes the best mesh found";
 const PERHAPS: &str = ". Perhaps fixed vertices leave no room, or the boundary winds around itself";
 
 /// Words that no triangle is inverted, but that those around a vertex wind more than once around it.
-fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> String {
+fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     let place = file.vertex_place(vertex);
     let vertex = place.label;
-    format!(
+    CliError::input(format!(
         "{place}: after {} of untangling no triangle is inverted, but those around vertex {vertex} wind more than once around \
          it{PERHAPS}{KEPT}",
         counted(sweeps)
-    )
+    ))
 }
 
 /// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless. `was_ended` tells
@@ -100,7 +99,7 @@ fn still_tangled(
     (left, hopeless): (&[BadTriangle], &[BadTriangle]),
     sweeps: u32,
     was_ended: bool,
-) -> String {
+) -> CliError {
     let name = file.source.path().display();
     let (shown, count, why) = match hopeless.len() {
         0 => {
@@ -122,10 +121,11 @@ fn still_tangled(
         if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") },
         explain::bad_triangles(file, &shown[..count.min(explain::TOLD)]),
     );
-    format!(
-        "{name}: {triangles} {why}{}",
-        explain::list(&first, count, "gpu-smooth quality --json")
-    )
+    CliError::input(format!("{name}: {triangles} {why}")).with_details(explain::list(
+        &first,
+        count,
+        "gpu-smooth quality --json",
+    ))
 }
 
 fn counted(sweeps: u32) -> String {

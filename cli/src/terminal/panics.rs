@@ -6,6 +6,7 @@ use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
 use std::process::ExitCode;
 
+use crate::error::CliError;
 use crate::terminal::tell;
 
 thread_local! {
@@ -26,7 +27,8 @@ pub(crate) fn told(work: impl FnOnce() -> ExitCode) -> ExitCode {
     match panic::catch_unwind(AssertUnwindSafe(work)) {
         Ok(code) => code,
         Err(_) if OF_WGPU.get() => {
-            tell::error("the driver of the GPU failed. Use --engine cpu, or another driver");
+            let error = CliError::device("the driver of the GPU failed");
+            tell::error(&error.with_remedy("Use --engine cpu, or another driver"));
             ExitCode::FAILURE
         }
         Err(payload) => panic::resume_unwind(payload),

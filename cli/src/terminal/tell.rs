@@ -10,6 +10,8 @@ use gpu_smooth::gpu::AdapterSummary;
 
 use serde_json::{Value, json};
 
+use crate::error::CliError;
+
 /// Whether standard error gets JSON, and when the process began.
 static JSON: AtomicBool = AtomicBool::new(false);
 static START: OnceLock<Instant> = OnceLock::new();
@@ -36,7 +38,7 @@ pub(crate) fn event(mut event: Value) {
 pub(crate) fn say(text: &str) {
     match writeln!(std::io::stdout(), "{text}") {
         Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
-            error(&format!("standard output: {problem}"));
+            error(&CliError::output(format!("standard output: {problem}")));
             std::process::exit(1);
         }
         _ => {}
@@ -74,10 +76,19 @@ pub(crate) fn leave_bar() {
     }
 }
 
-pub(crate) fn error(text: &str) {
-    let shown = printable(text);
+/// Prints an error to the standard error. A line of JSON also has its kind and, if there is one, its remedy.
+pub(crate) fn error(error: &CliError) {
+    let text = error.to_string();
+    let shown = printable(&text);
     match is_json() {
-        true => event(json!({ "event": "error", "message": text })),
+        true => {
+            let kind = error.kind.name();
+            let mut line = json!({ "event": "error", "message": text, "kind": kind });
+            if let Some(remedy) = error.remedy() {
+                line["remedy"] = remedy.into();
+            }
+            event(line);
+        }
         false if is_colored() => eprintln!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {shown}"),
         false => eprintln!("gpu-smooth: error: {shown}"),
     }

@@ -23,12 +23,18 @@ fn missing_and_surplus_arguments_are_errors() {
     assert_usage(&folder, "in out --nonsense", &["unexpected argument '--nonsense'"]);
 }
 
+/// A scheme of 61 metrics.
+const SIXTY_ONE: &str = "--scheme imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr\
+    +imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr\
+    +imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr+imr";
+
 #[test]
 fn values_out_of_range_name_the_range() {
     let folder = small();
-    let cases: [(&str, &[&str]); 30] = [
+    let cases: [(&str, &[&str]); 31] = [
         ("--scheme foo", &["no metric is called 'foo'; there are edge, area, rms, imr, ar"]),
         ("--scheme edge+", &["no metric is called ''"]),
+        (SIXTY_ONE, &["a scheme can have 60 metrics at most"]),
         ("--engine opencl", &["auto, gpu, cpu"]),
         ("--max-sweeps -1", &["'-1' for '--max-sweeps", "0..=4294967295"]),
         ("--max-sweeps many", &["'many' for '--max-sweeps"]),
@@ -77,6 +83,39 @@ fn contradictions_are_refused() {
         assert_usage(&folder, &format!("in out {options}"), &parts);
     }
     assert_usage(&folder, "in out --history all", &["--report <FILE>"]);
+}
+
+/// They would be refused as late as the mesh is read and prepared otherwise, or would do nothing at all.
+#[test]
+fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
+    let folder = Folder::new(&[]);
+    for (options, told) in [
+        ("--slide --scheme edge+imr", "--slide needs one metric other than edge"),
+        ("--slide --scheme imr+imr", "--slide needs one metric other than edge"),
+        ("--slide --fraction 0.9", "give its value by --desired"),
+        ("--slide --desired auto", "give its value by --desired"),
+        ("--max-move 1 --derivatives finite-difference", "--max-move needs analytic derivatives"),
+        ("--keep-altitude --fraction 0.9", "give its value by --desired"),
+        ("--method multilevel --inner 2", "--method multilevel needs one Newton step per visit"),
+        ("--method multilevel --scheme area", "--method multilevel does not go with --scheme area"),
+        ("--method multilevel --derivatives finite-difference", "needs analytic derivatives"),
+        ("--target keep-size --derivatives finite-difference", "--target needs analytic"),
+        ("--surface sphere --derivatives finite-difference", "--surface sphere needs analytic"),
+        ("--target keep-shape --target-of place --scheme edge", "--target-of place needs one"),
+    ] {
+        // There is no mesh, so that reading one would be another error.
+        assert_usage(&folder, &format!("none out {options}"), &[told]);
+    }
+    let bench = "bench --engine cpu --adapter nvidia";
+    assert_usage(
+        &folder,
+        bench,
+        &["--adapter has no effect with --engine cpu", "gpu-smooth bench"],
+    );
+    assert_usage(&folder, "quality a b --picture p.png", &["p.png: --picture draws a single mesh"]);
+    let arrows = "quality none --picture p.png --picture-arrows";
+    assert_usage(&folder, arrows, &["--picture-arrows needs a run"]);
+    assert_usage(&folder, "convert none - --to triangle", &["has several files", "name OUT"]);
 }
 
 #[test]

@@ -74,20 +74,22 @@ fn names_that_change_are_told_once() {
 #[test]
 fn conversions_that_cannot_work_are_refused() {
     let folder = Folder::new(&[("in.2dm", SMS), ("word", "1 2 x\n")]);
-    folder.line("convert in.2dm in.2dm").refused(&["in.2dm is the mesh that is read"]);
+    folder.line("convert in.2dm in.2dm").misused(&["in.2dm is the mesh that is read"]);
     folder
         .line("convert in.2dm out.xyz")
-        .refused(&["out.xyz: its ending names no format", "gmsh22"]);
+        .misused(&["out.xyz: its ending names no format", "gmsh22"]);
     // It could be read, but not smoothed under that name.
     folder
         .line("convert in.2dm out.vtk --to su2 --lossy -q")
         .refused(&["out.vtk: its ending is that of legacy VTK, and not of SU2", ".su2"]);
     assert!(!folder.path("out.vtk").exists());
     folder.line("convert in.2dm out.txt --to su2 --lossy -q").clean();
-    folder.line("convert in.2dm out.slf").refused(&["out.slf: its ending names no format"]);
+    folder.line("convert in.2dm out.slf").misused(&["out.slf: its ending names no format"]);
     folder.line("convert none.2dm out.msh").refused(&["none.2dm"]);
     folder.line("convert word out.msh").refused(&["word"]);
-    folder.line("convert in.2dm - --to triangle --lossy --quiet").refused(&["name OUT"]);
+    let run = folder.line("convert in.2dm - --to triangle --lossy --quiet");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["error: a Triangle mesh has several files", "name OUT"]);
     let run = folder.line("convert in.2dm out.msh --to word");
     assert_eq!(run.code, Some(2));
     assert_holds(&run.err, &["possible values: gmsh41, gmsh22, vtu, xdmf, vtk"]);

@@ -58,7 +58,7 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
         fs::set_permissions(folder.path(name), permissions).unwrap();
     }
     let before = folder.content();
-    let cases: [(&str, &[&str]); 13] = [
+    let cases: [(&str, &[&str]); 9] = [
         ("in.node none/out.node", &["none: no such directory", "Create the directory first"]),
         ("in.node out.msh", &["out.msh: its ending is that of gmsh", "end the name in .node"]),
         ("in.msh out.node", &["out.node: its ending is that of Triangle", "end the name in .msh"]),
@@ -67,16 +67,84 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
         ("in.node dir", &["dir: not the name of a file. Add a name like out.node"]),
         ("in.node out --report none/r.json", &["the report", "none: no such directory", "Create"]),
         ("in.node out --report dir", &["the report cannot be written: dir: ", "name of a file"]),
-        ("in.node out --report locked.ele", &["locked.ele: the report is JSON, not a mesh"]),
         ("in.node out --report locked.json", &["the report", "locked.json: the file is read-only"]),
-        ("in.node old --report old.node", &["old.node: the report is JSON", "End its name in"]),
-        ("in.msh out --report out", &["out: the report is JSON, not a mesh"]),
-        ("in.msh out.msh --report in.msh", &["in.msh: the report is JSON, not a mesh"]),
     ];
     for (line, parts) in cases {
         folder.line(&format!("{line} --engine cpu")).refused(parts);
         assert!(folder.content() == before, "{line} has changed files");
     }
+    for (line, parts) in [
+        ("in.node out --report locked.ele", ["locked.ele: the report is JSON, not a mesh", ""]),
+        ("in.node old --report old.node", ["old.node: the report is JSON", "End its name in"]),
+        ("in.msh out --report out", ["out: the report is JSON, not a mesh", ""]),
+        ("in.msh out.msh --report in.msh", ["in.msh: the report is JSON, not a mesh", ""]),
+    ] {
+        folder.line(&format!("{line} --engine cpu")).misused(&parts);
+        assert!(folder.content() == before, "{line} has changed files");
+    }
+}
+
+/// IN does not exist, so that reading it would be another error.
+#[test]
+fn files_beside_the_mesh_with_names_of_meshes_are_refused_before_a_mesh_is_read() {
+    let folder = Folder::new(&[]);
+    for (line, part) in [
+        ("none out --report r.vtu", "r.vtu: the report is JSON, not a mesh. End its name in .json"),
+        ("none out --report R.2DM", "R.2DM: the report is JSON, not a mesh"),
+        ("none out --report r.msh.gz", "r.msh.gz: the report is JSON, not a mesh"),
+        ("none out --report r.poly", "r.poly: the report is JSON, not a mesh"),
+        (
+            "none out --checkpoint c.msh",
+            "c.msh: a checkpoint is no mesh. Give --checkpoint another",
+        ),
+        ("none out --continue c.su2", "c.su2: a checkpoint is no mesh"),
+        ("none out --picture p.vtk", "p.vtk: a picture is PNG or SVG"),
+        ("none out --html p.vtk", "p.vtk: a page is HTML"),
+        ("a.msh b.msh --out-dir out --report r.vtu", "r.vtu: the report is JSON, not a mesh"),
+    ] {
+        folder.line(line).misused(&[part]);
+    }
+    for (line, part) in [
+        ("none out --report none/r.json", "the report cannot be written: none: no such directory"),
+        ("none out --picture none/p.png", "the picture cannot be written: none: no such"),
+        ("none out --html none/p.html", "the page cannot be written: none: no such"),
+        ("none out --checkpoint none/c", "checkpoints cannot be saved: none: no such"),
+        ("quality none --picture none/p.png", "the picture cannot be written: none: no such"),
+    ] {
+        folder.line(line).refused(&[part]);
+    }
+    assert_eq!(folder.content().len(), 0);
+}
+
+#[test]
+fn files_that_are_read_or_hold_a_mesh_are_not_replaced_by_other_files() {
+    let folder = small();
+    let gmsh = support::write_msh22(&disturbed());
+    let sizes = "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n0\n1 1\n";
+    for (name, text) in [("in.msh", &*gmsh), ("kept.json", &gmsh), ("kept.html", &gmsh)] {
+        fs::write(folder.path(name), text).unwrap();
+    }
+    for (name, text) in [("list.json", "1\n"), ("sizes.json", sizes), ("state", "any\n")] {
+        fs::write(folder.path(name), text).unwrap();
+    }
+    let before = folder.content();
+    for (options, part) in [
+        ("--report kept.json", "kept.json: there is a mesh in this file (gmsh)"),
+        ("--html kept.html", "kept.html: there is a mesh in this file (gmsh). Give --html another"),
+    ] {
+        folder.line(&format!("in out --engine cpu {options}")).refused(&[part]);
+    }
+    for (options, part) in [
+        ("--fix-vertices list.json --report list.json", "list.json: the report would replace this"),
+        ("--target size=sizes.json --report sizes.json", "sizes.json: the report would replace"),
+        ("--continue state --report state", "state: the report would replace this file"),
+        ("--checkpoint r --report r", "r: the checkpoint would replace this file"),
+        ("--checkpoint r --continue state --report state", "state: the report would replace"),
+    ] {
+        folder.line(&format!("in out --engine cpu {options}")).misused(&[part]);
+    }
+    folder.line("quality in.msh --picture in.msh").misused(&["in.msh: a picture is PNG or SVG"]);
+    assert!(folder.content() == before);
 }
 
 /// A mesh with a `.poly`, under names without the usual endings, and links to its files.
@@ -108,15 +176,21 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
         "mesh out --report here/mesh",
         "./mesh out --report mesh",
         "mesh out --report mesh.json",
-        "in out --report to-in.node.json",
-        "in out --report here/to-in.ele.json",
-        "in out --report to-in.poly.json",
-        "in out --report poly.json",
         // A file that the run writes, whether it exists or not.
         "mesh out --report ./out",
         "mesh later --report to-later.json",
         "mesh here/later --report to-to-later.json",
         "mesh to-later.json --report later",
+    ] {
+        folder.line(&format!("{line} --engine cpu")).misused(&["the report is JSON, not a mesh"]);
+        assert!(folder.content() == before, "{line} has changed files");
+    }
+    // Which files a Triangle mesh has is known once it is read.
+    for line in [
+        "in out --report to-in.node.json",
+        "in out --report here/to-in.ele.json",
+        "in out --report to-in.poly.json",
+        "in out --report poly.json",
         "in out --report to-out.ele.json",
     ] {
         folder.line(&format!("{line} --engine cpu")).refused(&["the report is JSON, not a mesh"]);

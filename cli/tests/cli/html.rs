@@ -167,12 +167,13 @@ fn pages_that_would_replace_something_are_refused() {
     for (options, part) in [
         ("--html page.txt", "page.txt: a page is HTML. End its name in .html"),
         ("--html page", "End its name in .html"),
-        ("--html none/page.html", "the page cannot be written"),
         ("--html r.html --report r.html", "r.html: the page would replace this file"),
     ] {
-        folder.line(&format!("in out {options}")).refused(&[part]);
+        folder.line(&format!("in out {options}")).misused(&[part]);
         assert!(!folder.path("out.node").exists());
     }
+    folder.line("in out --html none/page.html").refused(&["the page cannot be written"]);
+    assert!(!folder.path("out.node").exists());
     let run = folder.line("in.node other --out-dir d --html page.html");
     assert_eq!(run.code, Some(2));
     assert_holds(&run.err, &["--html"]);

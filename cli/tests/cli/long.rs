@@ -124,11 +124,23 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
         &["run.ckpt: the checkpoint cannot be used: it is of another mesh"],
     );
     refused(&format!("{LONG} --continue none"), &["none: there is no such file"]);
-    refused(&format!("{LONG} --continue in.node"), &["in.node: not a checkpoint of this version"]);
-    refused(&format!("{LONG} --checkpoint in.node"), &["in.node: the checkpoint would replace"]);
-    refused(&format!("{LONG} --checkpoint out.node"), &["out.node: the checkpoint would replace"]);
+    fs::write(folder.path("foreign"), "no checkpoint").unwrap();
+    folder
+        .line(&format!("{LONG} --continue foreign"))
+        .refused(&["foreign: not a checkpoint of this version"]);
+    fs::remove_file(folder.path("foreign")).unwrap();
+    let misused = |line: &str, parts: &[&str]| {
+        folder.line(line).misused(parts);
+        assert!(folder.content() == kept, "{line}: something was written");
+    };
+    misused(&format!("{LONG} --checkpoint in.node"), &["in.node: the checkpoint would replace"]);
+    misused(&format!("{LONG} --checkpoint out.node"), &["out.node: a checkpoint is no mesh"]);
     let in_place = "in.node in.node --engine cpu --checkpoint new.ckpt";
-    refused(in_place, &["in.node: a run can only be continued while IN is as it was"]);
+    misused(in_place, &["in.node: a run can only be continued while IN is as it was"]);
+    refused(
+        "in in.node --engine cpu --checkpoint new.ckpt",
+        &["in.node: a run can only be continued while IN is as it was"],
+    );
     let mut bytes = fs::read(folder.path("run.ckpt")).unwrap();
     bytes[100] ^= 1;
     fs::write(folder.path("bad.ckpt"), bytes).unwrap();

@@ -69,8 +69,19 @@ impl Run {
     /// Checks that the run failed with one line, perhaps with an indented list under it, that contains each of the parts.
     #[track_caller]
     fn refused(self, parts: &[&str]) -> Self {
+        self.refused_with(1, parts)
+    }
+
+    /// Checks that the run was refused as [`refused`](Self::refused) says, but because the command line alone is wrong.
+    #[track_caller]
+    fn misused(self, parts: &[&str]) -> Self {
+        self.refused_with(2, parts)
+    }
+
+    #[track_caller]
+    fn refused_with(self, expected: i32, parts: &[&str]) -> Self {
         let Self { code, out, err } = &self;
-        assert_eq!((*code, out.as_str()), (Some(1), ""), "{err}");
+        assert_eq!((*code, out.as_str()), (Some(expected), ""), "{err}");
         assert!(err.starts_with("gpu-smooth: error: "), "{err}");
         assert!(err.lines().skip(1).all(|line| line.starts_with("  ")), "{err}");
         assert_holds(err, parts);

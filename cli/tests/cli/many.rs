@@ -125,23 +125,44 @@ fn a_call_of_many_meshes_is_resumed() {
     assert_holds(&folder.line(line).clean().out, &["\n3 skipped of 3 meshes; 0 vertices"]);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_triangle_mesh_with_endings_of_a_capital_first_is_skipped_once_it_is_done() {
+    let folder = super::small();
+    for (from, to) in [("in.node", "A.Node"), ("in.ele", "A.Ele")] {
+        fs::rename(folder.path(from), folder.path(to)).unwrap();
+    }
+    for name in ["A.Node", "A.Ele"] {
+        let line = format!("{name} --out-dir out --engine cpu --resume");
+        let done =
+            if name == "A.Node" { "\n1 smoothed of 1 mesh" } else { "\n1 skipped of 1 mesh" };
+        assert_holds(&folder.line(&line).clean().out, &[done]);
+        assert_holds(&folder.line(&line).clean().out, &["\n1 skipped of 1 mesh"]);
+    }
+    assert_eq!(names(&folder, "out"), ["A.Ele", "A.Node"]);
+}
+
 #[test]
 fn files_that_would_be_overwritten_are_listed_before_any_work() {
     let folder = several();
     fs::create_dir(folder.path("other")).unwrap();
     fs::copy(folder.path("b.msh"), folder.path("other/b.msh")).unwrap();
     for (line, part) in [
-        ("b.msh other/b.msh --out-dir out", "b.msh and other/b.msh would both be written to out"),
-        ("b.msh c.msh --out-dir .", "the mesh itself would be replaced. Give another directory"),
-        ("b.msh other/../c.msh --out-dir other/..", "the mesh itself would be replaced"),
-        ("b.msh - --out-dir out", "-: not a file. --out-dir"),
-        ("b.msh other --out-dir out", "other: not a file. --out-dir"),
-        ("b.msh --out-dir out --report c.msh", "c.msh: the report is JSON"),
-        ("b.msh --out-dir out --report out/b.msh", "b.msh: the report is JSON"),
         ("b.msh --out-dir c.msh", "c.msh: the directory cannot be made"),
         ("b.msh --out-dir out --adapter none-of-this-name", "no GPU adapter"),
     ] {
         folder.line(line).refused(&[part]);
+    }
+    for (line, part) in [
+        ("b.msh other/b.msh --out-dir out", "b.msh and other/b.msh would both be written to out"),
+        ("b.msh c.msh --out-dir .", "the mesh itself would be replaced. Give another directory"),
+        ("b.msh other/../c.msh --out-dir other/..", "the mesh itself would be replaced"),
+        ("b.msh --out-dir out --report c.msh", "c.msh: the report is JSON"),
+        ("b.msh --out-dir out --report out/b.msh", "b.msh: the report is JSON"),
+        ("b.msh - --out-dir out", "-: not a file. --out-dir"),
+        ("b.msh other --out-dir out", "other: not a file. --out-dir"),
+    ] {
+        folder.line(line).misused(&[part]);
     }
     assert!(!folder.path("out/b.msh").exists());
     let text = folder.text("b.msh");

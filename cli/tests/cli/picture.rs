@@ -191,20 +191,23 @@ fn regions_and_fixed_vertices_are_named_where_they_are() {
 fn pictures_that_cannot_be_written_are_refused_before_the_work() {
     let folder = small();
     let before = folder.content();
+    folder
+        .line("in out --engine cpu --picture none/p.png")
+        .refused(&["the picture cannot be written: ", "none"]);
     for (line, parts) in [
-        ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is PNG or SVG"]),
-        ("in out --engine cpu --picture none/p.png", ["the picture cannot be written: ", "none"]),
-        ("quality in --picture p", ["p: ", "is PNG or SVG"]),
-        ("quality in in --picture p.png", ["p.png: ", "give only one"]),
         (
             "in out --engine cpu --picture p.svg --report p.svg",
             ["p.svg: ", "would replace this file"],
         ),
+        ("in out --engine cpu --picture p.jpg", ["p.jpg: ", "is PNG or SVG"]),
+        ("quality in --picture p", ["p: ", "is PNG or SVG"]),
     ] {
-        folder.line(line).refused(&parts);
+        folder.line(line).misused(&parts);
     }
     for (line, part) in [
         ("in out --picture-size 900", "--picture <FILE>"),
+        ("quality in in --picture p.png", "p.png: --picture draws a single mesh: give only one"),
+        ("quality in --picture p.png --picture-arrows", "--picture-arrows needs a run"),
         ("quality in --picture p.png --picture-size 20", "400..=8000"),
         ("quality in --picture p.png --picture-measure round", "no measure is called 'round'"),
     ] {

@@ -306,7 +306,9 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
         fs::write(folder.path("bad.pos"), text).unwrap();
         folder.line("in out --engine cpu --target size=bad.pos").refused(&[told]);
     }
-    folder.line("in out --engine cpu --target metric=bg.pos").refused(&["give size=bg.pos"]);
+    let run = folder.line("in out --engine cpu --target metric=bg.pos");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["bg.pos: a view of gmsh holds sizes, not tensors: give size=bg.pos"]);
     let run = folder.line("in out --engine cpu --target size=half.msh:h");
     assert_holds(
         &run.err,

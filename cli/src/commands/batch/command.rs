@@ -1,7 +1,8 @@
 //! `gpu-smooth MESH... --out-dir DIR`: many meshes in one call.
 
 use crate::commands::batch::{listing, table, workers};
-use crate::load::LoadedMesh;
+use crate::error::{CliError, ErrorKind};
+use crate::load::{LoadedMesh, streams};
 use std::path::Path;
 use std::time::Instant;
 
@@ -13,9 +14,9 @@ use crate::args::{LogForm, OutputArgs};
 use crate::commands::batch::entry::{Entry, Told};
 use crate::commands::batch::listing::Listed;
 use crate::commands::batch::workers::Watch;
-use crate::commands::smooth::check_report;
 use crate::render::columns;
 use crate::report::Task;
+use crate::request::Outputs;
 use crate::run::carry_out;
 use crate::run::engine::Engines;
 use crate::run::observer::Follow;
@@ -27,11 +28,15 @@ use crate::terminal::tell;
 const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogForm::Text };
 
 /// Smooths all meshes. Returns an error at the end if one of them failed.
-pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), String> {
+pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let list = listing::list(args.meshes(), directory)?;
-    let files = list.iter().flat_map(|mesh| mesh.inputs.iter().chain(&mesh.outputs));
-    check_report(args, files.map(|path| path.as_path()))?;
+    let outputs = Outputs::of_run(args)?;
+    outputs.check_names()?;
+    for mesh in &list {
+        outputs.check_files(&mesh.inputs, &mesh.outputs, ErrorKind::Usage)?;
+    }
+    outputs.check_disk()?;
     interrupt::watch(show.quiet);
     // The first signal is left to the runs. Runs under way are then given up, and finished ones are reported.
     interrupt::has_result();
@@ -44,7 +49,7 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
         let engines = Engines::new(args)?;
         let tally = Tally::new(show, open.len());
         let mut watch = Watched { list: &list, show, tally, told: &mut told };
-        workers::run(&list, &open, &|mesh| smooth(args, &engines, mesh), &mut watch);
+        workers::run(&list, &open, &|mesh| smooth(args, &outputs, &engines, mesh), &mut watch);
         watch.tally.clear();
     }
     let entry = |(mesh, told): (Listed, Option<Told>)| {
@@ -63,28 +68,26 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
         tell::say(&table::text(&entries, seconds, columns::of_terminal()));
     }
     match table::failures(&entries) {
-        Some(text) if interrupt::is_requested() => {
-            tell::error(&text);
+        Some(error) if interrupt::is_requested() => {
+            tell::error(&error);
             Ok(())
         }
-        Some(text) => Err(text),
+        Some(error) => Err(error),
         None => match entries.iter().filter(|entry| entry.told.fell_short()).count() {
-            short if short > 0 && args.strict => Err(format!(
+            short if short > 0 && args.strict => Err(CliError::run(format!(
                 "{short} of {} runs neither converged nor reached their goal; --strict makes this an error",
                 entries.len()
-            )),
+            ))),
             _ => Ok(()),
         },
     }
 }
 
 /// Makes the directory if it does not exist.
-fn make(directory: &Path) -> Result<(), String> {
+fn make(directory: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(directory).map_err(|error| {
-        format!(
-            "{}: the directory cannot be made: {error}. Give another one to --out-dir",
-            directory.display()
-        )
+        CliError::output(format!("{}: the directory cannot be made: {error}", directory.display()))
+            .with_remedy("Give another one to --out-dir")
     })
 }
 
@@ -98,7 +101,8 @@ struct Watched<'a> {
 
 impl Watch for Watched<'_> {
     fn done(&mut self, mesh: usize, told: Told) {
-        self.tally.add(&self.list[mesh].input, told.problem(), &told.text());
+        let problem = told.problem();
+        self.tally.add(&self.list[mesh].input, problem.as_deref(), &told.text());
         self.told[mesh] = Some(told);
     }
 
@@ -114,9 +118,10 @@ impl Watch for Watched<'_> {
 }
 
 /// Smooths one of the meshes.
-fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
-    let task = Task { args, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
-    let mut follow = Followed { mesh, remarks: Vec::new() };
+fn smooth(args: &SmoothArgs, outputs: &Outputs, engines: &Engines<'_>, mesh: &Listed) -> Told {
+    let task =
+        Task { args, outputs, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
+    let mut follow = Followed { mesh, outputs, remarks: Vec::new() };
     let engine = |size| Ok(engines.take(size));
     match carry_out(&task, engine, &mut follow, |done| Ok(done.report)) {
         Ok(report) => Told::Smoothed { report: Box::new(report), remarks: follow.remarks },
@@ -128,25 +133,18 @@ fn smooth(args: &SmoothArgs, engines: &Engines<'_>, mesh: &Listed) -> Told {
 /// Keeps the remarks on a mesh.
 struct Followed<'a> {
     mesh: &'a Listed,
+    outputs: &'a Outputs,
     remarks: Vec<String>,
 }
 
 impl Follow for Followed<'_> {
-    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), String> {
-        let out = &self.mesh.out;
+    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
         if interrupt::is_requested() {
-            return Err("interrupted".into());
+            return Err(CliError::run("interrupted"));
         }
-        file.source.check_destination(out).map_err(|error| error.to_string())?;
-        let written = file.source.destinations(out).map_err(|error| error.to_string())?;
         // A file may have two names, which the list could not tell.
-        match written
-            .iter()
-            .find(|path| file.source.paths().any(|own| atomic::same_file(own, path)))
-        {
-            Some(path) => Err(format!("{}: the mesh itself would be replaced", path.display())),
-            None => Ok(()),
-        }
+        let written = streams::destinations(file, &self.mesh.out)?;
+        self.outputs.check_files(&file.paths(), &written, ErrorKind::Output)
     }
 
     fn remark(&mut self, text: &str) {
@@ -157,18 +155,21 @@ impl Follow for Followed<'_> {
 
     fn sweep(&mut self, _: &Progress) {}
 
-    fn has_smoothed(&mut self) -> Result<(), String> {
+    fn has_smoothed(&mut self) -> Result<(), CliError> {
         match interrupt::is_requested() {
-            true => Err("interrupted".into()),
+            true => Err(CliError::run("interrupted")),
             false => Ok(()),
         }
     }
 }
 
 /// Writes the report on all meshes if it was asked for.
-fn write_report(args: &SmoothArgs, entries: &[Entry], seconds: f64) -> Result<(), String> {
+fn write_report(args: &SmoothArgs, entries: &[Entry], seconds: f64) -> Result<(), CliError> {
     let Some(path) = &args.report else { return Ok(()) };
     let text = table::report(entries, seconds)?;
-    atomic::replace(path, text.as_bytes())
-        .map_err(|error| format!("the report was not written: {error}. The meshes were written"))
+    atomic::replace(path, text.as_bytes()).map_err(|error| {
+        CliError::from(error)
+            .within("the report was not written")
+            .followed_by("The meshes were written")
+    })
 }

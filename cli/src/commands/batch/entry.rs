@@ -63,15 +63,15 @@ impl Told {
                     report.stop
                 )
             }
-            (None, Some(problem)) => problem.to_owned(),
+            (None, Some(problem)) => problem,
             (None, None) => self.status().to_owned(),
         }
     }
 
-    /// Returns the first line of the error, if the mesh failed.
-    pub(crate) fn problem(&self) -> Option<&str> {
+    /// Returns the error without its list, if the mesh failed.
+    pub(crate) fn problem(&self) -> Option<String> {
         match self {
-            Self::Failed(failure) => failure.message.lines().next(),
+            Self::Failed(failure) => Some(failure.error.headline()),
             _ => None,
         }
     }

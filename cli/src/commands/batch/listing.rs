@@ -7,6 +7,7 @@ use std::time::SystemTime;
 
 use mesh_io::atomic;
 
+use crate::error::CliError;
 use crate::load::streams::is_standard;
 
 /// A mesh that is to be smoothed.
@@ -21,10 +22,11 @@ pub(crate) struct Listed {
 }
 
 impl Listed {
-    fn new(input: &Path, directory: &Path) -> Result<Self, String> {
+    fn new(input: &Path, directory: &Path) -> Result<Self, CliError> {
         let name = input.file_name().filter(|_| !is_standard(input) && !input.is_dir());
         let name = name.ok_or_else(|| {
-            format!("{}: not a file. --out-dir takes meshes in files, and names each result as its mesh", input.display())
+            CliError::usage(format!("{}: not a file", input.display()))
+                .with_remedy("--out-dir takes meshes in files, and names each result as its mesh")
         })?;
         let out = directory.join(name);
         let inputs = parts(input);
@@ -93,21 +95,31 @@ fn parts(path: &Path) -> Vec<PathBuf> {
         let has_beside = is_xdmf(path) && beside.is_file();
         return [path.to_owned()].into_iter().chain(has_beside.then_some(beside)).collect();
     };
-    let is_upper = own.to_string_lossy().starts_with(char::is_uppercase);
-    let endings = match is_upper {
-        true => [".NODE", ".ELE", ".POLY"],
-        false => [".node", ".ele", ".poly"],
-    };
-    endings.into_iter().map(with).filter(|part| part.is_file()).collect()
+    let own = own.to_string_lossy();
+    let endings = ["node", "ele", "poly"].map(|ending| spelled_like(&own, ending));
+    let parts = endings.iter().map(|ending| with(&format!(".{ending}")));
+    parts.filter(|part| part.is_file()).collect()
+}
+
+/// Spells an ending of a Triangle mesh as mesh-io does beside a file with the ending `own`: in capitals, with a capital first,
+/// or in small letters. The given file keeps its spelling.
+fn spelled_like(own: &str, ending: &str) -> String {
+    let (first, rest) = ending.split_at(1);
+    match own {
+        _ if own.eq_ignore_ascii_case(ending) => own.to_owned(),
+        "NODE" | "ELE" | "POLY" => ending.to_uppercase(),
+        "Node" | "Ele" | "Poly" => first.to_uppercase() + rest,
+        _ => ending.to_owned(),
+    }
 }
 
 /// Lists the meshes that some paths name, each once, with the files in `directory` that they are written to.
 ///
-/// Returns an error if two meshes would be written to the same file, or if a mesh would replace itself.
+/// Returns an error if two meshes would be written to the same file.
 pub(crate) fn list<'p>(
     paths: impl Iterator<Item = &'p PathBuf>,
     directory: &Path,
-) -> Result<Vec<Listed>, String> {
+) -> Result<Vec<Listed>, CliError> {
     let mut listed: Vec<Listed> = Vec::new();
     let mut by_out: HashMap<PathBuf, usize> = HashMap::new();
     for path in paths {
@@ -116,12 +128,6 @@ pub(crate) fn list<'p>(
             true => Listed::new(&appended(path, ".node"), directory)?,
             false => Listed::new(path, directory)?,
         };
-        if let Some(own) = mesh.outputs.iter().find(|out| is_any(out, &mesh.inputs)) {
-            return Err(format!(
-                "{}: the mesh itself would be replaced. Give another directory to --out-dir",
-                own.display()
-            ));
-        }
         let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
             Some(known) if is_same(known, &mesh) => {
@@ -131,12 +137,13 @@ pub(crate) fn list<'p>(
                 }
             }
             Some(known) => {
-                return Err(format!(
-                    "{} and {} would both be written to {}. Rename one, or smooth them into different directories",
+                return Err(CliError::usage(format!(
+                    "{} and {} would both be written to {}",
                     known.input.display(),
                     mesh.input.display(),
                     mesh.out.display()
-                ));
+                ))
+                .with_remedy("Rename one, or smooth them into different directories"));
             }
             None => {
                 by_out.insert(key, listed.len());
@@ -186,7 +193,7 @@ mod tests {
         folder
     }
 
-    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<Listed>, String> {
+    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<Listed>, CliError> {
         let paths: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
         list(paths.iter(), &folder.path().join("out"))
     }
@@ -209,6 +216,23 @@ mod tests {
         assert_eq!(of(&folder, &["a.1", "a.1.node", "b.msh", "b.msh"]).unwrap().len(), 2);
     }
 
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn endings_of_triangle_meshes_are_spelled_like_the_one_given() {
+        let folder = folder(&["a.Node", "a.Ele", "b.NODE", "b.ELE", "b.POLY", "c.nodE", "c.ele"]);
+        for (name, inputs) in [
+            ("a.Node", &["a.Node", "a.Ele"][..]),
+            ("a.Ele", &["a.Node", "a.Ele"]),
+            ("b.ELE", &["b.NODE", "b.ELE", "b.POLY"]),
+            ("c.nodE", &["c.nodE", "c.ele"]),
+        ] {
+            let listed = of(&folder, &[name]).unwrap();
+            let expected: Vec<PathBuf> =
+                inputs.iter().map(|part| folder.path().join(part)).collect();
+            assert_eq!(listed[0].inputs, expected, "{name}");
+        }
+    }
+
     /// The files beside both would be called after them.
     #[test]
     fn files_beside_an_xdmf_are_its_own() {
@@ -216,7 +240,7 @@ mod tests {
         let listed = of(&folder, &["a.xdmf", "a.xdmf", "b.xdmf"]).unwrap();
         assert_eq!(listed.iter().map(|mesh| mesh.inputs.len()).collect::<Vec<_>>(), [2, 1]);
         assert_eq!(listed[0].bytes(), 2);
-        let error = of(&folder, &["a.xdmf", "a.xmf"]).err().unwrap();
+        let error = of(&folder, &["a.xdmf", "a.xmf"]).err().unwrap().to_string();
         assert!(error.contains("would both be written to"), "{error}");
     }
 
@@ -224,11 +248,9 @@ mod tests {
     fn two_meshes_of_one_name_are_refused() {
         let folder = folder(&["a/m.msh", "b/m.msh", "a/t.node", "a/t.ele", "b/t.ele", "b/t.node"]);
         for names in [["a/m.msh", "b/m.msh"], ["a/t.node", "b/t.ele"]] {
-            let error = of(&folder, &names).err().unwrap();
+            let error = of(&folder, &names).err().unwrap().to_string();
             assert!(error.contains("would both be written to"), "{error}");
         }
-        let own = list([folder.path().join("a/m.msh")].iter(), &folder.path().join("b/../a"));
-        assert!(own.err().unwrap().contains("the mesh itself would be replaced"));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
 use crate::commands::batch::entry::{Entry, Told};
+use crate::error::CliError;
 use crate::render::columns::{left, quoted, right, shortened};
 use crate::report::Report;
 use crate::terminal::numbers::five;
@@ -111,20 +112,20 @@ fn counted(meshes: usize) -> String {
 }
 
 /// Lists the meshes that failed with their reasons, if any did.
-pub(crate) fn failures(entries: &[Entry]) -> Option<String> {
+pub(crate) fn failures(entries: &[Entry]) -> Option<CliError> {
     let failed = || entries.iter().filter_map(|entry| Some((entry, entry.told.problem()?)));
     let count = failed().count();
-    let mut text = format!("{count} of {} failed", counted(entries.len()));
-    for (entry, problem) in failed() {
+    let line = |(entry, problem): (&Entry, String)| {
         let input = entry.input.display().to_string();
         // Most reasons start with the name of a file of the mesh.
         let named = |path: &PathBuf| problem.starts_with(&*path.to_string_lossy());
-        let _ = match entry.files.iter().any(named) || problem.starts_with(&input) {
-            true => write!(text, "\n  {problem}"),
-            false => write!(text, "\n  {input}: {problem}"),
-        };
-    }
-    (count > 0).then_some(text)
+        match entry.files.iter().any(named) || problem.starts_with(&input) {
+            true => problem,
+            false => format!("{input}: {problem}"),
+        }
+    };
+    let text = format!("{count} of {} failed", counted(entries.len()));
+    (count > 0).then(|| CliError::run(text).with_details(failed().map(line).collect()))
 }
 
 /// The columns of CSV and keys of JSON.
@@ -195,16 +196,15 @@ pub(crate) fn csv(entries: &[Entry]) -> String {
 }
 
 /// Writes a list with an object for each mesh.
-pub(crate) fn json(entries: &[Entry]) -> Result<String, String> {
+pub(crate) fn json(entries: &[Entry]) -> Result<String, CliError> {
     let object =
         |entry| Value::Object(KEYS.map(str::to_owned).into_iter().zip(values(entry)).collect());
     let list: Vec<Value> = entries.iter().map(object).collect();
-    serde_json::to_string_pretty(&list).map_err(|error| error.to_string())
+    Ok(serde_json::to_string_pretty(&list)?)
 }
 
 /// Writes the report on all meshes. It has, for each smoothed mesh, the report that a single run writes.
-pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, String> {
-    let told = |error: serde_json::Error| error.to_string();
+pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, CliError> {
     let mut meshes = Vec::new();
     for Entry { input, out, told: what, .. } in entries {
         let mut object = json!({
@@ -213,18 +213,18 @@ pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, String> 
         match what {
             Told::Smoothed { report, remarks } => {
                 object["remarks"] = json!(remarks);
-                object["report"] = serde_json::to_value(report).map_err(told)?;
+                object["report"] = serde_json::to_value(report)?;
             }
             Told::Failed(failure) => {
                 object["error"] = json!(what.problem());
-                object["triangles"] = serde_json::to_value(&failure.triangles).map_err(told)?;
+                object["triangles"] = serde_json::to_value(&failure.triangles)?;
             }
             Told::Skipped | Told::Interrupted => {}
         }
         meshes.push(object);
     }
     let all = json!({ "meshes": meshes, "seconds": seconds });
-    serde_json::to_string_pretty(&all).map(|text| text + "\n").map_err(told)
+    Ok(serde_json::to_string_pretty(&all)? + "\n")
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::commands::bench::report::Row;
+use crate::error::CliError;
 
 /// The JSON that an earlier `bench --json` has printed.
 pub(super) struct Baseline {
@@ -21,18 +22,13 @@ struct Known {
 }
 
 impl Baseline {
-    pub(super) fn read(path: &Path) -> Result<Self, String> {
-        let name = path.display();
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            format!(
-                "{name}: {error}. A baseline is a file with the output of `gpu-smooth bench --json`"
-            )
-        })?;
-        let rows = serde_json::from_str(&text).map_err(|error| {
-            format!(
-                "{name}: {error}. A baseline is a file with the output of `gpu-smooth bench --json`"
-            )
-        })?;
+    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+        let refused = |problem: String| {
+            CliError::input(format!("{}: {problem}", path.display()))
+                .with_remedy("A baseline is a file with the output of `gpu-smooth bench --json`")
+        };
+        let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
+        let rows = serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
         Ok(Self { rows })
     }
 

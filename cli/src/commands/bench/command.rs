@@ -11,15 +11,16 @@ use crate::commands::bench::baseline::Baseline;
 use crate::commands::bench::machine::Place;
 use crate::commands::bench::report::{Form, KernelRow, Row};
 use crate::commands::bench::{kernels, lattice, machine, rates, sweeps};
+use crate::error::CliError;
 use crate::load::explain;
 use crate::load::streams::read;
 use crate::run::engine;
 use crate::terminal::tell;
 
 /// A function that words an error in the user's terms.
-type Explain<'a> = dyn Fn(SmoothError) -> String + 'a;
+type Explain<'a> = dyn Fn(SmoothError) -> CliError + 'a;
 
-pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
+pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
     let file = args.mesh.as_deref().map(|mesh| read(mesh, args.reading)).transpose()?;
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let places = places(args, quiet)?;
@@ -39,18 +40,17 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), String> {
     if let Some(file) = &file {
         let explain = |error| match error {
             SmoothError::Mesh(error) => explain::mesh_error(file, &error),
-            error => error.to_string(),
+            error => error.into(),
         };
         measure_all(args, file.mesh(), &places, &explain, &mut measured)?;
     } else {
         for &vertices in &args.vertices {
             let mesh = lattice::lattice(vertices);
-            measure_all(args, &mesh, &places, &|error| error.to_string(), &mut measured)?;
+            measure_all(args, &mesh, &places, &CliError::from, &mut measured)?;
         }
     }
     if args.json {
-        let text = serde_json::to_string_pretty(&rows).map_err(|error| error.to_string())?;
-        tell::say(&text);
+        tell::say(&serde_json::to_string_pretty(&rows)?);
     } else {
         tell::say(&form.kernels(&rows));
     }
@@ -63,10 +63,10 @@ fn measure_all(
     places: &[Place],
     explain: &Explain<'_>,
     measured: &mut dyn FnMut(Row),
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let (_, problem) = prepare(mesh).map_err(|error| explain(error.into()))?;
     if problem.free_count() == 0 {
-        return Err("the mesh has no free vertex: there is nothing to measure".into());
+        return Err(CliError::input("the mesh has no free vertex: there is nothing to measure"));
     }
     let mut count = 0;
     for place in places {
@@ -140,7 +140,7 @@ fn measure(
 }
 
 /// Opens the engines to measure: those asked for, or all there are.
-fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, String> {
+fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, CliError> {
     let mut places = Vec::new();
     if args.engine != EngineChoice::Gpu && args.adapter.is_none() {
         let threads = rayon::current_num_threads();
@@ -155,7 +155,7 @@ fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, String> {
                 gpu: Some(gpu),
             }),
             Err(error) if places.is_empty() => return Err(error),
-            Err(error) => tell::note(args.json || quiet, &error),
+            Err(error) => tell::note(args.json || quiet, &error.to_string()),
         }
     }
     Ok(places)

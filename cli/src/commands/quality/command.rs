@@ -1,28 +1,20 @@
 //! `gpu-smooth quality MESH...`: measures meshes.
 
-use std::path::PathBuf;
-
 use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
 use crate::commands::quality::sheet::Sheet;
 use crate::commands::quality::{json, text};
+use crate::error::CliError;
 
-use crate::render::picture;
+use crate::request::Outputs;
 use crate::terminal::tell;
 
 /// Prints how good meshes are. Returns an error if a mesh cannot be read, or if a triangle passes a threshold.
-pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
-    if let Some(picture) = &args.picture.picture {
-        if args.meshes.len() > 1 {
-            return Err(format!(
-                "{}: --picture draws a single mesh: give only one",
-                picture.display()
-            ));
-        }
-        picture::check(&args.picture, args.meshes.iter().map(PathBuf::as_path))?;
-    }
+pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
+    let outputs = Outputs::of_picture(&args.picture)?;
+    outputs.check(&args.meshes, &[])?;
     let style = Style::of_terminal(args.ascii);
-    let sheets = args.meshes.iter().map(|path| Sheet::of(path, args));
+    let sheets = args.meshes.iter().map(|path| Sheet::of(path, args, outputs.picture.as_ref()));
     let sheets = sheets.collect::<Result<Vec<_>, _>>()?;
     if args.json {
         tell::say(&format!("{:#}", json::json(&sheets)?));
@@ -31,9 +23,11 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), String> {
     } else {
         tell::say(&text::text(&sheets, &style));
     }
-    let violations: Vec<String> =
-        sheets.iter().flat_map(|sheet| violations(sheet, &style)).collect();
-    if violations.is_empty() { Ok(()) } else { Err(violations.join("\n  ")) }
+    let mut violations = sheets.iter().flat_map(|sheet| violations(sheet, &style));
+    match violations.next() {
+        None => Ok(()),
+        Some(first) => Err(CliError::run(first).with_details(violations.collect())),
+    }
 }
 
 /// Words a sentence for each threshold that triangles of a mesh have passed.

@@ -7,12 +7,13 @@ use mesh_io::Place;
 use serde_json::{Map, Value, json};
 
 use crate::commands::quality::sheet::{Region, Sheet, Violation, Worst, location};
+use crate::error::CliError;
 use crate::render::columns::quoted;
 use crate::report::Histogram;
 
 /// Returns an object for one mesh, or a list of objects for several.
-pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, String> {
-    let one = |sheet| object(sheet).map_err(|error: serde_json::Error| error.to_string());
+pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, CliError> {
+    let one = |sheet| object(sheet).map_err(CliError::from);
     match sheets {
         [only] => one(only),
         several => several.iter().map(one).collect::<Result<Vec<_>, _>>().map(Value::from),

@@ -1,8 +1,9 @@
 //! All numbers that are shown of a mesh.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::collections::{HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use gpu_smooth::{BadTriangle, Measure, Measured, Quality, Statistics, Topology};
 use mesh_io::{Group, Groups, Location, Place};
@@ -14,6 +15,7 @@ use crate::load::remarks;
 use crate::load::streams::read;
 use crate::render::picture::{self, Shot};
 use crate::report::{Histogram, QualityReport, histogram};
+use crate::request::PictureRequest;
 
 /// All numbers that are shown of one mesh. The mesh itself is not kept, so that many can be shown side by side.
 pub(crate) struct Sheet {
@@ -85,8 +87,12 @@ pub(crate) struct Violation {
 }
 
 impl Sheet {
-    /// Reads a mesh and measures it.
-    pub(crate) fn of(path: &std::path::Path, args: &QualityArgs) -> Result<Self, String> {
+    /// Reads a mesh, measures it, and draws the picture that was asked for.
+    pub(crate) fn of(
+        path: &Path,
+        args: &QualityArgs,
+        picture: Option<&PictureRequest>,
+    ) -> Result<Self, CliError> {
         let mut file = read(path, args.reading)?;
         let laid_out = args.surface.lay_out(&mut file)?;
         let (file, surface) = (file, args.surface.surface());
@@ -99,7 +105,7 @@ impl Sheet {
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
         let shot = Shot { title, points: &mesh.points };
-        picture::write(&args.picture, &file, (&topology, surface), &[shot])?;
+        picture::write(picture, &file, (&topology, surface), &[shot])?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),
@@ -138,7 +144,7 @@ fn unused(file: &LoadedMesh, measured: &Measured<'_>) -> usize {
     unused.iter().filter(|v| !used.contains(v)).count()
 }
 
-fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, String> {
+fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, CliError> {
     let zeros;
     let regions = match file.source.regions() {
         Some(regions) => regions,
@@ -155,7 +161,7 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, St
     let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
     let places = file.source.triangle_places(first.iter().copied());
     let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
-    let groups = file.source.groups().map_err(|error| error.to_string())?;
+    let groups = file.source.groups()?;
     let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<Named>)| Region {
         first: places[first].clone(),
         groups,

@@ -124,8 +124,10 @@ fn details(sheet: &Sheet, style: &Style) -> String {
     ] {
         let _ = writeln!(text, "{name:<22}{count:>12}");
     }
-    let list = explain::list(&sheet.bad, report.inverted, "--json");
-    let _ = writeln!(text, "{:<22}{:>12}{list}", "inverted or flat", report.inverted);
+    let _ = writeln!(text, "{:<22}{:>12}", "inverted or flat", report.inverted);
+    for line in explain::list(&sheet.bad, report.inverted, "--json") {
+        let _ = writeln!(text, "  {line}");
+    }
     text
 }
 

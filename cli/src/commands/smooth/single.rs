@@ -1,7 +1,8 @@
 //! Smooths one mesh and shows the run to the user.
 
+use crate::error::{CliError, ErrorKind};
 use crate::load::LoadedMesh;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gpu_smooth::{Outcome, Phase, Progress, Smoother};
 use mesh_io::atomic;
@@ -10,13 +11,13 @@ use serde_json::json;
 
 use crate::args::OutputArgs;
 use crate::args::SmoothArgs;
-use crate::commands::smooth::destinations;
 use crate::load::streams;
 use crate::render::html;
 use crate::render::picture::{self, Shot};
 use crate::report::Failure;
 use crate::report::{Done, Task};
 use crate::report::{Refusal, Report};
+use crate::request::Outputs;
 use crate::run::carry_out;
 use crate::run::checkpoint;
 use crate::run::engine;
@@ -25,24 +26,25 @@ use crate::terminal::interrupt;
 use crate::terminal::progress::{Display, Stage};
 use crate::terminal::tell;
 
-pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
+pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), CliError> {
     let (Some(input), Some(out)) = (&args.input, &args.output) else {
-        return Err("IN and OUT are needed".into());
+        return Err(CliError::usage("IN and OUT are needed"));
     };
+    let outputs = Outputs::of_run(args)?;
+    let mesh: &[PathBuf] = if streams::is_standard(out) { &[] } else { std::slice::from_ref(out) };
+    outputs.check(std::slice::from_ref(input), mesh)?;
     interrupt::watch(show.quiet);
     let resumed = checkpoint::resumed(args)?;
     let resumed = resumed.as_ref();
-    let task = Task { args, show, input, out, resumed };
+    let task = Task { args, outputs: &outputs, show, input, out, resumed };
     let display = Display::new(show, args.estimated_end(), args.max_sweeps);
-    let mut follow = Shown { args, show, out, display: &display };
+    let mut follow = Shown { outputs: &outputs, show, out, display: &display };
     // The driver starts while the mesh is read. If the size of the mesh decides on the engine, it starts while the mesh
     // is prepared.
     let done = std::thread::scope(|scope| {
         let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
         let engine = move |size| match opening {
-            Some(opening) => {
-                opening.join().map_err(|_| "the graphics driver crashed on start".to_owned())?
-            }
+            Some(opening) => opening.join().map_err(|_| engine::driver_crashed())?,
             None => Ok(match resumed {
                 Some(checkpoint) => engine::of_checkpoint(checkpoint),
                 None => engine::choose(args, size),
@@ -54,12 +56,12 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), String> {
         })
     });
     display.clear();
-    done.map_err(|failure| told_with_report(args, failure))
+    done.map_err(|failure| told_with_report(&outputs, failure))
 }
 
 /// Shows a run on the terminal.
 struct Shown<'a> {
-    args: &'a SmoothArgs,
+    outputs: &'a Outputs,
     show: &'a OutputArgs,
     out: &'a Path,
     display: &'a Display,
@@ -70,8 +72,9 @@ impl Follow for Shown<'_> {
         self.display.stage(stage);
     }
 
-    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), String> {
-        destinations::check(self.args, file, self.out)
+    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
+        let written = streams::destinations(file, self.out)?;
+        self.outputs.check_files(&file.paths(), &written, ErrorKind::Output)
     }
 
     fn remark(&mut self, text: &str) {
@@ -85,25 +88,25 @@ impl Follow for Shown<'_> {
         self.display.sweep(progress);
     }
 
-    fn has_smoothed(&mut self) -> Result<(), String> {
+    fn has_smoothed(&mut self) -> Result<(), CliError> {
         if interrupt::is_requested() {
             let text =
                 "interrupted: writing the best mesh so far (interrupt again to end without it)";
             self.display.aside(|| tell::note(self.show.quiet, text));
         }
         interrupt::has_result();
-        destinations::can_write_report(self.args)
+        self.outputs.check_report()
     }
 }
 
 /// Writes and prints the results of a run that were asked for.
-fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
-    let Task { args, show, out, .. } = *task;
+fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
+    let Task { args, outputs, show, out, .. } = *task;
     let Done { file, smoother, outcome, report, .. } = done;
-    write_report(args, report)
-        .and_then(|()| draw(args, file, smoother, outcome))
-        .and_then(|()| html::write(args.html.as_deref(), task, done))
-        .map_err(|problem| format!("{problem}. The mesh was written"))?;
+    write_report(outputs, report)
+        .and_then(|()| draw(task, file, smoother, outcome))
+        .and_then(|()| html::write(outputs.page.as_deref(), task, done))
+        .map_err(|error| error.followed_by("The mesh was written"))?;
     let say = |text: &str| streams::say_beside(out, text);
     if show.verbose {
         sweeps(report).for_each(|line| say(&line));
@@ -121,7 +124,8 @@ fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
     match report.fell_short().filter(|_| args.strict) {
         None => Ok(()),
         Some(ending) => {
-            Err(format!("{ending}. The mesh was written; --strict makes this an error"))
+            let text = format!("{ending}. The mesh was written; --strict makes this an error");
+            Err(CliError::run(text))
         }
     }
 }
@@ -134,36 +138,35 @@ fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
     })
 }
 
-/// Returns the message why a mesh is not smoothed. If triangles are inverted or flat, also lists all of them in the
+/// Returns the error why a mesh is not smoothed. If triangles are inverted or flat, also lists all of them in the
 /// report that was asked for.
-fn told_with_report(args: &SmoothArgs, Failure { message, triangles }: Failure) -> String {
+fn told_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) -> CliError {
     if triangles.is_empty() {
-        return message;
+        return error;
     }
-    let first_line = message.lines().next().unwrap_or_default().to_owned();
-    match write_report(args, &Refusal { error: first_line, triangles }) {
-        Ok(()) => message,
-        Err(problem) => format!("{message}\n  {problem}"),
+    match write_report(outputs, &Refusal { error: error.headline(), triangles }) {
+        Ok(()) => error,
+        Err(problem) => error.with_detail(problem.to_string()),
     }
 }
 
 /// Draws the mesh before and after the run, if a picture was asked for.
 fn draw(
-    args: &SmoothArgs,
+    task: &Task<'_>,
     file: &LoadedMesh,
     smoother: &Smoother<'_>,
     outcome: &Outcome,
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     let shot = |title: &str, points| Shot { title: title.to_owned(), points };
     let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
-    let surface = args.target.surface();
-    picture::write(&args.picture, file, (smoother.topology(), surface), &shots)
+    let surface = task.args.target.surface();
+    picture::write(task.outputs.picture.as_ref(), file, (smoother.topology(), surface), &shots)
 }
 
-fn write_report(args: &SmoothArgs, report: &impl Serialize) -> Result<(), String> {
-    let Some(path) = &args.report else { return Ok(()) };
-    let mut text = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
+fn write_report(outputs: &Outputs, report: &impl Serialize) -> Result<(), CliError> {
+    let Some(path) = &outputs.report else { return Ok(()) };
+    let mut text = serde_json::to_string_pretty(report)?;
     text.push('\n');
     atomic::replace(path, text.as_bytes())
-        .map_err(|error| format!("the report was not written: {error}"))
+        .map_err(|error| CliError::from(error).within("the report was not written"))
 }

@@ -1,6 +1,7 @@
 //! The data by which the script of the page draws the mesh: all of it, or a picture with the triangles around the worst
 //! ones.
 
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::collections::HashSet;
 
@@ -50,7 +51,7 @@ pub(crate) fn data(
     states: [&Measured<'_>; 2],
     spots: &[Spot],
     bounds: &Bounds,
-) -> Result<Value, String> {
+) -> Result<Value, CliError> {
     let topology = states[0].topology();
     let is_whole = topology.triangles().len() <= bounds.most;
     let outlines = Outlines::of(
@@ -139,8 +140,8 @@ fn codes(
     topology: &Topology<'_>,
     state: &Measured<'_>,
     shown: &[usize],
-) -> Result<Vec<String>, String> {
-    let bad = topology.bad_triangles(state.points()).map_err(|error| error.to_string())?;
+) -> Result<Vec<String>, CliError> {
+    let bad = topology.bad_triangles(state.points())?;
     let bad: HashSet<usize> = bad.into_iter().map(|bad| bad.triangle).collect();
     let of = |measure| {
         let code = |&t: &usize| -> u16 {
@@ -160,7 +161,7 @@ fn picture(
     state: &Measured<'_>,
     extent: Extent,
     pixels: u32,
-) -> Result<String, String> {
+) -> Result<String, CliError> {
     let bytes = picture_of(topology, state, SHOWN[0], extent, pixels)?;
     Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(bytes)))
 }

@@ -8,4 +8,4 @@ mod tables;
 mod worst;
 mod write;
 
-pub(crate) use write::{check, write};
+pub(crate) use write::write;

@@ -4,13 +4,14 @@ use std::ffi::OsStr;
 use std::fmt::Write;
 use std::time::SystemTime;
 
+use crate::error::CliError;
 use crate::render::html::page::escape;
 use crate::render::picture::slid;
 use crate::report::{Done, Task};
 use crate::terminal::numbers::six;
 
 /// Writes the command, versions, the engine, and the certificate.
-pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
+pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {
     let command: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
     let engine = &done.report.engine;
     let on = match (&engine.adapter, &engine.driver) {
@@ -44,10 +45,10 @@ pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
 }
 
 /// Writes what was checked on the coordinates as they were written.
-fn certificate(done: &Done<'_>) -> Result<String, String> {
+fn certificate(done: &Done<'_>) -> Result<String, CliError> {
     let topology = done.smoother.topology();
     let (old, new) = (&done.file.mesh().points, &done.outcome.points);
-    let bad = topology.bad_triangles(new).map_err(|error| error.to_string())?.len();
+    let bad = topology.bad_triangles(new)?.len();
     let bits = |point: &[f64; 2]| point.map(f64::to_bits);
     let moved: Vec<usize> = (0..old.len()).filter(|&v| bits(&old[v]) != bits(&new[v])).collect();
     let held = topology.free().iter().filter(|free| !**free).count();

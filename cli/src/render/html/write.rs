@@ -5,6 +5,7 @@ use std::path::Path;
 use gpu_smooth::{Measure, Measured};
 use mesh_io::atomic;
 
+use crate::error::CliError;
 use crate::render::html::page::{Page, escape};
 use crate::render::html::tables::measure_name;
 use crate::render::html::{charts, mesh, run, tables, worst};
@@ -14,38 +15,19 @@ use crate::report::{Histogram, histogram};
 /// The measures with a histogram.
 const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
 
-/// Refuses a page that cannot be written, or that would replace one of the other files.
-pub(crate) fn check<'p>(
-    path: Option<&Path>,
-    mut others: impl Iterator<Item = &'p Path>,
-) -> Result<(), String> {
-    let Some(path) = path else { return Ok(()) };
-    let name = path.display();
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
-    if !matches!(ending.as_deref(), Some("html" | "htm")) {
-        return Err(format!("{name}: a page is HTML. End its name in .html"));
-    }
-    if others.any(|other| atomic::same_file(other, path)) {
-        return Err(format!("{name}: the page would replace this file"));
-    }
-    atomic::check(path).map_err(|error| format!("the page cannot be written: {error}"))
-}
-
 /// Writes the page of a run, if it was asked for.
-pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Result<(), String> {
+pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
     let Some(path) = path else { return Ok(()) };
-    let text =
-        page(task, done).map_err(|problem| format!("the page was not written: {problem}"))?;
-    atomic::replace(path, text.as_bytes())
-        .map_err(|error| format!("the page was not written: {error}"))
+    let failed = |error: CliError| error.within("the page was not written");
+    let text = page(task, done).map_err(failed)?;
+    atomic::replace(path, text.as_bytes()).map_err(|error| failed(error.into()))
 }
 
-fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, String> {
-    let told = |error: gpu_smooth::MeshError| error.to_string();
+fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {
     let topology = done.smoother.topology();
     let surface = task.args.target.surface();
-    let before = Measured::on(surface, &done.file.mesh().points, topology).map_err(told)?;
-    let after = Measured::on(surface, &done.outcome.points, topology).map_err(told)?;
+    let before = Measured::on(surface, &done.file.mesh().points, topology)?;
+    let after = Measured::on(surface, &done.outcome.points, topology)?;
     let states = [&before, &after];
     let spots = worst::spots(done.file, states);
 

@@ -1,5 +1,6 @@
 //! The surface that a picture is drawn on.
 
+use crate::error::CliError;
 use crate::render::picture::color::Color;
 
 /// A point in pixels, from the upper left corner.
@@ -34,5 +35,5 @@ pub(crate) trait Canvas {
     /// Returns the width of a text, in pixels.
     fn width(&self, size: f32, text: &str) -> f32;
     /// Returns the bytes of the file.
-    fn finish(self: Box<Self>) -> Result<Vec<u8>, String>;
+    fn finish(self: Box<Self>) -> Result<Vec<u8>, CliError>;
 }

@@ -1,9 +1,9 @@
 //! `--picture`: a mesh colored by its quality, before and after a run.
 
-use crate::args::PictureArgs;
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::render::picture::{color, png, svg};
-use std::path::Path;
+use crate::request::{PictureFormat, PictureRequest};
 
 use crate::render::picture::canvas::Canvas;
 use crate::render::picture::layout::{Extent, Frame};
@@ -24,62 +24,25 @@ pub(crate) struct Shot<'a> {
     pub(crate) points: &'a [[f64; 2]],
 }
 
-/// The kinds of picture files.
-enum Kind {
-    Png,
-    Svg,
-}
-
-fn kind(path: &Path) -> Result<Kind, String> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
-    match ending.as_deref() {
-        Some("png") => Ok(Kind::Png),
-        Some("svg") => Ok(Kind::Svg),
-        _ => Err(format!(
-            "{}: a picture is PNG or SVG. End its name in .png or .svg",
-            path.display()
-        )),
-    }
-}
-
-/// Refuses, before anything is drawn, a picture that cannot be written or that would replace one of these files.
-pub(crate) fn check<'p>(
-    args: &PictureArgs,
-    mut others: impl Iterator<Item = &'p Path>,
-) -> Result<(), String> {
-    let Some(path) = &args.picture else { return Ok(()) };
-    kind(path)?;
-    if others.any(|other| atomic::same_file(other, path)) {
-        return Err(format!("{}: the picture would replace this file", path.display()));
-    }
-    atomic::check(path).map_err(|error| format!("the picture cannot be written: {error}"))
-}
-
 /// Draws the picture that was asked for: one panel for each shot, all on one color scale.
 pub(crate) fn write(
-    args: &PictureArgs,
+    request: Option<&PictureRequest>,
     file: &LoadedMesh,
     (topology, surface): (&Topology<'_>, Surface),
     shots: &[Shot<'_>],
-) -> Result<(), String> {
-    let Some(path) = &args.picture else { return Ok(()) };
-    let failed = |problem: String| format!("the picture was not written: {problem}");
-    if args.picture_arrows && shots.len() < 2 {
-        return Err(failed(
-            "--picture-arrows needs a run, as arrows go from the old place of a vertex to the new one".into(),
-        ));
-    }
-    let panels = shots.iter().map(|shot| panel(args, (topology, surface), shot));
-    let panels =
-        panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.to_string()))?;
+) -> Result<(), CliError> {
+    let Some(request) = request else { return Ok(()) };
+    let failed = |error: CliError| error.within("the picture was not written");
+    let panels = shots.iter().map(|shot| panel(request.measure, (topology, surface), shot));
+    let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
     let (before, after) = match shots {
         [first, .., last] => (first.points, last.points),
         _ => (&[][..], &[][..]),
     };
     let scene = Scene {
-        measure: args.picture_measure,
+        measure: request.measure,
         triangles: topology.triangles(),
-        with_arrows: args.picture_arrows,
+        with_arrows: request.with_arrows,
         outlines: Outlines::of(
             topology,
             &file.mesh().fixed,
@@ -88,16 +51,20 @@ pub(crate) fn write(
         ),
         panels,
     };
-    let layout = scene.layout(args.picture_size);
+    let layout = scene.layout(request.width);
     let [width, height] = layout.size;
-    let canvas = match kind(path)? {
-        Kind::Png => png::Png::new(width, height).map(|png| Box::new(png) as Box<dyn Canvas>),
-        Kind::Svg => svg::Svg::new(width, height).map(|svg| Box::new(svg) as Box<dyn Canvas>),
+    let canvas = match request.format {
+        PictureFormat::Png => {
+            png::Png::new(width, height).map(|png| Box::new(png) as Box<dyn Canvas>)
+        }
+        PictureFormat::Svg => {
+            svg::Svg::new(width, height).map(|svg| Box::new(svg) as Box<dyn Canvas>)
+        }
     };
     let mut canvas = canvas.map_err(failed)?;
     scene.draw(&layout, canvas.as_mut());
     let bytes = canvas.finish().map_err(failed)?;
-    atomic::replace(path, &bytes).map_err(|error| failed(error.to_string()))
+    atomic::replace(&request.path, &bytes).map_err(|error| failed(error.into()))
 }
 
 /// Draws the triangles alone as a PNG without background, colored by a measure. The longer side of the picture is
@@ -108,8 +75,8 @@ pub(crate) fn picture_of(
     measure: Measure,
     extent: Extent,
     longest: u32,
-) -> Result<Vec<u8>, String> {
-    let goodness = goodness_of(topology, state, measure).map_err(|error| error.to_string())?;
+) -> Result<Vec<u8>, CliError> {
+    let goodness = goodness_of(topology, state, measure)?;
     let [width, height] = extent.size();
     let scale = f64::from(longest) / width.max(height);
     let corner = [width, height].map(|size| (size * scale).ceil());
@@ -136,11 +103,10 @@ fn goodness_of(
 }
 
 fn panel<'a>(
-    args: &PictureArgs,
+    measure: Measure,
     (topology, surface): (&Topology<'_>, Surface),
     shot: &Shot<'a>,
 ) -> Result<Panel<'a>, MeshError> {
-    let measure = args.picture_measure;
     let measured = Measured::on(surface, shot.points, topology)?;
     let goodness = goodness_of(topology, &measured, measure)?;
     let unit = measure.definition().unit;

@@ -1,14 +1,16 @@
 //! Text as outlines. The font is the Latin part of DejaVu Sans; its license is in the same folder.
 
+use crate::error::CliError;
 use tiny_skia::{Path, PathBuilder, Transform};
 use ttf_parser::{Face, OutlineBuilder};
 
 pub(crate) struct Font(Face<'static>);
 
 impl Font {
-    pub(crate) fn new() -> Result<Self, String> {
+    pub(crate) fn new() -> Result<Self, CliError> {
         let face = Face::parse(include_bytes!("DejaVuSans-subset.ttf"), 0);
-        face.map(Self).map_err(|error| format!("the font of pictures cannot be read: {error}"))
+        face.map(Self)
+            .map_err(|error| CliError::run(format!("the font of pictures cannot be read: {error}")))
     }
 
     /// Returns the width of a text, in pixels, at a size in pixels.

@@ -4,6 +4,7 @@ use tiny_skia::{
     FillRule, Mask, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8, Rect, Stroke, Transform,
 };
 
+use crate::error::CliError;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
 use crate::render::picture::color::{BLACK, Color, WHITE};
 use crate::render::picture::font::Font;
@@ -16,9 +17,8 @@ pub(crate) struct Png {
 }
 
 impl Png {
-    pub(crate) fn new(width: u32, height: u32) -> Result<Self, String> {
-        let mut pixels = Pixmap::new(width, height)
-            .ok_or("the picture is too large: give a smaller --picture-size")?;
+    pub(crate) fn new(width: u32, height: u32) -> Result<Self, CliError> {
+        let mut pixels = Pixmap::new(width, height).ok_or_else(too_large)?;
         pixels.fill(tiny_skia::Color::WHITE);
         Ok(Self { pixels, font: Font::new()?, clip: None })
     }
@@ -38,16 +38,20 @@ fn paint(color: Color, opacity: f32) -> Paint<'static> {
     paint
 }
 
+/// The error if no memory can be had for a picture of this size.
+pub(super) fn too_large() -> CliError {
+    CliError::run("the picture is too large: give a smaller --picture-size")
+}
+
 /// Encodes the triangles of a raster as a PNG without background.
-pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
-    let size = |pixels: usize| u32::try_from(pixels).map_err(|error| error.to_string());
+pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, CliError> {
+    let size = |pixels: usize| u32::try_from(pixels).map_err(|_| too_large());
     let (width, height) = (size(raster.width)?, size(raster.height)?);
-    let mut pixels = Pixmap::new(width, height)
-        .ok_or("the picture is too large: give a smaller --picture-size")?;
+    let mut pixels = Pixmap::new(width, height).ok_or_else(too_large)?;
     for (to, [r, g, b, a]) in pixels.pixels_mut().iter_mut().zip(raster.pixels()) {
         *to = PremultipliedColorU8::from_rgba(r, g, b, a).unwrap_or(*to);
     }
-    pixels.encode_png().map_err(|error| error.to_string())
+    pixels.encode_png().map_err(|error| CliError::run(error.to_string()))
 }
 
 impl Canvas for Png {
@@ -148,7 +152,7 @@ impl Canvas for Png {
         self.font.width(size, text)
     }
 
-    fn finish(self: Box<Self>) -> Result<Vec<u8>, String> {
-        self.pixels.encode_png().map_err(|error| error.to_string())
+    fn finish(self: Box<Self>) -> Result<Vec<u8>, CliError> {
+        self.pixels.encode_png().map_err(|error| CliError::run(error.to_string()))
     }
 }

@@ -7,6 +7,7 @@ use std::fmt::Write;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 
+use crate::error::CliError;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
 use crate::render::picture::color::{Color, of_goodness};
 use crate::render::picture::font::Font;
@@ -22,11 +23,11 @@ const COLORS: f32 = 128.0;
 pub(crate) struct Svg {
     text: String,
     font: Font,
-    problem: Option<String>,
+    problem: Option<CliError>,
 }
 
 impl Svg {
-    pub(crate) fn new(width: u32, height: u32) -> Result<Self, String> {
+    pub(crate) fn new(width: u32, height: u32) -> Result<Self, CliError> {
         let mut text = String::new();
         let _ = writeln!(
             text,
@@ -162,7 +163,7 @@ impl Canvas for Svg {
         self.font.width(size, text)
     }
 
-    fn finish(self: Box<Self>) -> Result<Vec<u8>, String> {
+    fn finish(self: Box<Self>) -> Result<Vec<u8>, CliError> {
         match self.problem {
             Some(problem) => Err(problem),
             None => Ok((self.text + "</svg>\n").into_bytes()),

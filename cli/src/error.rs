@@ -1,0 +1,258 @@
+//! The error of a command: its kind, message and remedy.
+
+use std::fmt;
+use std::process::ExitCode;
+
+use gpu_smooth::{GpuError, MeshError, SmoothError};
+use mesh_io::{FieldError, GroupError, ReadError, WriteError};
+
+/// The cause of an error. The exit code follows from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ErrorKind {
+    /// The command line is wrong by itself. No mesh was read.
+    Usage,
+    /// A file that is read is missing or damaged, lacks what an option names, or has a mesh that cannot be smoothed.
+    Input,
+    /// A file cannot be written.
+    Output,
+    /// The work was done, but not with the wanted result, or it failed inside the program.
+    Run,
+    /// A GPU cannot be used, or has failed.
+    Device,
+}
+
+impl ErrorKind {
+    /// Returns the name in a log of JSON.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Usage => "usage",
+            Self::Input => "input",
+            Self::Output => "output",
+            Self::Run => "run",
+            Self::Device => "device",
+        }
+    }
+
+    /// Returns the exit code of the program: 2 for a wrong command line, as clap has it, else 1.
+    pub(crate) fn exit_code(self) -> ExitCode {
+        match self {
+            Self::Usage => ExitCode::from(2),
+            _ => ExitCode::FAILURE,
+        }
+    }
+}
+
+/// The reason why a command failed. Displays as `message. remedy`, with each detail on a line of its own below.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct CliError {
+    pub(crate) kind: ErrorKind,
+    /// What is wrong, with the file, line or option where it is known.
+    message: String,
+    /// What the user can do about it, in one or more sentences.
+    remedy: Option<String>,
+    /// A list that belongs to the message, such as the first inverted triangles.
+    details: Vec<String>,
+}
+
+impl CliError {
+    pub(crate) fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        Self { kind, message: message.into(), remedy: None, details: Vec::new() }
+    }
+
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Usage, message)
+    }
+
+    pub(crate) fn input(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Input, message)
+    }
+
+    pub(crate) fn output(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Output, message)
+    }
+
+    pub(crate) fn run(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Run, message)
+    }
+
+    pub(crate) fn device(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Device, message)
+    }
+
+    /// Adds what the user can do.
+    pub(crate) fn with_remedy(self, remedy: impl Into<String>) -> Self {
+        Self { remedy: Some(remedy.into()), ..self }
+    }
+
+    /// Adds lines that are shown below the message.
+    pub(crate) fn with_details(self, details: Vec<String>) -> Self {
+        Self { details, ..self }
+    }
+
+    /// Adds a line below the others.
+    pub(crate) fn with_detail(mut self, detail: String) -> Self {
+        self.details.push(detail);
+        self
+    }
+
+    /// Puts a part and a colon before the message, such as the work that failed.
+    pub(crate) fn within(self, part: &str) -> Self {
+        Self { message: format!("{part}: {}", self.message), ..self }
+    }
+
+    /// Puts words before the message, which goes on after them.
+    pub(crate) fn after(self, words: &str) -> Self {
+        Self { message: format!("{words} {}", self.message), ..self }
+    }
+
+    /// Appends the option that the error is about, in parentheses.
+    pub(crate) fn about(mut self, option: &str) -> Self {
+        let text = self.remedy.as_mut().unwrap_or(&mut self.message);
+        *text = format!("{text} ({option})");
+        self
+    }
+
+    /// Appends a sentence to the remedy, or to the message if there is no remedy.
+    pub(crate) fn followed_by(mut self, sentence: &str) -> Self {
+        let text = self.remedy.as_mut().unwrap_or(&mut self.message);
+        *text = format!("{text}. {sentence}");
+        self
+    }
+
+    pub(crate) fn remedy(&self) -> Option<&str> {
+        self.remedy.as_deref()
+    }
+
+    /// Returns message and remedy without the details.
+    pub(crate) fn headline(&self) -> String {
+        match &self.remedy {
+            None => self.message.clone(),
+            Some(remedy) => format!("{}. {remedy}", self.message),
+        }
+    }
+}
+
+impl fmt::Display for CliError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.headline())?;
+        self.details.iter().try_for_each(|detail| write!(f, "\n  {detail}"))
+    }
+}
+
+impl From<ReadError> for CliError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Io { path, source, remedy } => {
+                Self::input(format!("{}: {source}", path.display())).with_remedy(remedy)
+            }
+            ReadError::Content { path, location, problem, remedy } => {
+                Self::input(format!("{}{location}: {problem}", path.display())).with_remedy(remedy)
+            }
+            ReadError::Format { path, problem, remedy } => {
+                Self::input(format!("{}: {problem}", path.display())).with_remedy(remedy)
+            }
+            ReadError::Unwelded { path } => {
+                let problem =
+                    "an STL lists corners of triangles, and has no vertices that these share";
+                Self::input(format!("{}: {problem}", path.display()))
+                    .with_remedy("Have corners at the same place joined: --weld")
+            }
+        }
+    }
+}
+
+impl From<WriteError> for CliError {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Io { path, source, remedy } => {
+                Self::output(format!("{}: {source}", path.display())).with_remedy(remedy)
+            }
+            WriteError::Format { path, problem, remedy } => {
+                Self::output(format!("{}: {problem}", path.display())).with_remedy(remedy)
+            }
+            WriteError::Points { .. } => Self::run(error.to_string()),
+        }
+    }
+}
+
+impl From<GroupError> for CliError {
+    fn from(error: GroupError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+/// The program gives lists of a wrong length, not the user.
+impl From<FieldError> for CliError {
+    fn from(error: FieldError) -> Self {
+        Self::run(error.to_string())
+    }
+}
+
+/// Without the names of the file. `load::explain` words an error in the terms of a file.
+impl From<MeshError> for CliError {
+    fn from(error: MeshError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+impl From<GpuError> for CliError {
+    fn from(error: GpuError) -> Self {
+        Self::device(error.to_string())
+    }
+}
+
+impl From<SmoothError> for CliError {
+    fn from(error: SmoothError) -> Self {
+        match error {
+            SmoothError::Mesh(error) => error.into(),
+            SmoothError::Gpu(error) => error.into(),
+            SmoothError::Checkpoint(_) => Self::input(error.to_string()),
+            SmoothError::Option { .. } => Self::run(error.to_string()),
+        }
+    }
+}
+
+impl From<serde_json::Error> for CliError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::run(error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_io::MeshFile;
+    use std::path::Path;
+
+    #[test]
+    fn an_error_of_a_file_reads_as_the_library_words_it() {
+        for name in ["none.msh", "in.txt"] {
+            let error = MeshFile::from_bytes(Path::new(name), b"hello\n".to_vec()).err().unwrap();
+            let text = error.to_string();
+            let error = CliError::from(error);
+            assert_eq!((error.kind, error.to_string()), (ErrorKind::Input, text));
+            assert!(error.remedy().is_some());
+        }
+        let error = mesh_io::atomic::check(Path::new("none/out.msh")).err().unwrap();
+        let text = error.to_string();
+        let error = CliError::from(error);
+        assert_eq!((error.kind, error.to_string()), (ErrorKind::Output, text));
+    }
+
+    #[test]
+    fn parts_are_joined_to_one_text() {
+        let error =
+            CliError::output("r.json: the file is read-only").with_remedy("Make it writable");
+        let error =
+            error.within("the report cannot be written").followed_by("The mesh was written");
+        let error = error.with_details(vec!["first".into(), "second".into()]);
+        let line = "the report cannot be written: r.json: the file is read-only. Make it writable. The mesh was written";
+        assert_eq!(error.headline(), line);
+        assert_eq!(error.to_string(), format!("{line}\n  first\n  second"));
+        let bare = CliError::run("it failed").followed_by("The mesh was written");
+        assert_eq!(
+            (bare.to_string().as_str(), bare.remedy()),
+            ("it failed. The mesh was written", None)
+        );
+    }
+}

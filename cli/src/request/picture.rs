@@ -1,0 +1,54 @@
+//! The request on a picture.
+
+use std::path::{Path, PathBuf};
+
+use gpu_smooth::Measure;
+
+use crate::args::PictureArgs;
+use crate::error::CliError;
+
+/// The format of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PictureFormat {
+    Png,
+    Svg,
+}
+
+/// A picture of a mesh.
+pub(crate) struct PictureRequest {
+    pub(crate) path: PathBuf,
+    pub(crate) format: PictureFormat,
+    /// The measure that colors show.
+    pub(crate) measure: Measure,
+    /// The width in pixels.
+    pub(crate) width: u32,
+    /// Whether arrows show how far vertices have moved.
+    pub(crate) with_arrows: bool,
+}
+
+impl PictureRequest {
+    /// Returns the picture of the options, if they ask for one.
+    ///
+    /// # Errors
+    /// If the ending of the name is not that of a format of pictures.
+    pub(super) fn of(args: &PictureArgs) -> Result<Option<Self>, CliError> {
+        let Some(path) = &args.picture else { return Ok(None) };
+        Ok(Some(Self {
+            path: path.clone(),
+            format: format(path)?,
+            measure: args.picture_measure,
+            width: args.picture_size,
+            with_arrows: args.picture_arrows,
+        }))
+    }
+}
+
+fn format(path: &Path) -> Result<PictureFormat, CliError> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
+    match ending.as_deref() {
+        Some("png") => Ok(PictureFormat::Png),
+        Some("svg") => Ok(PictureFormat::Svg),
+        _ => Err(CliError::usage(format!("{}: a picture is PNG or SVG", path.display()))
+            .with_remedy("End its name in .png or .svg")),
+    }
+}
