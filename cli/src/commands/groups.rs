@@ -12,7 +12,7 @@ use crate::terminal::tell;
 
 /// Prints what can be named in a mesh, and the name that options take.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
-    let file = read(&args.mesh, args.reading)?;
+    let file = read(&args.mesh, args.reading.into())?;
     let groups = file.source.groups()?;
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {

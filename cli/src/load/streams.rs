@@ -5,26 +5,26 @@ use std::path::{Path, PathBuf};
 
 use mesh_io::{MeshFile, PointField};
 
-use crate::args::ReadArgs;
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::request::ReadRequest;
 use crate::terminal::tell;
 
 /// Reads a mesh from a file, or from the standard input if its name is `-`.
-pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, CliError> {
-    read_source(path, args).map(LoadedMesh::new)
+pub(crate) fn read(path: &Path, request: ReadRequest) -> Result<LoadedMesh, CliError> {
+    read_source(path, request).map(LoadedMesh::new)
 }
 
-fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, CliError> {
+fn read_source(path: &Path, request: ReadRequest) -> Result<MeshFile, CliError> {
     if !is_standard(path) {
-        let read = if args.weld { MeshFile::read_welded } else { MeshFile::read };
+        let read = if request.weld { MeshFile::read_welded } else { MeshFile::read };
         return Ok(read(path)?);
     }
     let mut bytes = Vec::new();
     std::io::stdin()
         .read_to_end(&mut bytes)
         .map_err(|error| CliError::input(format!("standard input: {error}")))?;
-    let read = if args.weld { MeshFile::from_bytes_welded } else { MeshFile::from_bytes };
+    let read = if request.weld { MeshFile::from_bytes_welded } else { MeshFile::from_bytes };
     Ok(read(Path::new("standard input"), bytes)?)
 }
 

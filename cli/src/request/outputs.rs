@@ -11,6 +11,7 @@ use mesh_io::{Format, atomic};
 use crate::args::{PictureArgs, SmoothArgs};
 use crate::error::{CliError, ErrorKind};
 use crate::request::picture::PictureRequest;
+use crate::request::target::TargetRequest;
 
 /// A file with a checkpoint, and how often it is written.
 pub(crate) struct CheckpointPlan {
@@ -75,7 +76,7 @@ impl Outputs {
     pub(crate) fn of_run(args: &SmoothArgs) -> Result<Self, CliError> {
         let checkpoint = args.checkpoint.as_ref().or(args.continued.as_ref());
         let mut inputs = args.moving.fix_vertices.clone();
-        inputs.extend(args.target.files());
+        inputs.extend(TargetRequest::from(&args.target).files());
         Ok(Self {
             mesh: match args.out_dir {
                 Some(_) => MeshOutput::OfMany,

@@ -3,12 +3,12 @@
 use std::cell::{Cell, RefCell};
 use std::fs;
 use std::io::ErrorKind;
+use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::{Checkpoint, GpuError, Keeper, Stop};
 use mesh_io::atomic;
 
-use crate::args::SmoothArgs;
 use crate::error::CliError;
 use crate::request::{CheckpointPlan, is_checkpoint};
 use crate::run::engine;
@@ -16,9 +16,9 @@ use crate::run::observer::Follow;
 
 const WITHOUT_CONTINUE: &str = "Without --continue the run starts anew";
 
-/// Reads the checkpoint to go on from, if the command line names one.
-pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, CliError> {
-    let Some(path) = &args.continued else { return Ok(None) };
+/// Reads the checkpoint to go on from, if there is one.
+pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>, CliError> {
+    let Some(path) = continue_from else { return Ok(None) };
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => CliError::input(format!(

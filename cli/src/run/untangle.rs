@@ -27,12 +27,13 @@ pub(crate) struct Mended {
 /// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before. The time limit
 /// counts from `began`.
 pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, CliError> {
-    let Task { args, show, out, .. } = *task;
+    let Task { request, verbosity, out, .. } = *task;
+    let keeps_going = request.untangle.is_some_and(|untangle| untangle.keeps_going);
     let mesh = file.mesh();
     let told = |error: MeshError| explain::mesh_error(file, &error);
     let topology = Topology::by_area(mesh).map_err(told)?;
     let crossings = explain::crossings(file, &topology);
-    if let (Some(crossings), false) = (&crossings, args.keep_going) {
+    if let (Some(crossings), false) = (&crossings, keeps_going) {
         let remedy =
             "Correct them, or untangle a mesh that is meant to lie over itself with --keep-going";
         let path = file.source.path().display().to_string();
@@ -40,14 +41,14 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
     }
     let mut ended = None;
     let mut observe = |progress: &Untangling| {
-        if show.verbose {
+        if verbosity.verbose {
             let Untangling { sweep, bad } = progress;
             let text = format!("untangling, sweep {sweep:<5} inverted or flat {bad}");
             streams::say_beside(out, &text);
         }
         if interrupt::is_requested() {
             ended = Some("interrupted while untangling");
-        } else if args.time_limit.is_some_and(|limit| began.elapsed() >= limit) {
+        } else if request.time_limit.is_some_and(|limit| began.elapsed() >= limit) {
             ended = Some("--time-limit ended untangling");
         }
         match ended {
@@ -69,7 +70,7 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
     if let Some(ended) = ended {
         error = error.after(&format!("{ended}."));
     }
-    if !args.keep_going {
+    if !keeps_going {
         return Err(error);
     }
     Err(error.with_detail(match streams::write(file, out, &points, &[]) {
