@@ -7,7 +7,7 @@ use crate::load::streams::read;
 use crate::load::{LoadedMesh, lay_out};
 use crate::report::FileHash;
 use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest};
-use crate::run::proof::{self, Proof};
+use crate::run::proof::{self, MeshVersion, Proof};
 use crate::terminal::tell;
 use gpu_smooth::Surface;
 
@@ -39,11 +39,15 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
         CliError::from(error).within(&args.before.display().to_string())
     };
     let slide = slide.map(|slide| slide.slide(&before)).transpose()?;
-    let proof = Proof::of([&before, &after], [&mine, &theirs], slide.as_ref()).map_err(told)?;
+    let proof = Proof::of(
+        MeshVersion { file: &before, fields: &mine },
+        MeshVersion { file: &after, fields: &theirs },
+        slide.as_ref(),
+    )
+    .map_err(told)?;
     if proof.difference.is_some() {
         return Err(CliError::run(proof.problem().unwrap_or_default()));
     }
-    let (old, new) = (&before.mesh().points, &after.mesh().points);
     let Proof { moved, held, bad, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);
     problems.extend(proof.problem());
@@ -69,7 +73,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
         return Err(CliError::run(text).with_details(list));
     }
     if !show.quiet {
-        tell::say(&summary(&after, old, new, (moved, proof.slid, proof.pairs)));
+        tell::say(&summary(&before, &after, &proof));
         for FileHash { path, sha256 } in proof::hashes(&before).iter().chain(&proof::hashes(&after))
         {
             tell::say(&format!("{sha256}  {path}"));
@@ -82,12 +86,9 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
 }
 
 /// Says in a line or two which vertices moved.
-fn summary(
-    after: &LoadedMesh,
-    old: &[[f64; 2]],
-    new: &[[f64; 2]],
-    (moved, slid, pairs): (&[u32], usize, usize),
-) -> String {
+fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
+    let Proof { moved, slid, pairs, .. } = proof;
+    let (old, new) = (&before.mesh().points, &after.mesh().points);
     let distance = |&vertex: &u32| {
         let ([a, b], [c, d]) = (old[vertex as usize], new[vertex as usize]);
         (c - a).hypot(d - b)

@@ -17,7 +17,11 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {
         let spellings = groups.spellings();
-        let list: Vec<_> = groups.iter().zip(&spellings).map(as_json).collect();
+        let list: Vec<_> = groups
+            .iter()
+            .zip(&spellings)
+            .map(|(group, spelling)| as_json(group, spelling))
+            .collect();
         let value = json!({
             "file": path.to_string(),
             "format": format.to_string(),
@@ -41,7 +45,7 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn as_json((group, spelling): (&Group, &String)) -> serde_json::Value {
+fn as_json(group: &Group, spelling: &str) -> serde_json::Value {
     json!({
         "group": spelling,
         "what": group.what,

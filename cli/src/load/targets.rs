@@ -10,7 +10,7 @@ use gpu_smooth::{
 use mesh_io::{MeshFile, Solution, View};
 
 use crate::load::{explain, lay_out};
-use crate::request::{Given, Kept, TargetRequest, TargetSource};
+use crate::request::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};
 use crate::terminal::numbers::six;
 
 impl TargetRequest {
@@ -74,10 +74,10 @@ impl TargetRequest {
         let targets = match self {
             Self::Equilateral if surface == Surface::Plane => return Ok(None),
             Self::Equilateral => Ok(Targets::equilateral(points.len())),
-            Self::Keep { what: Kept::Size, rings, .. } => {
+            Self::Keep { what: ElementProperty::Size, rings, .. } => {
                 Targets::keep_size(topology, points, surface, *rings)
             }
-            Self::Keep { what: Kept::Shape, rings, .. } => {
+            Self::Keep { what: ElementProperty::Shape, rings, .. } => {
                 Targets::keep_shape(topology, points, *rings)
             }
             Self::Given { what, text, .. } => {
@@ -86,7 +86,7 @@ impl TargetRequest {
         };
         let surface = match self {
             // Shapes are kept as they are in the coordinates, also on the sphere.
-            Self::Keep { what: Kept::Shape, .. } => Surface::Plane,
+            Self::Keep { what: ElementProperty::Shape, .. } => Surface::Plane,
             _ => surface,
         };
         let targets = targets.map_err(|error| explain::mesh_error(file, &error))?;
@@ -101,18 +101,18 @@ struct MeshTargets {
 }
 
 /// Returns how many numbers a vertex has in a source of targets.
-fn components(what: Given) -> usize {
+fn components(what: TargetNumbers) -> usize {
     match what {
-        Given::Size => 1,
-        Given::Metric => 3,
+        TargetNumbers::Sizes => 1,
+        TargetNumbers::Tensors => 3,
     }
 }
 
 /// Makes targets of the numbers of a source.
-fn of_numbers(what: Given, numbers: &[f64]) -> Result<Targets, MeshError> {
+fn of_numbers(what: TargetNumbers, numbers: &[f64]) -> Result<Targets, MeshError> {
     match what {
-        Given::Size => Targets::sizes(numbers),
-        Given::Metric => Targets::tensors(numbers.as_chunks().0),
+        TargetNumbers::Sizes => Targets::sizes(numbers),
+        TargetNumbers::Tensors => Targets::tensors(numbers.as_chunks().0),
     }
 }
 
@@ -120,7 +120,7 @@ fn of_numbers(what: Given, numbers: &[f64]) -> Result<Targets, MeshError> {
 fn field_of_mesh(
     path: &Path,
     data: &str,
-    what: Given,
+    what: TargetNumbers,
     surface: Surface,
 ) -> Result<TargetField, CliError> {
     let read = MeshFile::read(path).map_err(|error| of_background(error.into()))?;

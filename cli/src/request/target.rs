@@ -20,14 +20,14 @@ pub(crate) enum TargetRequest {
     Equilateral,
     /// The sizes, or the sizes and shapes, that the mesh has.
     Keep {
-        what: Kept,
+        what: ElementProperty,
         /// The number of rings of neighbors over which sizes and shapes are averaged.
         rings: u32,
         is_of_places: bool,
     },
     /// Sizes or tensors of a file or of point data.
     Given {
-        what: Given,
+        what: TargetNumbers,
         /// The source as the command line has it.
         text: String,
         source: TargetSource,
@@ -35,20 +35,20 @@ pub(crate) enum TargetRequest {
     },
 }
 
-/// What is kept of the elements of a mesh.
+/// A property of the elements of a mesh that a target keeps.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kept {
+pub(crate) enum ElementProperty {
     Size,
     Shape,
 }
 
 /// The numbers that a source of targets has.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Given {
+pub(crate) enum TargetNumbers {
     /// One length for each vertex.
-    Size,
+    Sizes,
     /// A symmetric tensor for each vertex: xx, xy, yy.
-    Metric,
+    Tensors,
 }
 
 /// Where the numbers of targets are.
@@ -71,10 +71,10 @@ impl From<&TargetArgs> for TargetRequest {
         };
         match &args.target {
             Target::Equilateral => Self::Equilateral,
-            Target::KeepSize => keep(Kept::Size),
-            Target::KeepShape => keep(Kept::Shape),
-            Target::Size { source } => given(Given::Size, source),
-            Target::Metric { source } => given(Given::Metric, source),
+            Target::KeepSize => keep(ElementProperty::Size),
+            Target::KeepShape => keep(ElementProperty::Shape),
+            Target::Size { source } => given(TargetNumbers::Sizes, source),
+            Target::Metric { source } => given(TargetNumbers::Tensors, source),
         }
     }
 }
@@ -92,10 +92,10 @@ impl TargetRequest {
     pub(crate) fn name(&self) -> String {
         match self {
             Self::Equilateral => "equilateral".to_owned(),
-            Self::Keep { what: Kept::Size, .. } => "keep-size".to_owned(),
-            Self::Keep { what: Kept::Shape, .. } => "keep-shape".to_owned(),
-            Self::Given { what: Given::Size, text, .. } => format!("size={text}"),
-            Self::Given { what: Given::Metric, text, .. } => format!("metric={text}"),
+            Self::Keep { what: ElementProperty::Size, .. } => "keep-size".to_owned(),
+            Self::Keep { what: ElementProperty::Shape, .. } => "keep-shape".to_owned(),
+            Self::Given { what: TargetNumbers::Sizes, text, .. } => format!("size={text}"),
+            Self::Given { what: TargetNumbers::Tensors, text, .. } => format!("metric={text}"),
         }
     }
 

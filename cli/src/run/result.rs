@@ -11,7 +11,7 @@ use crate::run::checkpoint;
 use crate::run::input::Input;
 use crate::run::observer::Follow;
 use crate::run::prepare::Ready;
-use crate::run::proof::{self, Proof};
+use crate::run::proof::{self, MeshVersion, Proof};
 use crate::run::sweeps::Ran;
 use crate::terminal::progress::Stage;
 
@@ -97,7 +97,11 @@ fn certificate(
     let mut theirs = request.fields.choose(&after)?;
     theirs.add_dependents(&after, &after.mesh().points)?;
     let slide = request.slide.as_ref().map(|slide| slide.slide(file)).transpose()?;
-    let proof = Proof::of([file, &after], [riding, &theirs], slide.as_ref())?;
+    let proof = Proof::of(
+        MeshVersion { file, fields: riding },
+        MeshVersion { file: &after, fields: &theirs },
+        slide.as_ref(),
+    )?;
     if let Some(problem) = proof.problem() {
         return Err(CliError::run(format!(
             "{}: the written mesh was read again, and it is wrong: {problem}",

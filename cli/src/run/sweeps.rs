@@ -10,7 +10,7 @@ use gpu_smooth::{Backend, Options, Outcome, Phase, Precision, Progress, SmoothEr
 use crate::error::CliError;
 use crate::load::{Choice, LoadedMesh, explain};
 use crate::request::{EngineRequest, SmoothRequest};
-use crate::run::checkpoint::Kept;
+use crate::run::checkpoint::CheckpointKeeper;
 use crate::run::engine::{self, Taken};
 use crate::run::input::Input;
 use crate::run::observer::Follow;
@@ -69,7 +69,7 @@ pub(super) fn smooth(
     let mut clock =
         SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };
     let follow = RefCell::new(follow);
-    let mut kept = Kept::new(request.outputs.checkpoint.as_ref(), &follow);
+    let mut kept = CheckpointKeeper::new(request.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
             follow.borrow_mut().sweep(progress);

@@ -65,7 +65,11 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
             return Ok(Mended { mesh, bad_before, sweeps, moved, remark });
         }
         Some(vertex) if left.is_empty() => overlaps(file, vertex, sweeps),
-        _ => still_tangled(file, (&left, &hopeless), sweeps, ended.is_some()),
+        _ => {
+            let was_ended = ended.is_some();
+            let left = TangledRest { triangles: &left, hopeless: &hopeless, sweeps, was_ended };
+            still_tangled(file, &left)
+        }
     };
     if let Some(ended) = ended {
         error = error.after(&format!("{ended}."));
@@ -93,14 +97,21 @@ fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     ))
 }
 
-/// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless. `was_ended` tells
-/// that untangling was ended before it gave up.
-fn still_tangled(
-    file: &LoadedMesh,
-    (left, hopeless): (&[BadTriangle], &[BadTriangle]),
+/// What untangling has left of a tangled mesh.
+struct TangledRest<'a> {
+    /// All triangles that are inverted or flat still.
+    triangles: &'a [BadTriangle],
+    /// Those of them that have no free vertex.
+    hopeless: &'a [BadTriangle],
+    /// How many sweeps were done.
     sweeps: u32,
+    /// Whether untangling was ended before it gave up.
     was_ended: bool,
-) -> CliError {
+}
+
+/// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless.
+fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
+    let TangledRest { triangles: left, hopeless, sweeps, was_ended } = *left;
     let name = file.source.path().display();
     let (shown, count, why) = match hopeless.len() {
         0 => {

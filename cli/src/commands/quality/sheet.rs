@@ -13,7 +13,7 @@ use crate::load::explain::{self, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
 use crate::load::{as_in_file, lay_out};
-use crate::render::picture::{self, Shot};
+use crate::render::picture::{self, PictureSubject, Shot};
 use crate::report::{Histogram, QualityReport, histogram};
 use crate::request::PictureRequest;
 
@@ -106,7 +106,11 @@ impl Sheet {
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
         let shot = Shot { title, points: &mesh.points };
-        picture::write(picture, &file, (&topology, surface), &[shot])?;
+        picture::write(
+            picture,
+            PictureSubject { file: &file, topology: &topology, surface },
+            &[shot],
+        )?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),

@@ -12,7 +12,7 @@ use serde_json::json;
 
 use crate::load::streams;
 use crate::render::html;
-use crate::render::picture::{self, Shot};
+use crate::render::picture::{self, PictureSubject, Shot};
 use crate::report::Failure;
 use crate::report::{Done, Task};
 use crate::report::{Refusal, Report};
@@ -162,8 +162,9 @@ fn draw(
 ) -> Result<(), CliError> {
     let shot = |title: &str, points| Shot { title: title.to_owned(), points };
     let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
-    let (picture, surface) = (task.request.outputs.picture.as_ref(), task.request.surface);
-    picture::write(picture, file, (smoother.topology(), surface), &shots)
+    let SmoothRequest { outputs, surface, .. } = task.request;
+    let mesh = PictureSubject { file, topology: smoother.topology(), surface: *surface };
+    picture::write(outputs.picture.as_ref(), mesh, &shots)
 }
 
 fn write_report(outputs: &Outputs, report: &impl Serialize) -> Result<(), CliError> {
