@@ -17,7 +17,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     let format = format(args)?;
     let outputs = Outputs::of_mesh(MeshOutput::Converted);
     let (read, written) = (slice::from_ref(&args.input), slice::from_ref(&args.output));
-    outputs.check_files(read, written, ErrorKind::Usage)?;
+    outputs.check(read, written)?;
     let file = streams::read(&args.input, args.reading.into())?;
     let conversion = Conversion::new(&file.source, format)?;
     let (path, out) = (file.source.path().display(), args.output.display());

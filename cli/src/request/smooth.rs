@@ -233,3 +233,83 @@ fn worst_by(args: &WorstArgs) -> Option<WorstBy> {
         WorstChoice::Altitude => WorstBy::Altitude,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::Cli;
+    use crate::request::target::TargetSource;
+    use clap::Parser;
+    use std::path::Path;
+
+    /// Returns the request of a command line after the name of the program.
+    fn request(words: &str) -> Result<SmoothRequest, CliError> {
+        let words = std::iter::once("gpu-smooth").chain(words.split_whitespace());
+        SmoothRequest::new(Cli::try_parse_from(words).unwrap().smooth)
+    }
+
+    #[test]
+    fn an_adapter_stands_for_the_engine_gpu() {
+        let engine = |words: &str| request(&format!("in out {words}")).unwrap().engine;
+        let gpu =
+            |adapter: Option<&str>| EngineRequest::Gpu { adapter: adapter.map(str::to_owned) };
+        assert_eq!(engine(""), EngineRequest::Auto);
+        assert_eq!(engine("--engine cpu"), EngineRequest::Cpu);
+        assert_eq!(engine("--engine gpu"), gpu(None));
+        assert_eq!(engine("--adapter llvm"), gpu(Some("llvm")));
+        assert_eq!(engine("--engine gpu --adapter llvm"), gpu(Some("llvm")));
+    }
+
+    #[test]
+    fn a_continued_run_saves_its_state_to_the_same_file_unless_another_is_named() {
+        let file = |words: &str| {
+            let plan = request(&format!("in out {words}")).unwrap().outputs.checkpoint;
+            plan.map(|plan| (plan.file.display().to_string(), plan.every.as_secs()))
+        };
+        assert_eq!(file(""), None);
+        assert_eq!(file("--continue a"), Some(("a".into(), 300)));
+        assert_eq!(file("--continue a --checkpoint b --checkpoint-every 9"), Some(("b".into(), 9)));
+    }
+
+    #[test]
+    fn one_mesh_has_a_file_and_many_have_a_directory() {
+        let Meshes::One { input, output } = request("a b").unwrap().meshes else { panic!() };
+        assert_eq!([input, output], ["a", "b"].map(PathBuf::from));
+        let Meshes::Many(batch) = request("a b c --out-dir d --csv").unwrap().meshes else {
+            panic!()
+        };
+        assert_eq!(batch.inputs, ["a", "b", "c"].map(PathBuf::from));
+        assert_eq!((batch.directory.as_path(), batch.table), (Path::new("d"), TableForm::Csv));
+        assert!(!batch.skips_done);
+        let refused = request("a b --picture p.bmp").err().unwrap();
+        assert_eq!(refused.kind, crate::error::ErrorKind::Usage);
+    }
+
+    #[test]
+    fn the_source_of_a_target_is_found_by_the_files_that_exist() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        for name in ["back.msh", "view.pos", "odd:name.sol"] {
+            std::fs::write(folder.path().join(name), "any").unwrap();
+        }
+        let target =
+            |source: String| request(&format!("in out --target size={source}")).unwrap().target;
+        for (text, is_of_places) in [
+            (format!("{}:h", path("back.msh")), true),
+            (path("view.pos"), true),
+            (path("odd:name.sol"), false),
+        ] {
+            let target = target(text.clone());
+            assert_eq!(
+                (target.is_of_places(), target.name()),
+                (is_of_places, format!("size={text}"))
+            );
+            assert_eq!(target.files().len(), 1, "{text}");
+        }
+        let TargetRequest::Given { source, .. } = target(format!("{}:h", path("back.msh"))) else {
+            panic!()
+        };
+        let TargetSource::Background { mesh, data } = source else { panic!() };
+        assert_eq!((mesh, data.as_str()), (folder.path().join("back.msh"), "h"));
+    }
+}

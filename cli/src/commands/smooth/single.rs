@@ -33,9 +33,9 @@ pub(crate) fn run(
     out: &PathBuf,
     verbosity: Verbosity,
 ) -> Result<(), CliError> {
-    let mesh: &[PathBuf] = if streams::is_standard(out) { &[] } else { slice::from_ref(out) };
-    request.outputs.check(slice::from_ref(input), mesh)?;
+    // From here on, a signal leaves no temporary file of a check or of a write.
     interrupt::watch(verbosity.quiet);
+    request.outputs.check(slice::from_ref(input), slice::from_ref(out))?;
     let resumed = checkpoint::resumed(request.continue_from.as_deref())?;
     let resumed = resumed.as_ref();
     let task = Task { request, verbosity, input, out, resumed };
