@@ -17,9 +17,11 @@ mod terminal;
 
 use std::process::ExitCode;
 
-use args::{Command, LogForm};
+use args::{Cli, Command, LogForm, SmoothArgs};
 use commands::{adapters, batch, bench, compare, convert, groups, metrics, quality, shell, smooth};
-use terminal::{interrupt, panics, tell};
+use error::CliError;
+use request::{Meshes, SmoothRequest};
+use terminal::{Verbosity, interrupt, panics, tell};
 
 #[cfg(fuzzing)]
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| request::checks::any_line(bytes));
@@ -29,25 +31,22 @@ fn main() -> ExitCode {
 }
 
 fn run() -> ExitCode {
-    let cli = request::read();
-    if cli.output.log == LogForm::Json {
+    let Cli { command, smooth, output } = request::command_line();
+    if output.log == LogForm::Json {
         tell::log_json();
     }
     interrupt::survive_large_files();
-    let done = match &cli.command {
-        Some(Command::Quality(args)) => quality::run(args),
-        Some(Command::Groups(args)) => groups::run(args),
-        Some(Command::Compare(args)) => compare::run(args, &cli.output),
-        Some(Command::Convert(args)) => convert::run(args, &cli.output),
-        Some(Command::Adapters(args)) => adapters::run(args),
+    let done = match command {
+        Some(Command::Quality(args)) => quality::run(&args),
+        Some(Command::Groups(args)) => groups::run(&args),
+        Some(Command::Compare(args)) => compare::run(args, &output),
+        Some(Command::Convert(args)) => convert::run(&args, &output),
+        Some(Command::Adapters(args)) => adapters::run(&args),
         Some(Command::Metrics) => metrics::run(),
-        Some(Command::Bench(args)) => bench::run(args, cli.output.quiet),
-        Some(Command::Completions(args)) => shell::completions(args),
-        Some(Command::Man(args)) => shell::man(args),
-        None => match &cli.smooth.out_dir {
-            Some(directory) => batch::run(&cli.smooth, directory, &cli.output),
-            None => smooth::run(&cli.smooth, &cli.output),
-        },
+        Some(Command::Bench(args)) => bench::run(&args, output.quiet),
+        Some(Command::Completions(args)) => shell::completions(&args),
+        Some(Command::Man(args)) => shell::man(&args),
+        None => smooth_meshes(smooth, (&output).into()),
     };
     match done {
         Ok(()) => interrupt::exit_code(),
@@ -55,5 +54,14 @@ fn run() -> ExitCode {
             tell::error(&error);
             error.kind.exit_code()
         }
+    }
+}
+
+/// Smooths the mesh, or the meshes, of the command line.
+fn smooth_meshes(args: SmoothArgs, verbosity: Verbosity) -> Result<(), CliError> {
+    let request = SmoothRequest::new(args)?;
+    match &request.meshes {
+        Meshes::One { input, output } => smooth::run(&request, input, output, verbosity),
+        Meshes::Many(meshes) => batch::run(&request, meshes, verbosity),
     }
 }

@@ -86,6 +86,15 @@ fn folders_use_folders_of_lower_floors_alone() {
     }
 }
 
+/// Behind the requests, options are typed and free of contradictions.
+#[test]
+fn only_requests_and_commands_name_the_arguments_of_the_command_line() {
+    let uses = by_folder(&uses_of("cli/src"), 1);
+    let naming = uses.iter().filter(|(_, used)| used.contains("args"));
+    let naming: Vec<&str> = naming.map(|(folder, _)| folder.as_str()).collect();
+    assert_eq!(naming, ["commands", "main", "request"]);
+}
+
 #[test]
 fn every_kind_of_use_and_of_circle_is_found() {
     let texts = |files: &[(&str, &str)]| {

@@ -2,42 +2,52 @@
 
 use crate::args::{CompareArgs, OutputArgs};
 use crate::error::CliError;
-use crate::load::LoadedMesh;
 use crate::load::explain;
 use crate::load::streams::read;
+use crate::load::{LoadedMesh, lay_out};
 use crate::report::FileHash;
-use crate::run::proof::{self, Proof};
+use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest};
+use crate::run::proof::{self, MeshVersion, Proof};
 use crate::terminal::tell;
+use gpu_smooth::Surface;
 
 /// How many vertices, or triangles, are listed at most.
 const LISTED: usize = 10;
 
 /// Compares two files. Returns an error if they differ in anything but vertices that may move.
-pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
-    let mut before = read(&args.before, args.reading)?;
-    let mut after = read(&args.after, args.reading)?;
-    let laid_out = args.surface.lay_out(&mut before)?;
+pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
+    let (reading, surface) = (ReadRequest::from(args.reading), Surface::from(&args.surface));
+    let movable = MovableRequest::from(args.moving);
+    let slide = SlideRequest::of(args.sliding);
+    let fields = FieldsRequest::from(args.riding);
+    let mut before = read(&args.before, reading)?;
+    let mut after = read(&args.after, reading)?;
+    let laid_out = lay_out(&mut before, surface)?;
     before.lay_out_likewise(&mut after);
     let after = after;
-    let choice = args.moving.apply(&mut before)?;
+    let choice = movable.apply(&mut before)?;
     if choice.nothing_to_do.is_some() {
         before.fix_all_but(&[])?;
     }
     for note in laid_out.iter().chain(&choice.notes).chain(&choice.nothing_to_do) {
         tell::note(show.quiet, note);
     }
-    let (mut mine, mut theirs) = (args.riding.choose(&before)?, args.riding.choose(&after)?);
+    let (mut mine, mut theirs) = (fields.choose(&before)?, fields.choose(&after)?);
     mine.add_dependents(&before, &before.mesh().points)?;
     theirs.add_dependents(&after, &after.mesh().points)?;
     let told = |error: gpu_smooth::MeshError| {
         CliError::from(error).within(&args.before.display().to_string())
     };
-    let slide = args.sliding.slide(&before)?;
-    let proof = Proof::of([&before, &after], [&mine, &theirs], slide.as_ref()).map_err(told)?;
+    let slide = slide.map(|slide| slide.slide(&before)).transpose()?;
+    let proof = Proof::of(
+        MeshVersion { file: &before, fields: &mine },
+        MeshVersion { file: &after, fields: &theirs },
+        slide.as_ref(),
+    )
+    .map_err(told)?;
     if proof.difference.is_some() {
         return Err(CliError::run(proof.problem().unwrap_or_default()));
     }
-    let (old, new) = (&before.mesh().points, &after.mesh().points);
     let Proof { moved, held, bad, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);
     problems.extend(proof.problem());
@@ -50,7 +60,7 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), CliError>
     {
         list.push(format!("{place}: triangle {}", place.label));
     }
-    if !args.sliding.slide && !held.is_empty() {
+    if slide.is_none() && !held.is_empty() {
         list.push(
             "if they slid along lines in a run with --slide, give --slide here too".to_owned(),
         );
@@ -63,7 +73,7 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), CliError>
         return Err(CliError::run(text).with_details(list));
     }
     if !show.quiet {
-        tell::say(&summary(&after, old, new, (moved, proof.slid, proof.pairs)));
+        tell::say(&summary(&before, &after, &proof));
         for FileHash { path, sha256 } in proof::hashes(&before).iter().chain(&proof::hashes(&after))
         {
             tell::say(&format!("{sha256}  {path}"));
@@ -76,12 +86,9 @@ pub(crate) fn run(args: &CompareArgs, show: &OutputArgs) -> Result<(), CliError>
 }
 
 /// Says in a line or two which vertices moved.
-fn summary(
-    after: &LoadedMesh,
-    old: &[[f64; 2]],
-    new: &[[f64; 2]],
-    (moved, slid, pairs): (&[u32], usize, usize),
-) -> String {
+fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
+    let Proof { moved, slid, pairs, .. } = proof;
+    let (old, new) = (&before.mesh().points, &after.mesh().points);
     let distance = |&vertex: &u32| {
         let ([a, b], [c, d]) = (old[vertex as usize], new[vertex as usize]);
         (c - a).hypot(d - b)

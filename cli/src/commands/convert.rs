@@ -17,8 +17,8 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     let format = format(args)?;
     let outputs = Outputs::of_mesh(MeshOutput::Converted);
     let (read, written) = (slice::from_ref(&args.input), slice::from_ref(&args.output));
-    outputs.check_files(read, written, ErrorKind::Usage)?;
-    let file = streams::read(&args.input, args.reading)?;
+    outputs.check(read, written)?;
+    let file = streams::read(&args.input, args.reading.into())?;
     let conversion = Conversion::new(&file.source, format)?;
     let (path, out) = (file.source.path().display(), args.output.display());
     let Some(mut conversion) = conversion else {

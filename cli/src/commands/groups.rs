@@ -12,12 +12,16 @@ use crate::terminal::tell;
 
 /// Prints what can be named in a mesh, and the name that options take.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
-    let file = read(&args.mesh, args.reading)?;
+    let file = read(&args.mesh, args.reading.into())?;
     let groups = file.source.groups()?;
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {
         let spellings = groups.spellings();
-        let list: Vec<_> = groups.iter().zip(&spellings).map(as_json).collect();
+        let list: Vec<_> = groups
+            .iter()
+            .zip(&spellings)
+            .map(|(group, spelling)| as_json(group, spelling))
+            .collect();
         let value = json!({
             "file": path.to_string(),
             "format": format.to_string(),
@@ -41,7 +45,7 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn as_json((group, spelling): (&Group, &String)) -> serde_json::Value {
+fn as_json(group: &Group, spelling: &str) -> serde_json::Value {
     json!({
         "group": spelling,
         "what": group.what,

@@ -2,10 +2,9 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::request::FieldsRequest;
 use gpu_smooth::{Interpolation, Topology};
 use mesh_io::PointField;
-
-use crate::args::RidingArgs;
 
 /// Data of vertices that are interpolated at the new places.
 pub(crate) struct Riding {
@@ -19,10 +18,10 @@ pub(crate) struct Riding {
     all: bool,
 }
 
-impl RidingArgs {
+impl FieldsRequest {
     /// Finds the data that the user named in a file.
     pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<Riding, CliError> {
-        if self.interpolate.is_empty() {
+        if self.names.is_empty() {
             return Ok(Riding { fields: Vec::new(), data: 0, asked: false, all: false });
         }
         // A name may contain commas.
@@ -30,7 +29,7 @@ impl RidingArgs {
             true => vec![text.clone()],
             false => text.split(',').map(|name| name.trim().to_owned()).collect(),
         };
-        let names: Vec<String> = self.interpolate.iter().flat_map(split).collect();
+        let names: Vec<String> = self.names.iter().flat_map(split).collect();
         let all = names.iter().any(|name| name == "all");
         let fields = file.source.point_fields(if all { None } else { Some(&names) });
         let mut fields = fields.map_err(|error| CliError::from(error).about("--interpolate"))?;

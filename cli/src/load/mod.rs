@@ -13,4 +13,4 @@ mod targets;
 pub(crate) use fields::Riding;
 pub(crate) use mesh::LoadedMesh;
 pub(crate) use movable::Choice;
-pub(crate) use surface::as_in_file;
+pub(crate) use surface::{as_in_file, lay_out};

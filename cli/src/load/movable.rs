@@ -5,8 +5,8 @@ use crate::load::LoadedMesh;
 use gpu_smooth::{MeshError, Topology, select};
 use mesh_io::{Group, Groups};
 
-use crate::args::MoveArgs;
 use crate::load::explain;
+use crate::request::{MovableRequest, NearBad};
 use crate::terminal::numbers::six;
 
 /// The effect of the options on a mesh.
@@ -20,19 +20,19 @@ pub(crate) struct Choice {
     pub(crate) nothing_to_do: Option<String>,
 }
 
-impl MoveArgs {
-    /// Whether any option that fixes vertices is given.
+impl MovableRequest {
+    /// Whether any vertices are fixed.
     fn restricts(&self) -> bool {
-        let Self { fix, fix_vertices, fix_array, fix_box, only, only_bad, .. } = self;
+        let Self { fix, fix_vertices, fix_array, fix_box, only, near_bad, .. } = self;
         !fix.is_empty()
             || !fix_vertices.is_empty()
             || !fix_array.is_empty()
             || !fix_box.is_empty()
             || !only.is_empty()
-            || only_bad.is_some()
+            || near_bad.is_some()
     }
 
-    /// Frees and fixes vertices of a mesh as the options say.
+    /// Frees and fixes vertices of a mesh.
     pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<Choice, CliError> {
         if self.free_interfaces {
             file.free_interfaces();
@@ -98,7 +98,7 @@ impl<'f> Chooser<'f> {
     }
 
     /// Finds the vertices that the options keep fixed.
-    fn fixed(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<u32>, CliError> {
+    fn fixed(&self, request: &MovableRequest, choice: &mut Choice) -> Result<Vec<u32>, CliError> {
         let file = self.file;
         let mut fixed = Vec::new();
         let mut hold = |option: String, mut vertices: Vec<u32>| {
@@ -108,9 +108,9 @@ impl<'f> Chooser<'f> {
             choice.notes.push(format!("{option}: {}", held(count, free)));
             fixed.append(&mut vertices);
         };
-        if !args.fix.is_empty() {
+        if !request.fix.is_empty() {
             let groups = self.groups()?;
-            for text in &args.fix {
+            for text in &request.fix {
                 for (name, group) in self.named(&groups, "--fix", text)? {
                     if group.vertices().is_empty() {
                         return Err(self.refusal("--fix", &format!("{group} has no elements")));
@@ -119,16 +119,16 @@ impl<'f> Chooser<'f> {
                 }
             }
         }
-        for list in &args.fix_vertices {
+        for list in &request.fix_vertices {
             let vertices = file.source.read_vertices(list)?;
             hold(format!("--fix-vertices {}", list.display()), vertices);
         }
-        for name in &args.fix_array {
+        for name in &request.fix_array {
             let numbers = file.source.point_array(name)?;
             let set = (0..).zip(numbers).filter(|(_, number)| *number != 0.0);
             hold(format!("--fix-array {name}"), set.map(|(vertex, _)| vertex).collect());
         }
-        for corners in &args.fix_box {
+        for corners in &request.fix_box {
             let vertices = select::vertices_in_box(file.source.points(), *corners);
             let [[x0, y0], [x1, y1]] = corners;
             hold(format!("--fix-box {x0},{y0},{x1},{y1}"), vertices);
@@ -138,13 +138,17 @@ impl<'f> Chooser<'f> {
 
     /// Finds the vertices that the options let move, one list for each kind of option. A vertex may move if all lists
     /// have it.
-    fn movers(&self, args: &MoveArgs, choice: &mut Choice) -> Result<Vec<Vec<u32>>, CliError> {
+    fn movers(
+        &self,
+        request: &MovableRequest,
+        choice: &mut Choice,
+    ) -> Result<Vec<Vec<u32>>, CliError> {
         let mut lists = Vec::new();
         let of_all = self.topology.free_count();
-        if !args.only.is_empty() {
+        if !request.only.is_empty() {
             let groups = self.groups()?;
             let (mut triangles, mut named) = (Vec::new(), Vec::new());
-            for text in &args.only {
+            for text in &request.only {
                 for (name, group) in self.named(&groups, "--only", text)? {
                     if group.triangles().is_empty() {
                         return Err(self.refusal("--only", &format!("{group} has no triangles")));
@@ -158,7 +162,7 @@ impl<'f> Chooser<'f> {
             choice.notes.push(format!("--only {}: {}", named.join(", "), may_move(free, of_all)));
             lists.push(vertices);
         }
-        if let Some(limit) = args.only_bad {
+        if let Some(NearBad { above: limit, rings }) = request.near_bad {
             let points = &self.file.mesh().points;
             let bad = select::triangles_above(points, &self.topology, limit);
             if bad.is_empty() {
@@ -167,9 +171,9 @@ impl<'f> Chooser<'f> {
                 choice.nothing_to_do = Some(text);
                 return Ok(lists);
             }
-            let vertices = select::vertices_near(&self.topology, &bad, args.rings);
+            let vertices = select::vertices_near(&self.topology, &bad, rings);
             let free = self.free_among(&vertices);
-            let within = match args.rings {
+            let within = match rings {
                 0 => "of their vertices".to_owned(),
                 rings => format!("within {} of them", counted(rings as usize, "ring")),
             };

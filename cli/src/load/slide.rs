@@ -4,15 +4,12 @@ use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{Slide, Smoother, Topology};
 
-use crate::args::SlideArgs;
 use crate::load::explain;
+use crate::request::SlideRequest;
 
-impl SlideArgs {
-    /// Chooses what slides in a mesh, if anything may.
-    pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Option<Slide>, CliError> {
-        if !self.slide {
-            return Ok(None);
-        }
+impl SlideRequest {
+    /// Chooses what slides in a mesh.
+    pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Slide, CliError> {
         let Self { corner_angle, hausdorff, .. } = *self;
         let (held, periodic) = (file.held_vertices().to_vec(), file.periodic().to_vec());
         let mut slide = Slide { corner_angle, hausdorff, lines: file.lines(), held, periodic };
@@ -21,7 +18,7 @@ impl SlideArgs {
             && motions.is_empty()
             && !file.source.constraints().has_unread_pairs
         {
-            return Ok(Some(slide));
+            return Ok(slide);
         }
         let topology =
             Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
@@ -33,7 +30,7 @@ impl SlideArgs {
         if has_lost_pairs(file, &slide) {
             slide.held.extend(topology.boundary_edges().into_iter().flatten());
         }
-        Ok(Some(slide))
+        Ok(slide)
     }
 
     /// Adds the pairs of vertices that `--periodic` asks for.
@@ -75,8 +72,8 @@ impl SlideArgs {
         &self,
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
-    ) -> Result<Option<String>, CliError> {
-        let Some(slide) = self.slide(file)? else { return Ok(None) };
+    ) -> Result<String, CliError> {
+        let slide = self.slide(file)?;
         let count = smoother.set_slide(Some(&slide))?;
         let [pairs, unlike] = smoother.pairs();
         let mut text = match count {
@@ -102,7 +99,7 @@ impl SlideArgs {
                 );
             }
         }
-        Ok(Some(text))
+        Ok(text)
     }
 }
 

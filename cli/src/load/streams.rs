@@ -5,18 +5,18 @@ use std::path::{Path, PathBuf};
 
 use mesh_io::{MeshFile, PointField, ReadOptions};
 
-use crate::args::ReadArgs;
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::request::ReadRequest;
 use crate::terminal::tell;
 
 /// Reads a mesh from a file, or from the standard input if its name is `-`.
-pub(crate) fn read(path: &Path, args: ReadArgs) -> Result<LoadedMesh, CliError> {
-    read_source(path, args).map(LoadedMesh::new)
+pub(crate) fn read(path: &Path, request: ReadRequest) -> Result<LoadedMesh, CliError> {
+    read_source(path, request).map(LoadedMesh::new)
 }
 
-fn read_source(path: &Path, args: ReadArgs) -> Result<MeshFile, CliError> {
-    let options = ReadOptions::new().weld(args.weld);
+fn read_source(path: &Path, request: ReadRequest) -> Result<MeshFile, CliError> {
+    let options = ReadOptions::new().weld(request.weld);
     if !is_standard(path) {
         return Ok(options.read(path)?);
     }

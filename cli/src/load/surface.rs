@@ -4,19 +4,16 @@ use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{Chart, Surface};
 
-use crate::args::SurfaceArgs;
 use crate::load::explain;
 
-impl SurfaceArgs {
-    /// Lays a mesh out on the surface. Returns remarks on what was done.
-    pub(crate) fn lay_out(&self, file: &mut LoadedMesh) -> Result<Vec<String>, CliError> {
-        if self.surface() == Surface::Plane {
-            return Ok(Vec::new());
-        }
-        match file.lay_out_on_sphere() {
-            Ok(()) => Ok(file.chart().map(remarks).unwrap_or_default()),
-            Err(error) => Err(explain::mesh_error(file, &error)),
-        }
+/// Lays a mesh out on a surface. Returns remarks on what was done.
+pub(crate) fn lay_out(file: &mut LoadedMesh, surface: Surface) -> Result<Vec<String>, CliError> {
+    if surface == Surface::Plane {
+        return Ok(Vec::new());
+    }
+    match file.lay_out_on_sphere() {
+        Ok(()) => Ok(file.chart().map(remarks).unwrap_or_default()),
+        Err(error) => Err(explain::mesh_error(file, &error)),
     }
 }
 

@@ -9,21 +9,22 @@ use gpu_smooth::{
 };
 use mesh_io::{MeshFile, Solution, View};
 
-use crate::args::{Target, TargetArgs};
-use crate::load::explain;
+use crate::load::{explain, lay_out};
+use crate::request::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};
 use crate::terminal::numbers::six;
 
-impl TargetArgs {
-    /// Sets the targets of a mesh whose vertices are at `points`. Returns a remark on vertices outside of a background.
+impl TargetRequest {
+    /// Sets the targets of a mesh whose vertices are at `points` on a surface. Returns a remark on vertices outside of a
+    /// background.
     pub(crate) fn set(
         &self,
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
         points: &[[f64; 2]],
+        surface: Surface,
     ) -> Result<Option<String>, CliError> {
         let told = |error: MeshError| explain::mesh_error(file, &error);
-        if let Some((path, data)) = self.background() {
-            let field = self.field(path, data)?;
+        if let Some((path, field)) = self.field(surface)? {
             let outside = match self.is_of_places() {
                 true => smoother.set_target_field(field).map_err(told)?,
                 false => {
@@ -34,9 +35,10 @@ impl TargetArgs {
             };
             return Ok(remark(path, outside));
         }
-        let Some((targets, surface)) = self.targets(file, smoother, points, told)? else {
+        let Some(given) = self.targets(file, smoother, points, surface)? else {
             return Ok(None);
         };
+        let MeshTargets { targets, surface } = given;
         if !self.is_of_places() {
             let seen = targets.seen_on(surface, points, &file.mesh().triangles);
             let set = seen.and_then(|targets| smoother.set_targets(&targets));
@@ -48,78 +50,111 @@ impl TargetArgs {
         smoother.set_target_field(field).map(|_| None).map_err(told)
     }
 
-    /// Reads the targets that a background mesh carries.
-    fn field(&self, path: &Path, data: &str) -> Result<TargetField, CliError> {
-        if data.is_empty() {
-            return self.field_of_view(path);
+    /// Reads the targets that a background carries, if the target is on one. Also returns the file of the background.
+    fn field(&self, surface: Surface) -> Result<Option<(&Path, TargetField)>, CliError> {
+        let Self::Given { what, source, .. } = self else { return Ok(None) };
+        match source {
+            TargetSource::OfMesh(_) => Ok(None),
+            TargetSource::Background { mesh, data } => {
+                Ok(Some((mesh, field_of_mesh(mesh, data, *what, surface)?)))
+            }
+            TargetSource::View(path) => Ok(Some((path, field_of_view(path, surface)?))),
         }
-        let read = MeshFile::read(path);
-        let mut background = LoadedMesh::new(read.map_err(|error| of_background(error.into()))?);
-        self.surface.lay_out(&mut background)?;
-        let targets = match &self.target {
-            Target::Metric { .. } => Targets::tensors(given(&background, data, 3)?.as_chunks().0),
-            _ => Targets::sizes(&given(&background, data, 1)?),
-        };
-        let mesh = background.mesh();
-        targets
-            .and_then(|targets| TargetField::new(mesh, &targets))
-            .map(|field| field.seen_on(self.surface()))
-            .map_err(|error| explain::mesh_error(&background, &error))
     }
 
-    /// Reads the sizes in a view of gmsh.
-    fn field_of_view(&self, path: &Path) -> Result<TargetField, CliError> {
-        let view = View::read(path).map_err(|error| of_background(error.into()))?;
-        let name = path.display();
-        let told_of = |error: MeshError| {
-            let text = format!("{name}: {error} (counted from 0, in the order of the file)");
-            of_background(CliError::input(text))
-        };
-        let (points, triangles) = (view.points().to_vec(), view.triangles().to_vec());
-        let mesh = Mesh { points, triangles, fixed: Vec::new() };
-        let chart = match self.surface() {
-            Surface::Plane => None,
-            Surface::Sphere => Chart::new(&mesh, Precision::Double).map_err(told_of)?,
-        };
-        let (mesh, values) = match &chart {
-            Some(chart) => (chart.mesh(), chart.extended(view.values(), 1)),
-            None => (&mesh, view.values().to_vec()),
-        };
-        Targets::sizes(&values)
-            .and_then(|targets| TargetField::new(mesh, &targets))
-            .map(|field| field.seen_on(self.surface()))
-            .map_err(told_of)
-    }
-
-    /// Returns the targets of the vertices, and the surface in whose lengths they are given. `None` for equilateral in
-    /// the plane.
+    /// Returns the targets of the vertices; `None` for equilateral in the plane.
     fn targets(
         &self,
         file: &LoadedMesh,
         smoother: &Smoother<'_>,
         points: &[[f64; 2]],
-        told: impl Fn(MeshError) -> CliError,
-    ) -> Result<Option<(Targets, Surface)>, CliError> {
-        let surface = self.surface();
-        let (topology, rings) = (smoother.topology(), self.rings());
-        let in_coordinates = |targets| (targets, Surface::Plane);
-        let targets = match &self.target {
-            Target::Equilateral if surface == Surface::Plane => return Ok(None),
-            Target::Equilateral => Ok((Targets::equilateral(points.len()), surface)),
-            Target::KeepSize => Targets::keep_size(topology, points, surface, rings)
-                .map(|targets| (targets, surface)),
-            // Shapes are kept as they are in the coordinates, also on the sphere.
-            Target::KeepShape => Targets::keep_shape(topology, points, rings).map(in_coordinates),
-            Target::Size { source } => {
-                Targets::sizes(&given(file, source, 1)?).map(|targets| (targets, surface))
+        surface: Surface,
+    ) -> Result<Option<MeshTargets>, CliError> {
+        let topology = smoother.topology();
+        let targets = match self {
+            Self::Equilateral if surface == Surface::Plane => return Ok(None),
+            Self::Equilateral => Ok(Targets::equilateral(points.len())),
+            Self::Keep { what: ElementProperty::Size, rings, .. } => {
+                Targets::keep_size(topology, points, surface, *rings)
             }
-            Target::Metric { source } => {
-                let values = given(file, source, 3)?;
-                Targets::tensors(values.as_chunks().0).map(|targets| (targets, surface))
+            Self::Keep { what: ElementProperty::Shape, rings, .. } => {
+                Targets::keep_shape(topology, points, *rings)
+            }
+            Self::Given { what, text, .. } => {
+                of_numbers(*what, &given(file, text, components(*what))?)
             }
         };
-        targets.map(Some).map_err(told)
+        let surface = match self {
+            // Shapes are kept as they are in the coordinates, also on the sphere.
+            Self::Keep { what: ElementProperty::Shape, .. } => Surface::Plane,
+            _ => surface,
+        };
+        let targets = targets.map_err(|error| explain::mesh_error(file, &error))?;
+        Ok(Some(MeshTargets { targets, surface }))
     }
+}
+
+/// Targets of the vertices of a mesh, in lengths on a surface.
+struct MeshTargets {
+    targets: Targets,
+    surface: Surface,
+}
+
+/// Returns how many numbers a vertex has in a source of targets.
+fn components(what: TargetNumbers) -> usize {
+    match what {
+        TargetNumbers::Sizes => 1,
+        TargetNumbers::Tensors => 3,
+    }
+}
+
+/// Makes targets of the numbers of a source.
+fn of_numbers(what: TargetNumbers, numbers: &[f64]) -> Result<Targets, MeshError> {
+    match what {
+        TargetNumbers::Sizes => Targets::sizes(numbers),
+        TargetNumbers::Tensors => Targets::tensors(numbers.as_chunks().0),
+    }
+}
+
+/// Reads the targets that a background mesh carries.
+fn field_of_mesh(
+    path: &Path,
+    data: &str,
+    what: TargetNumbers,
+    surface: Surface,
+) -> Result<TargetField, CliError> {
+    let read = MeshFile::read(path).map_err(|error| of_background(error.into()))?;
+    let mut background = LoadedMesh::new(read);
+    lay_out(&mut background, surface)?;
+    let numbers = given(&background, data, components(what))?;
+    of_numbers(what, &numbers)
+        .and_then(|targets| TargetField::new(background.mesh(), &targets))
+        .map(|field| field.seen_on(surface))
+        .map_err(|error| explain::mesh_error(&background, &error))
+}
+
+/// Reads the sizes in a view of gmsh.
+fn field_of_view(path: &Path, surface: Surface) -> Result<TargetField, CliError> {
+    let view = View::read(path).map_err(|error| of_background(error.into()))?;
+    let name = path.display();
+    let told_of = |error: MeshError| {
+        let text = format!("{name}: {error} (counted from 0, in the order of the file)");
+        of_background(CliError::input(text))
+    };
+    let (points, triangles) = (view.points().to_vec(), view.triangles().to_vec());
+    let mesh = Mesh { points, triangles, fixed: Vec::new() };
+    let chart = match surface {
+        Surface::Plane => None,
+        Surface::Sphere => Chart::new(&mesh, Precision::Double).map_err(told_of)?,
+    };
+    let (mesh, values) = match &chart {
+        Some(chart) => (chart.mesh(), chart.extended(view.values(), 1)),
+        None => (&mesh, view.values().to_vec()),
+    };
+    Targets::sizes(&values)
+        .and_then(|targets| TargetField::new(mesh, &targets))
+        .map(|field| field.seen_on(surface))
+        .map_err(told_of)
 }
 
 /// Words the remark on vertices outside of a background.

@@ -1,9 +1,10 @@
 //! The report on the targets of elements.
 
+use gpu_smooth::Surface;
 use serde::Serialize;
 
-use crate::args::{Target, TargetArgs};
 use crate::error::CliError;
+use crate::request::TargetRequest;
 
 /// The target of the elements, if it is not equilateral in the plane.
 #[derive(Serialize)]
@@ -21,22 +22,29 @@ pub(crate) struct TargetReport {
     pub(crate) f: [f64; 2],
 }
 
-impl TargetArgs {
+impl TargetRequest {
     /// Returns the report on targets, with the objective of targets before and after, unless elements were to be
     /// equilateral in the plane.
     pub(crate) fn report(
         &self,
+        surface: Surface,
         before: f64,
         after: impl FnOnce() -> Result<f64, CliError>,
     ) -> Result<Option<TargetReport>, CliError> {
-        if self.target == Target::Equilateral && self.is_on_plane() {
+        if matches!(self, Self::Equilateral) && surface == Surface::Plane {
             return Ok(None);
         }
-        let kind = self.kind();
+        let kind = self.name();
         let f = [before, after()?];
-        let surface = self.surface.name();
+        let surface = match surface {
+            Surface::Plane => "plane",
+            Surface::Sphere => "sphere",
+        };
         let of = if self.is_of_places() { "place" } else { "vertex" };
-        let rings = self.keeps().then(|| self.rings());
+        let rings = match self {
+            Self::Keep { rings, .. } => Some(*rings),
+            Self::Equilateral | Self::Given { .. } => None,
+        };
         Ok(Some(TargetReport { kind, of, surface, rings, f }))
     }
 }

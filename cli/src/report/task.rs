@@ -4,19 +4,17 @@ use std::path::Path;
 
 use gpu_smooth::{Checkpoint, Outcome, Smoother};
 
-use crate::args::{OutputArgs, SmoothArgs};
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::load::explain::BadTriangleReport;
 use crate::report::Report;
-use crate::request::Outputs;
+use crate::request::SmoothRequest;
+use crate::terminal::Verbosity;
 
 /// A mesh that is to be smoothed.
 pub(crate) struct Task<'a> {
-    pub(crate) args: &'a SmoothArgs,
-    /// The files that are written, the mesh excepted.
-    pub(crate) outputs: &'a Outputs,
-    pub(crate) show: &'a OutputArgs,
+    pub(crate) request: &'a SmoothRequest,
+    pub(crate) verbosity: Verbosity,
     pub(crate) input: &'a Path,
     pub(crate) out: &'a Path,
     /// The checkpoint that the run continues from, if there is one.

@@ -9,8 +9,9 @@ use gpu_smooth::{
     Backend, Desired, Mesh, Precision, Slide, Smoother, Surface, TargetField, Targets,
 };
 
-use crate::args::{Cli, SmoothArgs, Target};
+use crate::args::Cli;
 use crate::request::command_line::checked;
+use crate::request::{SmoothRequest, TargetRequest};
 
 /// A source of choices: random numbers, or bytes of the fuzzer.
 pub(crate) trait Choices {
@@ -123,19 +124,18 @@ impl Checker {
         Self { program, mesh: small_mesh() }
     }
 
-    /// Prepares the mesh with the kinds of sliding and of targets that options ask for.
-    fn smoother(&self, args: &SmoothArgs) -> Smoother<'_> {
+    /// Prepares the mesh with the kinds of sliding and of targets that a request has.
+    fn smoother(&self, request: &SmoothRequest) -> Smoother<'_> {
         let mut smoother = Smoother::new(&self.mesh).unwrap();
-        if args.sliding.slide {
+        if request.slide.is_some() {
             smoother.set_slide(Some(&Slide::default())).unwrap();
         }
         let targets = Targets::equilateral(self.mesh.points.len());
-        if args.target.is_of_places() {
+        let is_plain = matches!(request.target, TargetRequest::Equilateral);
+        if request.target.is_of_places() {
             let field = TargetField::new(&self.mesh, &targets).unwrap();
             smoother.set_target_field(field).unwrap();
-        } else if args.target.target != Target::Equilateral
-            || args.target.surface() != Surface::Plane
-        {
+        } else if !is_plain || request.surface != Surface::Plane {
             smoother.set_targets(&targets).unwrap();
         }
         smoother
@@ -152,7 +152,9 @@ impl Checker {
             Ok(cli) if cli.command.is_some() => "command",
             Ok(cli) => {
                 assert!(cli.smooth.input.is_some(), "{words:?}");
-                let mut options = cli.smooth.options(Precision::Double);
+                // The name of a picture may have the ending of another file.
+                let Ok(request) = SmoothRequest::new(cli.smooth) else { return "contradiction" };
+                let mut options = request.options(Precision::Double);
                 options.max_sweeps = options.max_sweeps.min(3);
                 // Looking for the optimum would take most of the time.
                 if let Some(goal) =
@@ -161,7 +163,7 @@ impl Checker {
                     goal.desired = Desired::Value(1.0);
                 }
                 // What the library would refuse is refused before, in the words of the options.
-                match self.smoother(&cli.smooth).run(&options, &Backend::Cpu) {
+                match self.smoother(&request).run(&options, &Backend::Cpu) {
                     Ok(_) => "run",
                     Err(error) => panic!("{words:?}: {error}"),
                 }

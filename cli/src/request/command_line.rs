@@ -6,11 +6,12 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
-use crate::args::{Cli, Command};
+use crate::args::{Cli, Command, OutputArgs};
 use crate::request::conflicts::{self, OF_BENCH, OF_CONVERT, OF_QUALITY, OF_RUN};
+use crate::terminal::Verbosity;
 
 /// Reads the command line of this process. If it is wrong, or asks for help, prints that and ends the process.
-pub(crate) fn read() -> Cli {
+pub(crate) fn command_line() -> Cli {
     checked(std::env::args_os()).unwrap_or_else(|error| error.exit())
 }
 
@@ -36,6 +37,12 @@ pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, 
     match contradiction(&cli) {
         Some(text) => Err(command_of(&matches).error(ErrorKind::ArgumentConflict, text)),
         None => Ok(cli),
+    }
+}
+
+impl From<&OutputArgs> for Verbosity {
+    fn from(args: &OutputArgs) -> Self {
+        Self { quiet: args.quiet, verbose: args.verbose }
     }
 }
 

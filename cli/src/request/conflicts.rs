@@ -7,6 +7,7 @@ use crate::args::{
     BenchArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, OnSurface, QualityArgs,
     SmoothArgs, Target,
 };
+use crate::request::target::TargetRequest;
 
 /// Two options, or values of options, that do not go together.
 pub(super) struct Conflict<A> {
@@ -181,7 +182,7 @@ fn of_places<A>([_, b]: [&str; 2], _: &A) -> String {
 }
 
 fn sizes_unseen(_: [&str; 2], args: &SmoothArgs) -> String {
-    let (scheme, target) = (args.scheme(), args.target.kind());
+    let (scheme, target) = (args.scheme(), TargetRequest::from(&args.target).name());
     format!(
         "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
     )

@@ -1,16 +1,22 @@
-//! The meaning of options, and what is refused before any file is read.
+//! Typed requests of the options, and what is refused before any mesh is read.
 
 #[cfg(any(test, fuzzing))]
 pub(crate) mod checks;
 mod command_line;
 mod conflicts;
+mod movable;
 mod outputs;
 mod picture;
+mod read;
 mod smooth;
 mod target;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use command_line::read;
+pub(crate) use command_line::command_line;
+pub(crate) use movable::{FieldsRequest, MovableRequest, NearBad, SlideRequest};
 pub(crate) use outputs::{CheckpointPlan, MeshOutput, Outputs, is_checkpoint};
 pub(crate) use picture::{PictureFormat, PictureRequest};
+pub(crate) use read::ReadRequest;
+pub(crate) use smooth::{Batch, EngineRequest, Meshes, SmoothRequest, TableForm};
+pub(crate) use target::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};

@@ -11,6 +11,7 @@ use mesh_io::{Format, atomic};
 use crate::args::{PictureArgs, SmoothArgs};
 use crate::error::{CliError, ErrorKind};
 use crate::request::picture::PictureRequest;
+use crate::request::target::TargetRequest;
 
 /// A file with a checkpoint, and how often it is written.
 pub(crate) struct CheckpointPlan {
@@ -75,7 +76,7 @@ impl Outputs {
     pub(crate) fn of_run(args: &SmoothArgs) -> Result<Self, CliError> {
         let checkpoint = args.checkpoint.as_ref().or(args.continued.as_ref());
         let mut inputs = args.moving.fix_vertices.clone();
-        inputs.extend(args.target.files());
+        inputs.extend(TargetRequest::from(&args.target).files());
         Ok(Self {
             mesh: match args.out_dir {
                 Some(_) => MeshOutput::OfMany,
@@ -120,6 +121,7 @@ impl Outputs {
     pub(crate) fn check(&self, read: &[PathBuf], written: &[PathBuf]) -> Result<(), CliError> {
         self.check_names()?;
         self.check_files(read, written, ErrorKind::Usage)?;
+        written.iter().try_for_each(|path| check_folder(path))?;
         self.check_disk()
     }
 
@@ -299,6 +301,15 @@ fn is_page(path: &Path) -> bool {
 fn is_named_like_a_mesh(path: &Path) -> bool {
     let is_outline = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly"));
     is_outline || Format::name_of_ending(path).is_some()
+}
+
+/// Checks that the folder of a mesh exists. The other checks of its files need the format of the mesh.
+fn check_folder(path: &Path) -> Result<(), CliError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.is_none_or(Path::is_dir) {
+        true => Ok(()),
+        false => Ok(atomic::check(path)?),
+    }
 }
 
 /// Returns the beginning of a file. `None` if there is no such file.

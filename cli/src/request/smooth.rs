@@ -1,79 +1,223 @@
-//! The meaning of the options of a run.
+//! The request of a run on one mesh or many.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use gpu_smooth::{
     Derivatives, Desired, Goal, Guard, Method, Metric, Options, Precision, Scheme, Sharpness,
-    WorstBy,
+    Surface, WorstBy,
 };
 
 use crate::args::{
-    DerivativesChoice, EdgeNorm, GuardChoice, History, MethodChoice, SmoothArgs, WorstArgs,
-    WorstChoice,
+    DerivativesChoice, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice, SmoothArgs,
+    WorstArgs, WorstChoice,
 };
+use crate::error::CliError;
+use crate::request::movable::{FieldsRequest, MovableRequest, SlideRequest};
+use crate::request::outputs::Outputs;
+use crate::request::read::ReadRequest;
+use crate::request::target::TargetRequest;
 
-impl SmoothArgs {
-    /// Returns the meshes for `--out-dir`.
-    pub(crate) fn meshes(&self) -> impl Iterator<Item = &PathBuf> {
-        self.input.iter().chain(&self.output).chain(&self.more)
+/// A run, or the same run on many meshes.
+pub(crate) struct SmoothRequest {
+    pub(crate) meshes: Meshes,
+    pub(crate) reading: ReadRequest,
+    /// What coordinates are.
+    pub(crate) surface: Surface,
+    pub(crate) target: TargetRequest,
+    pub(crate) movable: MovableRequest,
+    /// What slides; `None` if nothing does.
+    pub(crate) slide: Option<SlideRequest>,
+    pub(crate) fields: FieldsRequest,
+    pub(crate) engine: EngineRequest,
+    /// The options of the library, for coordinates in double precision.
+    run: Options,
+    /// The time after which the run ends, from when the mesh begins to be read.
+    pub(crate) time_limit: Option<Duration>,
+    /// Whether and how a tangled mesh is untangled; `None` to refuse it.
+    pub(crate) untangle: Option<UntangleRequest>,
+    /// The checkpoint that the run continues from.
+    pub(crate) continue_from: Option<PathBuf>,
+    /// Whether a run that falls short is an error.
+    pub(crate) is_strict: bool,
+    pub(crate) outputs: Outputs,
+}
+
+/// The meshes of a request.
+pub(crate) enum Meshes {
+    One { input: PathBuf, output: PathBuf },
+    Many(Batch),
+}
+
+/// Many meshes, each smoothed into a file of its name.
+pub(crate) struct Batch {
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The directory of the results.
+    pub(crate) directory: PathBuf,
+    /// Whether meshes whose results are newer than they are left out.
+    pub(crate) skips_done: bool,
+    pub(crate) table: TableForm,
+}
+
+/// How the table of many meshes is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TableForm {
+    Text,
+    Csv,
+    Json,
+}
+
+/// Where a run computes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum EngineRequest {
+    /// Where it is estimated to be done first.
+    Auto,
+    Cpu,
+    /// On the first adapter with this text in its name, or on the best one.
+    Gpu {
+        adapter: Option<String>,
+    },
+}
+
+impl EngineRequest {
+    fn of(engine: EngineChoice, adapter: Option<String>) -> Self {
+        match (engine, adapter) {
+            (EngineChoice::Cpu, _) => Self::Cpu,
+            (EngineChoice::Auto, None) => Self::Auto,
+            (EngineChoice::Auto | EngineChoice::Gpu, adapter) => Self::Gpu { adapter },
+        }
+    }
+}
+
+/// How a mesh is untangled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct UntangleRequest {
+    /// Whether the best mesh found is written if triangles stay inverted.
+    pub(crate) keeps_going: bool,
+}
+
+impl SmoothRequest {
+    /// Returns the request of options that do not contradict each other.
+    ///
+    /// # Errors
+    /// If a file has a name that its kind of file cannot have.
+    pub(crate) fn new(args: SmoothArgs) -> Result<Self, CliError> {
+        let (run, outputs) = (options(&args), Outputs::of_run(&args)?);
+        let (given, more) = (args.input.into_iter().chain(args.output), args.more);
+        let meshes = match (args.out_dir, given.collect::<Vec<_>>()) {
+            (Some(directory), mut inputs) => {
+                inputs.extend(more);
+                let table = match (args.csv, args.json) {
+                    (_, true) => TableForm::Json,
+                    (true, false) => TableForm::Csv,
+                    (false, false) => TableForm::Text,
+                };
+                Meshes::Many(Batch { inputs, directory, skips_done: args.resume, table })
+            }
+            (None, given) => match <[PathBuf; 2]>::try_from(given) {
+                Ok([input, output]) => Meshes::One { input, output },
+                Err(_) => return Err(CliError::usage("IN and OUT are needed")),
+            },
+        };
+        Ok(Self {
+            meshes,
+            reading: args.reading.into(),
+            surface: (&args.target.surface).into(),
+            target: (&args.target).into(),
+            movable: args.moving.into(),
+            slide: SlideRequest::of(args.sliding),
+            fields: args.riding.into(),
+            engine: EngineRequest::of(args.engine, args.adapter),
+            run,
+            time_limit: args.time_limit,
+            untangle: args.untangle.then_some(UntangleRequest { keeps_going: args.keep_going }),
+            continue_from: args.continued,
+            is_strict: args.strict,
+            outputs,
+        })
     }
 
     /// Returns the scheme: the metrics of the sweeps.
-    pub(crate) fn scheme(&self) -> Scheme {
-        self.scheme.clone().unwrap_or_else(|| self.target.default_metric().into())
+    pub(crate) fn scheme(&self) -> &Scheme {
+        &self.run.scheme
+    }
+
+    /// Returns the largest number of sweeps.
+    pub(crate) fn max_sweeps(&self) -> u32 {
+        self.run.max_sweeps
+    }
+
+    /// Returns how far vertices may move, in lengths of an edge, if that is bounded.
+    pub(crate) fn max_move(&self) -> Option<f64> {
+        self.run.max_move
+    }
+
+    /// Whether the history of a report has the objectives of all metrics.
+    pub(crate) fn tracks_all(&self) -> bool {
+        self.run.track_all
     }
 
     /// Returns the share of f within which the run ends, if it has no other goal.
     pub(crate) fn estimated_end(&self) -> Option<f64> {
-        let has_goal = self.fraction.is_some() || self.desired.is_some();
-        (!has_goal).then_some(self.tolerance)
+        self.run.goal.is_none().then_some(self.run.tolerance)
     }
 
     /// Returns the options of a run on a mesh whose file stores coordinates with precision `stored`.
     pub(crate) fn options(&self, stored: Precision) -> Options {
-        let has_goal = self.fraction.is_some() || self.desired.is_some();
-        let options = Options {
-            scheme: self.scheme(),
-            max_sweeps: self.max_sweeps,
-            tolerance: self.tolerance,
-            stored,
-            goal: has_goal.then(|| Goal {
-                fraction: self.fraction.unwrap_or(0.95),
-                desired: self.desired.unwrap_or(Desired::Auto),
-            }),
-            method: match self.method {
-                MethodChoice::Auto => Method::Auto,
-                MethodChoice::Multilevel => Method::Multilevel,
-                MethodChoice::Relaxed | MethodChoice::Paper => Method::Sweeps,
-            },
-            omega: match self.method {
-                MethodChoice::Paper => Some(1.0),
-                _ => self.omega,
-            },
-            inner: self.inner,
-            max_move: self.max_move,
-            keep_altitude: self.keep_altitude,
-            improve_worst: self.improving.measure(),
-            guard: match self.guard {
-                GuardChoice::ByMetric => Guard::ByMetric,
-                GuardChoice::Worst => Guard::Worst,
-            },
-            derivatives: match self.derivatives {
-                DerivativesChoice::Analytic => Derivatives::Analytic,
-                DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
-            },
-            track_all: self.history == History::All,
-            ..Options::default()
-        };
-        let sharpness = match self.edge_norm {
-            None => None,
-            Some(EdgeNorm::Fixed) => Some(Sharpness::FIXED),
-            // What such runs do anyway, as far as the tolerance asks.
-            Some(EdgeNorm::Continued) if doubles_anyway(&options) => None,
-            Some(EdgeNorm::Continued) => Some(Sharpness::CONTINUED),
-        };
-        Options { sharpness, ..options }
+        Options { stored, ..self.run.clone() }
     }
+}
+
+impl SmoothArgs {
+    /// Returns the scheme: the metrics of the sweeps.
+    pub(super) fn scheme(&self) -> Scheme {
+        self.scheme.clone().unwrap_or_else(|| self.target.default_metric().into())
+    }
+}
+
+/// Returns the options of a run, for coordinates in double precision.
+fn options(args: &SmoothArgs) -> Options {
+    let has_goal = args.fraction.is_some() || args.desired.is_some();
+    let options = Options {
+        scheme: args.scheme(),
+        max_sweeps: args.max_sweeps,
+        tolerance: args.tolerance,
+        goal: has_goal.then(|| Goal {
+            fraction: args.fraction.unwrap_or(0.95),
+            desired: args.desired.unwrap_or(Desired::Auto),
+        }),
+        method: match args.method {
+            MethodChoice::Auto => Method::Auto,
+            MethodChoice::Multilevel => Method::Multilevel,
+            MethodChoice::Relaxed | MethodChoice::Paper => Method::Sweeps,
+        },
+        omega: match args.method {
+            MethodChoice::Paper => Some(1.0),
+            _ => args.omega,
+        },
+        inner: args.inner,
+        max_move: args.max_move,
+        keep_altitude: args.keep_altitude,
+        improve_worst: worst_by(&args.improving),
+        guard: match args.guard {
+            GuardChoice::ByMetric => Guard::ByMetric,
+            GuardChoice::Worst => Guard::Worst,
+        },
+        derivatives: match args.derivatives {
+            DerivativesChoice::Analytic => Derivatives::Analytic,
+            DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
+        },
+        track_all: args.history == History::All,
+        ..Options::default()
+    };
+    let sharpness = match args.edge_norm {
+        None => None,
+        Some(EdgeNorm::Fixed) => Some(Sharpness::FIXED),
+        // What such runs do anyway, as far as the tolerance asks.
+        Some(EdgeNorm::Continued) if doubles_anyway(&options) => None,
+        Some(EdgeNorm::Continued) => Some(Sharpness::CONTINUED),
+    };
+    Options { sharpness, ..options }
 }
 
 /// Whether the exponent of edge's p-norm doubles anyway.
@@ -81,13 +225,91 @@ fn doubles_anyway(options: &Options) -> bool {
     options.is_multilevel() && options.scheme.base() == Metric::Edge
 }
 
-impl WorstArgs {
-    /// Returns the measure of the worst triangles, if they are to be improved.
-    pub(crate) fn measure(&self) -> Option<WorstBy> {
-        self.improve_worst.map(|choice| match choice {
-            WorstChoice::Imr => WorstBy::Imr,
-            WorstChoice::MinAngle => WorstBy::MinAngle,
-            WorstChoice::Altitude => WorstBy::Altitude,
-        })
+/// Returns the measure of the worst triangles, if they are to be improved.
+fn worst_by(args: &WorstArgs) -> Option<WorstBy> {
+    args.improve_worst.map(|choice| match choice {
+        WorstChoice::Imr => WorstBy::Imr,
+        WorstChoice::MinAngle => WorstBy::MinAngle,
+        WorstChoice::Altitude => WorstBy::Altitude,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::Cli;
+    use crate::request::target::TargetSource;
+    use clap::Parser;
+    use std::path::Path;
+
+    /// Returns the request of a command line after the name of the program.
+    fn request(words: &str) -> Result<SmoothRequest, CliError> {
+        let words = std::iter::once("gpu-smooth").chain(words.split_whitespace());
+        SmoothRequest::new(Cli::try_parse_from(words).unwrap().smooth)
+    }
+
+    #[test]
+    fn an_adapter_stands_for_the_engine_gpu() {
+        let engine = |words: &str| request(&format!("in out {words}")).unwrap().engine;
+        let gpu =
+            |adapter: Option<&str>| EngineRequest::Gpu { adapter: adapter.map(str::to_owned) };
+        assert_eq!(engine(""), EngineRequest::Auto);
+        assert_eq!(engine("--engine cpu"), EngineRequest::Cpu);
+        assert_eq!(engine("--engine gpu"), gpu(None));
+        assert_eq!(engine("--adapter llvm"), gpu(Some("llvm")));
+        assert_eq!(engine("--engine gpu --adapter llvm"), gpu(Some("llvm")));
+    }
+
+    #[test]
+    fn a_continued_run_saves_its_state_to_the_same_file_unless_another_is_named() {
+        let file = |words: &str| {
+            let plan = request(&format!("in out {words}")).unwrap().outputs.checkpoint;
+            plan.map(|plan| (plan.file.display().to_string(), plan.every.as_secs()))
+        };
+        assert_eq!(file(""), None);
+        assert_eq!(file("--continue a"), Some(("a".into(), 300)));
+        assert_eq!(file("--continue a --checkpoint b --checkpoint-every 9"), Some(("b".into(), 9)));
+    }
+
+    #[test]
+    fn one_mesh_has_a_file_and_many_have_a_directory() {
+        let Meshes::One { input, output } = request("a b").unwrap().meshes else { panic!() };
+        assert_eq!([input, output], ["a", "b"].map(PathBuf::from));
+        let Meshes::Many(batch) = request("a b c --out-dir d --csv").unwrap().meshes else {
+            panic!()
+        };
+        assert_eq!(batch.inputs, ["a", "b", "c"].map(PathBuf::from));
+        assert_eq!((batch.directory.as_path(), batch.table), (Path::new("d"), TableForm::Csv));
+        assert!(!batch.skips_done);
+        let refused = request("a b --picture p.bmp").err().unwrap();
+        assert_eq!(refused.kind, crate::error::ErrorKind::Usage);
+    }
+
+    #[test]
+    fn the_source_of_a_target_is_found_by_the_files_that_exist() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        for name in ["back.msh", "view.pos", "odd:name.sol"] {
+            std::fs::write(folder.path().join(name), "any").unwrap();
+        }
+        let target =
+            |source: String| request(&format!("in out --target size={source}")).unwrap().target;
+        for (text, is_of_places) in [
+            (format!("{}:h", path("back.msh")), true),
+            (path("view.pos"), true),
+            (path("odd:name.sol"), false),
+        ] {
+            let target = target(text.clone());
+            assert_eq!(
+                (target.is_of_places(), target.name()),
+                (is_of_places, format!("size={text}"))
+            );
+            assert_eq!(target.files().len(), 1, "{text}");
+        }
+        let TargetRequest::Given { source, .. } = target(format!("{}:h", path("back.msh"))) else {
+            panic!()
+        };
+        let TargetSource::Background { mesh, data } = source else { panic!() };
+        assert_eq!((mesh, data.as_str()), (folder.path().join("back.msh"), "h"));
     }
 }

@@ -1,4 +1,4 @@
-//! The meaning of the options on targets and surfaces.
+//! The request on the targets of elements, and on the surface that coordinates are on.
 
 use std::path::{Path, PathBuf};
 
@@ -6,22 +6,131 @@ use gpu_smooth::{Metric, Surface};
 
 use crate::args::{OnSurface, Owner, SurfaceArgs, Target, TargetArgs};
 
-impl SurfaceArgs {
-    /// Returns what the coordinates are.
-    pub(crate) fn surface(&self) -> Surface {
-        match self.surface {
+impl From<&SurfaceArgs> for Surface {
+    fn from(args: &SurfaceArgs) -> Self {
+        match args.surface {
             OnSurface::Plane => Surface::Plane,
             OnSurface::Sphere => Surface::Sphere,
         }
     }
+}
 
-    /// Returns the name on the command line.
-    pub(crate) fn name(&self) -> &'static str {
-        match self.surface {
-            OnSurface::Plane => "plane",
-            OnSurface::Sphere => "sphere",
+/// What elements are to look like.
+pub(crate) enum TargetRequest {
+    Equilateral,
+    /// The sizes, or the sizes and shapes, that the mesh has.
+    Keep {
+        what: ElementProperty,
+        /// The number of rings of neighbors over which sizes and shapes are averaged.
+        rings: u32,
+        is_of_places: bool,
+    },
+    /// Sizes or tensors of a file or of point data.
+    Given {
+        what: TargetNumbers,
+        /// The source as the command line has it.
+        text: String,
+        source: TargetSource,
+        is_of_places: bool,
+    },
+}
+
+/// A property of the elements of a mesh that a target keeps.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ElementProperty {
+    Size,
+    Shape,
+}
+
+/// The numbers that a source of targets has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TargetNumbers {
+    /// One length for each vertex.
+    Sizes,
+    /// A symmetric tensor for each vertex: xx, xy, yy.
+    Tensors,
+}
+
+/// Where the numbers of targets are.
+pub(crate) enum TargetSource {
+    /// A file with numbers for each vertex of the mesh, or point data of the mesh.
+    OfMesh(String),
+    /// A background mesh, with the name of its point data or a file with numbers for each of its vertices.
+    Background { mesh: PathBuf, data: String },
+    /// A view of gmsh: triangles with a size at each corner.
+    View(PathBuf),
+}
+
+impl From<&TargetArgs> for TargetRequest {
+    fn from(args: &TargetArgs) -> Self {
+        let is_of_places = args.is_of_places();
+        let keep = |what| Self::Keep { what, rings: args.target_rings.unwrap_or(2), is_of_places };
+        let given = |what, text: &String| {
+            let (text, source) = (text.clone(), TargetSource::of(text));
+            Self::Given { what, text, source, is_of_places }
+        };
+        match &args.target {
+            Target::Equilateral => Self::Equilateral,
+            Target::KeepSize => keep(ElementProperty::Size),
+            Target::KeepShape => keep(ElementProperty::Shape),
+            Target::Size { source } => given(TargetNumbers::Sizes, source),
+            Target::Metric { source } => given(TargetNumbers::Tensors, source),
         }
     }
+}
+
+impl TargetRequest {
+    /// Whether targets belong to places and are taken anew where vertices have moved to.
+    pub(crate) fn is_of_places(&self) -> bool {
+        match self {
+            Self::Equilateral => false,
+            Self::Keep { is_of_places, .. } | Self::Given { is_of_places, .. } => *is_of_places,
+        }
+    }
+
+    /// Returns the target as the command line has it.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Equilateral => "equilateral".to_owned(),
+            Self::Keep { what: ElementProperty::Size, .. } => "keep-size".to_owned(),
+            Self::Keep { what: ElementProperty::Shape, .. } => "keep-shape".to_owned(),
+            Self::Given { what: TargetNumbers::Sizes, text, .. } => format!("size={text}"),
+            Self::Given { what: TargetNumbers::Tensors, text, .. } => format!("metric={text}"),
+        }
+    }
+
+    /// Returns the files that targets are read from, as far as they exist.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let Self::Given { source, .. } = self else { return Vec::new() };
+        let files = match source {
+            TargetSource::OfMesh(name) => vec![PathBuf::from(name)],
+            TargetSource::Background { mesh, data } => vec![mesh.clone(), PathBuf::from(data)],
+            TargetSource::View(path) => vec![path.clone()],
+        };
+        files.into_iter().filter(|file| file.is_file()).collect()
+    }
+}
+
+impl TargetSource {
+    /// Finds out what a text names. That depends on which files exist.
+    fn of(text: &str) -> Self {
+        let path = Path::new(text);
+        if is_view(path) {
+            return Self::View(path.to_owned());
+        }
+        let own = || Self::OfMesh(text.to_owned());
+        let Some((mesh, data)) = text.rsplit_once(':') else { return own() };
+        let is_file = path.exists() || data.is_empty();
+        match !is_file && Path::new(mesh).exists() {
+            true => Self::Background { mesh: mesh.into(), data: data.to_owned() },
+            false => own(),
+        }
+    }
+}
+
+/// Whether a path is an existing `.pos` file, a view of gmsh.
+fn is_view(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pos")) && path.exists()
 }
 
 impl TargetArgs {
@@ -35,43 +144,6 @@ impl TargetArgs {
         matches!(self.target, Target::KeepSize | Target::Size { .. })
     }
 
-    /// Whether the coordinates are taken for lengths in the plane.
-    pub(crate) fn is_on_plane(&self) -> bool {
-        self.surface() == Surface::Plane
-    }
-
-    /// Returns what the coordinates are: lengths in the plane or degrees on the sphere.
-    pub(crate) fn surface(&self) -> Surface {
-        self.surface.surface()
-    }
-
-    /// The target as it is given.
-    pub(crate) fn kind(&self) -> String {
-        match &self.target {
-            Target::Equilateral => "equilateral".to_owned(),
-            Target::KeepSize => "keep-size".to_owned(),
-            Target::KeepShape => "keep-shape".to_owned(),
-            Target::Size { source } => format!("size={source}"),
-            Target::Metric { source } => format!("metric={source}"),
-        }
-    }
-
-    /// Whether sizes or shapes of the mesh itself are kept.
-    pub(crate) fn keeps(&self) -> bool {
-        matches!(self.target, Target::KeepSize | Target::KeepShape)
-    }
-
-    pub(crate) fn rings(&self) -> u32 {
-        self.target_rings.unwrap_or(2)
-    }
-
-    /// Whether targets belong to places, not to vertices.
-    pub(crate) fn is_of_places(&self) -> bool {
-        let is_uniform = matches!(self.target, Target::Equilateral);
-        let default = if self.background().is_some() { Owner::Place } else { Owner::Vertex };
-        !is_uniform && self.target_of.unwrap_or(default) == Owner::Place
-    }
-
     /// Returns the source of sizes or tensors, if there is one.
     pub(crate) fn source(&self) -> Option<&str> {
         match &self.target {
@@ -80,36 +152,22 @@ impl TargetArgs {
         }
     }
 
-    /// Returns the files that targets are read from, as far as they exist.
-    pub(crate) fn files(&self) -> Vec<PathBuf> {
-        let files = match (self.background(), self.source()) {
-            (Some((mesh, data)), _) => vec![mesh, Path::new(data)],
-            (None, Some(source)) => vec![Path::new(source)],
-            (None, None) => Vec::new(),
-        };
-        files.into_iter().filter(|file| file.is_file()).map(Path::to_path_buf).collect()
-    }
-
     /// Whether the source is a view of gmsh.
     pub(crate) fn has_view(&self) -> bool {
-        self.source().is_some_and(is_view)
+        self.source().is_some_and(|source| is_view(Path::new(source)))
     }
 
-    /// Returns the background mesh and the name of its data, if the target is given on one. The name is empty for a
-    /// view of gmsh.
-    pub(crate) fn background(&self) -> Option<(&Path, &str)> {
-        let source = self.source()?;
-        if is_view(source) {
-            return Some((Path::new(source), ""));
-        }
-        let (mesh, data) = source.rsplit_once(':')?;
-        let is_file = Path::new(source).exists() || data.is_empty();
-        (!is_file && Path::new(mesh).exists()).then_some((Path::new(mesh), data))
+    /// Whether targets belong to places, not to vertices.
+    pub(crate) fn is_of_places(&self) -> bool {
+        let is_on_background = self
+            .source()
+            .is_some_and(|source| !matches!(TargetSource::of(source), TargetSource::OfMesh(_)));
+        let default = if is_on_background { Owner::Place } else { Owner::Vertex };
+        self.target != Target::Equilateral && self.target_of.unwrap_or(default) == Owner::Place
     }
-}
 
-/// Whether a source is an existing `.pos` file, a view of gmsh.
-fn is_view(source: &str) -> bool {
-    let path = Path::new(source);
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pos")) && path.exists()
+    /// Whether sizes or shapes of the mesh itself are kept.
+    pub(crate) fn keeps(&self) -> bool {
+        matches!(self.target, Target::KeepSize | Target::KeepShape)
+    }
 }

@@ -3,12 +3,12 @@
 use std::cell::{Cell, RefCell};
 use std::fs;
 use std::io::ErrorKind;
+use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::{Checkpoint, GpuError, Keeper, Stop};
 use mesh_io::atomic;
 
-use crate::args::SmoothArgs;
 use crate::error::CliError;
 use crate::request::{CheckpointPlan, is_checkpoint};
 use crate::run::engine;
@@ -16,9 +16,9 @@ use crate::run::observer::Follow;
 
 const WITHOUT_CONTINUE: &str = "Without --continue the run starts anew";
 
-/// Reads the checkpoint to go on from, if the command line names one.
-pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, CliError> {
-    let Some(path) = &args.continued else { return Ok(None) };
+/// Reads the checkpoint to go on from, if there is one.
+pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>, CliError> {
+    let Some(path) = continue_from else { return Ok(None) };
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => CliError::input(format!(
@@ -37,7 +37,7 @@ pub(crate) fn resumed(args: &SmoothArgs) -> Result<Option<Checkpoint>, CliError>
 }
 
 /// Keeps the state of a run as the command line asks.
-pub(crate) struct Kept<'a, 'f> {
+pub(crate) struct CheckpointKeeper<'a, 'f> {
     /// Where and how often checkpoints are saved; `None` if they are not.
     plan: Option<&'a CheckpointPlan>,
     follow: &'a RefCell<&'f mut dyn Follow>,
@@ -48,7 +48,7 @@ pub(crate) struct Kept<'a, 'f> {
     told_of_fault: bool,
 }
 
-impl<'a, 'f> Kept<'a, 'f> {
+impl<'a, 'f> CheckpointKeeper<'a, 'f> {
     pub(crate) fn new(
         plan: Option<&'a CheckpointPlan>,
         follow: &'a RefCell<&'f mut dyn Follow>,
@@ -67,7 +67,7 @@ impl<'a, 'f> Kept<'a, 'f> {
     }
 }
 
-impl Keeper for Kept<'_, '_> {
+impl Keeper for CheckpointKeeper<'_, '_> {
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
         self.plan.is_some() && (is_ending || self.due.is_some_and(|due| Instant::now() >= due))
     }
@@ -141,7 +141,7 @@ mod tests {
     fn the_cpu_takes_over_once_from_a_failed_device_but_not_at_a_start_without_memory() {
         let mut remarks = Remarks::default();
         let follow: RefCell<&mut dyn Follow> = RefCell::new(&mut remarks);
-        let mut kept = Kept::new(None, &follow);
+        let mut kept = CheckpointKeeper::new(None, &follow);
         assert!(!kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 0));
         assert!(kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 7));
         assert!(kept.goes_on_without(&GpuError::Lost("gone".into()), 0));

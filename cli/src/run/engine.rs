@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
 
-use crate::args::{EngineChoice, SmoothArgs};
 use crate::error::CliError;
+use crate::request::{EngineRequest, SmoothRequest};
 use crate::run::driver_probe::{self, Tried};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
@@ -31,25 +31,20 @@ impl Taken {
     }
 }
 
-/// Whether the engine is to be chosen by the size of the mesh.
-pub(crate) fn is_open(args: &SmoothArgs) -> bool {
-    args.engine == EngineChoice::Auto && args.adapter.is_none()
-}
-
-/// Opens the engine that the command line asks for.
-pub(crate) fn open(args: &SmoothArgs) -> Result<Taken, CliError> {
-    let backend = match args.engine {
-        EngineChoice::Cpu => Backend::Cpu,
-        EngineChoice::Gpu | EngineChoice::Auto => {
-            Backend::Gpu(open_adapter(args.adapter.as_deref())?)
-        }
+/// Opens the engine of a request. `None` if the engine is to be chosen by the size of the mesh.
+pub(crate) fn open(engine: &EngineRequest) -> Result<Option<Taken>, CliError> {
+    let backend = match engine {
+        EngineRequest::Auto => return Ok(None),
+        EngineRequest::Cpu => Backend::Cpu,
+        EngineRequest::Gpu { adapter } => Backend::Gpu(open_adapter(adapter.as_deref())?),
     };
-    Ok(Taken::new(backend, None))
+    Ok(Some(Taken::new(backend, None)))
 }
 
 /// Chooses the engine for a mesh of this size and opens it.
-pub(crate) fn choose(args: &SmoothArgs, size: MeshSize) -> Taken {
-    let (backend, reason) = Backend::auto_tried(size, &args.options(Precision::Double), try_best);
+pub(crate) fn choose(request: &SmoothRequest, size: MeshSize) -> Taken {
+    let options = request.options(Precision::Double);
+    let (backend, reason) = Backend::auto_tried(size, &options, try_best);
     Taken::new(backend, Some(worded(&reason)))
 }
 
@@ -78,7 +73,7 @@ fn worded(reason: &Reason) -> String {
 
 /// The engines of many runs. A device is opened once, and runs take turns on it.
 pub(crate) struct Engines<'a> {
-    args: &'a SmoothArgs,
+    request: &'a SmoothRequest,
     /// The engine that the command line asks for, if it asks for one.
     asked: Option<Taken>,
     found: Mutex<Found>,
@@ -97,12 +92,9 @@ struct Found {
 
 impl<'a> Engines<'a> {
     /// Opens the engine that the command line asks for, if it asks for one.
-    pub(crate) fn new(args: &'a SmoothArgs) -> Result<Self, CliError> {
-        let asked = match is_open(args) {
-            true => None,
-            false => Some(in_turns(open(args)?)),
-        };
-        Ok(Self { args, asked, found: Mutex::default() })
+    pub(crate) fn new(request: &'a SmoothRequest) -> Result<Self, CliError> {
+        let asked = open(&request.engine)?.map(in_turns);
+        Ok(Self { request, asked, found: Mutex::default() })
     }
 
     /// Returns the engine for a mesh of this size. Must not be called from a thread of a rayon pool, as the choice
@@ -127,7 +119,7 @@ impl<'a> Engines<'a> {
             return taken.clone();
         }
         let (backend, reason) =
-            Backend::auto_tried(size, &self.args.options(Precision::Double), try_best);
+            Backend::auto_tried(size, &self.request.options(Precision::Double), try_best);
         let taken = in_turns(Taken::new(backend, Some(worded(&reason))));
         let known = (taken.clone(), size.vertices);
         match reason {

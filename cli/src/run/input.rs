@@ -1,8 +1,8 @@
 //! The input of the stages of a run.
 
-use crate::args::SmoothArgs;
 use crate::load::{Choice, LoadedMesh};
 use crate::report::Task;
+use crate::request::SmoothRequest;
 use std::time::Instant;
 
 /// A mesh as its stages see it, with the task that it comes from.
@@ -18,7 +18,7 @@ pub(super) struct Input<'a> {
 }
 
 impl<'a> Input<'a> {
-    pub(super) fn args(&self) -> &'a SmoothArgs {
-        self.task.args
+    pub(super) fn request(&self) -> &'a SmoothRequest {
+        self.task.request
     }
 }

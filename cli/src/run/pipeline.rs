@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gpu_smooth::MeshSize;
+use gpu_smooth::{MeshSize, Surface};
 
 use crate::error::CliError;
 use crate::load::remarks;
 use crate::load::streams;
-use crate::load::{Choice, LoadedMesh, Riding};
+use crate::load::{Choice, LoadedMesh, Riding, lay_out};
 use crate::report::{Done, Failure, Task};
 use crate::run::engine::Taken;
 use crate::run::input::Input;
@@ -74,17 +74,17 @@ pub(crate) fn carry_out<T>(
 
 /// Reads a mesh and chooses what may move in it. Tells the remarks on the mesh.
 fn read(task: &Task<'_>, follow: &mut dyn Follow) -> Result<ReadMesh, CliError> {
-    let args = task.args;
+    let request = task.request;
     let bytes = size_of(task.input);
     follow.stage(Stage::Reading { bytes });
-    let mut file = streams::read(task.input, args.reading)?;
-    let laid_out = args.target.surface.lay_out(&mut file)?;
-    let choice = args.moving.apply(&mut file)?;
-    let riding = args.riding.choose(&file)?;
+    let mut file = streams::read(task.input, request.reading)?;
+    let laid_out = lay_out(&mut file, request.surface)?;
+    let choice = request.movable.apply(&mut file)?;
+    let riding = request.fields.choose(&file)?;
     let at = Instant::now();
     follow.has_read(&file)?;
-    let degrees = args.target.is_on_plane().then(|| remarks::degrees(&file)).flatten();
-    let remarks = remarks::remarks(&file, args.sliding.slide);
+    let degrees = (request.surface == Surface::Plane).then(|| remarks::degrees(&file)).flatten();
+    let remarks = remarks::remarks(&file, request.slide.is_some());
     for remark in remarks.iter().chain(&laid_out).chain(&choice.notes).chain(&degrees) {
         follow.remark(remark);
     }

@@ -4,11 +4,11 @@ use std::time::Instant;
 
 use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
 
-use crate::args::SmoothArgs;
 use crate::error::CliError;
 use crate::load::explain;
 use crate::load::{Choice, LoadedMesh, Riding};
 use crate::report::Failure;
+use crate::request::SmoothRequest;
 use crate::run::engine::{self, Taken};
 use crate::run::input::Input;
 use crate::run::observer::Follow;
@@ -76,15 +76,15 @@ fn prepared<'a>(
     riding: &Riding,
     follow: &mut dyn Follow,
 ) -> Result<Prepared<'a>, Failure> {
-    let (args, file) = (input.args(), input.file);
-    match smoother(args, file) {
-        prepared if args.untangle && untangle::can_mend(&prepared) => {
+    let (request, file) = (input.request(), input.file);
+    match smoother(request, file) {
+        prepared if request.untangle.is_some() && untangle::can_mend(&prepared) => {
             drop(prepared);
             follow.stage(Stage::Untangling);
             riding.check_untangled()?;
             Ok(Prepared::Mended(untangle::mend(input.task, input.began, file)?))
         }
-        Err(error) => Err(refusal(args, input.choice, file, &error)),
+        Err(error) => Err(refusal(request, input.choice, file, &error)),
         Ok(smoother) => Ok(Prepared::Ready(Box::new(smoother))),
     }
 }
@@ -98,7 +98,8 @@ pub(super) fn set_up<'a>(
     follow: &mut dyn Follow,
 ) -> Result<Ready<'a>, CliError> {
     let Subject { mut smoother, mended } = subject;
-    let (args, file, mesh) = (input.args(), input.file, input.file.mesh());
+    let (request, file, mesh) = (input.request(), input.file, input.file.mesh());
+    let surface = request.surface;
     let taken = match smoother.topology().free_count() {
         0 => Taken::new(Backend::Cpu, Some("no vertex is free, and sliding is on the CPU".into())),
         _ => taken,
@@ -111,21 +112,20 @@ pub(super) fn set_up<'a>(
     if let Some(remark) = explain::hanging(file, &hanging) {
         follow.remark(&remark);
     }
-    if let Some(remark) = args.target.set(file, &mut smoother, points)? {
+    if let Some(remark) = request.target.set(file, &mut smoother, points, surface)? {
         follow.remark(&remark);
     }
-    if let Some(remark) = args.sliding.set(file, &mut smoother)? {
-        follow.remark(&remark);
+    if let Some(slide) = &request.slide {
+        follow.remark(&slide.set(file, &mut smoother)?);
     }
-    let surface = args.target.surface();
     let before = Quality::on(surface, &mesh.points, smoother.topology())?;
     Ok(Ready { smoother, mended, taken, before, at: Instant::now() })
 }
 
 /// Prepares a mesh to be smoothed. If vertices slide, none needs to be free.
-fn smoother<'f>(args: &SmoothArgs, file: &'f LoadedMesh) -> Result<Smoother<'f>, MeshError> {
-    let slides = |error| match args.sliding.slide(file) {
-        Ok(Some(slide)) => Smoother::with_slide(file.mesh(), &slide).map_err(|_| error),
+fn smoother<'f>(request: &SmoothRequest, file: &'f LoadedMesh) -> Result<Smoother<'f>, MeshError> {
+    let slides = |error| match request.slide.as_ref().map(|slide| slide.slide(file)) {
+        Some(Ok(slide)) => Smoother::with_slide(file.mesh(), &slide).map_err(|_| error),
         _ => Err(error),
     };
     match Smoother::new(file.mesh()) {
@@ -135,13 +135,18 @@ fn smoother<'f>(args: &SmoothArgs, file: &'f LoadedMesh) -> Result<Smoother<'f>,
 }
 
 /// Words why a mesh is not smoothed, with its inverted and flat triangles if a report was asked for.
-fn refusal(args: &SmoothArgs, choice: &Choice, file: &LoadedMesh, error: &MeshError) -> Failure {
+fn refusal(
+    request: &SmoothRequest,
+    choice: &Choice,
+    file: &LoadedMesh,
+    error: &MeshError,
+) -> Failure {
     if let Some(error) = choice.nothing_free(file, error) {
         return error.into();
     }
     let refused = match error {
         MeshError::NothingFree { .. }
-            if args.sliding.slide && file.interface_vertices().is_empty() =>
+            if request.slide.is_some() && file.interface_vertices().is_empty() =>
         {
             let (path, error) = (file.source.path().display(), explain::nothing_free(file));
             CliError::input(format!(
@@ -152,7 +157,7 @@ fn refusal(args: &SmoothArgs, choice: &Choice, file: &LoadedMesh, error: &MeshEr
         _ => explain::mesh_error(file, error),
     };
     let triangles = match error {
-        MeshError::Infeasible { triangles } if args.report.is_some() => {
+        MeshError::Infeasible { triangles } if request.outputs.report.is_some() => {
             explain::bad_triangles(file, triangles)
         }
         _ => Vec::new(),

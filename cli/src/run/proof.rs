@@ -25,15 +25,22 @@ pub(crate) struct Proof {
     pub(crate) bad: Vec<BadTriangle>,
 }
 
+/// A mesh before or after a run, with its data that may change.
+#[derive(Clone, Copy)]
+pub(crate) struct MeshVersion<'a> {
+    pub(crate) file: &'a LoadedMesh,
+    pub(crate) fields: &'a Riding,
+}
+
 impl Proof {
-    /// Compares two files. The first says which vertices may move, `slide` which may slide. The data that may change
-    /// are given for both files.
+    /// Compares two files of a mesh. The first says which vertices may move, `slide` which may slide.
     pub(crate) fn of(
-        [before, after]: [&LoadedMesh; 2],
-        [mine, theirs]: [&Riding; 2],
+        before: MeshVersion<'_>,
+        after: MeshVersion<'_>,
         slide: Option<&Slide>,
     ) -> Result<Self, MeshError> {
-        let fields = [mine.fields(), theirs.fields()];
+        let fields = [before.fields, after.fields].map(Riding::fields);
+        let (before, after) = (before.file, after.file);
         let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
         let (mut slid, mut pairs) = (0, 0);
         let difference = before.source.difference_besides(&after.source, fields);

@@ -11,7 +11,7 @@ use crate::run::checkpoint;
 use crate::run::input::Input;
 use crate::run::observer::Follow;
 use crate::run::prepare::Ready;
-use crate::run::proof::{self, Proof};
+use crate::run::proof::{self, MeshVersion, Proof};
 use crate::run::sweeps::Ran;
 use crate::terminal::progress::Stage;
 
@@ -42,14 +42,14 @@ pub(super) fn measure(
     riding: &mut Riding,
     follow: &mut dyn Follow,
 ) -> Result<Measures, CliError> {
-    let (args, file, outcome) = (input.args(), input.file, &ran.outcome);
+    let (request, file, outcome) = (input.request(), input.file, &ran.outcome);
     let (topology, old) = (ready.smoother.topology(), &file.mesh().points);
-    let after = Quality::on(args.target.surface(), &outcome.points, topology)?;
+    let after = Quality::on(request.surface, &outcome.points, topology)?;
     let change = Change::between(topology, old, &outcome.points)?;
-    let base = args.scheme().base();
+    let base = request.scheme().base();
     let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
     let f_after = || Ok(ready.smoother.f(base, &outcome.points)?);
-    let target = args.target.report(f_before, f_after)?;
+    let target = request.target.report(request.surface, f_before, f_after)?;
     let interpolated = riding.carry(file, topology, &outcome.points)?;
     let left_over = riding.add_dependents(file, &outcome.points)?;
     let has_moved = outcome.points != *old;
@@ -70,16 +70,16 @@ pub(super) fn write(
     riding: &Riding,
     follow: &mut dyn Follow,
 ) -> Result<Written, CliError> {
-    let (args, file, out) = (input.args(), input.file, input.task.out);
+    let (request, file, out) = (input.request(), input.file, input.task.out);
     follow.stage(Stage::Writing { bytes: input.bytes });
     // The files are hashed before the mesh is written, which may replace them.
-    let hashes = if args.report.is_some() { proof::hashes(file) } else { Vec::new() };
+    let hashes = if request.outputs.report.is_some() { proof::hashes(file) } else { Vec::new() };
     streams::write(file, out, &ran.outcome.points, riding.fields())?;
-    let certificate = match args.report.is_some() && !streams::is_standard(out) {
+    let certificate = match request.outputs.report.is_some() && !streams::is_standard(out) {
         true => Some(certificate(input, ready, riding, hashes)?),
         false => None,
     };
-    checkpoint::clear(input.task.outputs.checkpoint.as_ref(), ran.outcome.stop);
+    checkpoint::clear(request.outputs.checkpoint.as_ref(), ran.outcome.stop);
     Ok(Written { certificate, at: Instant::now() })
 }
 
@@ -90,22 +90,27 @@ fn certificate(
     riding: &Riding,
     hashes: Vec<FileHash>,
 ) -> Result<Certificate, CliError> {
-    let (args, file, out) = (input.args(), input.file, input.task.out);
-    let mut after = streams::read(out, args.reading)?;
+    let (request, file, out) = (input.request(), input.file, input.task.out);
+    let mut after = streams::read(out, request.reading)?;
     file.lay_out_likewise(&mut after);
     let after = after;
-    let mut theirs = args.riding.choose(&after)?;
+    let mut theirs = request.fields.choose(&after)?;
     theirs.add_dependents(&after, &after.mesh().points)?;
-    let proof = Proof::of([file, &after], [riding, &theirs], args.sliding.slide(file)?.as_ref())?;
+    let slide = request.slide.as_ref().map(|slide| slide.slide(file)).transpose()?;
+    let proof = Proof::of(
+        MeshVersion { file, fields: riding },
+        MeshVersion { file: &after, fields: &theirs },
+        slide.as_ref(),
+    )?;
     if let Some(problem) = proof.problem() {
         return Err(CliError::run(format!(
             "{}: the written mesh was read again, and it is wrong: {problem}",
             out.display()
         )));
     }
-    let surface = args.target.surface();
+    let surface = request.surface;
     let quality = Quality::on(surface, &after.mesh().points, ready.smoother.topology())?;
-    let f = quality.f(args.scheme().base());
+    let f = quality.f(request.scheme().base());
     Ok(Certificate {
         connectivity_identical: proof.difference.is_none(),
         moved: proof.moved.len(),

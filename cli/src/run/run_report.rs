@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use gpu_smooth::{Backend, Checkpoint, Outcome, Smoother, Stop};
 
-use crate::args::History;
 use crate::load::LoadedMesh;
 use crate::report::{
     self, Certificate, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds,
@@ -48,13 +47,13 @@ pub(super) fn report(
     certificate: Option<Certificate>,
     clock: &Clock,
 ) -> Report {
-    let (args, choice, outcome) = (input.args(), input.choice, &ran.outcome);
+    let (request, choice, outcome) = (input.request(), input.choice, &ran.outcome);
     Report {
         engine: engine_report(&ran.taken, outcome),
         mesh: mesh_report(input.file, &ready.smoother),
         target: measured.target,
         untangled: ready.mended.map(untangle_report),
-        scheme: args.scheme().to_string(),
+        scheme: request.scheme().to_string(),
         sweeps: outcome.sweeps,
         corrections: outcome.corrections,
         opening_sweeps: outcome.opening_sweeps,
@@ -72,12 +71,12 @@ pub(super) fn report(
         returned: outcome.returned,
         slid: outcome.slid.map(Into::into),
         improved: outcome.improved.map(Into::into),
-        max_move: args.max_move,
+        max_move: request.max_move(),
         change: measured.change.into(),
         before: (&ready.before).into(),
         after: (&measured.after).into(),
         certificate,
-        history: report::history(outcome, &args.scheme(), args.history == History::All),
+        history: report::history(outcome, request.scheme(), request.tracks_all()),
         seconds: clock.seconds(),
     }
 }

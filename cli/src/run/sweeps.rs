@@ -7,10 +7,10 @@ use std::time::Instant;
 
 use gpu_smooth::{Backend, Options, Outcome, Phase, Precision, Progress, SmoothError, Stop};
 
-use crate::args::SmoothArgs;
 use crate::error::CliError;
 use crate::load::{Choice, LoadedMesh, explain};
-use crate::run::checkpoint::Kept;
+use crate::request::{EngineRequest, SmoothRequest};
+use crate::run::checkpoint::CheckpointKeeper;
 use crate::run::engine::{self, Taken};
 use crate::run::input::Input;
 use crate::run::observer::Follow;
@@ -41,7 +41,7 @@ impl SweepClock<'_> {
         if progress.phase == Phase::Smoothing {
             self.times.push((progress.sweep, self.start.elapsed().as_secs_f64()));
         }
-        let limit = self.input.args().time_limit;
+        let limit = self.input.request().time_limit;
         self.out_of_time = limit.is_some_and(|limit| self.input.began.elapsed() >= limit);
         match interrupt::is_requested() || self.out_of_time {
             true => ControlFlow::Break(()),
@@ -63,13 +63,13 @@ pub(super) fn smooth(
     ready: &Ready<'_>,
     follow: &mut dyn Follow,
 ) -> Result<Ran, CliError> {
-    let args = input.args();
-    let options = options(args, input.choice, input.file.precision());
+    let request = input.request();
+    let options = options(request, input.choice, input.file.precision());
     follow.stage(Stage::Smoothing);
     let mut clock =
         SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };
     let follow = RefCell::new(follow);
-    let mut kept = Kept::new(input.task.outputs.checkpoint.as_ref(), &follow);
+    let mut kept = CheckpointKeeper::new(request.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
             follow.borrow_mut().sweep(progress);
@@ -82,13 +82,13 @@ pub(super) fn smooth(
     let mut outcome = run(&taken.backend);
     drop(turn);
     if let Err(error) = &outcome
-        && engine::is_open(args)
+        && request.engine == EngineRequest::Auto
         && engine::is_too_large(error)
     {
         taken = Taken::new(Backend::Cpu, Some(error.to_string()));
         outcome = run(&taken.backend);
     }
-    let outcome = outcome.map_err(|error| worded(args, input.file, error))?;
+    let outcome = outcome.map_err(|error| worded(request, input.file, error))?;
     clock.end(&outcome);
     let is_canceled = outcome.stop == Stop::Canceled;
     if is_canceled {
@@ -99,11 +99,11 @@ pub(super) fn smooth(
 }
 
 /// Words the error of a run in the terms of the file and the command line.
-fn worded(args: &SmoothArgs, file: &LoadedMesh, error: SmoothError) -> CliError {
+fn worded(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> CliError {
     match error {
         SmoothError::Mesh(error) => explain::mesh_error(file, &error),
         SmoothError::Checkpoint(_) => {
-            let path = args.continued.as_deref().unwrap_or(Path::new(""));
+            let path = request.continue_from.as_deref().unwrap_or(Path::new(""));
             CliError::from(error).within(&path.display().to_string())
         }
         error if engine::is_too_large(&error) => {
@@ -114,8 +114,8 @@ fn worded(args: &SmoothArgs, file: &LoadedMesh, error: SmoothError) -> CliError 
 }
 
 /// Returns the options of the run. If there is nothing to do, the run has no sweeps.
-fn options(args: &SmoothArgs, choice: &Choice, stored: Precision) -> Options {
-    let options = args.options(stored);
+fn options(request: &SmoothRequest, choice: &Choice, stored: Precision) -> Options {
+    let options = request.options(stored);
     match choice.nothing_to_do {
         Some(_) => Options { max_sweeps: 0, goal: None, improve_worst: None, ..options },
         None => options,

@@ -27,12 +27,13 @@ pub(crate) struct Mended {
 /// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before. The time limit
 /// counts from `began`.
 pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, CliError> {
-    let Task { args, show, out, .. } = *task;
+    let Task { request, verbosity, out, .. } = *task;
+    let keeps_going = request.untangle.is_some_and(|untangle| untangle.keeps_going);
     let mesh = file.mesh();
     let told = |error: MeshError| explain::mesh_error(file, &error);
     let topology = Topology::by_area(mesh).map_err(told)?;
     let crossings = explain::crossings(file, &topology);
-    if let (Some(crossings), false) = (&crossings, args.keep_going) {
+    if let (Some(crossings), false) = (&crossings, keeps_going) {
         let remedy =
             "Correct them, or untangle a mesh that is meant to lie over itself with --keep-going";
         let path = file.source.path().display().to_string();
@@ -40,14 +41,14 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
     }
     let mut ended = None;
     let mut observe = |progress: &Untangling| {
-        if show.verbose {
+        if verbosity.verbose {
             let Untangling { sweep, bad } = progress;
             let text = format!("untangling, sweep {sweep:<5} inverted or flat {bad}");
             streams::say_beside(out, &text);
         }
         if interrupt::is_requested() {
             ended = Some("interrupted while untangling");
-        } else if args.time_limit.is_some_and(|limit| began.elapsed() >= limit) {
+        } else if request.time_limit.is_some_and(|limit| began.elapsed() >= limit) {
             ended = Some("--time-limit ended untangling");
         }
         match ended {
@@ -64,12 +65,16 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
             return Ok(Mended { mesh, bad_before, sweeps, moved, remark });
         }
         Some(vertex) if left.is_empty() => overlaps(file, vertex, sweeps),
-        _ => still_tangled(file, (&left, &hopeless), sweeps, ended.is_some()),
+        _ => {
+            let was_ended = ended.is_some();
+            let left = TangledRest { triangles: &left, hopeless: &hopeless, sweeps, was_ended };
+            still_tangled(file, &left)
+        }
     };
     if let Some(ended) = ended {
         error = error.after(&format!("{ended}."));
     }
-    if !args.keep_going {
+    if !keeps_going {
         return Err(error);
     }
     Err(error.with_detail(match streams::write(file, out, &points, &[]) {
@@ -92,14 +97,21 @@ fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     ))
 }
 
-/// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless. `was_ended` tells
-/// that untangling was ended before it gave up.
-fn still_tangled(
-    file: &LoadedMesh,
-    (left, hopeless): (&[BadTriangle], &[BadTriangle]),
+/// What untangling has left of a tangled mesh.
+struct TangledRest<'a> {
+    /// All triangles that are inverted or flat still.
+    triangles: &'a [BadTriangle],
+    /// Those of them that have no free vertex.
+    hopeless: &'a [BadTriangle],
+    /// How many sweeps were done.
     sweeps: u32,
+    /// Whether untangling was ended before it gave up.
     was_ended: bool,
-) -> CliError {
+}
+
+/// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless.
+fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
+    let TangledRest { triangles: left, hopeless, sweeps, was_ended } = *left;
     let name = file.source.path().display();
     let (shown, count, why) = match hopeless.len() {
         0 => {

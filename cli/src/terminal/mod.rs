@@ -5,3 +5,6 @@ pub(crate) mod numbers;
 pub(crate) mod panics;
 pub(crate) mod progress;
 pub(crate) mod tell;
+mod verbosity;
+
+pub(crate) use verbosity::Verbosity;

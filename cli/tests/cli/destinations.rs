@@ -105,6 +105,8 @@ fn files_beside_the_mesh_with_names_of_meshes_are_refused_before_a_mesh_is_read(
         folder.line(line).misused(&[part]);
     }
     for (line, part) in [
+        ("none none/out", "none: no such directory. Create the directory first"),
+        ("convert none none/out.msh", "none: no such directory. Create the directory first"),
         ("none out --report none/r.json", "the report cannot be written: none: no such directory"),
         ("none out --picture none/p.png", "the picture cannot be written: none: no such"),
         ("none out --html none/p.html", "the page cannot be written: none: no such"),

@@ -9,47 +9,50 @@ use std::time::Instant;
 use gpu_smooth::Progress;
 use mesh_io::atomic;
 
-use crate::args::SmoothArgs;
-use crate::args::{LogForm, OutputArgs};
 use crate::commands::batch::entry::{Entry, Told};
 use crate::commands::batch::listing::Listed;
 use crate::commands::batch::workers::Watch;
 use crate::render::columns;
 use crate::report::Task;
-use crate::request::Outputs;
+use crate::request::{Batch, Outputs, SmoothRequest, TableForm};
 use crate::run::carry_out;
 use crate::run::engine::Engines;
 use crate::run::observer::Follow;
+use crate::terminal::Verbosity;
 use crate::terminal::interrupt;
 use crate::terminal::progress::{Stage, Tally};
 use crate::terminal::tell;
 
 /// Output settings of each run: it prints nothing, as other runs go on beside it.
-const SILENT: OutputArgs = OutputArgs { quiet: true, verbose: false, log: LogForm::Text };
+const SILENT: Verbosity = Verbosity { quiet: true, verbose: false };
 
 /// Smooths all meshes. Returns an error at the end if one of them failed.
-pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Result<(), CliError> {
+pub(crate) fn run(
+    request: &SmoothRequest,
+    batch: &Batch,
+    verbosity: Verbosity,
+) -> Result<(), CliError> {
     let start = Instant::now();
-    let list = listing::list(args.meshes(), directory)?;
-    let outputs = Outputs::of_run(args)?;
+    let list = listing::list(batch.inputs.iter(), &batch.directory)?;
+    let outputs = &request.outputs;
     outputs.check_names()?;
     for mesh in &list {
         outputs.check_files(&mesh.inputs, &mesh.outputs, ErrorKind::Usage)?;
     }
     outputs.check_disk()?;
-    interrupt::watch(show.quiet);
+    interrupt::watch(verbosity.quiet);
     // The first signal is left to the runs. Runs under way are then given up, and finished ones are reported.
     interrupt::has_result();
-    make(directory)?;
-    let is_done = |mesh: &Listed| args.resume && mesh.is_done();
+    make(&batch.directory)?;
+    let is_done = |mesh: &Listed| batch.skips_done && mesh.is_done();
     let (skipped, open): (Vec<_>, Vec<_>) = (0..list.len()).partition(|&i| is_done(&list[i]));
     let mut told: Vec<Option<Told>> = list.iter().map(|_| None).collect();
     skipped.iter().for_each(|&i| told[i] = Some(Told::Skipped));
     if !open.is_empty() {
-        let engines = Engines::new(args)?;
-        let tally = Tally::new(show, open.len());
-        let mut watch = Watched { list: &list, show, tally, told: &mut told };
-        workers::run(&list, &open, &|mesh| smooth(args, &outputs, &engines, mesh), &mut watch);
+        let engines = Engines::new(request)?;
+        let tally = Tally::new(verbosity, open.len());
+        let mut watch = Watched { list: &list, verbosity, tally, told: &mut told };
+        workers::run(&list, &open, &|mesh| smooth(request, &engines, mesh), &mut watch);
         watch.tally.clear();
     }
     let entry = |(mesh, told): (Listed, Option<Told>)| {
@@ -59,13 +62,14 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
     };
     let entries: Vec<Entry> = list.into_iter().zip(told).map(entry).collect();
     let seconds = start.elapsed().as_secs_f64();
-    write_report(args, &entries, seconds)?;
-    if args.json {
-        tell::say(&table::json(&entries)?);
-    } else if args.csv {
-        tell::say(&table::csv(&entries));
-    } else if !show.quiet {
-        tell::say(&table::text(&entries, seconds, columns::of_terminal()));
+    write_report(outputs, &entries, seconds)?;
+    match batch.table {
+        TableForm::Json => tell::say(&table::json(&entries)?),
+        TableForm::Csv => tell::say(&table::csv(&entries)),
+        TableForm::Text if verbosity.quiet => {}
+        TableForm::Text => {
+            tell::say(&table::text(&entries, seconds, columns::of_terminal()));
+        }
     }
     match table::failures(&entries) {
         Some(error) if interrupt::is_requested() => {
@@ -74,7 +78,7 @@ pub(crate) fn run(args: &SmoothArgs, directory: &Path, show: &OutputArgs) -> Res
         }
         Some(error) => Err(error),
         None => match entries.iter().filter(|entry| entry.told.fell_short()).count() {
-            short if short > 0 && args.strict => Err(CliError::run(format!(
+            short if short > 0 && request.is_strict => Err(CliError::run(format!(
                 "{short} of {} runs neither converged nor reached their goal; --strict makes this an error",
                 entries.len()
             ))),
@@ -94,7 +98,7 @@ fn make(directory: &Path) -> Result<(), CliError> {
 /// Shows how far the call is, and keeps how each mesh ended.
 struct Watched<'a> {
     list: &'a [Listed],
-    show: &'a OutputArgs,
+    verbosity: Verbosity,
     tally: Tally,
     told: &'a mut [Option<Told>],
 }
@@ -113,15 +117,15 @@ impl Watch for Watched<'_> {
     fn interrupted(&mut self) {
         tell::leave_bar();
         let text = "interrupted: meshes that are being smoothed are given up (interrupt again to end at once)";
-        tell::note(self.show.quiet, text);
+        tell::note(self.verbosity.quiet, text);
     }
 }
 
 /// Smooths one of the meshes.
-fn smooth(args: &SmoothArgs, outputs: &Outputs, engines: &Engines<'_>, mesh: &Listed) -> Told {
-    let task =
-        Task { args, outputs, show: &SILENT, input: &mesh.input, out: &mesh.out, resumed: None };
-    let mut follow = Followed { mesh, outputs, remarks: Vec::new() };
+fn smooth(request: &SmoothRequest, engines: &Engines<'_>, mesh: &Listed) -> Told {
+    let (input, out) = (&mesh.input, &mesh.out);
+    let task = Task { request, verbosity: SILENT, input, out, resumed: None };
+    let mut follow = Followed { mesh, outputs: &request.outputs, remarks: Vec::new() };
     let engine = |size| Ok(engines.take(size));
     match carry_out(&task, engine, &mut follow, |done| Ok(done.report)) {
         Ok(report) => Told::Smoothed { report: Box::new(report), remarks: follow.remarks },
@@ -164,8 +168,8 @@ impl Follow for Followed<'_> {
 }
 
 /// Writes the report on all meshes if it was asked for.
-fn write_report(args: &SmoothArgs, entries: &[Entry], seconds: f64) -> Result<(), CliError> {
-    let Some(path) = &args.report else { return Ok(()) };
+fn write_report(outputs: &Outputs, entries: &[Entry], seconds: f64) -> Result<(), CliError> {
+    let Some(path) = &outputs.report else { return Ok(()) };
     let text = table::report(entries, seconds)?;
     atomic::replace(path, text.as_bytes()).map_err(|error| {
         CliError::from(error)

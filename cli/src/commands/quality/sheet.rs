@@ -5,15 +5,15 @@ use crate::load::LoadedMesh;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::{BadTriangle, Measure, Measured, Quality, Statistics, Topology};
+use gpu_smooth::{BadTriangle, Measure, Measured, Quality, Statistics, Surface, Topology};
 use mesh_io::{Group, Groups, Location, Place};
 
 use crate::args::{QualityArgs, Threshold};
-use crate::load::as_in_file;
 use crate::load::explain::{self, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
-use crate::render::picture::{self, Shot};
+use crate::load::{as_in_file, lay_out};
+use crate::render::picture::{self, PictureSubject, Shot};
 use crate::report::{Histogram, QualityReport, histogram};
 use crate::request::PictureRequest;
 
@@ -93,9 +93,10 @@ impl Sheet {
         args: &QualityArgs,
         picture: Option<&PictureRequest>,
     ) -> Result<Self, CliError> {
-        let mut file = read(path, args.reading)?;
-        let laid_out = args.surface.lay_out(&mut file)?;
-        let (file, surface) = (file, args.surface.surface());
+        let mut file = read(path, args.reading.into())?;
+        let surface = Surface::from(&args.surface);
+        let laid_out = lay_out(&mut file, surface)?;
+        let file = file;
         let mesh = file.mesh();
         let refused = |error| explain::mesh_error(&file, &error);
         let topology = Topology::new(mesh).map_err(refused)?;
@@ -105,7 +106,11 @@ impl Sheet {
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
         let shot = Shot { title, points: &mesh.points };
-        picture::write(picture, &file, (&topology, surface), &[shot])?;
+        picture::write(
+            picture,
+            PictureSubject { file: &file, topology: &topology, surface },
+            &[shot],
+        )?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),

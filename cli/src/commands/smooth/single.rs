@@ -3,52 +3,54 @@
 use crate::error::{CliError, ErrorKind};
 use crate::load::LoadedMesh;
 use std::path::{Path, PathBuf};
+use std::slice;
 
 use gpu_smooth::{Outcome, Phase, Progress, Smoother};
 use mesh_io::atomic;
 use serde::Serialize;
 use serde_json::json;
 
-use crate::args::OutputArgs;
-use crate::args::SmoothArgs;
 use crate::load::streams;
 use crate::render::html;
-use crate::render::picture::{self, Shot};
+use crate::render::picture::{self, PictureSubject, Shot};
 use crate::report::Failure;
 use crate::report::{Done, Task};
 use crate::report::{Refusal, Report};
-use crate::request::Outputs;
+use crate::request::{Outputs, SmoothRequest};
 use crate::run::carry_out;
 use crate::run::checkpoint;
 use crate::run::engine;
 use crate::run::observer::Follow;
+use crate::terminal::Verbosity;
 use crate::terminal::interrupt;
 use crate::terminal::progress::{Display, Stage};
 use crate::terminal::tell;
 
-pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), CliError> {
-    let (Some(input), Some(out)) = (&args.input, &args.output) else {
-        return Err(CliError::usage("IN and OUT are needed"));
-    };
-    let outputs = Outputs::of_run(args)?;
-    let mesh: &[PathBuf] = if streams::is_standard(out) { &[] } else { std::slice::from_ref(out) };
-    outputs.check(std::slice::from_ref(input), mesh)?;
-    interrupt::watch(show.quiet);
-    let resumed = checkpoint::resumed(args)?;
+/// Smooths a mesh from the file `input` to the file `out`.
+pub(crate) fn run(
+    request: &SmoothRequest,
+    input: &PathBuf,
+    out: &PathBuf,
+    verbosity: Verbosity,
+) -> Result<(), CliError> {
+    // From here on, a signal leaves no temporary file of a check or of a write.
+    interrupt::watch(verbosity.quiet);
+    request.outputs.check(slice::from_ref(input), slice::from_ref(out))?;
+    let resumed = checkpoint::resumed(request.continue_from.as_deref())?;
     let resumed = resumed.as_ref();
-    let task = Task { args, outputs: &outputs, show, input, out, resumed };
-    let display = Display::new(show, args.estimated_end(), args.max_sweeps);
-    let mut follow = Shown { outputs: &outputs, show, out, display: &display };
+    let task = Task { request, verbosity, input, out, resumed };
+    let display = Display::new(verbosity, request.estimated_end(), request.max_sweeps());
+    let mut follow = Shown { outputs: &request.outputs, verbosity, out, display: &display };
     // The driver starts while the mesh is read. If the size of the mesh decides on the engine, it starts while the mesh
     // is prepared.
     let done = std::thread::scope(|scope| {
-        let opening = (!engine::is_open(args)).then(|| scope.spawn(|| engine::open(args)));
-        let engine = move |size| match opening {
-            Some(opening) => opening.join().map_err(|_| engine::driver_crashed())?,
-            None => Ok(match resumed {
+        let opening = scope.spawn(|| engine::open(&request.engine));
+        let engine = move |size| {
+            let opened = opening.join().map_err(|_| engine::driver_crashed())??;
+            Ok(opened.unwrap_or_else(|| match resumed {
                 Some(checkpoint) => engine::of_checkpoint(checkpoint),
-                None => engine::choose(args, size),
-            }),
+                None => engine::choose(request, size),
+            }))
         };
         carry_out(&task, engine, &mut follow, |done| {
             display.clear();
@@ -56,13 +58,13 @@ pub(crate) fn run(args: &SmoothArgs, show: &OutputArgs) -> Result<(), CliError> 
         })
     });
     display.clear();
-    done.map_err(|failure| told_with_report(&outputs, failure))
+    done.map_err(|failure| told_with_report(&request.outputs, failure))
 }
 
 /// Shows a run on the terminal.
 struct Shown<'a> {
     outputs: &'a Outputs,
-    show: &'a OutputArgs,
+    verbosity: Verbosity,
     out: &'a Path,
     display: &'a Display,
 }
@@ -78,7 +80,7 @@ impl Follow for Shown<'_> {
     }
 
     fn remark(&mut self, text: &str) {
-        self.display.aside(|| tell::note(self.show.quiet, text));
+        self.display.aside(|| tell::note(self.verbosity.quiet, text));
     }
 
     fn sweep(&mut self, progress: &Progress) {
@@ -92,7 +94,7 @@ impl Follow for Shown<'_> {
         if interrupt::is_requested() {
             let text =
                 "interrupted: writing the best mesh so far (interrupt again to end without it)";
-            self.display.aside(|| tell::note(self.show.quiet, text));
+            self.display.aside(|| tell::note(self.verbosity.quiet, text));
         }
         interrupt::has_result();
         self.outputs.check_report()
@@ -101,17 +103,18 @@ impl Follow for Shown<'_> {
 
 /// Writes and prints the results of a run that were asked for.
 fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
-    let Task { args, outputs, show, out, .. } = *task;
+    let Task { request, verbosity, out, .. } = *task;
+    let outputs = &request.outputs;
     let Done { file, smoother, outcome, report, .. } = done;
     write_report(outputs, report)
         .and_then(|()| draw(task, file, smoother, outcome))
         .and_then(|()| html::write(outputs.page.as_deref(), task, done))
         .map_err(|error| error.followed_by("The mesh was written"))?;
     let say = |text: &str| streams::say_beside(out, text);
-    if show.verbose {
+    if verbosity.verbose {
         sweeps(report).for_each(|line| say(&line));
     }
-    if !show.quiet {
+    if !verbosity.quiet {
         say(&report.summary());
         if tell::is_json() {
             let (before, after) = (report.before.f[report.base()], report.after.f[report.base()]);
@@ -121,7 +124,7 @@ fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
             }));
         }
     }
-    match report.fell_short().filter(|_| args.strict) {
+    match report.fell_short().filter(|_| request.is_strict) {
         None => Ok(()),
         Some(ending) => {
             let text = format!("{ending}. The mesh was written; --strict makes this an error");
@@ -159,8 +162,9 @@ fn draw(
 ) -> Result<(), CliError> {
     let shot = |title: &str, points| Shot { title: title.to_owned(), points };
     let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
-    let surface = task.args.target.surface();
-    picture::write(task.outputs.picture.as_ref(), file, (smoother.topology(), surface), &shots)
+    let SmoothRequest { outputs, surface, .. } = task.request;
+    let mesh = PictureSubject { file, topology: smoother.topology(), surface: *surface };
+    picture::write(outputs.picture.as_ref(), mesh, &shots)
 }
 
 fn write_report(outputs: &Outputs, report: &impl Serialize) -> Result<(), CliError> {

@@ -25,7 +25,7 @@ pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Re
 
 fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {
     let topology = done.smoother.topology();
-    let surface = task.args.target.surface();
+    let surface = task.request.surface;
     let before = Measured::on(surface, &done.file.mesh().points, topology)?;
     let after = Measured::on(surface, &done.outcome.points, topology)?;
     let states = [&before, &after];

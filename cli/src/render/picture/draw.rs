@@ -18,6 +18,15 @@ use crate::terminal::numbers::five;
 /// How many of the worst triangles are searched for some that lie apart from each other.
 const CANDIDATES: usize = 1000;
 
+/// The mesh of a picture.
+#[derive(Clone, Copy)]
+pub(crate) struct PictureSubject<'a> {
+    pub(crate) file: &'a LoadedMesh,
+    pub(crate) topology: &'a Topology<'a>,
+    /// What the coordinates are.
+    pub(crate) surface: Surface,
+}
+
 /// The vertices of a mesh at some time.
 pub(crate) struct Shot<'a> {
     pub(crate) title: String,
@@ -27,13 +36,12 @@ pub(crate) struct Shot<'a> {
 /// Draws the picture that was asked for: one panel for each shot, all on one color scale.
 pub(crate) fn write(
     request: Option<&PictureRequest>,
-    file: &LoadedMesh,
-    (topology, surface): (&Topology<'_>, Surface),
+    mesh: PictureSubject<'_>,
     shots: &[Shot<'_>],
 ) -> Result<(), CliError> {
     let Some(request) = request else { return Ok(()) };
     let failed = |error: CliError| error.within("the picture was not written");
-    let panels = shots.iter().map(|shot| panel(request.measure, (topology, surface), shot));
+    let panels = shots.iter().map(|shot| panel(request.measure, mesh, shot));
     let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
     let (before, after) = match shots {
         [first, .., last] => (first.points, last.points),
@@ -41,12 +49,12 @@ pub(crate) fn write(
     };
     let scene = Scene {
         measure: request.measure,
-        triangles: topology.triangles(),
+        triangles: mesh.topology.triangles(),
         with_arrows: request.with_arrows,
         outlines: Outlines::of(
-            topology,
-            &file.mesh().fixed,
-            file.source.regions(),
+            mesh.topology,
+            &mesh.file.mesh().fixed,
+            mesh.file.source.regions(),
             [before, after],
         ),
         panels,
@@ -104,11 +112,11 @@ fn goodness_of(
 
 fn panel<'a>(
     measure: Measure,
-    (topology, surface): (&Topology<'_>, Surface),
+    mesh: PictureSubject<'_>,
     shot: &Shot<'a>,
 ) -> Result<Panel<'a>, MeshError> {
-    let measured = Measured::on(surface, shot.points, topology)?;
-    let goodness = goodness_of(topology, &measured, measure)?;
+    let measured = Measured::on(mesh.surface, shot.points, mesh.topology)?;
+    let goodness = goodness_of(mesh.topology, &measured, measure)?;
     let unit = measure.definition().unit;
     let statistics = measured.statistics(&[measure]);
     let numbers = statistics.first().map_or(String::new(), |s| {

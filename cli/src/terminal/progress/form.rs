@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget};
 
-use crate::args::OutputArgs;
+use crate::terminal::Verbosity;
 use crate::terminal::tell;
 
 /// Runs shorter than this show no progress.
@@ -23,7 +23,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    pub(crate) fn new(show: &OutputArgs) -> Self {
+    pub(crate) fn new(show: Verbosity) -> Self {
         let seconds = if show.verbose { 1 } else { 5 };
         match () {
             () if show.quiet => Self::None,

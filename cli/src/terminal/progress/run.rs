@@ -7,7 +7,7 @@ use gpu_smooth::{Phase, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use crate::args::OutputArgs;
+use crate::terminal::Verbosity;
 use crate::terminal::progress::form::{Form, PATIENCE};
 use crate::terminal::progress::left::{Decay, Pace, told};
 use crate::terminal::progress::stage::Stage;
@@ -58,7 +58,7 @@ impl Swept {
 impl Display {
     /// Makes a display for a run that ends within `tolerance` of the limit of f (`None` if it has another goal) or
     /// after `max_sweeps`.
-    pub(crate) fn new(show: &OutputArgs, tolerance: Option<f64>, max_sweeps: u32) -> Self {
+    pub(crate) fn new(show: Verbosity, tolerance: Option<f64>, max_sweeps: u32) -> Self {
         let (form, now) = (Form::new(show), Instant::now());
         let wait = match form {
             Form::Lines(interval) if !show.verbose => interval,

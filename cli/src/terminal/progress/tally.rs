@@ -6,7 +6,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use crate::args::OutputArgs;
+use crate::terminal::Verbosity;
 use crate::terminal::progress::form::Form;
 use crate::terminal::progress::left::told;
 use crate::terminal::tell;
@@ -24,7 +24,7 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    pub(crate) fn new(show: &OutputArgs, meshes: usize) -> Self {
+    pub(crate) fn new(show: Verbosity, meshes: usize) -> Self {
         let (form, now) = (Form::new(show), Instant::now());
         let bar = form.bar();
         if let Ok(style) = ProgressStyle::with_template("{bar:16} {wide_msg}") {

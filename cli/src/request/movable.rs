@@ -1,0 +1,70 @@
+//! The request on which vertices may move, slide, and have their data interpolated.
+
+use std::path::PathBuf;
+
+use crate::args::{MoveArgs, RidingArgs, SlideArgs};
+
+/// The vertices that may move. By default all but those of constraints and between regions.
+pub(crate) struct MovableRequest {
+    /// Whether vertices between regions may move.
+    pub(crate) free_interfaces: bool,
+    /// Names or tags of groups whose vertices stay, several with commas between them.
+    pub(crate) fix: Vec<String>,
+    /// Files that list vertices which stay.
+    pub(crate) fix_vertices: Vec<PathBuf>,
+    /// Names of point data; vertices stay where a value is not 0.
+    pub(crate) fix_array: Vec<String>,
+    /// Opposite corners of boxes whose vertices stay.
+    pub(crate) fix_box: Vec<[[f64; 2]; 2]>,
+    /// Names or tags of groups; only vertices whose triangles all belong to them may move. Empty for no such limit.
+    pub(crate) only: Vec<String>,
+    /// Only vertices near bad triangles may move; `None` for no such limit.
+    pub(crate) near_bad: Option<NearBad>,
+}
+
+/// The neighborhood of bad triangles.
+#[derive(Clone, Copy)]
+pub(crate) struct NearBad {
+    /// Triangles with an inverse mean ratio above this are bad.
+    pub(crate) above: f64,
+    /// How many rings of triangles around a bad one are near.
+    pub(crate) rings: u32,
+}
+
+impl From<MoveArgs> for MovableRequest {
+    fn from(args: MoveArgs) -> Self {
+        let MoveArgs { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, .. } = args;
+        let near_bad = args.only_bad.map(|above| NearBad { above, rings: args.rings });
+        Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad }
+    }
+}
+
+/// The vertices that slide along lines.
+pub(crate) struct SlideRequest {
+    /// A vertex where a line turns by more than this angle, in degrees, is a corner.
+    pub(crate) corner_angle: f64,
+    /// How far lines may be from those of the mesh before the run; `None` for a tenth of the edge there.
+    pub(crate) hausdorff: Option<f64>,
+    /// Pairs of groups whose vertices slide together.
+    pub(crate) periodic: Vec<[String; 2]>,
+}
+
+impl SlideRequest {
+    /// Returns the request of the options; `None` without `--slide`.
+    pub(crate) fn of(args: SlideArgs) -> Option<Self> {
+        let SlideArgs { slide, corner_angle, hausdorff, periodic } = args;
+        slide.then_some(Self { corner_angle, hausdorff, periodic })
+    }
+}
+
+/// The data of vertices that are interpolated at the new places.
+pub(crate) struct FieldsRequest {
+    /// Names of data, several with commas between them, or `all`. Empty for none.
+    pub(crate) names: Vec<String>,
+}
+
+impl From<RidingArgs> for FieldsRequest {
+    fn from(args: RidingArgs) -> Self {
+        Self { names: args.interpolate }
+    }
+}
