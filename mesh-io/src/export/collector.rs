@@ -179,7 +179,8 @@ impl Sink for Collector {
     fn polygon(
         &mut self,
         _: &Cursor<'_>,
-        (tag, region): (u64, [i64; 2]),
+        tag: u64,
+        region: [i64; 2],
         corners: &[u64],
     ) -> Result<(), ReadError> {
         let set = self.set(2, region);
@@ -191,7 +192,8 @@ impl Sink for Collector {
     fn polyline(
         &mut self,
         _: &Cursor<'_>,
-        (tag, region): (u64, [i64; 2]),
+        tag: u64,
+        region: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
         let set = self.set(1, region);

@@ -42,7 +42,8 @@ impl<'a> Axes<'a> {
         file: &Hdf5<'a>,
         form: (Order, Precision),
         arrays: Vec<Array<'_>>,
-        (axes, count): (usize, usize),
+        axes: usize,
+        count: usize,
     ) -> Axes<'a> {
         let source = file.source;
         let length = count * form.1.bytes();
@@ -62,7 +63,8 @@ impl<'a> Axes<'a> {
     pub(crate) fn send(
         self,
         format: Format,
-        (count, first): (usize, u64),
+        count: usize,
+        first: u64,
         sink: &mut dyn Sink,
     ) -> Result<Layout, ReadError> {
         let Axes { source, form: (order, precision), ranges, encoded } = self;

@@ -166,7 +166,8 @@ impl Sink for Assembler {
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
-        (tag, _): (u64, [i64; 2]),
+        tag: u64,
+        _: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
         let index = |&node: &u64| self.index(cursor, Kind::Point, tag, node);
@@ -326,7 +327,8 @@ impl Wanted<'_> {
     /// Notes the place of the next node or triangle in the file, if it is looked for.
     fn pass(
         &mut self,
-        (places, source): (&mut Vec<(Location, u64, usize)>, &Source),
+        places: &mut Vec<(Location, u64, usize)>,
+        source: &Source,
         cursor: &Cursor<'_>,
         tag: u64,
     ) {
@@ -341,12 +343,12 @@ impl Wanted<'_> {
 
 impl Sink for Locator<'_> {
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.nodes.pass((&mut self.places, self.source), cursor, tag);
+        self.nodes.pass(&mut self.places, self.source, cursor, tag);
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if element.kind == Kind::Triangle {
-            self.triangles.pass((&mut self.places, self.source), cursor, element.tag);
+            self.triangles.pass(&mut self.places, self.source, cursor, element.tag);
         }
         Ok(())
     }

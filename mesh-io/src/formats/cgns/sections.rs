@@ -16,6 +16,17 @@ use crate::visit::sink::{Column, Element, Kind, Sink, volume};
 /// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
 const MIXED: i64 = 20;
 
+/// A section with the elements that it announces.
+struct Section<'n, 'a> {
+    name: &'n [u8],
+    object: &'a Object,
+    /// The place among the sections, counted from one.
+    number: i64,
+    /// The number of the first element, and how many elements follow it and itself.
+    first: u64,
+    count: usize,
+}
+
 /// The list of nodes of a section.
 struct Nodes<'a> {
     array: Array<'a>,
@@ -61,7 +72,8 @@ impl<'a> File<'a> {
             else {
                 return Err(self.damaged(name, section));
             };
-            self.section((name, section), (number, first, count), boundaries, sink)?;
+            let section = Section { name, object: section, number, first, count };
+            self.section(&section, boundaries, sink)?;
         }
         sink.within(&[]);
         Ok(())
@@ -76,11 +88,11 @@ impl<'a> File<'a> {
 
     fn section(
         &self,
-        (name, section): (&[u8], &'a Object),
-        (number, first, count): (i64, u64, usize),
+        of: &Section<'_, 'a>,
         boundaries: &Boundaries,
         sink: &mut dyn Sink,
     ) -> Result<(), ReadError> {
+        let &Section { name, object: section, number, first, count } = of;
         let damaged = || self.damaged(name, section);
         let own = self.hdf5.child(section, b"ElementConnectivity").and_then(|own| self.data(own));
         let dataset =

@@ -92,7 +92,7 @@ impl<'a> File<'a> {
 
     fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let (axes, count) = self.nodes()?;
-        let layout = axes.send(Format::Med, (count, 1), sink)?;
+        let layout = axes.send(Format::Med, count, 1, sink)?;
         let label = |family| (family != 0).then_some(Label::Tag(family));
         sink.columns(vec![Column { what: "family".into(), from_dimension: 0, label }]);
         let families = match sink.asks_for_groups() {
@@ -156,7 +156,7 @@ impl<'a> File<'a> {
         };
         let count = numbers / axes;
         cursor.check_vertex_count(count as u64)?;
-        Ok((Axes::of_arrays(self.hdf5, (order, precision), vec![array], (axes, count)), count))
+        Ok((Axes::of_arrays(self.hdf5, (order, precision), vec![array], axes, count), count))
     }
 
     /// Hands on the elements of a type.
