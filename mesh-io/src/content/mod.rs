@@ -2,6 +2,7 @@
 
 pub(crate) mod constraints;
 pub(crate) mod group;
+pub(crate) mod group_keys;
 pub(crate) mod label;
 pub(crate) mod regions;
 pub(crate) mod remark;

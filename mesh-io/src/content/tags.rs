@@ -1,5 +1,6 @@
 //! Finds the index of a vertex by its tag, the number that the file gives it. Tags are arbitrary numbers.
 
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
 /// A map from tags to indices.
@@ -116,6 +117,51 @@ impl FoundTags {
             true => Ok(TagMap::Run { first: self.first, count: self.count }),
             false => TagMap::new(&self.list),
         }
+    }
+}
+
+/// The tags of nodes in the order of the file, and the index of a node by its tag.
+#[derive(Default)]
+pub(crate) struct TagIndex {
+    found: FoundTags,
+    map: OnceCell<TagMap>,
+}
+
+impl TagIndex {
+    /// Returns the list of tags, to which more can be added until [`index`](Self::index) is called.
+    pub(crate) fn found(&mut self) -> &mut FoundTags {
+        &mut self.found
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, tag: u64) {
+        self.found.push(tag);
+    }
+
+    /// Returns how many tags there are.
+    pub(crate) fn len(&self) -> usize {
+        self.found.count as usize
+    }
+
+    /// Makes the map after all tags are found, and drops the list. The error is the tag that is repeated first, with the
+    /// position of its second node.
+    pub(crate) fn finish(&mut self) -> Result<&TagMap, (u64, usize)> {
+        let map = self.found.map().map_err(|second| (self.found.of(second), second))?;
+        self.found.list = Vec::new();
+        Ok(self.map.get_or_init(|| map))
+    }
+
+    /// Returns the map; `None` before [`finish`](Self::finish).
+    pub(crate) fn map(&self) -> Option<&TagMap> {
+        self.map.get()
+    }
+
+    /// Returns the index of the node with a tag. Of a file that was not refused, each tag belongs to one node; of others, no
+    /// node is found.
+    #[inline]
+    pub(crate) fn index(&self, tag: u64) -> Option<u32> {
+        let none = TagMap::Run { first: 0, count: 0 };
+        self.map.get_or_init(|| self.found.map().unwrap_or(none)).index(tag)
     }
 }
 

@@ -1,11 +1,13 @@
 //! Makes a description of a mesh from what a reader hands on.
 
 use super::content::{Content, Data, Group};
+use crate::content::group_keys::GroupKeys;
 use crate::content::label::Label;
-use crate::content::tags::TagMap;
+use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
+use crate::visit::field::scatter;
 use crate::visit::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
 use std::collections::HashMap;
 
@@ -20,16 +22,15 @@ pub(crate) fn content(reader: &Reader, source: &Source) -> Result<Content, ReadE
 #[derive(Default)]
 struct Collector {
     content: Content,
-    map: Option<TagMap>,
+    tags: TagIndex,
     columns: Vec<Column>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
     within: Vec<(String, Label, Option<u8>)>,
-    numbers: HashMap<(String, u8, Label), u32>,
+    keys: GroupKeys,
+    vertex_keys: GroupKeys,
     sets: HashMap<Vec<u32>, u32>,
     /// The last set of cells of a dimension and region, as long as the groups they stand within are the same.
     last: HashMap<(u8, [i64; 2]), u32>,
-    names: HashMap<(String, Option<u8>, i64), String>,
-    vertex_numbers: HashMap<(String, Label), usize>,
     /// The array that was announced last.
     announced: Option<Announced>,
     /// How many data have the same name, for names with more than one.
@@ -66,16 +67,10 @@ fn common(what: &str) -> String {
 impl Collector {
     /// Returns the description after all was handed on.
     fn finish(self) -> Content {
-        let Self { mut content, names, by_tag, .. } = self;
-        for group in &mut content.groups {
-            let Label::Tag(tag) = group.label else { continue };
-            let of = |dimension| names.get(&(group.what.clone(), dimension, tag)).cloned();
-            group.name = of(Some(group.dimension)).or_else(|| of(None));
-        }
-        for (group, _) in &mut content.vertex_groups {
-            let Label::Tag(tag) = group.label else { continue };
-            let of = |dimension| names.get(&(group.what.clone(), dimension, tag)).cloned();
-            group.name = of(Some(0)).or_else(|| of(None));
+        let Self { mut content, keys, by_tag, .. } = self;
+        let of_vertices = content.vertex_groups.iter_mut().map(|(group, _)| group);
+        for group in content.groups.iter_mut().chain(of_vertices) {
+            group.name = keys.name_of(&group.what, group.dimension, &group.label);
         }
         let first = content.heights.first().copied();
         if content.heights.iter().all(|&z| Some(z) == first) {
@@ -116,12 +111,11 @@ impl Collector {
 
     fn group(&mut self, what: &str, dimension: u8, label: Label) -> u32 {
         let what = common(what);
-        let next = self.content.groups.len() as u32;
-        let number = *self.numbers.entry((what.clone(), dimension, label.clone())).or_insert(next);
-        if number == next {
+        let (number, is_new) = self.keys.number(&what, dimension, &label);
+        if is_new {
             self.content.groups.push(Group { what, dimension, label, name: None });
         }
-        number
+        number as u32
     }
 
     /// Returns the number of the set of groups that an element belongs to.
@@ -153,8 +147,7 @@ impl Collector {
     }
 
     fn vertices(&self, nodes: &[u64]) -> Vec<u32> {
-        let map = self.map.as_ref();
-        nodes.iter().filter_map(|&node| map.and_then(|map| map.index(node))).collect()
+        nodes.iter().filter_map(|&node| self.tags.index(node)).collect()
     }
 }
 
@@ -164,14 +157,9 @@ impl Sink for Collector {
     }
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, at: [f64; 2]) {
+        self.tags.push(tag);
         self.content.labels.push(tag);
         self.content.points.push(at);
-    }
-
-    fn end_nodes(&mut self, _: &Cursor<'_>) -> Result<(), ReadError> {
-        // There is no error to report, as the file was read before without one.
-        self.map = TagMap::new(&self.content.labels).ok();
-        Ok(())
     }
 
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
@@ -191,7 +179,8 @@ impl Sink for Collector {
     fn polygon(
         &mut self,
         _: &Cursor<'_>,
-        (tag, region): (u64, [i64; 2]),
+        tag: u64,
+        region: [i64; 2],
         corners: &[u64],
     ) -> Result<(), ReadError> {
         let set = self.set(2, region);
@@ -203,7 +192,8 @@ impl Sink for Collector {
     fn polyline(
         &mut self,
         _: &Cursor<'_>,
-        (tag, region): (u64, [i64; 2]),
+        tag: u64,
+        region: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
         let set = self.set(1, region);
@@ -256,9 +246,8 @@ impl Sink for Collector {
 
     fn node_within(&mut self, node: u32, what: &str, label: &Label) {
         let groups = &mut self.content.vertex_groups;
-        let key = (what.to_owned(), label.clone());
-        let number = *self.vertex_numbers.entry(key).or_insert(groups.len());
-        if number == groups.len() {
+        let (number, is_new) = self.vertex_keys.number(what, 0, label);
+        if is_new {
             let (what, label) = (common(what), label.clone());
             groups.push((Group { what, dimension: 0, label, name: None }, Vec::new()));
         }
@@ -267,7 +256,7 @@ impl Sink for Collector {
 
     fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         let name = String::from_utf8_lossy(name).into_owned();
-        self.names.insert((common(what), dimension, tag), name);
+        self.keys.set_name(&common(what), dimension, tag, name);
     }
 
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
@@ -300,18 +289,8 @@ impl Sink for Collector {
         let values = match nodes {
             None => numbers,
             Some(nodes) => {
-                let map = TagMap::new(&self.content.labels).ok();
-                let count = self.content.points.len();
-                let mut values = vec![f64::NAN; count.saturating_mul(components)];
-                for (tuple, &node) in numbers.chunks(components.max(1)).zip(&nodes) {
-                    let vertex = map.as_ref().and_then(|map| map.index(node));
-                    let start = vertex.map_or(usize::MAX, |vertex| vertex as usize * components);
-                    let end = start.saturating_add(tuple.len());
-                    if let Some(own) = values.get_mut(start..end) {
-                        own.copy_from_slice(tuple);
-                    }
-                }
-                values
+                let index = |&node: &u64| self.tags.index(node).unwrap_or(u32::MAX);
+                scatter(&numbers, components, self.content.points.len(), nodes.iter().map(index))
             }
         };
         // Each part of a mesh may have its own values.

@@ -87,7 +87,7 @@ fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
             let label = Label::Name(format!("{word}{index}"));
             sink.within(&[Within { what: "boundary", label, dimension: Some(1) }]);
             // A node that does not exist is no reason to refuse the mesh.
-            if sink.polyline(cursor, (0, [0; 2]), &nodes).is_err() {
+            if sink.polyline(cursor, 0, [0; 2], &nodes).is_err() {
                 return;
             }
             sink.within(&[]);

@@ -11,6 +11,7 @@ use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::send::REWRITE;
 use crate::visit::sink::{Home, Layout, Sink};
 use std::ops::Range;
 
@@ -41,7 +42,8 @@ impl<'a> Axes<'a> {
         file: &Hdf5<'a>,
         form: (Order, Precision),
         arrays: Vec<Array<'_>>,
-        (axes, count): (usize, usize),
+        axes: usize,
+        count: usize,
     ) -> Axes<'a> {
         let source = file.source;
         let length = count * form.1.bytes();
@@ -61,33 +63,32 @@ impl<'a> Axes<'a> {
     pub(crate) fn send(
         self,
         format: Format,
-        (count, first): (usize, u64),
+        count: usize,
+        first: u64,
         sink: &mut dyn Sink,
     ) -> Result<Layout, ReadError> {
         let Axes { source, form: (order, precision), ranges, encoded } = self;
         let [x, y] = [0, 1].map(|axis| ranges.get(axis).cloned().unwrap_or_default());
         let size = precision.bytes();
         let bytes = encoded.as_ref().map_or(&source.bytes[..], Encoding::bytes);
-        let number = |at: usize| order.real(precision, &bytes[at..at + size]);
         // Numbers that are encoded have no place of their own.
         let place = |at: usize| match &encoded {
             None => Cursor::at_byte_of(source, at),
             Some(encoding) => Cursor::at_byte_of(source, encoding.byte_of(at)),
         };
         let y_after = y.start as isize - x.start as isize;
-        sink.expect_nodes(count);
         let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), (size, size), order);
         let (x_at, tags) = (x.start, Tags::From(first));
-        let records = NodeRecords { count, x: field(&x), y: field(&y), x_at, tags };
-        for index in sink.node_records(&records)..count {
-            let x_at = x.start + index * size;
-            let (tag, at) = (index as u64 + first, [x_at, y.start + index * size].map(number));
-            if !at.iter().all(|x| x.is_finite()) {
+        let place_of = |index: usize| place(x.start + index * size);
+        NodeRecords { count, x: field(&x), y: field(&y), x_at, tags }.send(
+            sink,
+            place_of,
+            |index| {
+                let tag = index as u64 + first;
                 let problem = format!("a coordinate of node {tag} is not a finite number");
-                return Err(place(x_at).error(problem, "Write the mesh again"));
-            }
-            sink.node(&place(x_at), tag, 2, x_at, at);
-        }
+                place_of(index).error(problem, REWRITE)
+            },
+        )?;
         sink.end_nodes(&place(x.start))?;
         if let Some(z) = ranges.get(2) {
             let mut heights = Heights::new(sink);

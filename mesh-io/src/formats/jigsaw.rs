@@ -9,7 +9,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::numbered_nodes::counted_nodes;
+use crate::formats::numbered_nodes::{Names, counted_nodes};
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
@@ -61,8 +61,8 @@ impl Walk for Jigsaw {
                     let count = number(cursor, &key, first)?;
                     cursor.check_vertex_count(count)?;
                     let start = cursor.clone();
-                    let named = ("a point", "points");
-                    let heights = counted_nodes(cursor, (count, dimensions), named, sink)?;
+                    let names = Names { one: "a point", all: "points" };
+                    let heights = counted_nodes(cursor, count, dimensions, names, sink)?;
                     points = Some((List { cursor: start, count }, heights));
                 }
                 b"EDGE2" | b"TRIA3" | b"QUAD4" => {

@@ -7,7 +7,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::Numbers;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::numbered_nodes::counted_nodes;
+use crate::formats::numbered_nodes::{Names, counted_nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
@@ -86,8 +86,8 @@ fn vertices(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadErro
         return Err(cursor.error(problem, "Save it as VTK: Mesh::PrintVTK of MFEM"));
     }
     let dimensions = cursor.integer("the number of coordinates")?;
-    let named = ("a vertex", "vertices");
-    let heights = counted_nodes(cursor, (count, dimensions), named, sink)?;
+    let names = Names { one: "a vertex", all: "vertices" };
+    let heights = counted_nodes(cursor, count, dimensions, names, sink)?;
     sink.end_nodes(cursor)?;
     heights.send("z", Numbers::TEXT.into(), sink);
     Ok(())

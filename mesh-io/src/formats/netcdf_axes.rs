@@ -15,7 +15,8 @@ pub(crate) fn axes<'a>(
     header: &Header<'a>,
     variables: &[&Variable],
     form: (Order, Precision),
-    (axes, nodes): (usize, usize),
+    axes: usize,
+    nodes: usize,
 ) -> Result<Axes<'a>, ReadError> {
     let mut items = variables.iter().map(|own| header.items(own)).collect::<Result<Vec<_>, _>>()?;
     let Some(file) = &header.hdf5 else {
@@ -26,5 +27,5 @@ pub(crate) fn axes<'a>(
         return Ok(Axes::in_place(header.source, form, &starts, nodes));
     };
     let arrays = items.iter_mut().filter_map(Items::take_array).collect();
-    Ok(Axes::of_arrays(file, form, arrays, (axes, nodes)))
+    Ok(Axes::of_arrays(file, form, arrays, axes, nodes))
 }

@@ -49,7 +49,7 @@ impl<'h, 'a> PointData<'h, 'a> {
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
                 if sink.point_array(name, parts.components, is_real)
-                    && let Some(numbers) = self.numbers(variable, (record, part), parts, missing)
+                    && let Some(numbers) = self.numbers(variable, record, part, parts, missing)
                 {
                     sink.point_numbers(numbers);
                 }
@@ -61,7 +61,8 @@ impl<'h, 'a> PointData<'h, 'a> {
     pub(crate) fn numbers(
         &mut self,
         variable: &'h Variable,
-        (record, part): (usize, usize),
+        record: usize,
+        part: usize,
         parts: &Parts,
         missing: Option<f64>,
     ) -> Option<PointNumbers> {

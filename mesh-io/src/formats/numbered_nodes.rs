@@ -40,14 +40,24 @@ pub(crate) fn numbered_nodes(
     Ok(heights)
 }
 
+/// What nodes are called in messages.
+#[derive(Clone, Copy)]
+pub(crate) struct Names {
+    /// A single node, with its article.
+    pub(crate) one: &'static str,
+    pub(crate) all: &'static str,
+}
+
 /// Reads a list of nodes of two or three coordinates each, counted from zero, and hands them to the sink. Returns the third
-/// coordinates. `one` and `all` name the nodes in messages.
+/// coordinates.
 pub(crate) fn counted_nodes(
     cursor: &mut Cursor<'_>,
-    (count, dimensions): (u64, u64),
-    (one, all): (&str, &str),
+    count: u64,
+    dimensions: u64,
+    names: Names,
     sink: &mut dyn Sink,
 ) -> Result<Heights, ReadError> {
+    let Names { one, all } = names;
     if !(2..=3).contains(&dimensions) {
         let problem = format!("the {all} have {dimensions} coordinates");
         return Err(cursor.error(problem, "Those of 2 and 3 coordinates are read"));

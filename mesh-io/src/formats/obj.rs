@@ -124,7 +124,7 @@ impl Walk for Obj {
                 }
                 Row::Line(points) => {
                     let nodes = counted(cursor, points.all(), before)?;
-                    sink.polyline(cursor, (0, region), &nodes)?;
+                    sink.polyline(cursor, 0, region, &nodes)?;
                 }
                 Row::Other => {}
             }
@@ -207,7 +207,7 @@ fn face(
             nodes[..corners.len()].copy_from_slice(corners);
             sink.element(cursor, &Element { tag, kind, region, nodes })
         }
-        _ => sink.polygon(cursor, (tag, region), corners),
+        _ => sink.polygon(cursor, tag, region, corners),
     }
 }
 

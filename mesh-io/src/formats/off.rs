@@ -51,7 +51,7 @@ impl Walk for Off {
             true => _ = count(cursor, "edges")?,
             false => _ = cursor.token(),
         }
-        let syntax = layout(cursor, (vertices, faces), more);
+        let syntax = layout(cursor, vertices, faces, more);
         let more = if syntax.is_of_words() { more } else { 0 };
         *cursor = cursor.clone().of(syntax);
         sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
@@ -110,7 +110,7 @@ fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
 
 /// Chooses how to read the vertices, which have `more` numbers besides coordinates. They are read one in each row, with
 /// other text after them ignored, unless rows have too few numbers or there are too few rows.
-fn layout(cursor: &Cursor<'_>, (vertices, faces): (u64, u64), more: usize) -> Syntax {
+fn layout(cursor: &Cursor<'_>, vertices: u64, faces: u64, more: usize) -> Syntax {
     let starts_on_row = !cursor.is_at_end();
     let mut first = cursor.clone();
     if !starts_on_row && !first.next_row() {

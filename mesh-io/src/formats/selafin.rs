@@ -11,8 +11,9 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
-use crate::visit::records::{NodeRecords, Region, Tags, TriangleRecords};
-use crate::visit::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
+use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::send::{ElementRecords, REWRITE};
+use crate::visit::sink::{Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
 
 pub(crate) struct Selafin;
 
@@ -69,46 +70,27 @@ impl Walk for Selafin {
         let ys = record(cursor, order, "the y of all points", Some(numbers))?;
         let y_after = (cursor.taken() - x_at) as isize;
         let after_mesh = cursor.clone();
-        sink.expect_nodes(points as usize);
-        let number = |bytes: &[u8]| order.real(precision, bytes);
         let size = precision.bytes();
-        let count = points as usize;
         let [x, y] = [xs, ys].map(|bytes| Field::new(Some(bytes), (size, size), order));
-        let tags = Tags::From(1);
-        let taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
-        let each = xs.chunks_exact(size).zip(ys.chunks_exact(size)).enumerate().skip(taken);
-        for (index, (x, y)) in each {
-            let (at, tag) = ([number(x), number(y)], index as u64 + 1);
-            if !at.iter().all(|x| x.is_finite()) {
-                let problem = format!("a coordinate of point {tag} is not a finite number");
-                return Err(cursor.error(problem, "Write the mesh again"));
-            }
-            let place = &Cursor::at_byte_of(source, x_at + index * size);
-            sink.node(place, tag, 2, x_at + index * size, at);
-        }
+        NodeRecords { count: points as usize, x, y, x_at, tags: Tags::From(1) }.send(
+            sink,
+            |index| Cursor::at_byte_of(source, x_at + index * size),
+            |index| {
+                let problem = format!("a coordinate of point {} is not a finite number", index + 1);
+                cursor.error(problem, REWRITE)
+            },
+        )?;
         sink.end_nodes(cursor)?;
-        sink.expect_elements(triangles as usize);
-        let taken = match kind {
-            Kind::Triangle => sink.triangle_records(&TriangleRecords {
-                count: triangles as usize,
-                corners: Field::new(Some(connectivity), (12, 4), order),
-                first: 0,
-                below: u64::MAX,
-                regions: [Region::Same(0); 2],
-                expected: &[],
-            }),
-            _ => 0,
+        let stride = 4 * kind.nodes();
+        let elements = ElementRecords {
+            kind,
+            count: triangles as usize,
+            first_tag: 1,
+            nodes: Field::new(Some(connectivity), (stride, 4), order),
+            is_signed: true,
+            regions: [Region::Same(0); 2],
         };
-        let each = connectivity.chunks_exact(4 * kind.nodes()).enumerate().skip(taken);
-        for (index, corners) in each {
-            let mut nodes = [0; 4];
-            for (node, number) in nodes.iter_mut().zip(integers(corners, order)) {
-                *node = u64::try_from(number).unwrap_or(0);
-            }
-            let tag = index as u64 + 1;
-            let place = &Cursor::at_byte_of(source, listed_at + index * 4 * kind.nodes());
-            sink.element(place, &Element { tag, kind, region: [0; 2], nodes })?;
-        }
+        elements.send(sink, |index, _| Cursor::at_byte_of(source, listed_at + index * stride))?;
         if sink.asks_for_data() {
             sink.leaves_out("the title, the date, boundary numbers and times of a SELAFIN");
             steps(after_mesh, order, precision, &names, numbers, sink);

@@ -69,7 +69,7 @@ impl Walk for Sms {
                     sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
                     // Node strings belong to no material.
                     sink.columns(Vec::new());
-                    sink.polyline(cursor, (0, [0; 2]), &nodes)?;
+                    sink.polyline(cursor, 0, [0; 2], &nodes)?;
                     sink.columns(materials());
                     sink.within(&[]);
                     strings.extend(nodes);

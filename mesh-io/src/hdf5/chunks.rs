@@ -131,7 +131,8 @@ impl Lattice {
     pub(super) fn chunks(
         &self,
         raw: &Raw<'_>,
-        (index, address): (&Index, usize),
+        index: &Index,
+        address: usize,
         filters: &[Filter],
         sum: Option<&Sum>,
         at: usize,

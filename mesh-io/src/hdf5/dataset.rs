@@ -170,12 +170,12 @@ impl Dataset {
                 one(address.ok_or_else(absent)?, lattice.bytes()).ok_or_else(damaged)?
             }
             Layout::Chunked { index, address, .. } => {
-                let index = (index, address.ok_or_else(absent)?);
-                if matches!(index.0, Index::Implicit) && !filters.is_empty() {
+                let address = address.ok_or_else(absent)?;
+                if matches!(index, Index::Implicit) && !filters.is_empty() {
                     return Err(damaged());
                 }
                 pieces.filters.clone_from(filters);
-                lattice.chunks(raw, index, filters, self.sum.as_ref(), *at)?
+                lattice.chunks(raw, index, address, filters, self.sum.as_ref(), *at)?
             }
         };
         pieces.lattice = Some(lattice);

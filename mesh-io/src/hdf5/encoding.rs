@@ -73,7 +73,8 @@ impl Encoding {
         &self,
         chunk: &Chunk,
         bytes: Vec<u8>,
-        (file, end): (&[u8], &mut usize),
+        file: &[u8],
+        end: &mut usize,
         splices: &mut Vec<Splice>,
     ) {
         let Chunk { range, entry, .. } = chunk;
@@ -133,7 +134,7 @@ impl Encoded for Encoding {
                     bytes.to_mut()[to..to + length].copy_from_slice(&new[at..at + length]);
                 });
                 let stored = filters::filtered(&pieces.filters, chunk.mask, bytes.into_owned());
-                self.stored(chunk, stored, (file, end), &mut splices);
+                self.stored(chunk, stored, file, end, &mut splices);
             }
         }
         splices

@@ -65,7 +65,7 @@ impl Heap {
         match (root, rows) {
             (None, _) => {}
             (Some(root), 0) => heap.blocks.push((0, first, root)),
-            (Some(root), rows) => heap.indirect(raw, &table, (root, rows))?,
+            (Some(root), rows) => heap.indirect(raw, &table, root, rows)?,
         }
         heap.blocks.sort_unstable();
         Ok(heap)
@@ -76,9 +76,10 @@ impl Heap {
         &mut self,
         raw: &Raw<'_>,
         table: &Table,
-        root: (usize, usize),
+        root: usize,
+        rows: usize,
     ) -> Result<(), Fault> {
-        let mut left = vec![(root.0, root.1, 0)];
+        let mut left = vec![(root, rows, 0)];
         while let Some((at, rows, start)) = left.pop() {
             let mut bytes = raw.at(at, WHAT);
             if rows > 64 {

@@ -5,11 +5,10 @@
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Variable};
-use super::types::Number;
+use super::types::{ATTRIBUTES, DIMENSIONS, Number, VARIABLES};
 use crate::binary::order::Order;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 
 const ORDER: Order = Order::Big;
@@ -50,14 +49,14 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
     reader.take(4)?;
     let records = reader.number(reader.count)?;
     let mut dimensions = Vec::new();
-    for _ in 0..reader.list(10)? {
+    for _ in 0..reader.list(DIMENSIONS)? {
         dimensions.push((reader.name()?, reader.number(reader.count)?));
     }
-    for _ in 0..reader.list(12)? {
+    for _ in 0..reader.list(ATTRIBUTES)? {
         reader.attribute()?;
     }
     let mut variables = Vec::new();
-    for _ in 0..reader.list(11)? {
+    for _ in 0..reader.list(VARIABLES)? {
         variables.push(reader.variable(&dimensions)?);
     }
     let start = reader.cursor.at_byte();
@@ -152,8 +151,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Takes the tag and the length of a list.
-    fn list(&mut self, tag: u64) -> Result<u64, ReadError> {
-        let found = self.number(4)?;
+    fn list(&mut self, tag: u32) -> Result<u64, ReadError> {
+        let found = self.number(4)? as u32;
         let count = self.number(self.count)?;
         match found {
             _ if found == tag || (found == 0 && count == 0) => Ok(count),
@@ -175,18 +174,10 @@ impl<'a> Reader<'a> {
     }
 
     fn number_type(&mut self) -> Result<Number, ReadError> {
-        Ok(match self.number(4)? {
-            2 => Number::Text,
-            1 | 7 => Number::Whole(1),
-            3 | 8 => Number::Whole(2),
-            4 | 9 => Number::Whole(4),
-            10 | 11 => Number::Whole(8),
-            5 => Number::Real(Precision::Single),
-            6 => Number::Real(Precision::Double),
-            other => {
-                let problem = format!("numbers of the unknown type {other}");
-                return Err(self.cursor.error(problem, "Write the mesh again"));
-            }
+        let number = self.number(4)? as u32;
+        Number::of_type(number).ok_or_else(|| {
+            let problem = format!("numbers of the unknown type {number}");
+            self.cursor.error(problem, "Write the mesh again")
         })
     }
 
@@ -215,7 +206,7 @@ impl<'a> Reader<'a> {
             }
         }
         let mut attributes = Vec::new();
-        for _ in 0..self.list(12)? {
+        for _ in 0..self.list(ATTRIBUTES)? {
             attributes.push(self.attribute()?);
         }
         let number = self.number_type()?;

@@ -1,4 +1,4 @@
-//! The types of the numbers of variables and attributes.
+//! What numbers in a header of the classic format stand for: types of numbers, and kinds of lists.
 
 use crate::precision::Precision;
 
@@ -20,4 +20,35 @@ impl Number {
             Number::Real(precision) => precision.bytes(),
         }
     }
+    /// Returns what the number of a type stands for. Unsigned numbers are taken for signed ones.
+    pub(super) fn of_type(number: u32) -> Option<Number> {
+        match number {
+            CHAR => Some(Number::Text),
+            BYTE | UBYTE => Some(Number::Whole(1)),
+            SHORT | USHORT => Some(Number::Whole(2)),
+            INT | UINT => Some(Number::Whole(4)),
+            INT64 | UINT64 => Some(Number::Whole(8)),
+            FLOAT => Some(Number::Real(Precision::Single)),
+            DOUBLE => Some(Number::Real(Precision::Double)),
+            _ => None,
+        }
+    }
 }
+
+/// The numbers of types, which the format calls `NC_BYTE` and so on.
+const BYTE: u32 = 1;
+pub(super) const CHAR: u32 = 2;
+const SHORT: u32 = 3;
+pub(super) const INT: u32 = 4;
+pub(super) const FLOAT: u32 = 5;
+pub(super) const DOUBLE: u32 = 6;
+const UBYTE: u32 = 7;
+const USHORT: u32 = 8;
+const UINT: u32 = 9;
+const INT64: u32 = 10;
+const UINT64: u32 = 11;
+
+/// The tags of lists.
+pub(super) const DIMENSIONS: u32 = 10;
+pub(super) const VARIABLES: u32 = 11;
+pub(super) const ATTRIBUTES: u32 = 12;

@@ -3,6 +3,7 @@
 //! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. Numbers are big-endian.
 //! Variables of the record dimension come last, and there is at most one record.
 
+use super::types::{ATTRIBUTES, CHAR, DIMENSIONS, DOUBLE, FLOAT, INT, VARIABLES};
 use std::collections::HashMap;
 
 /// A file under construction.
@@ -47,13 +48,13 @@ impl Values {
     /// Returns the number of the type, how many values there are, and their bytes.
     fn encoded(&self) -> (u32, usize, Vec<u8>) {
         match self {
-            Values::Text(text) => (2, text.len(), text.clone()),
+            Values::Text(text) => (CHAR, text.len(), text.clone()),
             Values::Whole(numbers) => {
-                (4, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
+                (INT, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
             }
-            Values::Single(number) => (5, 1, number.to_be_bytes().to_vec()),
+            Values::Single(number) => (FLOAT, 1, number.to_be_bytes().to_vec()),
             Values::Real(numbers) => {
-                (6, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
+                (DOUBLE, numbers.len(), numbers.iter().flat_map(|n| n.to_be_bytes()).collect())
             }
         }
     }
@@ -107,13 +108,13 @@ impl NetCdf {
     fn header(&self, has_records: bool, contents: &[Vec<u8>], mut start: usize) -> Vec<u8> {
         let mut out = b"CDF\x02".to_vec();
         word(&mut out, usize::from(has_records));
-        list(&mut out, 10, self.dimensions.len());
+        list(&mut out, DIMENSIONS, self.dimensions.len());
         for (dimension, length) in &self.dimensions {
             name(&mut out, dimension);
             word(&mut out, *length);
         }
         attributes(&mut out, &self.attributes);
-        list(&mut out, 11, self.variables.len());
+        list(&mut out, VARIABLES, self.variables.len());
         for (variable, content) in self.variables.iter().zip(contents) {
             name(&mut out, &variable.name);
             word(&mut out, variable.dimensions.len());
@@ -142,8 +143,8 @@ fn word(out: &mut Vec<u8>, number: usize) {
     out.extend_from_slice(&u32::try_from(number).unwrap_or(u32::MAX).to_be_bytes());
 }
 
-fn list(out: &mut Vec<u8>, tag: usize, count: usize) {
-    word(out, if count == 0 { 0 } else { tag });
+fn list(out: &mut Vec<u8>, tag: u32, count: usize) {
+    word(out, if count == 0 { 0 } else { tag as usize });
     word(out, count);
 }
 
@@ -154,7 +155,7 @@ fn name(out: &mut Vec<u8>, name: &str) {
 }
 
 fn attributes(out: &mut Vec<u8>, attributes: &[(&'static str, Values)]) {
-    list(out, 12, attributes.len());
+    list(out, ATTRIBUTES, attributes.len());
     for (own, values) in attributes {
         name(out, own);
         let (number, count, bytes) = values.encoded();

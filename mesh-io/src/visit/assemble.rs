@@ -3,7 +3,7 @@
 use crate::content::constraints::{Constraints, PeriodicPairs};
 use crate::content::regions::{Numbering, Regions};
 use crate::content::remark::Remark;
-use crate::content::tags::{FoundTags, TagMap};
+use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
 use crate::edit::numbers::{FoundPlaces, Places};
 use crate::error::{Location, ReadError};
@@ -94,9 +94,7 @@ struct Assembler {
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
     x_at: FoundPlaces,
-    /// The tag of each node, until `map` is made from them.
-    tags: FoundTags,
-    map: Option<TagMap>,
+    tags: TagIndex,
     region_names: Numbering<[i64; 2]>,
     regions: Regions,
     constraints: Constraints,
@@ -123,8 +121,7 @@ impl Assembler {
         tag: u64,
         node: u64,
     ) -> Result<u32, ReadError> {
-        let index = self.map.as_ref().and_then(|map| map.index(node));
-        index.ok_or_else(|| {
+        self.tags.index(node).ok_or_else(|| {
             let (kind, list) = (kind.name(), self.vertices_of);
             let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
             cursor.error(problem, CORRECT)
@@ -140,7 +137,7 @@ impl Sink for Assembler {
     fn expect_nodes(&mut self, count: usize) {
         self.points.reserve_exact(count);
         self.x_at.expect(count);
-        self.tags.expect(count);
+        self.tags.found().expect(count);
     }
 
     #[inline]
@@ -163,13 +160,14 @@ impl Sink for Assembler {
         if !self.takes_ahead {
             return 0;
         }
-        records.read(&mut self.points, &mut self.tags, &mut self.x_at)
+        records.read(&mut self.points, self.tags.found(), &mut self.x_at)
     }
 
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
-        (tag, _): (u64, [i64; 2]),
+        tag: u64,
+        _: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
         let index = |&node: &u64| self.index(cursor, Kind::Point, tag, node);
@@ -190,10 +188,9 @@ impl Sink for Assembler {
         let mut unlisted = 0;
         for Pairs { motion, nodes } in pairs.into_iter().flatten() {
             motions.extend(motion.filter(|_| nodes.is_empty()));
-            let index = |node: u64| self.map.as_ref().and_then(|map| map.index(node));
             let mut pairs = Vec::with_capacity(nodes.len());
             for [a, b] in nodes {
-                match (index(a), index(b)) {
+                match (self.tags.index(a), self.tags.index(b)) {
                     (Some(a), Some(b)) => pairs.push([a, b]),
                     (a, b) => {
                         // The known node of the pair cannot move along its curve.
@@ -237,19 +234,10 @@ impl Sink for Assembler {
     }
 
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
-        let tags = std::mem::take(&mut self.tags);
-        match tags.map() {
-            Ok(map) => {
-                self.map = Some(map);
-                Ok(())
-            }
-            Err(second) => {
-                let problem = format!("node {} is listed a second time", tags.of(second));
-                let remedy = "Give each node a tag of its own";
-                let location = cursor.location_of(self.x_at.at(second));
-                Err(cursor.source.error_at(location, problem, remedy))
-            }
-        }
+        let Err((tag, second)) = self.tags.finish() else { return Ok(()) };
+        let problem = format!("node {tag} is listed a second time");
+        let location = cursor.location_of(self.x_at.at(second));
+        Err(cursor.source.error_at(location, problem, "Give each node a tag of its own"))
     }
 
     fn expect_elements(&mut self, count: usize) {
@@ -257,10 +245,10 @@ impl Sink for Assembler {
     }
 
     fn triangle_records(&mut self, records: &TriangleRecords<'_>) -> usize {
-        let Self { map: Some(map), takes_ahead: true, triangles, regions, region_names, .. } = self
-        else {
+        let Self { tags, takes_ahead: true, triangles, regions, region_names, .. } = self else {
             return 0;
         };
+        let Some(map) = tags.map() else { return 0 };
         records.read(map, triangles, |region, count| {
             let number = region_names.number(region);
             (0..count).for_each(|_| regions.push(number));
@@ -337,7 +325,8 @@ impl Wanted<'_> {
     /// Notes the place of the next node or triangle in the file, if it is looked for.
     fn pass(
         &mut self,
-        (places, source): (&mut Vec<(Location, u64, usize)>, &Source),
+        places: &mut Vec<(Location, u64, usize)>,
+        source: &Source,
         cursor: &Cursor<'_>,
         tag: u64,
     ) {
@@ -352,12 +341,12 @@ impl Wanted<'_> {
 
 impl Sink for Locator<'_> {
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.nodes.pass((&mut self.places, self.source), cursor, tag);
+        self.nodes.pass(&mut self.places, self.source, cursor, tag);
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if element.kind == Kind::Triangle {
-            self.triangles.pass((&mut self.places, self.source), cursor, element.tag);
+            self.triangles.pass(&mut self.places, self.source, cursor, element.tag);
         }
         Ok(())
     }

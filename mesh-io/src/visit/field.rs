@@ -32,16 +32,7 @@ impl PointField {
     ) -> PointField {
         let values = match &vertices {
             None => old.clone(),
-            Some(vertices) => {
-                let mut values = vec![f64::NAN; count.saturating_mul(components)];
-                for (tuple, &vertex) in old.chunks(components.max(1)).zip(vertices) {
-                    let start = vertex as usize * components;
-                    if let Some(own) = values.get_mut(start..start + tuple.len()) {
-                        own.copy_from_slice(tuple);
-                    }
-                }
-                values
-            }
+            Some(vertices) => scatter(&old, components, count, vertices.iter().copied()),
         };
         PointField { name, components, values, new: old.clone(), old, vertices, stored }
     }
@@ -121,6 +112,24 @@ impl PointField {
         let Stored { places, form, .. } = self.stored.as_ref()?;
         Some(Column::of_array(places, *form, &self.old, &self.new))
     }
+}
+
+/// Returns `components` values for each of `count` vertices: the tuple of numbers whose vertex it is, else NaN. Tuples of
+/// vertices that do not exist are left out.
+pub(crate) fn scatter(
+    numbers: &[f64],
+    components: usize,
+    count: usize,
+    vertices: impl Iterator<Item = u32>,
+) -> Vec<f64> {
+    let mut values = vec![f64::NAN; count.saturating_mul(components)];
+    for (tuple, vertex) in numbers.chunks(components.max(1)).zip(vertices) {
+        let start = (vertex as usize).saturating_mul(components);
+        if let Some(own) = values.get_mut(start..start.saturating_add(tuple.len())) {
+            own.copy_from_slice(tuple);
+        }
+    }
+    values
 }
 
 impl std::fmt::Debug for PointField {

@@ -2,7 +2,7 @@
 
 use crate::content::label::Label;
 use crate::content::regions::Numbering;
-use crate::content::tags::TagMap;
+use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -26,8 +26,7 @@ pub(crate) fn labels(reader: &Reader, source: &Source) -> Result<Vec<u64>, ReadE
 #[derive(Default)]
 struct Gatherer {
     table: GroupTable,
-    tags: Vec<u64>,
-    map: Option<TagMap>,
+    tags: TagIndex,
     triangles: u32,
     columns: Vec<Column>,
     /// For each column, the numbers that were met, by dimension.
@@ -82,12 +81,6 @@ impl Sink for Gatherer {
         self.tags.push(tag);
     }
 
-    fn end_nodes(&mut self, _: &Cursor<'_>) -> Result<(), ReadError> {
-        // There is no error to report, as the file was read before without one.
-        self.map = TagMap::new(&self.tags).ok();
-        Ok(())
-    }
-
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { kind, region, nodes, .. } = element;
         self.find(kind.dimension(), region);
@@ -97,7 +90,7 @@ impl Sink for Gatherer {
             }
             self.triangles += 1;
         } else {
-            let index = |&node: &u64| self.map.as_ref().and_then(|map| map.index(node));
+            let index = |&node: &u64| self.tags.index(node);
             let vertices: Vec<u32> = nodes[..kind.nodes()].iter().filter_map(index).collect();
             for &group in &self.of_element {
                 self.table.add(group, kind, &vertices);

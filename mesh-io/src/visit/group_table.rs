@@ -1,6 +1,7 @@
 //! Gathers the groups of a file during a walk through it.
 
 use crate::content::group::{Group, Groups};
+use crate::content::group_keys::GroupKeys;
 use crate::content::label::Label;
 use crate::visit::sink::Kind;
 use std::collections::HashMap;
@@ -9,9 +10,7 @@ use std::collections::HashMap;
 #[derive(Default)]
 pub(crate) struct GroupTable {
     groups: Vec<Gathered>,
-    numbers: HashMap<(String, u8, Label), usize>,
-    /// The names of groups, by kind, dimension (`None` for all) and tag.
-    names: HashMap<(String, Option<u8>, i64), String>,
+    keys: GroupKeys,
 }
 
 struct Gathered {
@@ -23,10 +22,8 @@ struct Gathered {
 impl GroupTable {
     /// Returns the number of a group, after adding it if it is new.
     pub(crate) fn number(&mut self, what: &str, dimension: u8, label: &Label) -> usize {
-        let next = self.groups.len();
-        let key = (what.to_owned(), dimension, label.clone());
-        let number = *self.numbers.entry(key).or_insert(next);
-        if number == next {
+        let (number, is_new) = self.keys.number(what, dimension, label);
+        if is_new {
             let (name, tag) = match label {
                 Label::Tag(tag) => (None, Some(*tag)),
                 Label::Name(name) => (Some(name.clone()), None),
@@ -75,7 +72,7 @@ impl GroupTable {
         if let Some(dimension) = dimension {
             self.number(what, dimension, &Label::Tag(tag));
         }
-        self.names.insert((what.to_owned(), dimension, tag), name);
+        self.keys.set_name(what, dimension, tag, name);
     }
 
     /// Returns the groups of a mesh with these triangles and this many vertices.
@@ -99,8 +96,7 @@ impl GroupTable {
         }
         for Gathered { group, .. } in &mut self.groups {
             let Some(tag) = group.tag else { continue };
-            let of = |dimension| self.names.get(&(group.what.clone(), dimension, tag)).cloned();
-            group.name = of(Some(group.dimension)).or_else(|| of(None));
+            group.name = self.keys.name_of(&group.what, group.dimension, &Label::Tag(tag));
         }
         let mut groups: Vec<Group> =
             self.groups.into_iter().map(|gathered| gathered.group).collect();

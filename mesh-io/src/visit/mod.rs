@@ -8,4 +8,5 @@ pub(crate) mod heights;
 pub(crate) mod parsed;
 pub(crate) mod point_data;
 pub(crate) mod records;
+pub(crate) mod send;
 pub(crate) mod sink;

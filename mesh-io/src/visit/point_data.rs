@@ -1,6 +1,6 @@
 //! Walks again through a file for arrays of point data.
 
-use crate::content::tags::TagMap;
+use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -31,7 +31,8 @@ pub(crate) fn point_data(
     source: &Source,
     wanted: Wanted<'_>,
 ) -> Result<PointData, ReadError> {
-    let mut seeker = Seeker { wanted, ..Seeker::new() };
+    let (last, tags) = (Default::default(), TagIndex::default());
+    let mut seeker = Seeker { wanted, last, tags, found: PointData::default() };
     (reader.walk)(source, &mut seeker)?;
     Ok(seeker.found)
 }
@@ -40,22 +41,8 @@ struct Seeker<'n> {
     wanted: Wanted<'n>,
     /// The name of the array that was announced last, and its number of components.
     last: (String, usize),
-    tags: Vec<u64>,
-    map: Option<TagMap>,
+    tags: TagIndex,
     found: PointData,
-}
-
-impl Seeker<'_> {
-    fn new() -> Self {
-        let last = (String::new(), 0);
-        Self {
-            wanted: Wanted::Real,
-            last,
-            tags: Vec::new(),
-            map: None,
-            found: PointData::default(),
-        }
-    }
 }
 
 impl Sink for Seeker<'_> {
@@ -85,14 +72,8 @@ impl Sink for Seeker<'_> {
     }
 
     fn point_numbers(&mut self, numbers: PointNumbers) {
-        let tags = &self.tags;
-        let vertices = numbers.nodes.as_ref().map(|nodes| {
-            // There is no error to report, as the file was read before without one.
-            let map = self.map.get_or_insert_with(|| {
-                TagMap::new(tags).unwrap_or(TagMap::Run { first: 0, count: 0 })
-            });
-            nodes.iter().map(|&node| map.index(node).unwrap_or(u32::MAX)).collect()
-        });
+        let index = |&node: &u64| self.tags.index(node).unwrap_or(u32::MAX);
+        let vertices = numbers.nodes.as_ref().map(|nodes| nodes.iter().map(index).collect());
         let (name, components) = std::mem::take(&mut self.last);
         let count = self.tags.len();
         self.found.fields.push(PointField::new(name, components, count, numbers, vertices));

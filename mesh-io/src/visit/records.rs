@@ -22,6 +22,18 @@ pub(crate) enum Tags<'a> {
     Listed(Field<'a>),
 }
 
+impl Tags<'_> {
+    /// Returns the tag of a node by its index. The field must hold it.
+    pub(super) fn of(self, index: usize) -> u64 {
+        match self {
+            Tags::From(first) => first + index as u64,
+            Tags::Listed(field) => {
+                field.order.whole(&field.bytes[index * field.stride..][..field.width])
+            }
+        }
+    }
+}
+
 /// A list of nodes.
 pub(crate) struct NodeRecords<'a> {
     pub(crate) count: usize,
@@ -107,7 +119,8 @@ pub(crate) enum Region<'a> {
 }
 
 impl Region<'_> {
-    fn of(self, record: usize) -> i64 {
+    /// Returns the number of a record. The field must hold it.
+    pub(super) fn of(self, record: usize) -> i64 {
         match self {
             Region::Same(region) => region,
             Region::Field(field) => {

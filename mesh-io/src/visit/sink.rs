@@ -141,7 +141,8 @@ pub(crate) trait Sink {
     fn polygon(
         &mut self,
         cursor: &Cursor<'_>,
-        (tag, region): (u64, [i64; 2]),
+        tag: u64,
+        region: [i64; 2],
         corners: &[u64],
     ) -> Result<(), ReadError> {
         corners.iter().try_for_each(|&corner| {
@@ -153,7 +154,8 @@ pub(crate) trait Sink {
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
-        (tag, region): (u64, [i64; 2]),
+        tag: u64,
+        region: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
         nodes.iter().try_for_each(|&node| {

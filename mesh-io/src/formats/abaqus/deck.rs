@@ -113,7 +113,7 @@ impl<'a> Deck<'a> {
             let Some(name) = block.name("INPUT").filter(|_| block.is("INCLUDE")) else { continue };
             let before = at.checked_sub(1).map(|before| &self.blocks[before].0);
             let continues = before.is_some_and(|before| before.is("NODE") || before.is("ELEMENT"));
-            match included(&source.path, (name, continues), &mut seen, DEPTH) {
+            match included(&source.path, name, continues, &mut seen, DEPTH) {
                 Included::Mesh => {
                     let shown = quoted(name);
                     let problem =
@@ -194,7 +194,8 @@ enum Included {
 /// Looks into an included file, once. Its first rows are part of a list if the list `continues` there.
 fn included(
     path: &Path,
-    (name, continues): (&[u8], bool),
+    name: &[u8],
+    continues: bool,
     seen: &mut HashSet<(PathBuf, bool)>,
     depth: u32,
 ) -> Included {
@@ -219,7 +220,7 @@ fn included(
                 || GENERATORS.iter().any(|keyword| block.is(keyword));
         let is_set = ["ELSET", "NSET", "SURFACE"].iter().any(|keyword| block.is(keyword));
         let own = match block.name("INPUT").filter(|_| block.is("INCLUDE")) {
-            Some(name) => included(&path, (name, false), seen, depth - 1),
+            Some(name) => included(&path, name, false, seen, depth - 1),
             None if is_mesh => return Included::Mesh,
             None if is_set || is_section(block) => Included::Sets,
             None => Included::Other,

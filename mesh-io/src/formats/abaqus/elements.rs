@@ -31,9 +31,12 @@ pub(super) struct Found {
 
 impl Found {
     pub(super) fn new(
-        (source, deck): (&Source, &Deck<'_>),
+        source: &Source,
+        deck: &Deck<'_>,
         cursor: &Cursor<'_>,
-        (lists, mut sets, sections): (&[List<'_, '_>], Sets, &[&Block<'_>]),
+        lists: &[List<'_, '_>],
+        mut sets: Sets,
+        sections: &[&Block<'_>],
         sink: &mut dyn Sink,
     ) -> Result<Found, ReadError> {
         let mut found = Found::default();
@@ -82,7 +85,7 @@ impl Found {
             for (block, section) in sections.iter().zip(1..) {
                 let set = block.name("ELSET").and_then(|name| sets.find(deck, false, name));
                 let Some(set) = set else { continue };
-                for element in sets.members(set, all, (source, effort))? {
+                for element in sets.members(set, all, source, effort)? {
                     found.sections[element as usize] = section;
                 }
             }
@@ -90,7 +93,7 @@ impl Found {
         if has_groups || by_members {
             for (number, name) in sets.named() {
                 let group = found.names.len() as u32;
-                let members = sets.members(number, all, (source, effort))?;
+                let members = sets.members(number, all, source, effort)?;
                 found.within.extend(members.into_iter().map(|element| (element, group)));
                 found.names.push(name);
             }
@@ -109,14 +112,15 @@ impl Found {
         if !has_groups {
             found.within.clear();
         }
-        found.find_sides((source, deck), &sets, all, effort)?;
+        found.find_sides(source, deck, &sets, all, effort)?;
         Ok(found)
     }
 
     /// Finds which sides of elements are in surfaces.
     fn find_sides(
         &mut self,
-        (source, deck): (&Source, &Deck<'_>),
+        source: &Source,
+        deck: &Deck<'_>,
         sets: &Sets,
         all: &Numbered,
         effort: &mut Effort,
@@ -140,7 +144,7 @@ impl Found {
                     && let Ok(label) = <[u8; 2]>::try_from(label)
                 {
                     let members = match sets.find(deck, of_assembly, of) {
-                        Some(set) => sets.members(set, all, (source, effort))?,
+                        Some(set) => sets.members(set, all, source, effort)?,
                         None => all.of_word(of).collect(),
                     };
                     let side = |element| (element, surface, label);

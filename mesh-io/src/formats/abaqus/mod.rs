@@ -55,7 +55,7 @@ impl Walk for Abaqus {
         let mut sets = Sets::default();
         let lists = lists::lists(source, deck, &mut sets)?;
         let sections: Vec<&Block<'_>> = sections(deck).collect();
-        let found = Found::new((source, deck), cursor, (&lists, sets, &sections), sink)?;
+        let found = Found::new(source, deck, cursor, &lists, sets, &sections, sink)?;
         found.send(deck, cursor, &lists, sink)?;
         if sink.asks_for_groups() {
             nodes.send_sets(source, deck, sink)?;
@@ -150,7 +150,7 @@ impl Nodes {
         let all = Numbered::new(&self.tags.unwrap_or_default());
         let effort = &mut Effort::of(source);
         for (number, name) in self.sets.named() {
-            let nodes = self.sets.members(number, &all, (source, effort))?;
+            let nodes = self.sets.members(number, &all, source, effort)?;
             let tag = number as i64 + 1;
             if !nodes.is_empty() {
                 sink.name("nset", Some(0), tag, &name);

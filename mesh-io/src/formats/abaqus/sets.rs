@@ -114,7 +114,7 @@ impl Sets {
         {
             if let Some(name) = block.name(keyword) {
                 let number = self.number(of_assembly, name);
-                let items = items(source, deck, (block, of_assembly));
+                let items = items(source, deck, block, of_assembly);
                 self.sets[number].is_internal |= block.parameter("INTERNAL").is_some();
                 self.sets[number].items.extend(items);
             }
@@ -137,7 +137,8 @@ impl Sets {
         &self,
         number: usize,
         all: &Numbered,
-        (source, effort): (&Source, &mut Effort),
+        source: &Source,
+        effort: &mut Effort,
     ) -> Result<Vec<u32>, ReadError> {
         let mut members = Vec::new();
         let (mut seen, mut open) = (HashSet::from([number]), vec![number]);
@@ -180,7 +181,7 @@ impl Sets {
 }
 
 /// Reads the members that a block lists.
-fn items(source: &Source, deck: &Deck<'_>, (block, of_assembly): (&Block<'_>, bool)) -> Vec<Item> {
+fn items(source: &Source, deck: &Deck<'_>, block: &Block<'_>, of_assembly: bool) -> Vec<Item> {
     // In an assembly, plain numbers are those of an instance, or of nodes and elements of the assembly itself.
     let of_instance = block.name("INSTANCE").is_some_and(|name| deck.is_of_mesh(name));
     let is_plain = !of_assembly || of_instance;

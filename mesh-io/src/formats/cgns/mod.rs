@@ -38,7 +38,7 @@ impl Walk for Cgns {
 impl<'a> File<'a> {
     fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let (axes, count) = self.axes()?;
-        let layout = axes.send(Format::Cgns, (count, 1), sink)?;
+        let layout = axes.send(Format::Cgns, count, 1, sink)?;
         let boundaries = match sink.asks_for_groups() {
             true => self.boundaries(count, sink),
             false => Boundaries::default(),
@@ -72,7 +72,7 @@ impl<'a> File<'a> {
         self.cursor(self.zone).check_vertex_count(count as u64)?;
         let (axes, form) = (read.len(), (order, precision));
         let arrays = read.into_iter().map(|(_, array)| array).collect();
-        Ok((Axes::of_arrays(self.hdf5, form, arrays, (axes, count)), count))
+        Ok((Axes::of_arrays(self.hdf5, form, arrays, axes, count), count))
     }
 
     /// Hands on data of vertices.

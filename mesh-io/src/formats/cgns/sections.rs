@@ -7,13 +7,25 @@ use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Number, Object};
-use crate::text::cursor::CORRECT;
+use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::records::{Region, TriangleRecords};
+use crate::visit::records::Region;
+use crate::visit::send::ElementRecords;
 use crate::visit::sink::{Column, Element, Kind, Sink, volume};
 
 /// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
 const MIXED: i64 = 20;
+
+/// A section with the elements that it announces.
+struct Section<'n, 'a> {
+    name: &'n [u8],
+    object: &'a Object,
+    /// The place among the sections, counted from one.
+    number: i64,
+    /// The number of the first element, and how many elements follow it and itself.
+    first: u64,
+    count: usize,
+}
 
 /// The list of nodes of a section.
 struct Nodes<'a> {
@@ -60,7 +72,8 @@ impl<'a> File<'a> {
             else {
                 return Err(self.damaged(name, section));
             };
-            self.section((name, section), (number, first, count), boundaries, sink)?;
+            let section = Section { name, object: section, number, first, count };
+            self.section(&section, boundaries, sink)?;
         }
         sink.within(&[]);
         Ok(())
@@ -75,11 +88,11 @@ impl<'a> File<'a> {
 
     fn section(
         &self,
-        (name, section): (&[u8], &'a Object),
-        (number, first, count): (i64, u64, usize),
+        of: &Section<'_, 'a>,
         boundaries: &Boundaries,
         sink: &mut dyn Sink,
     ) -> Result<(), ReadError> {
+        let &Section { name, object: section, number, first, count } = of;
         let damaged = || self.damaged(name, section);
         let own = self.hdf5.child(section, b"ElementConnectivity").and_then(|own| self.data(own));
         let dataset =
@@ -90,50 +103,40 @@ impl<'a> File<'a> {
         let of_all = self.integers(section).and_then(|numbers| numbers.first().copied());
         let of_all = of_all.ok_or_else(damaged)?;
         let length = nodes.array.bytes.len() / size;
-        let mut taken = 0;
-        let uniform = match of_all {
-            MIXED => None,
-            of_all => Some(self.kind(of_all, section)?),
-        };
-        if let Some(kind) = uniform {
+        let place = |at: usize| Cursor::at_byte_of(self.source, nodes.array.byte_of(at * size));
+        if of_all != MIXED {
+            let kind = self.kind(of_all, section)?;
             if count.checked_mul(kind.nodes()) != Some(length) {
                 return Err(damaged());
             }
-            if kind == Kind::Triangle {
-                sink.expect_elements(count);
-                taken = sink.triangle_records(&TriangleRecords {
-                    count,
-                    corners: Field::new(Some(&nodes.array.bytes), (3 * size, size), order),
-                    first: 0,
-                    below: u64::MAX,
-                    regions: [Region::Same(number), Region::Same(0)],
-                    expected: &[],
-                });
-            }
-        }
-        let mut at = taken * 3;
-        for place in taken..count {
-            let start = at;
-            let kind = match uniform {
-                Some(kind) => kind,
-                None => {
-                    at += 1;
-                    let own = nodes.at(at - 1).ok_or_else(damaged)?;
-                    self.kind(i64::try_from(own).unwrap_or(0), section)?
-                }
+            let elements = ElementRecords {
+                kind,
+                count,
+                first_tag: first,
+                nodes: Field::new(Some(&nodes.array.bytes), (kind.nodes() * size, size), order),
+                is_signed: false,
+                regions: [Region::Same(number), Region::Same(0)],
             };
+            return elements.send(sink, |index, sink| {
+                boundaries.of_element(first.saturating_add(index as u64), sink);
+                place(index * kind.nodes())
+            });
+        }
+        let mut at = 0;
+        for element in 0..count {
+            let start = at;
+            at += 1;
+            let own = nodes.at(start).ok_or_else(damaged)?;
+            let kind = self.kind(i64::try_from(own).unwrap_or(0), section)?;
             let mut corners = [0; 4];
             for corner in &mut corners[..kind.nodes()] {
                 *corner = nodes.at(at).ok_or_else(damaged)?;
                 at += 1;
             }
-            let tag = first.saturating_add(place as u64);
+            let tag = first.saturating_add(element as u64);
             boundaries.of_element(tag, sink);
-            let cursor = crate::text::cursor::Cursor::at_byte_of(
-                self.source,
-                nodes.array.byte_of(start * size),
-            );
-            sink.element(&cursor, &Element { tag, kind, region: [number, 0], nodes: corners })?;
+            let element = Element { tag, kind, region: [number, 0], nodes: corners };
+            sink.element(&place(start), &element)?;
         }
         match at == length {
             true => Ok(()),

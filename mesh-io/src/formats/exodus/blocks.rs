@@ -7,8 +7,9 @@ use crate::error::ReadError;
 use crate::netcdf::{Items, Number, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::records::{Region, TriangleRecords};
-use crate::visit::sink::{Element, Kind, Sink, volume};
+use crate::visit::records::Region;
+use crate::visit::send::ElementRecords;
+use crate::visit::sink::{Kind, Sink, volume};
 
 /// Elements of one type.
 pub(super) struct Block<'a> {
@@ -55,28 +56,18 @@ impl<'a> File<'a> {
             {
                 sink.name("block", None, id, name);
             }
-            let mut taken = 0;
-            if block.kind == Kind::Triangle {
-                sink.expect_elements(block.count as usize);
-                taken = sink.triangle_records(&TriangleRecords {
-                    count: block.count as usize,
-                    corners: Field::new(
-                        Some(block.items.own()),
-                        (3 * block.width, block.width),
-                        block.order,
-                    ),
-                    first: 0,
-                    below: u64::MAX,
-                    regions: [Region::Same(id), Region::Same(0)],
-                    expected: &[],
-                });
-            }
-            for place in taken as u64..block.count {
-                let (nodes, at) = block.element(place);
-                let (tag, kind) = (before + place + 1, block.kind);
-                let cursor = &Cursor::at_byte_of(self.source, at);
-                sink.element(cursor, &Element { tag, kind, region: [id, 0], nodes })?;
-            }
+            let (start, size) = (block.items.range(0).start, block.kind.nodes() * block.width);
+            let elements = ElementRecords {
+                kind: block.kind,
+                count: block.count as usize,
+                first_tag: before + 1,
+                nodes: Field::new(Some(block.items.own()), (size, block.width), block.order),
+                is_signed: true,
+                regions: [Region::Same(id), Region::Same(0)],
+            };
+            elements.send(sink, |index, _| {
+                Cursor::at_byte_of(self.source, block.items.byte_of(start + index * size))
+            })?;
             before += block.count;
             blocks.push(block);
         }

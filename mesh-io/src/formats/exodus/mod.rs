@@ -54,7 +54,7 @@ impl Walk for Exodus {
             return Err(error);
         }
         let file = File { source, header, nodes: nodes as usize };
-        let layout = file.axes()?.send(Format::Exodus, (file.nodes, 1), sink)?;
+        let layout = file.axes()?.send(Format::Exodus, file.nodes, 1, sink)?;
         let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
         sink.columns(vec![Column { what: "block".into(), from_dimension: 0, label }]);
         let blocks = file.blocks(sink)?;
@@ -98,6 +98,6 @@ impl<'a> File<'a> {
             let start = Cursor::at_byte_of(self.source, 0);
             return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
         };
-        axes(header, &variables, (order, precision), (count, self.nodes))
+        axes(header, &variables, (order, precision), count, self.nodes)
     }
 }

@@ -182,13 +182,19 @@ fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
 fn named(
     out: &mut NetCdf,
     [count, status, property, names]: [&str; 4],
-    (numbers, texts): (Vec<i32>, Vec<&str>),
+    numbers: Vec<i32>,
+    texts: &[&str],
     width: usize,
 ) {
     out.dimension(count, numbers.len());
     out.variable(status, &[count], Vec::new(), Values::Whole(vec![1; numbers.len()]));
     out.variable(property, &[count], vec![text("name", "ID")], Values::Whole(numbers));
-    out.variable(names, &[count, "len_name"], Vec::new(), Values::names(texts, width));
+    out.variable(
+        names,
+        &[count, "len_name"],
+        Vec::new(),
+        Values::names(texts.iter().copied(), width),
+    );
 }
 
 fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
@@ -196,9 +202,9 @@ fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
     out.dimension("num_elem", blocks.iter().map(|block| block.cells.len()).sum());
     let number = |block: &Block| block.group.map(|group| job.tags.number(group));
     let name = |block: &Block| content.groups[block.group? as usize].name();
-    let names = blocks.iter().map(|block| name(block).unwrap_or("")).collect();
+    let names: Vec<&str> = blocks.iter().map(|block| name(block).unwrap_or("")).collect();
     let told = ["num_el_blk", "eb_status", "eb_prop1", "eb_names"];
-    named(out, told, (numbers(blocks.iter().map(number)), names), width);
+    named(out, told, numbers(blocks.iter().map(number)), &names, width);
     for (block, place) in blocks.iter().zip(1..) {
         let (type_name, nodes) = type_of(block.kind);
         let [count, each] = [format!("num_el_in_blk{place}"), format!("num_nod_per_el{place}")];
@@ -217,7 +223,8 @@ fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
         let own = numbers(side_sets.iter().map(|set| Some(job.tags.number(set.group))));
         let name = |set: &SideSet| content.groups[set.group as usize].name().unwrap_or("");
         let told = ["num_side_sets", "ss_status", "ss_prop1", "ss_names"];
-        named(out, told, (own, side_sets.iter().map(name).collect()), width);
+        let names: Vec<&str> = side_sets.iter().map(name).collect();
+        named(out, told, own, &names, width);
     }
     for (set, place) in side_sets.iter().zip(1..) {
         let count = format!("num_side_ss{place}");
@@ -233,9 +240,9 @@ fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
             Label::Tag(tag) => Some(tag),
             Label::Name(_) => None,
         }));
-        let names = groups.iter().map(|(group, _)| group.name().unwrap_or("")).collect();
+        let names: Vec<&str> = groups.iter().map(|(group, _)| group.name().unwrap_or("")).collect();
         let told = ["num_node_sets", "ns_status", "ns_prop1", "ns_names"];
-        named(out, told, (own, names), width);
+        named(out, told, own, &names, width);
     }
     for ((_, vertices), place) in groups.iter().zip(1..) {
         let count = format!("num_nod_ns{place}");

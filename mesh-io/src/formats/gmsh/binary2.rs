@@ -4,7 +4,7 @@
 use super::kind::kind_of;
 use super::lists::{block_fits, row};
 use super::text2::columns;
-use super::words::Words;
+use super::words::{Progress, Words};
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::error::ReadError;
@@ -16,7 +16,8 @@ use crate::visit::sink::{Element, Kind, Sink};
 /// Reads `$Nodes` or `$ParametricNodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    (order, parametric): (Order, bool),
+    order: Order,
+    parametric: bool,
     heights: &mut Heights,
     sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
@@ -38,7 +39,7 @@ pub(super) fn nodes(
         }
     }
     for done in taken as u64..count {
-        let progress = (done, count, "nodes");
+        let progress = Progress::new(done, count, "nodes");
         let words = &mut Words::take(cursor, order, NODE, progress)?;
         let tag = words.natural(cursor, "a node tag")?;
         let [x, y, z] = words.point(cursor, tag)?;
@@ -71,7 +72,8 @@ pub(super) fn elements(
     sink.columns(columns());
     let mut done = 0;
     while done < count {
-        let words = &mut Words::take(cursor, order, HEADER, (done, count, "elements"))?;
+        let progress = Progress::new(done, count, "elements");
+        let words = &mut Words::take(cursor, order, HEADER, progress)?;
         let kind = words.natural(cursor, "the type of elements")?;
         let kind = kind_of(cursor, kind)?;
         let size = words.natural(cursor, "a number of elements")?;
@@ -96,7 +98,8 @@ pub(super) fn elements(
             cursor.take(taken * bytes);
         }
         for at in taken as u64..size {
-            let words = &mut Words::take(cursor, order, bytes, (done + at, count, "elements"))?;
+            let progress = Progress::new(done + at, count, "elements");
+            let words = &mut Words::take(cursor, order, bytes, progress)?;
             let tag = words.natural(cursor, "an element tag")?;
             let mut region = [0; 2];
             region[..groups.min(2)].fill_with(|| i64::from(words.int()));

@@ -4,7 +4,7 @@ use super::encoding::{Version, form};
 use super::kind::kind_of;
 use super::lists::{all_in_blocks, block_fits, has_parameters};
 use super::model::Model;
-use super::words::Words;
+use super::words::{Progress, Words};
 use crate::binary::number_field::Field;
 use crate::binary::order::Order;
 use crate::edit::numbers::Places;
@@ -29,14 +29,15 @@ pub(super) fn nodes(
     sink.expect_nodes(cursor.capacity(count, 32));
     let mut done = 0;
     for block in 0..blocks {
-        let words = &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "node blocks"))?;
+        let progress = Progress::new(block, blocks, "node blocks");
+        let words = &mut Words::take(cursor, order, BLOCK_HEADER, progress)?;
         let dimension = words.natural(cursor, "the dimension of a node block")?;
         let entity = i64::from(words.int());
         let parametric = words.int() != 0;
         let wanted = parametric && dimension == 2 && has_parameters(sink, entity);
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
-        let progress = (done, count, "nodes");
+        let progress = Progress::new(done, count, "nodes");
         let tags = &mut Words::take(cursor, order, (size as usize).saturating_mul(8), progress)?;
         let parameters = if parametric { dimension.min(3) as usize } else { 0 };
         let (mut own, mut places, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
@@ -54,7 +55,7 @@ pub(super) fn nodes(
             cursor.take(taken * record);
         }
         for at in taken as u64..size {
-            let progress = (done + at, count, "nodes");
+            let progress = Progress::new(done + at, count, "nodes");
             let words = &mut Words::take(cursor, order, record, progress)?;
             let tag = tags.size();
             let [x, y, z] = words.point(cursor, tag)?;
@@ -79,7 +80,8 @@ pub(super) fn nodes(
 /// Reads `$Elements` of version 4.0 or 4.1 after its first line. Returns the number of elements.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
-    (version, order): (Version, Order),
+    version: Version,
+    order: Order,
     model: &Model,
     sink: &mut dyn Sink,
 ) -> Result<u64, ReadError> {
@@ -88,8 +90,8 @@ pub(super) fn elements(
     sink.expect_elements(cursor.capacity(count, 4 * tag_bytes));
     let mut done = 0;
     for block in 0..blocks {
-        let words =
-            &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "element blocks"))?;
+        let progress = Progress::new(block, blocks, "element blocks");
+        let words = &mut Words::take(cursor, order, BLOCK_HEADER, progress)?;
         // In 4.0 the entity's tag comes first, in 4.1 its dimension.
         let [first, second] = [words.int(), words.int()];
         let entity = if version == Version::V40 { first } else { second };
@@ -115,7 +117,8 @@ pub(super) fn elements(
             cursor.take(taken * row);
         }
         for at in taken as u64..size {
-            let words = &mut Words::take(cursor, order, row, (done + at, count, "elements"))?;
+            let progress = Progress::new(done + at, count, "elements");
+            let words = &mut Words::take(cursor, order, row, progress)?;
             let mut nodes = [0; 4];
             let tag = if version == Version::V40 {
                 let tag = words.natural(cursor, "an element tag")?;
@@ -144,6 +147,7 @@ pub(super) fn counts(
 ) -> Result<[u64; 2], ReadError> {
     // In 4.1 the least and the greatest tag follow.
     let bytes = if version == Version::V40 { 16 } else { 32 };
-    let words = &mut Words::take(cursor, order, bytes, (0, 1, "counts"))?;
+    let progress = Progress::new(0, 1, "counts");
+    let words = &mut Words::take(cursor, order, bytes, progress)?;
     Ok([words.size(), words.size()])
 }

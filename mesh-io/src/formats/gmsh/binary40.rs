@@ -4,7 +4,7 @@
 use super::binary4::{BLOCK_HEADER, counts};
 use super::encoding::Version;
 use super::lists::{all_in_blocks, block_fits, note_parameters};
-use super::words::Words;
+use super::words::{Progress, Words};
 use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -26,7 +26,8 @@ pub(super) fn nodes(
     sink.expect_nodes(cursor.capacity(count, TAG + 24));
     let mut done = 0;
     for block in 0..blocks {
-        let words = &mut Words::take(cursor, order, BLOCK_HEADER, (block, blocks, "node blocks"))?;
+        let progress = Progress::new(block, blocks, "node blocks");
+        let words = &mut Words::take(cursor, order, BLOCK_HEADER, progress)?;
         words.int(); // The entity's own tag.
         let dimension = words.natural(cursor, "the dimension of a node block")?;
         let parametric = words.int() != 0;
@@ -38,7 +39,7 @@ pub(super) fn nodes(
         // Nodes of points and of volumes have no parameters.
         let parameters = if parametric && dimension < 3 { dimension as usize } else { 0 };
         for at in 0..size {
-            let progress = (done + at, count, "nodes");
+            let progress = Progress::new(done + at, count, "nodes");
             let words = &mut Words::take(cursor, order, TAG + 8 * (3 + parameters), progress)?;
             let tag = words.natural(cursor, "a node tag")?;
             let [x, y, z] = words.point(cursor, tag)?;

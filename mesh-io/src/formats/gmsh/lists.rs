@@ -1,5 +1,6 @@
 //! The lists and blocks of a section: their counts, their rows, and how these are laid out.
 
+use super::words::Progress;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -65,15 +66,16 @@ pub(super) fn row(
     Ok(())
 }
 
-/// Hands on the `count` items of a list. `before` items of the section's `all` were read earlier. As in gmsh, items may
-/// stand anywhere on lines.
+/// Hands on the next `count` items of a section. As in gmsh, items may stand anywhere on lines.
 pub(super) fn each<'a, T: Send>(
     cursor: &mut Cursor<'a>,
-    (count, before, all, what): (u64, u64, u64, &str),
+    count: u64,
+    progress: Progress<'_>,
     sink: &mut dyn Sink,
     read: impl Fn(&mut Cursor<'a>, Option<u64>) -> Result<T, ReadError> + Sync,
     take: impl FnMut(&Cursor<'a>, &mut dyn Sink, u64, T) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
+    let Progress { done: before, count: all, what } = progress;
     let next = |cursor: &mut Cursor<'a>, done: u64| row(cursor, before + done, all, what);
     each_item(cursor, count, sink, next, read, take)
 }
@@ -86,15 +88,15 @@ pub(super) fn counts<'a, T: Copy>(
     rows: impl Fn(T) -> u64,
 ) -> Result<T, ReadError> {
     cursor.syntax = Syntax::WORDS;
-    let counts = head(cursor, (0, 1, "counts"), read)?;
+    let counts = head(cursor, Progress::new(0, 1, "counts"), read)?;
     lay_out(cursor, rows(counts));
     Ok(counts)
 }
 
-/// Reads the header of a list or block, the next of `count` called `what`.
+/// Reads the header of the next list or block.
 pub(super) fn head<'a, T>(
     cursor: &mut Cursor<'a>,
-    (done, count, what): (u64, u64, &str),
+    Progress { done, count, what }: Progress<'_>,
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError>,
 ) -> Result<T, ReadError> {
     row(cursor, done, count, what)?;

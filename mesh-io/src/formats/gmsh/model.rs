@@ -2,7 +2,7 @@
 
 use super::encoding::{Encoding, Version};
 use super::lists::row;
-use super::words::Words;
+use super::words::{Progress, Words};
 use crate::binary::order::Order;
 use crate::content::label::Label;
 use crate::error::ReadError;
@@ -84,7 +84,7 @@ impl Model {
         };
         for (dimension, count) in (0..).zip(counts) {
             for done in 0..count {
-                let progress = (done, count, "entities");
+                let progress = Progress::new(done, count, "entities");
                 let (tag, entity) = match order {
                     None => {
                         text_entity(cursor, partitioned, dimension, numbers(dimension), progress)?
@@ -129,7 +129,7 @@ fn text_entity(
     partitioned: bool,
     dimension: u8,
     numbers: usize,
-    (done, count, what): (u64, u64, &str),
+    Progress { done, count, what }: Progress<'_>,
 ) -> Result<(i64, Entity), ReadError> {
     row(cursor, done, count, what)?;
     let tag = cursor.signed("the tag of an entity")?;
@@ -163,7 +163,7 @@ fn binary_counts(
     order: Order,
     partitioned: bool,
 ) -> Result<[u64; 4], ReadError> {
-    let progress = (0, 1, "counts of entities");
+    let progress = Progress::new(0, 1, "counts of entities");
     if partitioned {
         let words = &mut Words::take(cursor, order, 16, progress)?;
         words.size();
@@ -180,7 +180,7 @@ fn binary_entity(
     partitioned: bool,
     dimension: u8,
     numbers: usize,
-    progress: (u64, u64, &str),
+    progress: Progress<'_>,
 ) -> Result<(i64, Entity), ReadError> {
     let is_point = dimension == 0;
     let int = |cursor: &mut Cursor<'_>| {

@@ -72,7 +72,7 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                     (Version::V40, Some(order)) => binary40::nodes(cursor, order, heights, sink)?,
                     (Version::V4, None) => text4::nodes(cursor, heights, sink)?,
                     (Version::V2, Some(order)) => {
-                        binary2::nodes(cursor, (order, parametric), heights, sink)?
+                        binary2::nodes(cursor, order, parametric, heights, sink)?
                     }
                     (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, sink)?,
                 };
@@ -97,7 +97,7 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                     }
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
                     (Version::V40 | Version::V4, Some(order)) => {
-                        binary4::elements(cursor, (version, order), &model, sink)?
+                        binary4::elements(cursor, version, order, &model, sink)?
                     }
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;

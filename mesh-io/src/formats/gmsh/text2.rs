@@ -2,6 +2,7 @@
 
 use super::kind::{kind_of, node_tags};
 use super::lists::{counts, each};
+use super::words::Progress;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::heights::Heights;
@@ -15,10 +16,11 @@ pub(super) fn nodes(
 ) -> Result<u64, ReadError> {
     let count = counts(cursor, Cursor::vertex_count, |count| count)?;
     sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
-    let list = (count, 0, count, "nodes");
+    let progress = Progress::new(0, count, "nodes");
     each(
         cursor,
-        list,
+        count,
+        progress,
         sink,
         |cursor, _| node(cursor),
         |cursor, sink, _, (tag, (x_at, at), z)| {
@@ -41,9 +43,11 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<u
     let count = counts(cursor, read, |count| count)?;
     sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
     sink.columns(columns());
-    let list = (count, 0, count, "elements");
+    let progress = Progress::new(0, count, "elements");
     let read = |cursor: &mut Cursor<'_>, _| element(cursor);
-    each(cursor, list, sink, read, |cursor, sink, _, element| sink.element(cursor, &element))?;
+    each(cursor, count, progress, sink, read, |cursor, sink, _, element| {
+        sink.element(cursor, &element)
+    })?;
     Ok(count)
 }
 

@@ -4,6 +4,7 @@ use super::encoding::Version;
 use super::kind::{kind_of, node_tags};
 use super::lists::{all_in_blocks, block_fits, by_rows, counts, each, has_parameters, head, row};
 use super::model::Model;
+use super::words::Progress;
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
@@ -37,14 +38,14 @@ pub(super) fn nodes(
             let size = cursor.integer("the number of nodes of a block")?;
             Ok((dimension, entity, parametric, size))
         };
-        let head = head(cursor, (block, blocks, "node blocks"), read)?;
+        let head = head(cursor, Progress::new(block, blocks, "node blocks"), read)?;
         let (dimension, entity, parametric, size) = head;
         let wanted = parametric && dimension == 2 && has_parameters(sink, entity);
         block_fits(cursor, size, count - done, "nodes")?;
         tags.clear();
         tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
         let read = |cursor: &mut Cursor<'_>, _| cursor.integer("a node tag");
-        each(cursor, (size, done, count, "node tags"), sink, read, |_, _, _, tag| {
+        each(cursor, size, Progress::new(done, count, "node tags"), sink, read, |_, _, _, tag| {
             tags.push(tag);
             Ok(())
         })?;
@@ -54,8 +55,8 @@ pub(super) fn nodes(
         };
         let read = |cursor: &mut Cursor<'_>, at| point(cursor, format_args!("node {}", tag(at)));
         by_rows(cursor, parametric, |cursor| {
-            let list = (size, done, count, "nodes");
-            each(cursor, list, sink, read, |cursor, sink, at, ((x_at, point), z)| {
+            let progress = Progress::new(done, count, "nodes");
+            each(cursor, size, progress, sink, read, |cursor, sink, at, ((x_at, point), z)| {
                 sink.node(cursor, tag(Some(at)), dimension, x_at, point);
                 heights.see(z);
                 Ok(())
@@ -125,15 +126,18 @@ pub(super) fn elements(
             let kind = kind_of(cursor, kind)?;
             Ok((entity, kind, cursor.integer("the number of elements of a block")?))
         };
-        let (entity, kind, size) = head(cursor, (block, blocks, "element blocks"), read)?;
+        let (entity, kind, size) =
+            head(cursor, Progress::new(block, blocks, "element blocks"), read)?;
         sink.within(&model.groups_of(kind, entity));
         block_fits(cursor, size, count - done, "elements")?;
         let read = |cursor: &mut Cursor<'_>, _| {
             let tag = cursor.integer("an element tag")?;
             Ok(Element { tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
         };
-        let list = (size, done, count, "elements");
-        each(cursor, list, sink, read, |cursor, sink, _, element| sink.element(cursor, &element))?;
+        let progress = Progress::new(done, count, "elements");
+        each(cursor, size, progress, sink, read, |cursor, sink, _, element| {
+            sink.element(cursor, &element)
+        })?;
         done += size;
     }
     all_in_blocks(cursor, done, count, "elements")?;

@@ -2,6 +2,7 @@
 //! its coordinates.
 
 use super::lists::{all_in_blocks, block_fits, by_rows, counts, each, head, note_parameters};
+use super::words::Progress;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::heights::Heights;
@@ -26,7 +27,8 @@ pub(super) fn nodes(
             let parametric = cursor.integer("whether the nodes are parametric")? != 0;
             Ok((dimension, parametric, cursor.integer("the number of nodes of a block")?))
         };
-        let (dimension, parametric, size) = head(cursor, (block, blocks, "node blocks"), read)?;
+        let (dimension, parametric, size) =
+            head(cursor, Progress::new(block, blocks, "node blocks"), read)?;
         if parametric && dimension >= 2 {
             note_parameters(sink);
         }
@@ -39,8 +41,8 @@ pub(super) fn nodes(
         };
         // Parameters follow at the end of the row.
         by_rows(cursor, parametric, |cursor| {
-            let list = (size, done, count, "nodes");
-            each(cursor, list, sink, read, |cursor, sink, _, (tag, (x_at, at), z)| {
+            let progress = Progress::new(done, count, "nodes");
+            each(cursor, size, progress, sink, read, |cursor, sink, _, (tag, (x_at, at), z)| {
                 sink.node(cursor, tag, dimension, x_at, at);
                 heights.see(z);
                 Ok(())

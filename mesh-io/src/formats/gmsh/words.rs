@@ -8,6 +8,22 @@ use std::fmt::Display;
 /// The remedy for a number that makes no sense.
 const DAMAGED: &str = "The file is damaged: copy it again as binary, or save the mesh again";
 
+/// How many items of a section were read, for messages.
+#[derive(Clone, Copy)]
+pub(super) struct Progress<'w> {
+    pub(super) done: u64,
+    /// How many items the section has.
+    pub(super) count: u64,
+    /// What the items are called.
+    pub(super) what: &'w str,
+}
+
+impl<'w> Progress<'w> {
+    pub(super) fn new(done: u64, count: u64, what: &'w str) -> Progress<'w> {
+        Progress { done, count, what }
+    }
+}
+
 /// Bytes of a binary file that hold numbers, which are read one after the other.
 pub(super) struct Words<'a> {
     order: Order,
@@ -15,18 +31,18 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Takes the next `size` bytes of the file, which hold the next of `count` items called `what`. `done` items were
-    /// read before.
+    /// Takes the next `size` bytes of the file, which hold the next item.
     #[inline]
     pub(super) fn take(
         cursor: &mut Cursor<'a>,
         order: Order,
         size: usize,
-        (done, count, what): (u64, u64, &str),
+        progress: Progress<'_>,
     ) -> Result<Words<'a>, ReadError> {
         match cursor.take(size) {
             Some(bytes) => Ok(Words { order, bytes }),
             None => {
+                let Progress { done, count, what } = progress;
                 let problem = format!("the file ends after {done} of {count} {what}");
                 Err(cursor.error(problem, CUT_OFF))
             }

@@ -16,8 +16,9 @@ use crate::formats::axes::Axes;
 use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::records::{Region, TriangleRecords};
-use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, volume};
+use crate::visit::records::Region;
+use crate::visit::send::ElementRecords;
+use crate::visit::sink::{Column, Kind, Layout, Sink, Walk, volume};
 use families::Families;
 
 pub(crate) struct Med;
@@ -92,7 +93,7 @@ impl<'a> File<'a> {
 
     fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
         let (axes, count) = self.nodes()?;
-        let layout = axes.send(Format::Med, (count, 1), sink)?;
+        let layout = axes.send(Format::Med, count, 1, sink)?;
         let label = |family| (family != 0).then_some(Label::Tag(family));
         sink.columns(vec![Column { what: "family".into(), from_dimension: 0, label }]);
         let families = match sink.asks_for_groups() {
@@ -155,7 +156,7 @@ impl<'a> File<'a> {
         };
         let count = numbers / axes;
         cursor.check_vertex_count(count as u64)?;
-        Ok((Axes::of_arrays(self.hdf5, (order, precision), vec![array], (axes, count)), count))
+        Ok((Axes::of_arrays(self.hdf5, (order, precision), vec![array], axes, count), count))
     }
 
     /// Hands on the elements of a type.
@@ -206,36 +207,26 @@ impl<'a> File<'a> {
         let corner = |element: usize, corner: usize| {
             order.whole(&array.bytes[(corner * count + element) * size..][..size])
         };
-        let mut taken = 0;
-        if kind == Kind::Triangle {
-            sink.expect_elements(count);
-            let each = (0..count).flat_map(|element| (0..3).map(move |k| (element, k)));
-            let wide = |(element, k)| corner(element, k).to_le_bytes();
-            let side_by_side: Vec<u8> = each.flat_map(wide).collect();
-            taken = sink.triangle_records(&TriangleRecords {
-                count,
-                corners: Field::new(Some(&side_by_side), (24, 8), Order::Little),
-                first: 0,
-                below: u64::MAX,
-                regions: [Region::List(&of_families), Region::Same(0)],
-                expected: &[],
-            });
-        }
+        let corners = kind.nodes();
+        let each = (0..count).flat_map(|element| (0..corners).map(move |k| (element, k)));
+        let wide = |(element, k)| corner(element, k).to_le_bytes();
+        let side_by_side: Vec<u8> = each.flat_map(wide).collect();
+        let elements = ElementRecords {
+            kind,
+            count,
+            first_tag: 1,
+            nodes: Field::new(Some(&side_by_side), (8 * corners, 8), Order::Little),
+            is_signed: false,
+            regions: [Region::List(&of_families), Region::Same(0)],
+        };
         let mut last = None;
-        for element in taken..count {
+        elements.send(sink, |element, sink| {
             let family = of_families.get(element).copied().unwrap_or(0);
             if sink.asks_for_groups() && last != Some(family) {
                 families.of_elements(family, sink);
                 last = Some(family);
             }
-            let mut nodes = [0; 4];
-            for (k, node) in nodes[..kind.nodes()].iter_mut().enumerate() {
-                *node = corner(element, k);
-            }
-            let place = Cursor::at_byte_of(self.source, array.byte_of(element * size));
-            let tag = element as u64 + 1;
-            sink.element(&place, &Element { tag, kind, region: [family, 0], nodes })?;
-        }
-        Ok(())
+            Cursor::at_byte_of(self.source, array.byte_of(element * size))
+        })
     }
 }

@@ -15,8 +15,9 @@ use crate::formats::medit::required::hold_required;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::heights::Heights;
-use crate::visit::records::{NodeRecords, Region, Tags, TriangleRecords};
-use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, volume};
+use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::send::{ElementRecords, REWRITE};
+use crate::visit::sink::{Column, Kind, Layout, Sink, Walk, Within, volume};
 
 pub(crate) struct MeditBinary;
 
@@ -217,22 +218,15 @@ fn vertices(
     let start = cursor.taken();
     let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
     let count = bytes.len() / item;
-    sink.expect_nodes(count);
     let (x, y, tags) = (field(0), field(size), Tags::From(1));
-    let taken = sink.node_records(&NodeRecords { count, x, y, x_at: start, tags });
-    for (index, vertex) in bytes.chunks_exact(item).enumerate().skip(taken) {
-        let [x, y] = [0, 1].map(|axis| {
-            let bytes = &vertex[axis * size..][..size];
-            widths.order.real(widths.precision, bytes)
-        });
-        let tag = index as u64 + 1;
-        if !x.is_finite() || !y.is_finite() {
-            let problem = format!("a coordinate of vertex {tag} is not a finite number");
-            return Err(cursor.error(problem, "Write the mesh again"));
-        }
-        let place = &Cursor::at_byte_of(cursor.source, start + index * item);
-        sink.node(place, tag, 2, start + index * item, [x, y]);
-    }
+    NodeRecords { count, x, y, x_at: start, tags }.send(
+        sink,
+        |index| Cursor::at_byte_of(cursor.source, start + index * item),
+        |index| {
+            let problem = format!("a coordinate of vertex {} is not a finite number", index + 1);
+            cursor.error(problem, REWRITE)
+        },
+    )?;
     if dimension == 3 {
         let mut heights = Heights::new(sink);
         heights.see_all(field(2 * size), count, start + 2 * size);
@@ -257,34 +251,16 @@ fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), 
     sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;
-    let mut taken = 0;
-    if kind == Kind::Triangle {
-        let count = bytes.len() / item;
-        sink.expect_elements(count);
-        let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
-        let regions = [Region::Field(field(3 * size)), Region::Same(0)];
-        taken = sink.triangle_records(&TriangleRecords {
-            count,
-            corners: field(0),
-            first: 0,
-            below: u64::MAX,
-            regions,
-            expected: &[],
-        });
-    }
-    for (index, element) in bytes.chunks_exact(item).enumerate().skip(taken) {
-        let mut numbers = [0; 5];
-        for (value, bytes) in numbers.iter_mut().zip(element.chunks_exact(size)) {
-            *value = widths.order.signed(bytes);
-        }
-        let mut nodes = [0; 4];
-        for (node, &number) in nodes.iter_mut().zip(&numbers[..kind.nodes()]) {
-            *node = u64::try_from(number).unwrap_or(0);
-        }
-        let reference = if *referred { numbers[kind.nodes()] } else { 0 };
-        let element = Element { tag: index as u64 + 1, kind, region: [reference, 0], nodes };
-        let place = &Cursor::at_byte_of(cursor.source, cursor.taken() + index * item);
-        sink.element(place, &element)?;
-    }
-    Ok(())
+    let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
+    let reference =
+        if *referred { Region::Field(field(kind.nodes() * size)) } else { Region::Same(0) };
+    let records = ElementRecords {
+        kind,
+        count: bytes.len() / item,
+        first_tag: 1,
+        nodes: field(0),
+        is_signed: true,
+        regions: [reference, Region::Same(0)],
+    };
+    records.send(sink, |index, _| Cursor::at_byte_of(cursor.source, cursor.taken() + index * item))
 }

@@ -408,7 +408,7 @@ impl Items {
                 }
                 None => {
                     let corners: Vec<u64> = corners.iter().map(node).collect();
-                    sink.polygon(place, (tag, region), &corners)?;
+                    sink.polygon(place, tag, region, &corners)?;
                 }
             }
             tag += 1;

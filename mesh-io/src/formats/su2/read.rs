@@ -121,7 +121,7 @@ impl Walk for Su2 {
                 |name| Within { what: "marker", label: Label::name(name), dimension: None };
             sink.within(marker.map(within).as_slice());
             let last = zones.get(zone + 1).copied().unwrap_or(points);
-            elements((&mut cursor, &ahead), count, zone, zones[zone]..last, sink)?;
+            elements(&mut cursor, &ahead, count, zone, zones[zone]..last, sink)?;
         }
         Ok(Layout::in_place(Format::Su2, Numbers::TEXT))
     }
@@ -129,7 +129,8 @@ impl Walk for Su2 {
 
 /// Hands on the elements of a list, whose nodes are those of a zone.
 fn elements(
-    (cursor, ahead): (&mut Cursor<'_>, &[Small]),
+    cursor: &mut Cursor<'_>,
+    ahead: &[Small],
     count: u64,
     zone: usize,
     Range { start: first, end: last }: Range<u64>,

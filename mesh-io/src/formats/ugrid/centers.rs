@@ -121,7 +121,7 @@ fn send<'h, 'a>(
             ends.push(nodes.len());
         }
     }
-    let numbers = points.numbers(variable, (0, 0), &Parts::WHOLE, variable.missing())?;
+    let numbers = points.numbers(variable, 0, 0, &Parts::WHOLE, variable.missing())?;
     sink.center_numbers(Centers { nodes, ends, numbers });
     Some(())
 }

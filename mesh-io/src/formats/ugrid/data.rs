@@ -40,7 +40,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         if sink.asks_for_data() {
             for variable in self.header.variables.iter().filter(is_data) {
                 if let Some((Location::Faces, parts)) = self.located(variable, lengths) {
-                    self.of_faces(faces, (variable, &parts), &mut points, sink);
+                    self.of_faces(faces, variable, &parts, &mut points, sink);
                 }
             }
             self.left_out(sink);
@@ -85,7 +85,8 @@ impl<'h, 'a> Mesh<'h, 'a> {
     fn of_faces(
         &self,
         faces: &Table<'h, 'a>,
-        (variable, parts): (&'h Variable, &Parts),
+        variable: &'h Variable,
+        parts: &Parts,
         points: &mut PointData<'h, 'a>,
         sink: &mut dyn Sink,
     ) {
@@ -95,7 +96,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
             for part in parts.wanted.clone() {
                 if sink.cell_array(&variable.name, parts.components, is_real)
                     && let Some(own) =
-                        points.numbers(variable, (record, part), parts, variable.missing())
+                        points.numbers(variable, record, part, parts, variable.missing())
                 {
                     sink.cell_numbers(own.numbers, Some(tags.clone().collect()));
                 }

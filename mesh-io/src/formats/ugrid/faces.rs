@@ -33,7 +33,7 @@ pub(super) fn send(faces: &Table<'_, '_>, sink: &mut dyn Sink) -> Result<(), Rea
             3 => Kind::Triangle,
             4 => Kind::Quadrilateral,
             _ => {
-                sink.polygon(cursor, (tag, region), &nodes)?;
+                sink.polygon(cursor, tag, region, &nodes)?;
                 continue;
             }
         };

@@ -75,7 +75,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         let Number::Real(precision) = x.number else {
             return Err(unfit(header, [x, y]));
         };
-        axes(header, &[x, y], (x.order, precision), (2, *nodes))
+        axes(header, &[x, y], (x.order, precision), 2, *nodes)
     }
 
     /// The variables that an attribute of the mesh names.

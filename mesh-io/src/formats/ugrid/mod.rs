@@ -37,7 +37,7 @@ impl Walk for Ugrid {
         let header = netcdf::open(source)?;
         let mesh = Mesh::find(&header)?;
         let faces = Table::find(&mesh, mesh.face_nodes, What::Faces)?;
-        let layout = mesh.axes()?.send(Format::Ugrid, (mesh.nodes, faces.first), sink)?;
+        let layout = mesh.axes()?.send(Format::Ugrid, mesh.nodes, faces.first, sink)?;
         faces::send(&faces, sink)?;
         mesh.data(&mesh.tables(faces), sink);
         header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;

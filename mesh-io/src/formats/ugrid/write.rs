@@ -59,20 +59,20 @@ pub(crate) fn write_ugrid(job: &Job<'_>) -> Vec<u8> {
     let nodes = Values::Whole(cells.iter().flat_map(row).collect());
     out.variable(FACES, &[FACE_COUNT, CORNERS], roles, nodes);
     for each in job.point_data() {
-        data(&mut out, each, (NODE_COUNT, "node"), each.values.clone());
+        data(&mut out, each, NODE_COUNT, "node", each.values.clone());
     }
     for each in job.cell_data() {
         let of = |&cell: &usize| {
             let start = cell * each.components;
             each.values.get(start..start + each.components).unwrap_or_default().iter().copied()
         };
-        data(&mut out, each, (FACE_COUNT, "face"), cells.iter().flat_map(of).collect());
+        data(&mut out, each, FACE_COUNT, "face", cells.iter().flat_map(of).collect());
     }
     out.bytes()
 }
 
 /// Adds numbers for each node or face.
-fn data(out: &mut NetCdf, data: &Data, (count, location): (&str, &str), values: Vec<f64>) {
+fn data(out: &mut NetCdf, data: &Data, count: &str, location: &str, values: Vec<f64>) {
     let attributes = vec![("mesh", text(MESH)), ("location", text(location))];
     let is_whole = |x: &f64| f64::from(*x as i32) == *x;
     let values = match !data.is_real && values.iter().all(is_whole) {

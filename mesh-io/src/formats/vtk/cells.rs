@@ -32,8 +32,8 @@ impl Cell<'_> {
             return sink.element(cursor, &Element { tag, kind, region, nodes });
         }
         match (kind, cell_type) {
-            (Kind::Corner, _) => sink.polygon(cursor, (tag, region), points),
-            (_, types::POLY_LINE) => sink.polyline(cursor, (tag, region), points),
+            (Kind::Corner, _) => sink.polygon(cursor, tag, region, points),
+            (_, types::POLY_LINE) => sink.polyline(cursor, tag, region, points),
             _ => points.iter().try_for_each(|&point| {
                 let nodes = [point, 0, 0, 0];
                 sink.element(cursor, &Element { tag, kind, region, nodes })

@@ -13,6 +13,7 @@ use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::send::REWRITE;
 use crate::visit::sink::{Home, Layout, Sink};
 
 impl File<'_> {
@@ -125,28 +126,16 @@ impl File<'_> {
             None => self.heavy.encoding(&mut numbers),
         };
         let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Encoding::bytes);
-        sink.expect_nodes(count);
         let mut heights = Heights::new(sink);
         let field = |axis: usize| Field::new(bytes.get(axis * size..), (stride, size), order);
-        let (x, y) = (field(0), field(1));
-        let taken =
-            sink.node_records(&NodeRecords { count, x, y, x_at: start, tags: Tags::From(0) });
+        let (x, y, tags) = (field(0), field(1), Tags::From(0));
+        let place = |index| numbers.cursor(index * stride);
+        NodeRecords { count, x, y, x_at: start, tags }.send(sink, place, |index| {
+            let problem = format!("a coordinate of point {index} is not a finite number");
+            place(index).error(problem, REWRITE)
+        })?;
         if axes == 3 {
-            heights.see_all(field(2), taken, start + 2 * size);
-        }
-        for (index, point) in bytes.chunks_exact(stride).enumerate().skip(taken) {
-            let number = |axis: usize| order.real(precision, &point[axis * size..][..size]);
-            let at = [number(0), number(1)];
-            let cursor = &numbers.cursor(index * stride);
-            if !at.iter().all(|x| x.is_finite()) {
-                let problem = format!("a coordinate of point {index} is not a finite number");
-                return Err(cursor.error(problem, "Write the mesh again"));
-            }
-            let x_at = start + index * stride;
-            sink.node(cursor, index as u64, 2, x_at, at);
-            if axes == 3 {
-                heights.see((x_at + 2 * size, number(2)));
-            }
+            heights.see_all(field(2), count, start + 2 * size);
         }
         sink.end_nodes(&self.cursor(item))?;
         let numbers = Numbers::adjacent(order, precision);

@@ -20,6 +20,7 @@ use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::send::REWRITE;
 use crate::visit::sink::{Layout, Sink, Walk, each_row};
 use lists::{Cells, List};
 use passed::take;
@@ -156,22 +157,13 @@ fn points(
         let bytes = take(cursor, count, 3 * width)?;
         let start = cursor.taken();
         let count = bytes.len() / (3 * width);
-        sink.expect_nodes(count);
         let [x, y, z] = [0, 1, 2]
             .map(|axis| Field::new(bytes.get(axis * width..), (3 * width, width), Order::Big));
-        let tags = Tags::From(0);
-        let taken = sink.node_records(&NodeRecords { count, x, y, x_at: start, tags });
-        heights.see_all(z, taken, start + 2 * width);
-        for (index, point) in bytes.chunks_exact(3 * width).enumerate().skip(taken) {
-            let [x, y, z] = [0, 1, 2].map(|axis| {
-                let number = &point[axis * width..][..width];
-                Order::Big.real(precision, number)
-            });
-            let x_at = start + index * 3 * width;
-            let place = &Cursor::at_byte_of(cursor.source, x_at);
-            sink.node(place, index as u64, 2, x_at, finite(place, [x, y])?);
-            heights.see((x_at + 2 * width, z));
-        }
+        let place = |index| Cursor::at_byte_of(cursor.source, start + index * 3 * width);
+        let not_finite = |index| place(index).error("a coordinate is not a finite number", REWRITE);
+        let records = NodeRecords { count, x, y, x_at: start, tags: Tags::From(0) };
+        records.send(sink, place, not_finite)?;
+        heights.see_all(z, count, start + 2 * width);
         return Ok(precision);
     }
     sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
@@ -221,11 +213,4 @@ fn points(
     }
     *cursor = rest;
     Ok(precision)
-}
-
-fn finite(cursor: &Cursor<'_>, point: [f64; 2]) -> Result<[f64; 2], ReadError> {
-    match point.iter().all(|x| x.is_finite()) {
-        true => Ok(point),
-        false => Err(cursor.error("a coordinate is not a finite number", "Write the mesh again")),
-    }
 }

@@ -12,6 +12,7 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::send::REWRITE;
 use crate::visit::sink::{Home, Sink};
 use std::ops::Range;
 use std::sync::Arc;
@@ -118,27 +119,13 @@ impl<'f> Points<'_, 'f> {
         // Raw bytes can be replaced in place. All others are encoded again.
         let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
         let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
-        self.sink.expect_nodes(old.bytes.len() / (3 * wide));
         let [x, y, z] = [0, 1, 2]
             .map(|axis| Field::new(old.bytes.get(axis * wide..), (3 * wide, wide), wrapping.order));
-        let (tags, nodes) = (Tags::From(self.count), count as usize);
-        let records = NodeRecords { count: nodes, x, y, x_at: start, tags };
-        let taken = self.sink.node_records(&records);
-        self.heights.see_all(z, taken, start + 2 * wide);
-        for (index, point) in old.bytes.chunks_exact(3 * wide).enumerate().skip(taken) {
-            let number = |axis: usize| {
-                let bytes = &point[axis * wide..][..wide];
-                wrapping.order.real(precision, bytes)
-            };
-            let at = [number(0), number(1)];
-            if !at.iter().all(|x| x.is_finite()) {
-                let problem = format!("point {index} is not finite");
-                return Err(cursor.error(problem, "Write the mesh again"));
-            }
-            let x_at = start + index * 3 * wide;
-            self.sink.node(cursor, self.count + index as u64, 2, x_at, at);
-            self.heights.see((x_at + 2 * wide, number(2)));
-        }
+        let (tags, count) = (Tags::From(self.count), count as usize);
+        let not_finite = |index| cursor.error(format!("point {index} is not finite"), REWRITE);
+        let records = NodeRecords { count, x, y, x_at: start, tags };
+        records.send(self.sink, |_| cursor.clone(), not_finite)?;
+        self.heights.see_all(z, count, start + 2 * wide);
         let numbers = Numbers::adjacent(wrapping.order, precision);
         if is_encoded {
             self.bytes += old.bytes.len();

@@ -1,0 +1,87 @@
+//! Hands lists of binary records to a sink: plain records of a long list at once, others one by one.
+
+use crate::binary::number_field::Field;
+use crate::error::ReadError;
+use crate::text::cursor::Cursor;
+use crate::visit::records::{NodeRecords, Region, TriangleRecords};
+use crate::visit::sink::{Element, Kind, Sink};
+
+/// What to do about a coordinate that is no number or infinite.
+pub(crate) const REWRITE: &str = "Write the mesh again";
+
+impl NodeRecords<'_> {
+    /// Hands on all nodes. The fields must hold them. `place` returns the location of a node by its
+    /// index, and `not_finite` the error if a coordinate of the node is not a finite number.
+    pub(crate) fn send<'c>(
+        &self,
+        sink: &mut dyn Sink,
+        place: impl Fn(usize) -> Cursor<'c>,
+        not_finite: impl Fn(usize) -> ReadError,
+    ) -> Result<(), ReadError> {
+        let &NodeRecords { count, x, y, x_at, tags } = self;
+        sink.expect_nodes(count);
+        let taken = sink.node_records(self);
+        if taken == count {
+            return Ok(());
+        }
+        let coordinates = x.real(taken..count).zip(y.real(taken..count));
+        for (index, (x_of, y_of)) in (taken..count).zip(coordinates) {
+            if !x_of.is_finite() || !y_of.is_finite() {
+                return Err(not_finite(index));
+            }
+            let x_at = x_at + index * x.stride();
+            sink.node(&place(index), tags.of(index), 2, x_at, [x_of, y_of]);
+        }
+        Ok(())
+    }
+}
+
+/// A list of elements of one kind, of which each record has the nodes of an element.
+pub(crate) struct ElementRecords<'a> {
+    pub(crate) kind: Kind,
+    pub(crate) count: usize,
+    /// The tag of the first element. Tags are consecutive.
+    pub(crate) first_tag: u64,
+    /// The tags of the nodes, as many as the kind has.
+    pub(crate) nodes: Field<'a>,
+    /// Whether tags of nodes are signed. A negative tag becomes 0, which no node has.
+    pub(crate) is_signed: bool,
+    pub(crate) regions: [Region<'a>; 2],
+}
+
+impl ElementRecords<'_> {
+    /// Hands on all elements. The fields must hold them. `place` returns the location of an element by its index, and may tell
+    /// the sink before which groups the element belongs to.
+    pub(crate) fn send<'c>(
+        &self,
+        sink: &mut dyn Sink,
+        mut place: impl FnMut(usize, &mut dyn Sink) -> Cursor<'c>,
+    ) -> Result<(), ReadError> {
+        let &ElementRecords { kind, count, nodes: corners, regions, .. } = self;
+        let mut taken = 0;
+        if kind == Kind::Triangle {
+            sink.expect_elements(count);
+            let (first, below, expected) = (0, u64::MAX, &[][..]);
+            let records = TriangleRecords { count, corners, first, below, regions, expected };
+            taken = sink.triangle_records(&records);
+        }
+        if taken == count {
+            return Ok(());
+        }
+        for (index, bytes) in (taken..count).zip(corners.of(taken..count)) {
+            let mut nodes = [0; 4];
+            let own = nodes[..kind.nodes()].iter_mut().zip(bytes.chunks_exact(corners.width));
+            for (node, bytes) in own {
+                *node = match self.is_signed {
+                    true => u64::try_from(corners.order.signed(bytes)).unwrap_or(0),
+                    false => corners.order.whole(bytes),
+                };
+            }
+            let region = regions.map(|region| region.of(index));
+            let tag = self.first_tag.saturating_add(index as u64);
+            let cursor = place(index, sink);
+            sink.element(&cursor, &Element { tag, kind, region, nodes })?;
+        }
+        Ok(())
+    }
+}
