@@ -2,7 +2,7 @@
 //! them.
 //!
 //! [`MeshFile::read`] finds the format by the content of a file. A [`MeshFile`] never changes: it reports points, triangles,
-//! regions, [`Groups`], data of vertices ([`PointField`]) and [`Constraints`], and [`MeshFile::write`] writes the file with
+//! regions, [`Groups`], data of vertices ([`PointField`]), [`Constraints`], and the whole mesh as [`Content`], and [`MeshFile::write`] writes the file with
 //! vertices at other points. A [`Conversion`] writes the mesh in another [`Format`], and lists what that format does not
 //! hold. [`atomic`] replaces any file safely.
 //!
@@ -43,6 +43,7 @@ pub use crate::content::remark::Remark;
 pub use crate::convert::Conversion;
 pub use crate::disk::source::ReadOptions;
 pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
+pub use crate::export::content::{Cell, CellKind, Content, ContentGroup, Data};
 pub use crate::format::Format;
 pub use crate::formats::side::solution::Solution;
 pub use crate::formats::side::view::View;

@@ -7,7 +7,6 @@ use crate::detect;
 use crate::disk::replace;
 use crate::disk::replace::Job as Replacement;
 use crate::error::{ReadError, WriteError};
-use crate::export::collector;
 use crate::export::content::Content;
 use crate::export::job::Job;
 use crate::families::Family;
@@ -62,9 +61,7 @@ impl Conversion {
         let Some(target) = TARGETS.iter().find(|target| target.format == to) else {
             return Ok(None);
         };
-        let mut content = collector::content(file.reader(), file.source())?;
-        // The points as they were read, rounded to the precision of the file.
-        content.points = file.points().to_vec();
+        let mut content = file.content()?;
         write_grids::match_depths(&mut content, file.format(), to);
         let lost = target.holds.lost(&content);
         let renamed = names::fit(&target.holds, &mut content);

@@ -1,7 +1,7 @@
 //! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
 
 use crate::content::label::Label;
-use crate::export::content::{Content, Group};
+use crate::export::content::{Content, ContentGroup};
 use crate::export::holds::{Holds, first};
 use crate::export::spelling::{Spelling, distinct};
 use crate::export::tags::Tags;
@@ -22,7 +22,7 @@ fn groups(holds: &Holds, content: &mut Content) -> Vec<String> {
     let tags = Tags::new(content, holds.negative);
     let main = [0, 1, 2].map(|dimension| content.whats(dimension).first().copied());
     // Where names are words, a group without one is called by its number.
-    let name = |(place, group): (usize, &Group)| {
+    let name = |(place, group): (usize, &ContentGroup)| {
         let dimension = usize::from(group.dimension);
         let is_held = holds.names[dimension] && main[dimension] == Some(&group.what);
         let number = || tags.number(place as u32).to_string();

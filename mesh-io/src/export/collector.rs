@@ -1,6 +1,6 @@
 //! Makes a description of a mesh from what a reader hands on.
 
-use super::content::{Content, Data, Group};
+use super::content::{Content, ContentGroup, Data};
 use crate::content::group_keys::GroupKeys;
 use crate::content::label::Label;
 use crate::content::tags::TagIndex;
@@ -113,7 +113,7 @@ impl Collector {
         let what = common(what);
         let (number, is_new) = self.keys.number(&what, dimension, &label);
         if is_new {
-            self.content.groups.push(Group { what, dimension, label, name: None });
+            self.content.groups.push(ContentGroup { what, dimension, label, name: None });
         }
         number as u32
     }
@@ -249,7 +249,7 @@ impl Sink for Collector {
         let (number, is_new) = self.vertex_keys.number(what, 0, label);
         if is_new {
             let (what, label) = (common(what), label.clone());
-            groups.push((Group { what, dimension: 0, label, name: None }, Vec::new()));
+            groups.push((ContentGroup { what, dimension: 0, label, name: None }, Vec::new()));
         }
         groups[number].1.push(node);
     }

@@ -3,9 +3,22 @@
 use crate::content::label::Label;
 use crate::visit::sink::Kind;
 
-/// A mesh with its elements of all kinds, groups and data.
+/// A mesh with its cells of all kinds, groups and data, independent of a format. Made by
+/// [`MeshFile::content`](crate::MeshFile::content).
+///
+/// ```no_run
+/// use mesh_io::{CellKind, MeshFile};
+/// use std::path::Path;
+///
+/// let content = MeshFile::read(Path::new("part.msh"))?.content()?;
+/// for line in content.cells().filter(|cell| cell.kind == CellKind::Line) {
+///     let names: Vec<_> = line.groups().filter_map(|group| group.name()).collect();
+///     println!("line {} from vertex {} to {}: {names:?}", line.id, line.vertices[0], line.vertices[1]);
+/// }
+/// # Ok::<(), mesh_io::ReadError>(())
+/// ```
 #[derive(Default)]
-pub(crate) struct Content {
+pub struct Content {
     /// x and y of each vertex.
     pub(crate) points: Vec<[f64; 2]>,
     /// The third coordinate of each vertex; empty if all are the same, which is then `height`.
@@ -14,11 +27,11 @@ pub(crate) struct Content {
     /// The file's number or tag of each vertex.
     pub(crate) labels: Vec<u64>,
     pub(crate) cells: Cells,
-    pub(crate) groups: Vec<Group>,
+    pub(crate) groups: Vec<ContentGroup>,
     /// Sets of groups. Cells that belong to the same groups have the same index, in [`Cells::sets`].
     pub(crate) sets: Vec<Vec<u32>>,
     /// Groups of vertices, each with its vertices.
-    pub(crate) vertex_groups: Vec<(Group, Vec<u32>)>,
+    pub(crate) vertex_groups: Vec<(ContentGroup, Vec<u32>)>,
     pub(crate) point_data: Vec<Data>,
     pub(crate) cell_data: Vec<Data>,
     /// Other things that the file has, in a few words each.
@@ -39,9 +52,38 @@ pub(crate) struct Cells {
     pub(crate) tags: Vec<u64>,
 }
 
-/// A group of cells or vertices.
+/// A cell of a [`Content`].
+#[derive(Clone, Copy)]
+pub struct Cell<'c> {
+    /// The kind of the cell.
+    pub kind: CellKind,
+    /// The number that the file gives the cell; without numbers in the file, the position in the file's list.
+    pub id: u64,
+    /// The indices of the cell's vertices, in the order of the file.
+    pub vertices: &'c [u32],
+    content: &'c Content,
+    set: u32,
+}
+
+/// The kinds of cells. A line of several segments becomes several cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CellKind {
+    /// One vertex.
+    Point,
+    /// Two vertices.
+    Line,
+    /// Three vertices.
+    Triangle,
+    /// Four vertices.
+    Quadrilateral,
+    /// Five or more vertices.
+    Polygon,
+}
+
+/// The identity of a group of cells or vertices in a [`Content`].
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Group {
+pub struct ContentGroup {
     /// The kind of group, such as `physical`. It is the same for formats that mean the same.
     pub(crate) what: String,
     pub(crate) dimension: u8,
@@ -49,9 +91,28 @@ pub(crate) struct Group {
     pub(crate) name: Option<String>,
 }
 
-impl Group {
-    /// Returns the group's name, if it has one.
-    pub(crate) fn name(&self) -> Option<&str> {
+impl ContentGroup {
+    /// Returns the kind of group, such as `physical`, `reference` or `nodeset`. Formats that mean the same have the same
+    /// kind.
+    pub fn kind(&self) -> &str {
+        &self.what
+    }
+
+    /// Returns the dimension of the cells of the group: 0 for points and vertices, 1 for lines, 2 for surfaces.
+    pub fn dimension(&self) -> u8 {
+        self.dimension
+    }
+
+    /// Returns the number of the group. `None` if the file identifies the group by its name.
+    pub fn tag(&self) -> Option<i64> {
+        match self.label {
+            Label::Tag(tag) => Some(tag),
+            Label::Name(_) => None,
+        }
+    }
+
+    /// Returns the name of the group, if the file gives one.
+    pub fn name(&self) -> Option<&str> {
         match (&self.name, &self.label) {
             (Some(name), _) | (None, Label::Name(name)) => Some(name),
             (None, Label::Tag(_)) => None,
@@ -59,14 +120,45 @@ impl Group {
     }
 }
 
-/// Numbers for each vertex or cell.
-pub(crate) struct Data {
+/// Numbers for each vertex or cell of a [`Content`].
+pub struct Data {
     pub(crate) name: String,
     pub(crate) components: usize,
     /// Whether the values are real numbers, not whole ones.
     pub(crate) is_real: bool,
     /// `components` values for each vertex or cell, NaN if the file gives none.
     pub(crate) values: Vec<f64>,
+}
+
+impl Data {
+    /// Returns the name. Later time steps of a result have a number after their name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Returns how many numbers each vertex or cell has, at least 1.
+    pub fn components(&self) -> usize {
+        self.components
+    }
+
+    /// Returns whether the file stores real numbers; otherwise it stores whole numbers.
+    pub fn is_real(&self) -> bool {
+        self.is_real
+    }
+
+    /// Returns the numbers, [`components`](Self::components) for each vertex or cell in order. NaN stands for a number
+    /// that the file does not give.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+impl<'c> Cell<'c> {
+    /// Lists the groups that the cell belongs to.
+    pub fn groups(&self) -> impl Iterator<Item = &'c ContentGroup> {
+        let content = self.content;
+        content.sets[self.set as usize].iter().map(|&group| &content.groups[group as usize])
+    }
 }
 
 impl Cells {
@@ -95,8 +187,56 @@ impl Cells {
 }
 
 impl Content {
-    /// Returns the third coordinate of a vertex.
-    pub(crate) fn z(&self, vertex: usize) -> f64 {
+    /// Returns x and y of each vertex, in the order of the file.
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// Returns the number that the file gives each vertex; without numbers in the file, the position in the file's list.
+    pub fn vertex_ids(&self) -> &[u64] {
+        &self.labels
+    }
+
+    /// Lists the cells in the order of the file.
+    pub fn cells(&self) -> impl Iterator<Item = Cell<'_>> {
+        (0..self.cells.len()).map(|cell| Cell {
+            kind: match self.cells.kinds[cell] {
+                Kind::Point => CellKind::Point,
+                Kind::Line => CellKind::Line,
+                Kind::Triangle => CellKind::Triangle,
+                Kind::Quadrilateral => CellKind::Quadrilateral,
+                Kind::Corner => CellKind::Polygon,
+            },
+            id: self.cells.tags[cell],
+            vertices: self.cells.of(cell),
+            content: self,
+            set: self.cells.sets[cell],
+        })
+    }
+
+    /// Lists the groups to which the file assigns vertices themselves, each with the indices of its vertices.
+    pub fn vertex_groups(&self) -> impl Iterator<Item = (&ContentGroup, &[u32])> {
+        self.vertex_groups.iter().map(|(group, vertices)| (group, &vertices[..]))
+    }
+
+    /// Returns the data of vertices. Third coordinates are not among them: see [`z`](Self::z).
+    pub fn point_data(&self) -> &[Data] {
+        &self.point_data
+    }
+
+    /// Returns the data of cells, with numbers in the order of [`cells`](Self::cells). Data that tell groups are groups
+    /// instead.
+    pub fn cell_data(&self) -> &[Data] {
+        &self.cell_data
+    }
+
+    /// Lists the parts of the file that are not in the content, in a few words each.
+    pub fn left_out(&self) -> &[String] {
+        &self.left_out
+    }
+
+    /// Returns the third coordinate of a vertex, 0 if the file has none.
+    pub fn z(&self, vertex: usize) -> f64 {
         self.heights.get(vertex).copied().unwrap_or(self.height)
     }
 

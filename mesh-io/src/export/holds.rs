@@ -1,6 +1,6 @@
 //! What each format holds, and what of a mesh is lost in it.
 
-use super::content::{Content, Data, Group};
+use super::content::{Content, ContentGroup, Data};
 use super::sides;
 use super::spelling::Spelling;
 use super::tags::{Tags, decides};
@@ -123,7 +123,7 @@ impl Holds {
                 lost.push(format!("names of groups of vertices, which become numbers: {names}"));
             }
         }
-        let is_negative = |group: &&Group| matches!(group.label, Label::Tag(..0));
+        let is_negative = |group: &&ContentGroup| matches!(group.label, Label::Tag(..0));
         if !self.negative && content.groups.iter().any(|group| is_negative(&group)) {
             let groups = listed(content.groups.iter().filter(is_negative));
             lost.push(format!("negative numbers of groups, which become others: {groups}"));
@@ -230,12 +230,12 @@ impl Holds {
             }
             let kept = whats.iter().copied().filter(|what| !dropped(what));
             let kept: Vec<&str> = kept.collect();
-            let named = |group: &&Group| {
+            let named = |group: &&ContentGroup| {
                 let is_kept = kept.contains(&group.what.as_str());
                 let is_told = is_kept && group.what != self.own;
                 group.dimension == dimension && is_told && group.name().is_some()
             };
-            let named: Vec<&Group> = content.groups.iter().filter(named).collect();
+            let named: Vec<&ContentGroup> = content.groups.iter().filter(named).collect();
             if !self.names[usize::from(dimension)] && !named.is_empty() {
                 let names = listed(named.into_iter());
                 lost.push(format!("names of groups of {of}, which become numbers: {names}"));
@@ -276,7 +276,7 @@ impl Numbers {
 }
 
 /// Lists the names or numbers of the first groups, and counts the rest.
-fn listed<'g>(groups: impl Iterator<Item = &'g Group>) -> String {
+fn listed<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
     let names: Vec<String> = groups
         .map(|group| match (group.name(), &group.label) {
             (Some(name), _) => name.to_owned(),

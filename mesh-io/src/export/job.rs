@@ -1,6 +1,6 @@
 //! The mesh that a writer is given.
 
-use super::content::{Content, Data, Group};
+use super::content::{Content, ContentGroup, Data};
 use super::holds::Holds;
 use super::tags::Tags;
 use crate::content::label::Label;
@@ -76,7 +76,7 @@ impl<'a> Job<'a> {
     }
 
     /// Returns the most important group of a cell.
-    pub(crate) fn group(&self, cell: usize) -> Option<&'a Group> {
+    pub(crate) fn group(&self, cell: usize) -> Option<&'a ContentGroup> {
         let group = self.tags.group(self.content, cell)?;
         Some(&self.content.groups[group as usize])
     }

@@ -1,6 +1,6 @@
 //! One group and number for each element, for formats that hold no more.
 
-use super::content::{Content, Group};
+use super::content::{Content, ContentGroup};
 use crate::content::label::Label;
 use std::collections::{HashMap, HashSet};
 
@@ -41,7 +41,7 @@ impl Tags {
 
 /// Gives each group a number that no other group of its kind and dimension has. It is the group's own tag if possible,
 /// else a number that no tag has.
-fn numbers(groups: &[Group], negative: bool) -> Vec<i64> {
+fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     let is_fit = |tag: i64| i32::try_from(tag).is_ok_and(|tag| negative || tag >= 0);
     let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();
     for group in groups {
@@ -50,7 +50,7 @@ fn numbers(groups: &[Group], negative: bool) -> Vec<i64> {
         }
     }
     let mut next: HashMap<(&str, u8), i64> = HashMap::new();
-    let number = |group: &'_ Group| -> i64 {
+    let number = |group: &'_ ContentGroup| -> i64 {
         match group.label {
             Label::Tag(tag) if is_fit(tag) => tag,
             _ => {
@@ -67,14 +67,14 @@ fn numbers(groups: &[Group], negative: bool) -> Vec<i64> {
     groups.iter().map(number).collect()
 }
 
-fn groups_what<'g>(groups: &'g [Group], group: &Group) -> &'g str {
+fn groups_what<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
     groups.iter().find(|own| own.what == group.what).map_or("", |own| &own.what)
 }
 
 /// Whether an element's group of the kind `main` determines its group of the kind `other`. Then only numbers are lost
 /// if `other` is not written.
 pub(crate) fn decides(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
-    let named = |group: &Group| group.dimension == dimension && group.name().is_some();
+    let named = |group: &ContentGroup| group.dimension == dimension && group.name().is_some();
     if content.groups.iter().any(|group| group.what == other && named(group)) {
         return false;
     }

@@ -4,6 +4,7 @@
 mod ahead_tests;
 pub(crate) mod centers;
 pub(crate) mod compare;
+mod content;
 pub(crate) mod fields;
 pub(crate) mod mesh;
 pub(crate) mod named;

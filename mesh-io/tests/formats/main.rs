@@ -3,6 +3,7 @@
 mod abaqus;
 mod beside;
 mod binary;
+mod content;
 mod convert;
 mod damage;
 mod data;

@@ -3,7 +3,7 @@
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
 
 use crate::content::label::Label;
-use crate::export::content::Group;
+use crate::export::content::ContentGroup;
 use crate::export::job::Job;
 use crate::export::sides::{pair, sides};
 use crate::netcdf::write::{NetCdf, Values};
@@ -55,7 +55,7 @@ pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
     let names = || {
         let groups = content.groups.iter().chain(content.vertex_groups.iter().map(|(g, _)| g));
         let data = job.point_data().chain(job.cell_data());
-        groups.filter_map(Group::name).chain(data.map(|data| data.name.as_str()))
+        groups.filter_map(ContentGroup::name).chain(data.map(|data| data.name.as_str()))
     };
     let longest = names().map(str::len).max().unwrap_or(0).max(32);
     let mut out = NetCdf::default();

@@ -1,0 +1,89 @@
+//! The whole mesh of a file, by [`MeshFile::content`](mesh_io::MeshFile::content).
+
+use super::{ELE, Folder, GMSH22, NODE, POLY};
+use mesh_io::CellKind::{self, Line, Point, Quadrilateral, Triangle};
+
+/// The kind of each cell, with its number and vertices.
+fn cells(content: &mesh_io::Content) -> Vec<(CellKind, u64, Vec<u32>)> {
+    content.cells().map(|cell| (cell.kind, cell.id, cell.vertices.to_vec())).collect()
+}
+
+#[test]
+fn a_file_of_gmsh_has_cells_of_all_kinds_groups_and_data() {
+    let folder = Folder::new(&[("a.msh", GMSH22)]);
+    let content = folder.read("a.msh").content().unwrap();
+    assert_eq!(content.points()[4], [0.25, 0.5]);
+    assert_eq!([content.z(0), content.z(5)], [5.0; 2]);
+    assert_eq!(content.vertex_ids(), [900_000_000_000, 4, 3, 70, 5, 6]);
+    let expected = [
+        (Point, 1, vec![1]),
+        (Line, 2, vec![0, 1]),
+        (Triangle, 3, vec![0, 1, 4]),
+        (Triangle, 4, vec![1, 2, 4]),
+        (Triangle, 5, vec![2, 3, 4]),
+        (Triangle, 6, vec![3, 0, 4]),
+        (Quadrilateral, 7, vec![1, 5, 5, 2]),
+    ];
+    assert_eq!(cells(&content), expected);
+    // The fourth triangle has a third tag, which is no group.
+    let fourth = content.cells().nth(3).unwrap();
+    let groups: Vec<_> =
+        fourth.groups().map(|group| (group.kind(), group.dimension(), group.tag())).collect();
+    assert_eq!(groups, [("entity", 2, Some(1))]);
+    let [data] = content.point_data() else { panic!("{} data", content.point_data().len()) };
+    assert_eq!((data.name(), data.components(), data.is_real()), ("T", 1, true));
+    assert_eq!(data.values()[4], 0.25);
+    assert!(data.values()[0].is_nan());
+    assert!(content.cell_data().is_empty());
+}
+
+#[test]
+fn a_mesh_of_triangle_has_attributes_markers_and_segments() {
+    let folder = Folder::new(&[("a.node", NODE), ("a.ele", ELE), ("a.poly", POLY)]);
+    let content = folder.read("a.node").content().unwrap();
+    let expected = [
+        (Triangle, 1, vec![0, 1, 4]),
+        (Triangle, 2, vec![1, 2, 4]),
+        (Triangle, 3, vec![2, 3, 4]),
+        (Triangle, 4, vec![3, 0, 4]),
+        (Line, 1, vec![0, 1]),
+        (Line, 2, vec![1, 4]),
+    ];
+    assert_eq!(cells(&content), expected);
+    let groups: Vec<Vec<_>> = content
+        .cells()
+        .map(|cell| cell.groups().map(|group| (group.kind(), group.tag())).collect())
+        .collect();
+    assert_eq!(groups[..4].concat(), [9, 9, 9, 8].map(|tag| ("attribute", Some(tag))));
+    assert_eq!(groups[4..].concat(), [("marker", Some(1)); 2]);
+    let of_vertices: Vec<_> = content
+        .vertex_groups()
+        .map(|(group, vertices)| (group.kind(), group.tag(), vertices.to_vec()))
+        .collect();
+    assert_eq!(of_vertices, [("marker", Some(1), vec![0, 1, 2, 3])]);
+    let [data] = content.point_data() else { panic!("{} data", content.point_data().len()) };
+    assert_eq!((data.name(), data.values()), ("attribute", &[7.5; 5][..]));
+}
+
+/// Triangle's `.ele` may have any number of attributes. Groups and content have all of them.
+#[test]
+fn each_attribute_of_triangles_is_a_kind_of_group() {
+    let ele = "4 3 3\n1 1 2 5 9 0.5 a\n2 2 3 5 9 0.5 a\n3 3 4 5 9 1.5 b\n4 4 1 5 8 1.5 b";
+    let folder = Folder::new(&[("a.node", NODE), ("a.ele", ele)]);
+    let file = folder.read("a.node");
+    assert_eq!(file.regions(), Some(&[0, 0, 1, 2][..]));
+    let content = file.content().unwrap();
+    let last = content.cells().last().unwrap();
+    let groups: Vec<_> =
+        last.groups().map(|group| (group.kind(), group.tag(), group.name())).collect();
+    let expected = [
+        ("attribute1", Some(8), None),
+        ("attribute2", None, Some("1.5")),
+        ("attribute3", None, Some("b")),
+    ];
+    assert_eq!(groups, expected);
+    assert_eq!(
+        file.groups().unwrap().iter().filter(|g| g.to_string().contains("attribute")).count(),
+        6
+    );
+}
