@@ -57,6 +57,17 @@ impl<'a> Field<'a> {
         self.of(records).map(move |bytes| self.order.real(precision, &bytes[..self.width]))
     }
 
+    /// Returns the bytes of the number of one record. The field must hold it.
+    pub(crate) fn at(self, record: usize) -> &'a [u8] {
+        &self.bytes[record * self.stride..][..self.width]
+    }
+
+    /// Returns the real number of one record. The field must hold it.
+    pub(crate) fn real_at(self, record: usize) -> f64 {
+        let precision = if self.width == 4 { Precision::Single } else { Precision::Double };
+        self.order.real(precision, self.at(record))
+    }
+
     /// Whether `holds` is true for the real numbers of this many records. False if there are fewer.
     pub(crate) fn all_real(self, records: usize, holds: impl Fn(f64) -> bool + Sync) -> bool {
         let fits = matches!(self.width, 4 | 8) && self.holds(records, 1);

@@ -160,8 +160,16 @@ impl TagIndex {
     /// node is found.
     #[inline]
     pub(crate) fn index(&self, tag: u64) -> Option<u32> {
+        match self.map.get() {
+            Some(map) => map.index(tag),
+            None => self.map_now().index(tag),
+        }
+    }
+
+    #[cold]
+    fn map_now(&self) -> &TagMap {
         let none = TagMap::Run { first: 0, count: 0 };
-        self.map.get_or_init(|| self.found.map().unwrap_or(none)).index(tag)
+        self.map.get_or_init(|| self.found.map().unwrap_or(none))
     }
 }
 

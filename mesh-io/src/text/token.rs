@@ -62,8 +62,8 @@ pub(crate) fn key_value(row: &[u8]) -> (&[u8], &[u8]) {
 }
 
 /// Reads digits from `at` on, after those that `number` stands for. Returns the number modulo 2^64, and the end of the
-/// digits. Numbers of up to 19 digits are below 2^64.
-#[inline]
+/// digits. Numbers of up to 19 digits are below 2^64. A call for each number would make text slower to read.
+#[inline(always)]
 pub(crate) fn parse_digits(bytes: &[u8], mut at: usize, mut number: u64) -> (u64, usize) {
     while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
         number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));

@@ -27,9 +27,7 @@ impl Tags<'_> {
     pub(super) fn of(self, index: usize) -> u64 {
         match self {
             Tags::From(first) => first + index as u64,
-            Tags::Listed(field) => {
-                field.order.whole(&field.bytes[index * field.stride..][..field.width])
-            }
+            Tags::Listed(field) => field.order.whole(field.at(index)),
         }
     }
 }
@@ -123,9 +121,7 @@ impl Region<'_> {
     pub(super) fn of(self, record: usize) -> i64 {
         match self {
             Region::Same(region) => region,
-            Region::Field(field) => {
-                field.order.signed(&field.bytes[record * field.stride..][..field.width])
-            }
+            Region::Field(field) => field.order.signed(field.at(record)),
             Region::List(list) => list.get(record).copied().unwrap_or(0),
         }
     }

@@ -20,17 +20,13 @@ impl NodeRecords<'_> {
     ) -> Result<(), ReadError> {
         let &NodeRecords { count, x, y, x_at, tags } = self;
         sink.expect_nodes(count);
-        let taken = sink.node_records(self);
-        if taken == count {
-            return Ok(());
-        }
-        let coordinates = x.real(taken..count).zip(y.real(taken..count));
-        for (index, (x_of, y_of)) in (taken..count).zip(coordinates) {
-            if !x_of.is_finite() || !y_of.is_finite() {
+        for index in sink.node_records(self)..count {
+            let at = [x, y].map(|field| field.real_at(index));
+            if !at.iter().all(|x| x.is_finite()) {
                 return Err(not_finite(index));
             }
             let x_at = x_at + index * x.stride();
-            sink.node(&place(index), tags.of(index), 2, x_at, [x_of, y_of]);
+            sink.node(&place(index), tags.of(index), 2, x_at, at);
         }
         Ok(())
     }

@@ -54,15 +54,17 @@ pub(crate) struct Triangles<'a> {
     pub(crate) ends: Option<Field<'a>>,
     /// The types of the cells from the first triangle on. `None` if all are polygons.
     pub(crate) types: Option<Field<'a>>,
-    /// A number that is added to each point, and a bound that each point must be less than.
-    pub(crate) points: (u64, u64),
+    /// The number that is added to each point.
+    pub(crate) first: u64,
+    /// The bound that each point must be less than.
+    pub(crate) below: u64,
     pub(crate) regions: [Region<'a>; 2],
 }
 
 impl Triangles<'_> {
     /// Hands on triangles. Returns how many the sink has taken, and where the points of the last one end.
     pub(crate) fn send(self, sink: &mut dyn Sink) -> (usize, usize) {
-        let Triangles { count, numbers, own, ends, types, points, regions } = self;
+        let Triangles { count, numbers, own, ends, types, first, below, regions } = self;
         let (stride, counts) = match ends {
             Some(ends) => (3, (ends, Expected::Steps { first: own.end as u64, step: 3 })),
             None => match own.start.checked_sub(1) {
@@ -73,7 +75,6 @@ impl Triangles<'_> {
         let triangles = types.map(|types| (types, Expected::Is(types::TRIANGLE)));
         let expected: Vec<_> = [counts].into_iter().chain(triangles).collect();
         let corners = numbers.field(own.start, stride);
-        let (first, below) = points;
         let taken = sink.triangle_records(&TriangleRecords {
             count,
             corners,

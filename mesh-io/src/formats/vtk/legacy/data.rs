@@ -12,16 +12,25 @@ use crate::visit::heights::TextNumbers;
 use crate::visit::sink::{Column, PointNumbers, Sink, Stored};
 use std::borrow::Cow;
 
+/// The arrays that tell the regions of cells.
+#[derive(Default)]
+pub(super) struct RegionArrays {
+    /// The meaning of each array's numbers.
+    pub(super) columns: Vec<Column>,
+    /// The number of each cell in each array.
+    pub(super) numbers: Vec<Vec<i64>>,
+}
+
 /// Reads the regions of cells by the first two arrays that tell them, after a POINT_DATA or CELL_DATA that was just
-/// read. Returns the meanings and the numbers of the arrays. Damaged or unknown data end the search without an error, as the mesh does not depend on them.
+/// read. Damaged or unknown data end the search without an error, as the mesh does not depend on them.
 pub(super) fn regions(
     cursor: &mut Cursor<'_>,
     binary: bool,
     keyword: &[u8],
     sink: &mut dyn Sink,
-) -> (Vec<Column>, Vec<Vec<i64>>) {
+) -> RegionArrays {
     let of_cells = keyword == b"CELL_DATA";
-    let mut data = Data { binary, of_cells, count: 0, found: (Vec::new(), Vec::new()), sink };
+    let mut data = Data { binary, of_cells, count: 0, found: RegionArrays::default(), sink };
     let Ok(count) = cursor.integer("a count") else {
         return data.found;
     };
@@ -38,8 +47,7 @@ struct Data<'s> {
     binary: bool,
     of_cells: bool,
     count: u64,
-    /// The arrays that tell regions: their meanings and their numbers.
-    found: (Vec<Column>, Vec<Vec<i64>>),
+    found: RegionArrays,
     sink: &'s mut dyn Sink,
 }
 
@@ -125,7 +133,8 @@ impl Data<'_> {
             self.sink.point_numbers(numbers);
             return Some(());
         }
-        let is_region = components == 1 && names_regions(name) && self.found.0.len() < MAX_ARRAYS;
+        let is_region =
+            components == 1 && names_regions(name) && self.found.columns.len() < MAX_ARRAYS;
         if self.of_cells
             && of_all
             && !is_region
@@ -158,8 +167,8 @@ impl Data<'_> {
                 names.push((number + 0.0).to_bits().cast_signed());
             }
         }
-        self.found.0.push(Column { what, from_dimension: 0, label });
-        self.found.1.push(names);
+        self.found.columns.push(Column { what, from_dimension: 0, label });
+        self.found.numbers.push(names);
         Some(())
     }
 

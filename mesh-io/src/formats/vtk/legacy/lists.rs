@@ -239,7 +239,8 @@ impl Cells<'_> {
             own,
             ends: self.offsets.as_ref().map(|offsets| offsets.field(index + 1, 1)),
             types,
-            points: (0, u64::MAX),
+            first: 0,
+            below: u64::MAX,
             regions: regions.from(tag as usize),
         })
     }

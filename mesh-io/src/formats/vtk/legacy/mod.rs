@@ -22,6 +22,7 @@ use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::send::REWRITE;
 use crate::visit::sink::{Layout, Sink, Walk, each_row};
+use data::RegionArrays;
 use lists::{Cells, List};
 use passed::take;
 
@@ -46,7 +47,7 @@ impl Walk for Vtk {
         let mut cells: Vec<Cells<'_>> = Vec::new();
         let mut precision = None;
         let mut heights = None;
-        let (mut columns, mut regions) = (Vec::new(), Vec::new());
+        let mut regions = RegionArrays::default();
         while cursor.next_word() {
             // VTK ignores the case of keywords.
             let keyword = cursor.token().unwrap_or_default().to_ascii_uppercase();
@@ -91,7 +92,7 @@ impl Walk for Vtk {
                 }
                 // Data of points and cells go on to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
-                    (columns, regions) = data::regions(cursor, binary, &keyword, sink);
+                    regions = data::regions(cursor, binary, &keyword, sink);
                     break;
                 }
                 other => {
@@ -111,8 +112,8 @@ impl Walk for Vtk {
             };
             heights.send("z", form, sink);
         }
-        sink.columns(columns);
-        let regions = RegionNumbers::from_iter(regions);
+        sink.columns(regions.columns);
+        let regions = RegionNumbers::from_iter(regions.numbers);
         let mut tag = 0;
         for cells in &cells {
             cells.send(cursor, &regions, &mut tag, sink)?;

@@ -66,7 +66,8 @@ impl File<'_> {
                             own: start..end,
                             ends: Some(offsets.field(own, 1)),
                             types,
-                            points: (first_point, announced.points),
+                            first: first_point,
+                            below: announced.points,
                             regions: of_cells.from(index),
                         };
                         let (taken, last) = triangles.send(sink);
