@@ -166,6 +166,12 @@ fn vertices_of_required_triangles_stay() {
     let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n1\n99");
     let folder = Folder::new(&[("in.mesh", &text)]);
     assert_eq!(between_regions(&folder.read("in.mesh")), [4]);
+    // Nor does such a number hide the ones after it.
+    let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n2\n0\n3");
+    let folder = Folder::new(&[("in.mesh", &text)]);
+    let fixed = fixed(&folder.read("in.mesh"));
+    assert!([2, 3, 4].iter().all(|vertex| fixed.contains(vertex)), "{fixed:?}");
+    assert!(between_regions(&folder.read("in.mesh")).is_empty());
 }
 
 #[test]
