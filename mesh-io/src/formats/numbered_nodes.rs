@@ -23,11 +23,10 @@ pub(crate) fn numbered_nodes(
         sink,
         |cursor| {
             let tag = cursor.integer("the number of a node")?;
-            let owner = format_args!("node {tag}");
-            let point = cursor.point(owner)?;
+            let point = cursor.point(format_args!("node {tag}"))?;
             let third = match is_third_optional {
-                true => cursor.height_if_any(owner)?,
-                false => cursor.height(owner)?,
+                true => cursor.height_if_any(format_args!("node {tag}"))?,
+                false => cursor.height(format_args!("node {tag}"))?,
             };
             Ok((tag, point, third))
         },

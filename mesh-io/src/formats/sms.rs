@@ -114,9 +114,8 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         return Ok(Row::Other);
     }
     let tag = cursor.integer("the number of a node")?;
-    let owner = format_args!("node {tag}");
-    let (x_at, at) = cursor.point(owner)?;
-    Ok(Row::Node(tag, x_at, at, cursor.height_if_any(owner)?))
+    let (x_at, at) = cursor.point(format_args!("node {tag}"))?;
+    Ok(Row::Node(tag, x_at, at, cursor.height_if_any(format_args!("node {tag}"))?))
 }
 
 /// Reads a row if it is that of an element, a node string or a material.

@@ -57,9 +57,8 @@ type Node = (u64, (usize, [f64; 2]), (usize, f64));
 #[inline]
 fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     let tag = cursor.integer("a node tag")?;
-    let owner = format_args!("node {tag}");
-    let point = cursor.point(owner)?;
-    Ok((tag, point, cursor.height(owner)?))
+    let point = cursor.point(format_args!("node {tag}"))?;
+    Ok((tag, point, cursor.height(format_args!("node {tag}"))?))
 }
 
 #[inline]

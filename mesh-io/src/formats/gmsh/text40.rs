@@ -35,9 +35,8 @@ pub(super) fn nodes(
         block_fits(cursor, size, count - done, "nodes")?;
         let read = |cursor: &mut Cursor<'_>, _| {
             let tag = cursor.integer("a node tag")?;
-            let owner = format_args!("node {tag}");
-            let point = cursor.point(owner)?;
-            Ok((tag, point, cursor.height(owner)?))
+            let point = cursor.point(format_args!("node {tag}"))?;
+            Ok((tag, point, cursor.height(format_args!("node {tag}"))?))
         };
         // Parameters follow at the end of the row.
         by_rows(cursor, parametric, |cursor| {

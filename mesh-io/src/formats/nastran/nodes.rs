@@ -167,8 +167,7 @@ fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, 
         let own = word(&field);
         longest = longest.max(own.len());
         *x = number(own).filter(|x| x.is_finite()).ok_or_else(|| {
-            let what = format_args!("{axis} of node {tag}");
-            cursor.unusable(Some(own), what, "a finite number")
+            cursor.unusable(Some(own), format_args!("{axis} of node {tag}"), "a finite number")
         })?;
     }
     // In large field it is mostly in the next line.

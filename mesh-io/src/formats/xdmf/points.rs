@@ -70,10 +70,9 @@ impl File<'_> {
                     return Err(cursor.error(format!("point {index} lacks a coordinate"), CORRECT));
                 }
                 places[axis] = cursor.at();
-                let owner = format_args!("point {index}");
                 point[axis] = match axis {
-                    2 => cursor.height(owner)?.1,
-                    _ => cursor.coordinate(['x', 'y'][axis], owner)?,
+                    2 => cursor.height(format_args!("point {index}"))?.1,
+                    _ => cursor.coordinate(['x', 'y'][axis], format_args!("point {index}"))?,
                 };
             }
             sink.node(&own, index, 2, places[0], [point[0], point[1]]);

@@ -147,10 +147,9 @@ impl<'f> Points<'_, 'f> {
                     return Err(cursor.error(problem, CORRECT));
                 }
                 places[axis] = cursor.at();
-                let owner = format_args!("point {index}");
                 *x = match axis {
-                    2 => cursor.height(owner)?.1,
-                    _ => cursor.coordinate(['x', 'y'][axis], owner)?,
+                    2 => cursor.height(format_args!("point {index}"))?.1,
+                    _ => cursor.coordinate(['x', 'y'][axis], format_args!("point {index}"))?,
                 };
             }
             self.sink.node(cursor, self.count + index, 2, places[0], [point[0], point[1]]);
