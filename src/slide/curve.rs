@@ -92,7 +92,8 @@ impl Curve {
     pub(crate) fn of_partners(
         &self,
         points: &[[f64; 2]],
-        (chain, partners): (&Chain, &[u32]),
+        chain: &Chain,
+        partners: &[u32],
         slide: &Slide,
     ) -> Self {
         let chain = Chain { vertices: partners.to_vec(), image: None, ..chain.clone() };

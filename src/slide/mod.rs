@@ -14,6 +14,7 @@ mod side;
 mod sliding;
 
 pub(crate) use acceleration::Acceleration;
+pub(crate) use newton::Rule;
 pub use options::Slide;
 pub(crate) use patch::{Fan, Patch};
 pub(crate) use sliding::{Params, Sliding};

@@ -19,6 +19,25 @@ pub(crate) struct Window {
     pub(crate) high: f64,
 }
 
+/// The vertex that a visit moves.
+#[derive(Clone, Copy)]
+pub(crate) struct Visited<'a> {
+    /// The sides of the vertex's track: the curve itself, and the curve of its partner if it has one.
+    pub(crate) sides: &'a [Side],
+    /// The index of the vertex in its track.
+    pub(crate) k: usize,
+    pub(crate) window: Window,
+    pub(crate) reach: Reach,
+}
+
+/// The rule by which vertices move.
+#[derive(Clone, Copy)]
+pub(crate) struct Rule<'a> {
+    pub(crate) step: &'a Step,
+    /// The least altitude that a triangle may have, normalized; 0 for no bound.
+    pub(crate) floor: f64,
+}
+
 /// A bound on how far a vertex may be from its given position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
@@ -55,11 +74,11 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) fn visit(
     problem: &Problem,
     positions: &[DVec2],
-    (sides, k): (&[Side], usize),
-    (window, reach): (Window, Reach),
-    (step, floor): (&Step, f64),
+    vertex: Visited<'_>,
+    rule: Rule<'_>,
 ) -> Option<f64> {
-    let Window { low, at, high } = window;
+    let Visited { sides, k, window: Window { low, at, high }, reach } = vertex;
+    let Rule { step, floor } = rule;
     let patches = || {
         sides.iter().filter_map(|side| {
             let fan = side.fans[k].as_ref()?;

@@ -44,7 +44,7 @@ impl Partners {
             let places: Vec<_> = pairs.iter().map(placed).collect();
             let motion = Rigid::of_pairs(*motion, &places);
             for (&[a, b], place) in pairs.iter().zip(&places) {
-                match motion.filter(|motion| motion.takes(place)) {
+                match motion.filter(|motion| motion.takes(place.0, place.1)) {
                     Some(motion) => {
                         partners.link(a, Partner { vertex: b, motion });
                         partners.link(b, Partner { vertex: a, motion: motion.inverse() });
@@ -102,6 +102,6 @@ impl Partners {
 
     /// Whether the motion takes the first point to the second, within the tolerance for pairs at edges of this length.
     pub(crate) fn agree(motion: Rigid, pair: [DVec2; 2], edge: f64) -> bool {
-        motion.takes(&(pair, Self::AGREE * edge))
+        motion.takes(pair, Self::AGREE * edge)
     }
 }

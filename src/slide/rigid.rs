@@ -70,7 +70,8 @@ impl Rigid {
         });
         let mut best = None;
         for motion in given.and_then(Self::of).into_iter().chain(translations).chain(turned) {
-            let agree = pairs.iter().filter(|pair| motion.takes(pair)).count();
+            let agree =
+                pairs.iter().filter(|(pair, tolerance)| motion.takes(*pair, *tolerance)).count();
             if best.is_none_or(|(most, _)| agree > most) {
                 best = Some((agree, motion));
             }
@@ -82,8 +83,9 @@ impl Rigid {
     }
 
     /// Whether the motion takes the first point of a pair to the second, within its tolerance.
-    pub(crate) fn takes(self, ([from, to], tolerance): &([DVec2; 2], f64)) -> bool {
-        self.at(*from).distance(*to) <= *tolerance
+    pub(crate) fn takes(self, pair: [DVec2; 2], tolerance: f64) -> bool {
+        let [from, to] = pair;
+        self.at(from).distance(to) <= tolerance
     }
 }
 
@@ -104,7 +106,11 @@ mod tests {
         }
         for given in [None, Some(matrix), Some([[1.0, 0.0, 5.0], [0.0, 1.0, 0.0]])] {
             let found = Rigid::of_pairs(given, &pairs).unwrap();
-            assert_eq!(pairs.iter().filter(|pair| found.takes(pair)).count(), 37, "{given:?}");
+            assert_eq!(
+                pairs.iter().filter(|(pair, tolerance)| found.takes(*pair, *tolerance)).count(),
+                37,
+                "{given:?}"
+            );
             let p = DVec2::new(-2.0, 9.0);
             assert!(found.inverse().at(found.at(p)).distance(p) < 1e-12);
         }

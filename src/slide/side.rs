@@ -33,9 +33,8 @@ impl Side {
             Self { curve, vertices, fans }
         };
         let curve = Curve::new(points, &chain, slide);
-        let of_partners = |image: &Vec<u32>| {
-            side(curve.of_partners(points, (&chain, image), slide), image.clone())
-        };
+        let of_partners =
+            |image: &Vec<u32>| side(curve.of_partners(points, &chain, image, slide), image.clone());
         let image = chain.image.as_ref().map(of_partners);
         let own = side(curve, chain.vertices.clone());
         std::iter::once(own).chain(image).collect()

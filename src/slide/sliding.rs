@@ -4,9 +4,8 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::precision::Precision;
-use crate::run::Step;
 use crate::slide::chains::chains;
-use crate::slide::newton::{self, Reach, Window};
+use crate::slide::newton::{self, Reach, Rule, Visited, Window};
 use crate::slide::options::Slide;
 use crate::slide::patch::Fan;
 use crate::slide::side::Side;
@@ -159,7 +158,8 @@ impl Sliding {
         &self,
         problem: &Problem,
         params: &mut Params,
-        (safe, reach): (&Params, &Params),
+        safe: &Params,
+        reach: &Params,
         positions: &mut [DVec2],
     ) -> bool {
         let mut all = self.tracks.iter().zip(params).zip(safe.iter().zip(reach));
@@ -208,15 +208,14 @@ impl Sliding {
         params: &mut Params,
         reach: &Params,
         positions: &mut [DVec2],
-        (step, floor): (&Step, f64),
+        rule: Rule<'_>,
     ) {
         for ((track, params), reach) in self.tracks.iter().zip(params).zip(reach) {
             let count = params.len();
             for k in (0..count).chain((0..count).rev()).filter(|&k| track.slides(k)) {
-                let place = (track.window(params, k), track.reach(reach, k));
-                let vertices = (&track.sides[..], k);
-                let moved = newton::visit(problem, positions, vertices, place, (step, floor));
-                if let Some(param) = moved {
+                let (window, reach) = (track.window(params, k), track.reach(reach, k));
+                let vertex = Visited { sides: &track.sides, k, window, reach };
+                if let Some(param) = newton::visit(problem, positions, vertex, rule) {
                     params[k] = param;
                     track.follow(problem, k, param, positions);
                 }

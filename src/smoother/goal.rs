@@ -38,7 +38,7 @@ impl Smoother<'_> {
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
             let mut keeping = Keeping::new(&mut *keeper);
-            let after_imr = run.sweep(&imr, None, (start, None), &mut keeping, observe).await?;
+            let after_imr = run.sweep(&imr, None, start, None, &mut keeping, observe).await?;
             if after_imr.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -48,7 +48,7 @@ impl Smoother<'_> {
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
             let (options, mut keeping) = (full(base), Keeping::new(&mut *keeper));
-            let end = run.sweep(&options, None, (&start, None), &mut keeping, observe).await?;
+            let end = run.sweep(&options, None, &start, None, &mut keeping, observe).await?;
             if end.stop == Stop::Canceled {
                 return Ok(None);
             }

@@ -72,8 +72,8 @@ impl<'a> Smoother<'a> {
         Ok(Self { prepare: start.elapsed(), ..smoother })
     }
 
-    fn of(mesh: &'a Mesh, (topology, problem): (Topology<'a>, Problem), start: Instant) -> Self {
-        let mut topology = topology;
+    fn of(mesh: &'a Mesh, prepared: (Topology<'a>, Problem), start: Instant) -> Self {
+        let (mut topology, problem) = prepared;
         // Runs need only the problem. The stars are found again if a vertex has to be set back.
         topology.forget_stars();
         let (mesh, sliding, pairs, field) = (Cow::Borrowed(mesh), None, [0; 2], None);

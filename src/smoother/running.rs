@@ -68,8 +68,8 @@ impl Smoother<'_> {
         keeping.about = Some(about);
         let run = Attempt { problem: &self.problem, device, phase: Phase::Smoothing, done: 0 };
         let mut ways = Ways::new(self, options);
-        let ended = ways.sweep(run, (options, target), resumed, &mut keeping, observe).await?;
-        let outcome = self.judged(options, (initial, goal), ended, ways, observe)?;
+        let ended = ways.sweep(run, options, target, resumed, &mut keeping, observe).await?;
+        let outcome = self.judged(options, initial, goal, ended, ways, observe)?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: start.elapsed(), ..outcome })
     }
@@ -114,7 +114,8 @@ impl Smoother<'_> {
     fn judged(
         &self,
         options: &Options,
-        (initial, goal): (f64, Option<GoalOutcome>),
+        initial: f64,
+        goal: Option<GoalOutcome>,
         mut ended: Ended,
         mut ways: Ways<'_>,
         observe: &mut (impl Observer + ?Sized),
@@ -163,7 +164,7 @@ impl Smoother<'_> {
         let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
         let improved = improving.map(|improving| {
             let positions = if gains { &judged } else { self.problem.positions() };
-            improving.outcome(problem, (positions, best), &slides, gains)
+            improving.outcome(problem, positions, best, &slides, gains)
         });
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);

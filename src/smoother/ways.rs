@@ -63,7 +63,7 @@ impl<'s> Ways<'s> {
 
     pub(super) fn new(smoother: &'s Smoother<'_>, options: &Options) -> Self {
         let Smoother { mesh, topology, problem, sliding, field, .. } = smoother;
-        let limit = |most| Limit::new(mesh, topology, problem, (most, options.stored));
+        let limit = |most| Limit::new(mesh, topology, problem, most, options.stored);
         Self {
             mesh,
             topology,
@@ -79,7 +79,8 @@ impl<'s> Ways<'s> {
     pub(super) async fn sweep<K: Keeper + ?Sized>(
         &mut self,
         run: Attempt<'_>,
-        (options, target): (&Options, Option<f64>),
+        options: &Options,
+        target: Option<f64>,
         resumed: Option<&Checkpoint>,
         keeping: &mut Keeping<'_, K>,
         observe: &mut (impl Observer + ?Sized),
@@ -98,13 +99,13 @@ impl<'s> Ways<'s> {
                 (None, Some(floor)) => Bound::Altitudes(floor),
                 (None, None) => Bound::None,
             };
-            rounds.run(run, (options, target), bound, keeping, observe).await
+            rounds.run(run, options, target, bound, keeping, observe).await
         } else if let Some(limit) = limit {
             limit.run(run, options, target, keeping, observe).await
         } else if options.keep_altitude {
-            altitude::run((mesh, start), run, (options, target), keeping, observe).await
+            altitude::run(mesh, start, run, options, target, keeping, observe).await
         } else {
-            run.sweep(options, target, (start.positions(), resumed), keeping, observe).await
+            run.sweep(options, target, start.positions(), resumed, keeping, observe).await
         }
     }
 

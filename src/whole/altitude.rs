@@ -9,9 +9,9 @@ use crate::error::SmoothError;
 use crate::layout::Problem;
 use crate::measure::altitude;
 use crate::mesh::Mesh;
-use crate::run::{Keeper, Keeping, Observer, Options, Plan, Stop};
+use crate::run::{Keeper, Keeping, Observer, Options, Stop};
 use crate::topology::Topology;
-use crate::whole::attempt::{Attempt, Ended};
+use crate::whole::attempt::{Attempt, Ended, Round};
 use crate::whole::holding::Holding;
 use crate::whole::in_rounds::{self, objectives};
 
@@ -39,7 +39,8 @@ fn bring_back(
     triangles: &[[u32; 3]],
     before: &[DVec2],
     points: &mut [DVec2],
-    (floor, mut halved): (f64, u32),
+    floor: f64,
+    mut halved: u32,
 ) -> Vec<u32> {
     let mut returned = Vec::new();
     loop {
@@ -76,7 +77,7 @@ pub(crate) fn restore(
     let vectors = |points: &[[f64; 2]]| points.iter().map(|&p| p.into()).collect::<Vec<DVec2>>();
     let (old, mut new) = (vectors(before), vectors(points));
     let floor = least(topology.triangles(), |v| old[v as usize]);
-    let returned = bring_back(topology.triangles(), &old, &mut new, (floor, 0));
+    let returned = bring_back(topology.triangles(), &old, &mut new, floor, 0);
     for &v in &returned {
         points[v as usize] = before[v as usize];
     }
@@ -113,20 +114,21 @@ impl<'s> Floor<'s> {
     pub(crate) async fn round<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
-        (part, plan, target): (&Options, &Plan, Option<f64>),
+        round: Round<'_>,
         positions: &mut Vec<DVec2>,
         keeping: &mut Keeping<'_, K>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<(Ended, usize), SmoothError> {
+        let Round { options: part, plan, target } = round;
         let Self { problem, holding, least } = self;
         let (problem, base) = (*problem, plan.scheme.base());
         let smaller = holding.smaller()?;
         let now = smaller.as_ref().unwrap_or(problem);
         let from = holding.renumbered(positions, now);
         let attempt = Attempt { problem: now, ..attempt };
-        let mut next = attempt.sweep(part, target, (&from, None), keeping, observe).await?;
+        let mut next = attempt.sweep(part, target, &from, None, keeping, observe).await?;
         let mut to = holding.numbered_back(&std::mem::take(&mut next.positions), now);
-        let returned = bring_back(problem.triangles(), positions, &mut to, (*least, HALVED));
+        let returned = bring_back(problem.triangles(), positions, &mut to, *least, HALVED);
         *positions = to;
         // The gain of moves that were undone does not count.
         let here = objectives(problem, plan, positions);
@@ -152,9 +154,11 @@ impl<'s> Floor<'s> {
 
 /// Sweeps from the positions of the problem until the run ends, with no altitude below the least one at the start.
 pub(crate) async fn run<K: Keeper + ?Sized>(
-    (mesh, problem): (&Mesh, &Problem),
+    mesh: &Mesh,
+    problem: &Problem,
     attempt: Attempt<'_>,
-    (options, target): (&Options, Option<f64>),
+    options: &Options,
+    target: Option<f64>,
     keeping: &mut Keeping<'_, K>,
     observe: &mut (impl Observer + ?Sized),
 ) -> Result<Ended, SmoothError> {
@@ -171,8 +175,8 @@ pub(crate) async fn run<K: Keeper + ?Sized>(
         let part = Options { max_sweeps: most, ..options.clone() };
         let Attempt { device, phase, .. } = attempt;
         let attempt = Attempt { problem, device, phase, done };
-        let goal = (&part, &plan, target);
-        let (next, new) = floor.round(attempt, goal, &mut positions, keeping, observe).await?;
+        let next = Round { options: &part, plan: &plan, target };
+        let (next, new) = floor.round(attempt, next, &mut positions, keeping, observe).await?;
         let is_all = floor.holding.held.iter().all(|held| *held);
         let ended = match whole.take() {
             None => next,

@@ -22,6 +22,14 @@ use crate::whole::in_rounds::objectives;
 /// metrics of size multiply powers of their arguments.
 const MOST_ON_DEVICE: f64 = 1e15;
 
+/// The part of a run between two rounds of other work.
+pub(crate) struct Round<'a> {
+    pub(crate) options: &'a Options,
+    pub(crate) plan: &'a Plan,
+    /// The value of f at which the run ends; `None` for a run without a goal.
+    pub(crate) target: Option<f64>,
+}
+
 /// One run, on the CPU or a device: the smoothing itself, or a search for the desired objective.
 pub(crate) struct Attempt<'s> {
     pub(crate) problem: &'s Problem,
@@ -70,7 +78,8 @@ impl Attempt<'_> {
         &self,
         options: &Options,
         target: Option<f64>,
-        (from, resumed): (&[DVec2], Option<&Checkpoint>),
+        from: &[DVec2],
+        resumed: Option<&Checkpoint>,
         keeping: &mut Keeping<'_, K>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Ended, SmoothError> {

@@ -76,7 +76,8 @@ impl Improving {
     pub(crate) fn outcome(
         &self,
         problem: &Problem,
-        (positions, f): (&[DVec2], f64),
+        positions: &[DVec2],
+        f: f64,
         slides: &[u32],
         is_written: bool,
     ) -> Improved {

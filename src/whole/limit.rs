@@ -13,7 +13,7 @@ use crate::run::{
 };
 use crate::slide::{Fan, Params, Patch, Sliding};
 use crate::topology::Topology;
-use crate::whole::attempt::{Attempt, Ended};
+use crate::whole::attempt::{Attempt, Ended, Round};
 use crate::whole::holding::Holding;
 use crate::whole::in_rounds::{self, is_sound, objectives};
 
@@ -47,7 +47,8 @@ impl<'s> Limit<'s> {
         mesh: &'s Mesh,
         topology: &Topology<'_>,
         problem: &'s Problem,
-        (most, stored): (f64, Precision),
+        most: f64,
+        stored: Precision,
     ) -> Self {
         let edges = mean_edges(topology, &mesh.points);
         let bound = |([x, y], edge): (&[f64; 2], &f64)| {
@@ -99,9 +100,9 @@ impl<'s> Limit<'s> {
             let part = Options { max_sweeps: left.min(SWEEPS), ..options.clone() };
             let Attempt { device, phase, .. } = attempt;
             let attempt = Attempt { problem: self.problem, device, phase, done };
-            let goal = (&part, &plan, target);
+            let round = Round { options: &part, plan: &plan, target };
             let (next, is_settled) =
-                self.round(attempt, goal, &mut positions, keeping, observe).await?;
+                self.round(attempt, round, &mut positions, keeping, observe).await?;
             let last = objectives(self.problem, &plan, &positions).of(base).unwrap_or(f64::NAN);
             let ended = match whole.take() {
                 None => next,
@@ -134,18 +135,19 @@ impl<'s> Limit<'s> {
     pub(crate) async fn round<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
-        (part, plan, target): (&Options, &Plan, Option<f64>),
+        round: Round<'_>,
         positions: &mut Vec<DVec2>,
         keeping: &mut Keeping<'_, K>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<(Ended, bool), SmoothError> {
+        let Round { options: part, plan, target } = round;
         let base = plan.scheme.base();
         // Vertices at their bound are fixed for the engine.
         let smaller = self.holding.smaller()?;
         let problem = smaller.as_ref().unwrap_or(self.problem);
         let from = self.holding.renumbered(positions, problem);
         let attempt = Attempt { problem, ..attempt };
-        let mut next = attempt.sweep(part, target, (&from, None), keeping, observe).await?;
+        let mut next = attempt.sweep(part, target, &from, None, keeping, observe).await?;
         let to = self.holding.numbered_back(&std::mem::take(&mut next.positions), problem);
         let before = self.holding.held.clone();
         let has_moved = self.take(plan, positions, &to);

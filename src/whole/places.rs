@@ -81,7 +81,7 @@ impl<'s> Places<'s> {
             let part = Options { max_sweeps: left.min(SWEEPS), ..options.clone() };
             let Attempt { device, phase, .. } = attempt;
             let attempt = Attempt { problem: &self.problem, device, phase, done };
-            let mut next = attempt.sweep(&part, None, (&positions, None), keeping, observe).await?;
+            let mut next = attempt.sweep(&part, None, &positions, None, keeping, observe).await?;
             let f = |objectives: &Objectives| objectives.of(plan.scheme.base()).unwrap_or(f64::NAN);
             let before = f(&here);
             let to = std::mem::take(&mut next.positions);

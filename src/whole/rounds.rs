@@ -10,11 +10,11 @@ use crate::outcome::Slid;
 use crate::run::{
     Guard, Keeper, Keeping, Objectives, Observer, Options, Plan, Stop, StopRule, set_guards,
 };
-use crate::slide::{Acceleration, Params, Sliding};
+use crate::slide::{Acceleration, Params, Rule, Sliding};
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 use crate::whole::altitude::Floor;
-use crate::whole::attempt::{Attempt, Ended};
+use crate::whole::attempt::{Attempt, Ended, Round};
 use crate::whole::in_rounds::{is_sound, objectives};
 use crate::whole::limit::Limit;
 
@@ -72,7 +72,8 @@ impl<'s> Rounds<'s> {
     pub(crate) async fn run<K: Keeper + ?Sized>(
         &mut self,
         attempt: Attempt<'_>,
-        (options, target): (&Options, Option<f64>),
+        options: &Options,
+        target: Option<f64>,
         mut bound: Bound<'_, '_>,
         keeping: &mut Keeping<'_, K>,
         observe: &mut (impl Observer + ?Sized),
@@ -95,19 +96,20 @@ impl<'s> Rounds<'s> {
             let part = Options { max_sweeps: left.min(SWEEPS), ..options.clone() };
             let Attempt { device, phase, .. } = attempt;
             let attempt = Attempt { problem, device, phase, done };
-            let goal = (&part, &plan, target);
+            let round = Round { options: &part, plan: &plan, target };
             let (next, is_settled) = match &mut bound {
                 Bound::Moves(limit) => {
-                    limit.round(attempt, goal, &mut positions, keeping, observe).await?
+                    limit.round(attempt, round, &mut positions, keeping, observe).await?
                 }
                 Bound::Altitudes(floor) => {
-                    let round = floor.round(attempt, goal, &mut positions, keeping, observe);
+                    let round = floor.round(attempt, round, &mut positions, keeping, observe);
                     let (next, new) = round.await?;
                     (next, new == 0)
                 }
                 Bound::None => {
-                    let from = (&positions[..], None);
-                    let mut next = attempt.sweep(&part, target, from, keeping, observe).await?;
+                    let from = &positions[..];
+                    let mut next =
+                        attempt.sweep(&part, target, from, None, keeping, observe).await?;
                     positions = std::mem::take(&mut next.positions);
                     (next, true)
                 }
@@ -191,21 +193,16 @@ impl<'s> Rounds<'s> {
         let (step, base) = (plan.base_step(1.0), plan.scheme.base());
         let began = self.params.clone();
         for _ in 0..SLIDES {
-            self.sliding.sweep(
-                problem,
-                &mut self.params,
-                &self.reach,
-                positions,
-                (&step, self.floor),
-            );
+            let rule = Rule { step: &step, floor: self.floor };
+            self.sliding.sweep(problem, &mut self.params, &self.reach, positions, rule);
         }
         let here = objectives(problem, plan, positions);
         let change = self.sliding.change(&began, &self.params);
         let Some((mut params, mut there)) = memory.next(change, &self.params, positions) else {
             return here;
         };
-        let safe = (&self.params, &self.reach);
-        if self.sliding.place(problem, &mut params, safe, &mut there)
+        let (safe, reach) = (&self.params, &self.reach);
+        if self.sliding.place(problem, &mut params, safe, reach, &mut there)
             && bound.holds_at(&there)
             && is_sound(problem, positions, &there, step.shape_guard)
         {

@@ -2,6 +2,8 @@
 //!
 //! Files are parsed by syn. An import, a path in code, and a path in the tokens of a macro are uses. Declarations of modules and
 //! re-exports (`pub use`, `pub(crate) use`) are not: a use of a re-exported name is a use of the file that defines the name.
+//! If the methods of a type are in several files, a call of `self.method()` or `Self::method()` is a use of the file with the
+//! method.
 //! Code under `#[cfg(test)]` is left out.
 
 use proc_macro2::{TokenStream, TokenTree};
@@ -78,20 +80,71 @@ pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
         }
         None
     };
-    let mut uses = Uses::new();
-    for (module, (name, file)) in &parsed {
+    let names_in = |module: &ModulePath| -> BTreeMap<String, ModulePath> {
         let children = parsed.keys().filter(|own| own.len() == module.len() + 1);
         let children =
             children.filter(|own| own.starts_with(module)).map(|own| own[module.len()].clone());
-        let mut names: BTreeMap<String, ModulePath> = exports[module].clone();
+        let mut names = exports[module].clone();
         names.extend(children.map(|name| (name.clone(), child(module, &name))));
-        let mut paths = Paths { module: module.clone(), names, found: Vec::new() };
+        names
+    };
+    // The module that defines each method, by the definition of its type.
+    let mut methods: BTreeMap<(ModulePath, String), ModulePath> = BTreeMap::new();
+    for (module, (_, file)) in &parsed {
+        let names = names_in(module);
+        for item in &file.items {
+            let Item::Impl(item) = item else { continue };
+            if item.trait_.is_some() || is_for_tests(&item.attrs) {
+                continue;
+            }
+            let Some(owner) = owner_of(item, module, &names) else { continue };
+            let Some(owner) = definition(&owner, &defined_in) else { continue };
+            for item in &item.items {
+                if let syn::ImplItem::Fn(own) = item {
+                    methods.insert((owner.clone(), own.sig.ident.to_string()), module.clone());
+                }
+            }
+        }
+    }
+    let mut uses = Uses::new();
+    for (module, (name, file)) in &parsed {
+        let names = names_in(module);
+        let mut paths = Paths {
+            module: module.clone(),
+            names,
+            found: Vec::new(),
+            owner: None,
+            called: Vec::new(),
+        };
         paths.visit_file(file);
-        let used = paths.found.iter().filter_map(|path| defined_in(path));
+        let called = paths.called.iter().filter_map(|(owner, method)| {
+            methods.get(&(definition(owner, &defined_in)?, method.clone())).cloned()
+        });
+        let used = paths.found.iter().filter_map(|path| defined_in(path)).chain(called);
         let used = used.filter(|used| used != module).map(|used| parsed[&used].0.clone());
         uses.insert(name.clone(), used.collect());
     }
     uses
+}
+
+/// Returns the path that the type of an `impl` stands for.
+fn owner_of(
+    item: &syn::ItemImpl,
+    module: &[String],
+    names: &BTreeMap<String, ModulePath>,
+) -> Option<ModulePath> {
+    let syn::Type::Path(path) = &*item.self_ty else { return None };
+    let parts: Vec<String> = path.path.segments.iter().map(|part| part.ident.to_string()).collect();
+    let imported = || Some([names.get(parts.first()?)?, &parts[1..]].concat());
+    absolute(&parts, module).or_else(imported).or(Some([module, &parts].concat()))
+}
+
+/// Returns the module that defines the type of a path, with the name of the type.
+fn definition(
+    path: &[String],
+    defined_in: &impl Fn(&[String]) -> Option<ModulePath>,
+) -> Option<ModulePath> {
+    Some(child(&defined_in(path)?, path.last()?))
 }
 
 fn module_of(name: &str) -> ModulePath {
@@ -153,6 +206,10 @@ struct Paths {
     /// Paths that names at the start of other paths stand for: imports and child modules.
     names: BTreeMap<String, ModulePath>,
     found: Vec<ModulePath>,
+    /// The path of the type whose `impl` is visited.
+    owner: Option<ModulePath>,
+    /// The methods that types call on themselves.
+    called: Vec<(ModulePath, String)>,
 }
 
 impl Paths {
@@ -224,6 +281,22 @@ impl<'a> Visit<'a> for Paths {
         }
     }
 
+    fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
+        let before = self.owner.take();
+        self.owner = owner_of(item, &self.module, &self.names);
+        visit::visit_item_impl(self, item);
+        self.owner = before;
+    }
+
+    fn visit_expr_method_call(&mut self, call: &'a syn::ExprMethodCall) {
+        if let syn::Expr::Path(receiver) = &*call.receiver
+            && receiver.path.is_ident("self")
+        {
+            self.called.extend(self.owner.clone().map(|owner| (owner, call.method.to_string())));
+        }
+        visit::visit_expr_method_call(self, call);
+    }
+
     fn visit_impl_item_fn(&mut self, item: &'a syn::ImplItemFn) {
         if !is_for_tests(&item.attrs) {
             visit::visit_impl_item_fn(self, item);
@@ -232,7 +305,11 @@ impl<'a> Visit<'a> for Paths {
 
     fn visit_path(&mut self, path: &'a syn::Path) {
         let parts: Vec<String> = path.segments.iter().map(|part| part.ident.to_string()).collect();
-        if parts.len() > 1 {
+        if let [first, method] = &parts[..]
+            && first == "Self"
+        {
+            self.called.extend(self.owner.clone().map(|owner| (owner, method.clone())));
+        } else if parts.len() > 1 {
             self.add(&parts);
         }
         visit::visit_path(self, path);

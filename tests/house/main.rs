@@ -108,6 +108,12 @@ fn every_kind_of_use_and_of_circle_is_found() {
         ("b/other", "use super::own; fn g() -> String { format!(\"{}\", crate::c::h()) }"),
         ("c", "use crate::d; fn h() { d::D::new(); }"),
         ("d", "pub struct D; impl D { fn new(_: super::a::A) {} }"),
+        ("e", "pub struct E; impl E { fn f(&self) { self.g(); } }"),
+        (
+            "f",
+            "use crate::e::E; impl E { fn g(&self) {} } impl Drop for E { fn drop(&mut self) {} }",
+        ),
+        ("g", "use crate::e::E as Other; impl Other { fn h() { Self::g(); self::i(); } }"),
     ]));
     let used = |file: &str| uses[file].iter().map(String::as_str).collect::<Vec<_>>();
     assert_eq!(used("lib"), [""; 0], "a re-export is no use");
@@ -116,11 +122,69 @@ fn every_kind_of_use_and_of_circle_is_found() {
     assert_eq!(used("b/other"), ["b/mod", "c"], "`super::` and paths in macros are uses");
     assert_eq!(used("c"), ["d"]);
     assert_eq!(used("d"), ["a"]);
-    assert_eq!(circles(&uses), [["a", "b/deep", "b/other", "c", "d"]]);
-    assert_eq!(circles(&by_folder(&uses, 1)), [["a", "b", "c", "d"]]);
+    assert_eq!(used("e"), ["f"], "a method of the same type in another file is a use");
+    assert_eq!(used("g"), ["e", "f"]);
+    let of_methods = vec!["e", "f"];
+    assert_eq!(circles(&uses), [vec!["a", "b/deep", "b/other", "c", "d"], of_methods.clone()]);
+    assert_eq!(circles(&by_folder(&uses, 1)), [vec!["a", "b", "c", "d"], of_methods]);
     let floors = [vec!["d".to_owned()], vec!["c".into(), "lib".into()], vec!["b".into()]];
-    let against = uses_against_the_order(&by_folder(&uses, 1), &floors);
+    let folders =
+        by_folder(&uses, 1).into_iter().filter(|(name, _)| !["e", "f", "g"].contains(&&name[..]));
+    let against = uses_against_the_order(&folders.collect(), &floors);
     assert_eq!(against, ["a is on no floor", "d uses a"]);
+}
+
+/// Functions that take a tuple apart in their signature, each with the tuple that is one thing: a number with its offset
+/// in a file.
+const TAKES_A_TUPLE_APART: [&str; 1] = ["mesh-io/src/visit/heights.rs: see"];
+
+/// A tuple of unrelated values hides from a caller what each value means: a struct names them.
+#[test]
+fn no_function_takes_a_tuple_apart_in_its_signature() {
+    struct Functions(Vec<String>);
+
+    impl Functions {
+        fn check(&mut self, signature: &syn::Signature) {
+            let is_tuple = |input: &syn::FnArg| match input {
+                syn::FnArg::Typed(typed) => matches!(*typed.pat, syn::Pat::Tuple(_)),
+                syn::FnArg::Receiver(_) => false,
+            };
+            if signature.inputs.iter().any(is_tuple) {
+                self.0.push(signature.ident.to_string());
+            }
+        }
+    }
+
+    impl<'ast> syn::visit::Visit<'ast> for Functions {
+        fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
+            if item.ident != "tests" {
+                syn::visit::visit_item_mod(self, item);
+            }
+        }
+
+        fn visit_signature(&mut self, signature: &'ast syn::Signature) {
+            self.check(signature);
+            syn::visit::visit_signature(self, signature);
+        }
+    }
+
+    let mut found = Vec::new();
+    let mut count = 0;
+    for source in CRATES {
+        let mut files = Vec::new();
+        rust_files(&root().join(source), &mut files);
+        files.sort();
+        for path in files.iter().filter(|path| !path.to_string_lossy().contains("tests")) {
+            count += 1;
+            let parsed = syn::parse_file(&fs::read_to_string(path).unwrap()).unwrap();
+            let mut functions = Functions(Vec::new());
+            syn::visit::Visit::visit_file(&mut functions, &parsed);
+            let name = path.strip_prefix(root()).unwrap().display();
+            found.extend(functions.0.into_iter().map(|function| format!("{name}: {function}")));
+        }
+    }
+    assert!(count > 300, "only {count} files: the test looks in the wrong place");
+    assert_eq!(found, TAKES_A_TUPLE_APART);
 }
 
 #[test]

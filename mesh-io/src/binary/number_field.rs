@@ -21,10 +21,12 @@ pub(crate) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// Makes a field. `bytes` start at the first record's number; `None` makes a field without records.
+    /// Makes a field of numbers that are `width` bytes wide and `stride` bytes apart. `bytes` start at the first
+    /// record's number; `None` makes a field without records.
     pub(crate) fn new(
         bytes: Option<&'a [u8]>,
-        (stride, width): (usize, usize),
+        stride: usize,
+        width: usize,
         order: Order,
     ) -> Field<'a> {
         Field { bytes: bytes.unwrap_or_default(), stride, width, order }

@@ -75,7 +75,7 @@ impl<'a> Whole<'a> {
     /// Returns every `step`-th number from index `from` on, as a field of records.
     pub(crate) fn field(&self, from: usize, step: usize) -> Field<'_> {
         let bytes = from.checked_mul(self.size).and_then(|at| self.bytes.get(at..));
-        Field::new(bytes, (step * self.size, self.size), self.order)
+        Field::new(bytes, step * self.size, self.size, self.order)
     }
 }
 

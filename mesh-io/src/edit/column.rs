@@ -37,7 +37,8 @@ impl<'a> Column<'a> {
     /// Makes columns for the coordinates of vertices, from the places of x. If a vertex has several places, `owners`
     /// gives the vertex of each place.
     pub(crate) fn of_points(
-        (x_at, owners): (&'a Places, Option<&'a [u32]>),
+        x_at: &'a Places,
+        owners: Option<&'a [u32]>,
         numbers: Numbers,
         old: &'a [[f64; 2]],
         new: &'a [[f64; 2]],

@@ -120,7 +120,7 @@ mod tests {
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
         let places = Places::List(x_at.to_vec());
-        let columns = Column::of_points((&places, None), Numbers::TEXT, old, new);
+        let columns = Column::of_points(&places, None, Numbers::TEXT, old, new);
         let mut out = Vec::new();
         Rewrite { bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
         out
@@ -178,7 +178,7 @@ mod tests {
             expected.extend_from_slice(b"tail 1 2 3");
             assert!(rewritten(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
             let x_at = Places::List(x_at);
-            let mut columns = Column::of_points((&x_at, None), Numbers::TEXT, &old, &new);
+            let mut columns = Column::of_points(&x_at, None, Numbers::TEXT, &old, &new);
             let places = Places::List(z_at);
             let form = Form::Text(Precision::Double);
             columns.push(Column::of_array(&places, form, &z_old, &z_new));
@@ -203,12 +203,8 @@ mod tests {
         let rows: Vec<u8> = old.iter().flat_map(|[x, y]| row(*x, *y, 2.0)).collect();
         let bytes = [b"head", &rows[..], b"tail"].concat();
         let x_at = Places::Regular { start: 4, stride: 20 };
-        let mut columns = Column::of_points(
-            (&x_at, None),
-            Numbers::adjacent(order, Precision::Double),
-            &old,
-            &new,
-        );
+        let mut columns =
+            Column::of_points(&x_at, None, Numbers::adjacent(order, Precision::Double), &old, &new);
         let places = Places::Regular { start: 20, stride: 20 };
         let form = Form::Binary(order, Precision::Single);
         columns.push(Column::of_array(&places, form, &z_old, &z_new));

@@ -15,24 +15,32 @@ use crate::visit::send::REWRITE;
 use crate::visit::sink::{Home, Layout, Sink};
 use std::ops::Range;
 
+/// The encoding of real numbers in binary.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct BinaryReals {
+    pub(crate) order: Order,
+    pub(crate) precision: Precision,
+}
+
 /// The coordinates of a mesh, axis by axis. There are at least two.
 pub(crate) struct Axes<'a> {
     source: &'a Source,
-    form: (Order, Precision),
+    form: BinaryReals,
     /// Where those of each axis are, in the file or among those that are encoded.
     ranges: Vec<Range<usize>>,
     encoded: Option<Encoding>,
 }
 
 impl<'a> Axes<'a> {
-    /// Of which those of each axis start at one of these bytes of the file, as many as `count`.
+    /// Makes coordinates that stand uncompressed in the file: for each axis, `count` numbers from the offset
+    /// `starts[axis]` on.
     pub(crate) fn in_place(
         source: &'a Source,
-        form: (Order, Precision),
+        form: BinaryReals,
         starts: &[usize],
         count: usize,
     ) -> Axes<'a> {
-        let length = count * form.1.bytes();
+        let length = count * form.precision.bytes();
         let ranges = starts.iter().map(|&start| start..start + length).collect();
         Axes { source, form, ranges, encoded: None }
     }
@@ -40,13 +48,13 @@ impl<'a> Axes<'a> {
     /// Of datasets that have `axes` of them together, `count` to an axis, one axis after another.
     pub(crate) fn of_arrays(
         file: &Hdf5<'a>,
-        form: (Order, Precision),
+        form: BinaryReals,
         arrays: Vec<Array<'_>>,
         axes: usize,
         count: usize,
     ) -> Axes<'a> {
         let source = file.source;
-        let length = count * form.1.bytes();
+        let length = count * form.precision.bytes();
         let of_each = axes / arrays.len().max(1);
         // In the file itself, if they stand there as they are; else as what is written anew.
         let places: Option<Vec<usize>> = arrays.iter().map(Array::place).collect();
@@ -67,7 +75,7 @@ impl<'a> Axes<'a> {
         first: u64,
         sink: &mut dyn Sink,
     ) -> Result<Layout, ReadError> {
-        let Axes { source, form: (order, precision), ranges, encoded } = self;
+        let Axes { source, form: BinaryReals { order, precision }, ranges, encoded } = self;
         let [x, y] = [0, 1].map(|axis| ranges.get(axis).cloned().unwrap_or_default());
         let size = precision.bytes();
         let bytes = encoded.as_ref().map_or(&source.bytes[..], Encoding::bytes);
@@ -77,7 +85,7 @@ impl<'a> Axes<'a> {
             Some(encoding) => Cursor::at_byte_of(source, encoding.byte_of(at)),
         };
         let y_after = y.start as isize - x.start as isize;
-        let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), (size, size), order);
+        let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), size, size, order);
         let (x_at, tags) = (x.start, Tags::From(first));
         let place_of = |index: usize| place(x.start + index * size);
         NodeRecords { count, x: field(&x), y: field(&y), x_at, tags }.send(
@@ -94,7 +102,7 @@ impl<'a> Axes<'a> {
             let mut heights = Heights::new(sink);
             heights.see_all(field(z), z.len() / size, z.start);
             let home = if encoded.is_some() { Home::Points } else { Home::File };
-            heights.send_from("z", Form::Binary(order, precision), (home, 0), sink);
+            heights.send_from("z", Form::Binary(order, precision), home, 0, sink);
         }
         let numbers = Numbers::Binary { order, precision, y_after };
         let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);

@@ -1,10 +1,8 @@
 //! Coordinates of nodes, in variables of a netCDF file.
 
-use crate::binary::order::Order;
 use crate::error::ReadError;
-use crate::formats::axes::Axes;
+use crate::formats::axes::{Axes, BinaryReals};
 use crate::netcdf::{Header, Items, Variable};
-use crate::precision::Precision;
 
 /// Finds the coordinates of `nodes` nodes, which these variables have: those of `axes` axes in all, one axis after another. All
 /// numbers have the same form.
@@ -14,13 +12,13 @@ use crate::precision::Precision;
 pub(crate) fn axes<'a>(
     header: &Header<'a>,
     variables: &[&Variable],
-    form: (Order, Precision),
+    form: BinaryReals,
     axes: usize,
     nodes: usize,
 ) -> Result<Axes<'a>, ReadError> {
     let mut items = variables.iter().map(|own| header.items(own)).collect::<Result<Vec<_>, _>>()?;
     let Some(file) = &header.hdf5 else {
-        let length = nodes * form.1.bytes();
+        let length = nodes * form.precision.bytes();
         let of_each = axes / items.len().max(1);
         let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
         let starts: Vec<usize> = items.iter().filter_map(Items::place).flat_map(of).collect();

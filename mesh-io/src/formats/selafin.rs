@@ -71,7 +71,7 @@ impl Walk for Selafin {
         let y_after = (cursor.taken() - x_at) as isize;
         let after_mesh = cursor.clone();
         let size = precision.bytes();
-        let [x, y] = [xs, ys].map(|bytes| Field::new(Some(bytes), (size, size), order));
+        let [x, y] = [xs, ys].map(|bytes| Field::new(Some(bytes), size, size, order));
         NodeRecords { count: points as usize, x, y, x_at, tags: Tags::From(1) }.send(
             sink,
             |index| Cursor::at_byte_of(source, x_at + index * size),
@@ -86,7 +86,7 @@ impl Walk for Selafin {
             kind,
             count: triangles as usize,
             first_tag: 1,
-            nodes: Field::new(Some(connectivity), (stride, 4), order),
+            nodes: Field::new(Some(connectivity), stride, 4, order),
             is_signed: true,
             regions: [Region::Same(0); 2],
         };

@@ -50,7 +50,7 @@ impl MeshFile {
             let new = Elements::of(&centers, &map).and_then(|elements| {
                 let stored = centers.numbers.stored.as_ref()?.form.precision();
                 let error = |size: f64| stored.error(size).max(self.precision().error(size));
-                elements.moved((&centers.numbers.numbers, axis), [old, points], error)
+                elements.moved(&centers.numbers.numbers, axis, [old, points], error)
             });
             match new {
                 None => others.push(name),
@@ -88,7 +88,8 @@ impl<'c> Elements<'c> {
     /// The numbers where vertices have moved. `None` if they are not known to follow from the old places.
     fn moved(
         &self,
-        (numbers, axis): (&[f64], usize),
+        numbers: &[f64],
+        axis: usize,
         [old, new]: [&[[f64; 2]]; 2],
         error: impl Fn(f64) -> f64,
     ) -> Option<Vec<f64>> {

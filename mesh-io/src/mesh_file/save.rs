@@ -16,6 +16,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// The new values for a rewrite of a file.
+#[derive(Clone, Copy)]
+struct Edits<'a> {
+    points: &'a [[f64; 2]],
+    fields: &'a [PointField],
+}
+
 impl MeshFile {
     /// Writes the file again with vertex `i` at `points[i]`, in the units of the file.
     ///
@@ -51,26 +58,26 @@ impl MeshFile {
         let packs = self.packs(path);
         let renamed = &(self.reader().renames)(self.source(), path);
         let job = |(part, destination)| -> Job<'_> {
-            let content = (points, fields);
+            let edits = Edits { points, fields };
             (
                 destination,
                 Box::new(move |out| match part {
-                    0 if !renamed.is_empty() => self.put_plain(0, content, renamed, out),
-                    _ => self.put(part, content, packs, out),
+                    0 if !renamed.is_empty() => self.put_plain(0, edits, renamed, out),
+                    _ => self.put(part, edits, packs, out),
                 }),
             )
         };
         let mut jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
         // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
         // leave its place if that is left to the one with the coordinates.
-        if self.part() > 0 && self.is_written(&jobs[0], renamed) {
+        if self.part() > 0 && self.is_written(&jobs[0].0, renamed) {
             jobs.swap(0, self.part());
         }
         replace::replace_all(&jobs)
     }
 
-    /// Whether what the first file becomes stands there already.
-    fn is_written(&self, (path, _): &Job<'_>, renamed: &[Splice]) -> bool {
+    /// Whether the destination of the main file already has exactly the bytes that would be written.
+    fn is_written(&self, path: &Path, renamed: &[Splice]) -> bool {
         let mut new = Vec::new();
         let bytes = &self.source().bytes;
         let written = Rewrite { bytes, columns: &[], splices: renamed }.write(&mut new);
@@ -111,10 +118,12 @@ impl MeshFile {
             return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
         }
         let packs = self.source().packed.as_ref().map(|packed| packed.packing);
-        self.put(0, (points, fields), packs, out).and_then(|()| out.flush()).map_err(|source| {
-            let remedy = "Write to a file instead".to_owned();
-            WriteError::Io { path: name.to_owned(), source, remedy }
-        })
+        self.put(0, Edits { points, fields }, packs, out).and_then(|()| out.flush()).map_err(
+            |source| {
+                let remedy = "Write to a file instead".to_owned();
+                WriteError::Io { path: name.to_owned(), source, remedy }
+            },
+        )
     }
 
     /// Returns the compression of what is written to a path, by its ending. A file that was compressed without such an
@@ -133,17 +142,17 @@ impl MeshFile {
     fn put(
         &self,
         part: usize,
-        content: (&[[f64; 2]], &[PointField]),
+        edits: Edits<'_>,
         packs: Option<Packing>,
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
-        let (points, fields) = content;
-        let Some(packing) = packs else { return self.put_plain(part, content, &[], out) };
+        let Edits { points, fields } = edits;
+        let Some(packing) = packs else { return self.put_plain(part, edits, &[], out) };
         let is_same = || self.is_unmoved(points) && !fields.iter().any(PointField::is_changed);
         match &self.parts()[part].packed {
             // Another program may pack the same content into other bytes.
             Some(packed) if packed.packing == packing && is_same() => out.write_all(&packed.bytes),
-            _ => packing.pack(out, |out| self.put_plain(part, content, &[], out)),
+            _ => packing.pack(out, |out| self.put_plain(part, edits, &[], out)),
         }
     }
 
@@ -151,16 +160,15 @@ impl MeshFile {
     fn put_plain(
         &self,
         part: usize,
-        (points, fields): (&[[f64; 2]], &[PointField]),
+        edits: Edits<'_>,
         renamed: &[Splice],
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
+        let Edits { points, fields } = edits;
         let bytes = &self.parts()[part].bytes[..];
         let has_points = part == self.part();
-        let coordinates = || {
-            let places = (self.x_at(), self.owners());
-            Column::of_points(places, self.numbers(), self.points(), points)
-        };
+        let coordinates =
+            || Column::of_points(self.x_at(), self.owners(), self.numbers(), self.points(), points);
         // Columns of the file itself and of the encoded points. Arrays that are encoded by themselves become splices.
         let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
         let mut in_others: Vec<(&Arc<dyn Encoded>, Vec<Column<'_>>)> = Vec::new();

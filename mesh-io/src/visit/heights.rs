@@ -53,7 +53,7 @@ impl Heights {
 
     /// Hands the numbers to the sink under this name, if they differ or if the sink asks for data.
     pub(crate) fn send(self, name: &str, form: Form, sink: &mut dyn Sink) {
-        self.send_from(name, form, (Home::File, 0), sink);
+        self.send_from(name, form, Home::File, 0, sink);
     }
 
     /// The same, if they stand elsewhere than in the file itself, or in this one of the files of the mesh.
@@ -61,7 +61,8 @@ impl Heights {
         self,
         name: &str,
         form: Form,
-        (home, part): (Home, usize),
+        home: Home,
+        part: usize,
         sink: &mut dyn Sink,
     ) {
         let is_any = self.collected.is_some() && self.first.is_some() && !self.is_partial;

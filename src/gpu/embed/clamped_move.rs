@@ -87,7 +87,8 @@ impl BoundMove {
         mesh: &MeshBuffers,
         mut moves: Moves,
         targets: &VertexBuffer<'_>,
-        (share, place): (&wgpu::Buffer, u64),
+        share: &wgpu::Buffer,
+        offset: u64,
     ) -> Result<Self, GpuError> {
         if targets.buffer == share {
             let problem = "targets and share are in one buffer, and a kernel that writes a buffer \
@@ -96,7 +97,7 @@ impl BoundMove {
         }
         let stride = targets.words()?;
         let window = targets.window(gpu, moves.listed.max(1))?;
-        let share = Window::new(gpu, share, place, size_of::<f32>() as u64)?;
+        let share = Window::new(gpu, share, offset, size_of::<f32>() as u64)?;
         let Coordinates { center, scale } = targets.unjudged_coordinates(problem)?;
         let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
         let mut corners = moves.corners(problem);

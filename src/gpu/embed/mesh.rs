@@ -14,6 +14,7 @@ use crate::gpu::device::readback::Waiting;
 use crate::gpu::embed::clamped_move::Moves;
 use crate::gpu::embed::objective::Run;
 use crate::gpu::embed::pins::{Change, Pins};
+use crate::gpu::embed::window::Window;
 use crate::gpu::embed::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, LastValid, VertexBuffer,
 };
@@ -155,7 +156,9 @@ impl DeviceMesh {
     /// mask is larger than what the device binds at once.
     pub fn bind_mask(&self, buffer: &wgpu::Buffer, offset: u64) -> Result<BoundMask, GpuError> {
         let Self { gpu, problem, buffers, numbers, pins, vertex_count, .. } = self;
-        BoundMask::new(gpu, (problem, *vertex_count), buffers, numbers, pins, (buffer, offset))
+        let bytes = (*vertex_count as u64).saturating_mul(size_of::<u32>() as u64);
+        let window = Window::new(gpu, buffer, offset, bytes)?;
+        BoundMask::new(gpu, problem, buffers, numbers, pins, &window)
     }
 
     /// Keeps the positions of the mesh as long as it is valid, so that a frame in which the application has inverted
@@ -263,7 +266,7 @@ impl DeviceMesh {
         }
         let Self { gpu, problem, buffers, .. } = self;
         let moves = Moves { ways, listed: vertices.len(), worst_imr };
-        Ok(BoundMove::new(gpu, problem, buffers, moves, targets, share)?)
+        Ok(BoundMove::new(gpu, problem, buffers, moves, targets, share.0, share.1)?)
     }
 
     /// The number on the device of a vertex of the application, or [`NONE`].

@@ -165,14 +165,12 @@ pub struct BoundMask {
 impl BoundMask {
     pub(crate) fn new(
         gpu: &Gpu,
-        (problem, vertex_count): (&Problem, usize),
+        problem: &Problem,
         mesh: &MeshBuffers,
         numbers: &wgpu::Buffer,
         pins: &Pins,
-        (buffer, offset): (&wgpu::Buffer, u64),
+        window: &Window<'_>,
     ) -> Result<Self, GpuError> {
-        let bytes = (vertex_count as u64).saturating_mul(size_of::<u32>() as u64);
-        let window = Window::new(gpu, buffer, offset, bytes)?;
         let count = problem.free_count() as u32;
         let mask = Mask { vertices: count, offset: window.offset, padding: [0; 2] };
         let bind_group = scoped_to_buffer(&gpu.device, || {

@@ -1,7 +1,7 @@
 //! The exponent of EDGE's p-norm in a run with corrections: when it doubles, how far it does, and what it leaves of f.
 
 use super::plan_steps::exponents;
-use super::{Corrections, Stage};
+use super::{Correcting, Corrections, Stage};
 use crate::run::history::History;
 use crate::run::step::Sharpness;
 
@@ -47,7 +47,7 @@ impl Corrections<'_> {
     pub(super) fn gains_little(&self, history: &History) -> bool {
         let of_stage = match self.stage {
             Stage::Before { .. } => return false,
-            Stage::Correcting { .. } => &self.lowered[..],
+            Stage::Correcting(_) => &self.lowered[..],
             Stage::Without { since } => &history.f()[since..],
         };
         let gained_little = match of_stage {
@@ -63,7 +63,7 @@ impl Corrections<'_> {
         self.settled = false;
         match self.stage {
             Stage::Before { .. } => {}
-            Stage::Correcting { length, .. } => self.begin_correcting(last, length),
+            Stage::Correcting(Correcting { length, .. }) => self.begin_correcting(last, length),
             // Corrections that the guard refuses by one exponent may be taken by the next.
             Stage::Without { .. } if self.has_levels => self.begin_correcting(last, 1.0),
             Stage::Without { .. } => self.stage = Stage::Without { since: last },

@@ -103,16 +103,27 @@ pub(crate) struct Corrections<'a> {
     was_left_out: bool,
 }
 
+/// The stage of corrections.
+#[derive(Clone, Copy)]
+struct Correcting {
+    /// The index in the history at which the stage began.
+    since: usize,
+    /// The length of the last correction taken.
+    length: f64,
+    /// The number of corrections tried in this stage.
+    proposed: u32,
+    /// The number of corrections refused in a row at the end.
+    refused: u32,
+}
+
 /// The stage of a run. `since` and `until` are indices in the history.
 #[derive(Clone, Copy)]
 enum Stage {
     /// Sweeps alone, at least up to `until`, and then as long as they gain enough: by the metrics of the scheme in
     /// turn, or by the base metric once corrections have been tried.
     Before { until: usize },
-    /// Each sweep, by the base metric, is followed by a correction. `length` is that of the last correction taken,
-    /// `proposed` the number of corrections tried in this stage, and `refused` the number of refused ones in a row at
-    /// the end.
-    Correcting { since: usize, length: f64, proposed: u32, refused: u32 },
+    /// Each sweep, by the base metric, is followed by a correction.
+    Correcting(Correcting),
     /// Sweeps alone by the base metric to the end, as corrections do not help or the engine has no room for the
     /// levels.
     Without { since: usize },
@@ -177,10 +188,7 @@ impl<'a> Corrections<'a> {
             }
             let objectives = match self.stage {
                 Stage::Before { until } => self.sweep_before(engine, history, until).await?,
-                Stage::Correcting { since, length, proposed, refused } => {
-                    let state = (since, length, proposed, refused);
-                    self.sweep_and_correct(engine, history, state).await?
-                }
+                Stage::Correcting(state) => self.sweep_and_correct(engine, history, state).await?,
                 Stage::Without { .. } => self.sweep_without(engine).await?,
             };
             let before = self.sharpness;
@@ -246,7 +254,7 @@ impl<'a> Corrections<'a> {
         self.anew = self.accelerated;
         self.estimates = [f64::INFINITY; ESTIMATES];
         self.lowered.clear();
-        self.stage = Stage::Correcting { since: done, length, proposed: 0, refused: 0 };
+        self.stage = Stage::Correcting(Correcting { since: done, length, proposed: 0, refused: 0 });
     }
 
     /// Does one sweep before corrections. Decides whether they begin with the next.
@@ -293,8 +301,9 @@ impl<'a> Corrections<'a> {
         &mut self,
         engine: &mut impl Engine,
         history: &History,
-        (since, last_length, proposed, refused): (usize, f64, u32, u32),
+        state: Correcting,
     ) -> Result<Objectives, GpuError> {
+        let Correcting { since, length: last_length, proposed, refused } = state;
         let done = history.f().len();
         let change = self.change_of_levels(history, done - 1, proposed);
         if let Some(change) = change
@@ -350,7 +359,7 @@ impl<'a> Corrections<'a> {
                 Stage::Without { since: done }
             }
             MOST_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
-            _ => Stage::Correcting { since, length, proposed, refused },
+            _ => Stage::Correcting(Correcting { since, length, proposed, refused }),
         };
         self.lowered.push(ideal + excess);
         // If f may rise, the engine stores the best state when it evaluates the objectives.
@@ -375,8 +384,8 @@ impl<'a> Corrections<'a> {
         let (of_stage, window) = match self.stage {
             Stage::Before { .. } => (history.f(), NO_ESTIMATE),
             // A refused correction gains little, however much is left to gain.
-            Stage::Correcting { refused: 1.., .. } => (&self.lowered[..], NO_ESTIMATE),
-            Stage::Correcting { .. } => (&self.lowered[..], 1),
+            Stage::Correcting(Correcting { refused: 1.., .. }) => (&self.lowered[..], NO_ESTIMATE),
+            Stage::Correcting(_) => (&self.lowered[..], 1),
             Stage::Without { since } => {
                 (&history.f()[since..], StopRule::window(&self.metric().into()) as usize)
             }

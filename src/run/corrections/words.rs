@@ -1,14 +1,14 @@
 //! The state of a corrected run as words of a checkpoint.
 
 use super::plan_steps::exponents;
-use super::{Corrections, ESTIMATES, Stage};
+use super::{Correcting, Corrections, ESTIMATES, Stage};
 
 impl Corrections<'_> {
     /// Returns the state that decides how the run continues, as numbers for [`restore`](Self::restore).
     pub(crate) fn save(&self) -> Vec<u64> {
         let (stage, at, length, proposed, refused) = match self.stage {
             Stage::Before { until } => (0, until, 0.0, 0, 0),
-            Stage::Correcting { since, length, proposed, refused } => {
+            Stage::Correcting(Correcting { since, length, proposed, refused }) => {
                 (1, since, length, proposed, refused)
             }
             Stage::Without { since } => (2, since, 0.0, 0, 0),
@@ -93,7 +93,7 @@ impl Corrections<'_> {
             0 if length == 0.0 => Stage::Before { until: since },
             1 if since < evaluations && length > 0.0 && length.is_finite() => {
                 let proposed = if has_levels { proposed } else { 0 };
-                Stage::Correcting { since, length, proposed, refused }
+                Stage::Correcting(Correcting { since, length, proposed, refused })
             }
             2 if since < evaluations => Stage::Without { since },
             _ => return false,

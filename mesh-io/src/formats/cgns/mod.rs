@@ -12,7 +12,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Encoded, Form, Places};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::axes::Axes;
+use crate::formats::axes::{Axes, BinaryReals};
 use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, SIGNATURE};
 use crate::visit::sink::{Home, Layout, PointNumbers, Sink, Stored, Walk};
 use boundaries::Boundaries;
@@ -70,7 +70,7 @@ impl<'a> File<'a> {
         };
         let count = length / precision.bytes();
         self.cursor(self.zone).check_vertex_count(count as u64)?;
-        let (axes, form) = (read.len(), (order, precision));
+        let (axes, form) = (read.len(), BinaryReals { order, precision });
         let arrays = read.into_iter().map(|(_, array)| array).collect();
         Ok((Axes::of_arrays(self.hdf5, form, arrays, axes, count), count))
     }

@@ -113,7 +113,7 @@ impl<'a> File<'a> {
                 kind,
                 count,
                 first_tag: first,
-                nodes: Field::new(Some(&nodes.array.bytes), (kind.nodes() * size, size), order),
+                nodes: Field::new(Some(&nodes.array.bytes), kind.nodes() * size, size, order),
                 is_signed: false,
                 regions: [Region::Same(number), Region::Same(0)],
             };

@@ -61,7 +61,7 @@ impl<'a> File<'a> {
                 kind: block.kind,
                 count: block.count as usize,
                 first_tag: before + 1,
-                nodes: Field::new(Some(block.items.own()), (size, block.width), block.order),
+                nodes: Field::new(Some(block.items.own()), size, block.width, block.order),
                 is_signed: true,
                 regions: [Region::Same(id), Region::Same(0)],
             };

@@ -12,7 +12,7 @@ use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::axes::Axes;
+use crate::formats::axes::{Axes, BinaryReals};
 use crate::formats::netcdf_axes::axes;
 use crate::hdf5::Hdf5;
 use crate::netcdf::{self, Header, Number, Variable};
@@ -98,6 +98,6 @@ impl<'a> File<'a> {
             let start = Cursor::at_byte_of(self.source, 0);
             return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
         };
-        axes(header, &variables, (order, precision), count, self.nodes)
+        axes(header, &variables, BinaryReals { order, precision }, count, self.nodes)
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn nodes(
     sink.expect_nodes(cursor.capacity(count, NODE));
     let mut taken = 0;
     if let (false, Some((bytes, start))) = (parametric, cursor.ahead(count, NODE)) {
-        let field = |at: usize, width| Field::new(bytes.get(at..), (NODE, width), order);
+        let field = |at: usize, width| Field::new(bytes.get(at..), NODE, width, order);
         let [x, y, z] = [0, 8, 16].map(|axis| field(TAG + axis, 8));
         let (tags, x_at) = (Tags::Listed(field(0, 4)), start + TAG);
         let count = count as usize;
@@ -82,7 +82,7 @@ pub(super) fn elements(
         let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
         let mut taken = 0;
         if let (Kind::Triangle, Some((block, _))) = (kind, cursor.ahead(size, bytes)) {
-            let field = |at: usize| Field::new(block.get(4 * at..), (bytes, 4), order);
+            let field = |at: usize| Field::new(block.get(4 * at..), bytes, 4, order);
             let region = |column: usize| match column < groups {
                 true => Region::Field(field(1 + column)),
                 false => Region::Same(0),

@@ -44,10 +44,10 @@ pub(super) fn nodes(
         let record = 8 * (3 + parameters);
         let mut taken = 0;
         if let (2.., false, Some((bytes, x_at))) = (dimension, wanted, cursor.ahead(size, record)) {
-            let [x, y, z] = [0, 8, 16].map(|at| Field::new(bytes.get(at..), (record, 8), order));
+            let [x, y, z] = [0, 8, 16].map(|at| Field::new(bytes.get(at..), record, 8, order));
             let count = size as usize;
             if z.all_real(count, f64::is_finite) {
-                let tags = Tags::Listed(Field::new(Some(tags.left()), (8, 8), order));
+                let tags = Tags::Listed(Field::new(Some(tags.left()), 8, 8, order));
                 taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
                 heights.see_all(z, taken, x_at + 16);
             }
@@ -104,7 +104,7 @@ pub(super) fn elements(
         let row = tag_bytes * (1 + kind.nodes());
         let mut taken = 0;
         if let (Kind::Triangle, Some((bytes, _))) = (kind, cursor.ahead(size, row)) {
-            let field = |at: usize| Field::new(bytes.get(at..), (row, tag_bytes), order);
+            let field = |at: usize| Field::new(bytes.get(at..), row, tag_bytes, order);
             let natural = [(field(0), Expected::Natural)];
             taken = sink.triangle_records(&TriangleRecords {
                 count: size as usize,

@@ -12,7 +12,7 @@ use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::axes::Axes;
+use crate::formats::axes::{Axes, BinaryReals};
 use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
@@ -156,7 +156,10 @@ impl<'a> File<'a> {
         };
         let count = numbers / axes;
         cursor.check_vertex_count(count as u64)?;
-        Ok((Axes::of_arrays(self.hdf5, (order, precision), vec![array], axes, count), count))
+        Ok((
+            Axes::of_arrays(self.hdf5, BinaryReals { order, precision }, vec![array], axes, count),
+            count,
+        ))
     }
 
     /// Hands on the elements of a type.
@@ -215,7 +218,7 @@ impl<'a> File<'a> {
             kind,
             count,
             first_tag: 1,
-            nodes: Field::new(Some(&side_by_side), (8 * corners, 8), Order::Little),
+            nodes: Field::new(Some(&side_by_side), 8 * corners, 8, Order::Little),
             is_signed: false,
             regions: [Region::List(&of_families), Region::Same(0)],
         };

@@ -216,7 +216,7 @@ fn vertices(
     let item = dimension as usize * size + widths.integer;
     let bytes = items(cursor, count, item, "vertices")?;
     let start = cursor.taken();
-    let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
+    let field = |at: usize| Field::new(bytes.get(at..), item, size, widths.order);
     let count = bytes.len() / item;
     let (x, y, tags) = (field(0), field(size), Tags::From(1));
     NodeRecords { count, x, y, x_at: start, tags }.send(
@@ -251,7 +251,7 @@ fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), 
     sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;
-    let field = |at: usize| Field::new(bytes.get(at..), (item, size), widths.order);
+    let field = |at: usize| Field::new(bytes.get(at..), item, size, widths.order);
     let reference =
         if *referred { Region::Field(field(kind.nodes() * size)) } else { Region::Same(0) };
     let records = ElementRecords {

@@ -32,7 +32,7 @@ impl Items {
         };
         let Some((bytes, start)) = cursor.ahead(list.count, stride) else { return 0 };
         let field = |index: usize| {
-            Field::new(bytes.get(before(index)..), (stride, properties[index].number.size()), order)
+            Field::new(bytes.get(before(index)..), stride, properties[index].number.size(), order)
         };
         let (count, x_at, tags) = (list.count as usize, start + before(x), Tags::From(0));
         let heights_of = z.map(|z| (field(z), start + before(z)));
@@ -84,7 +84,7 @@ impl Items {
         // If elements have other lengths, there may be too few bytes for this many triangles. Then none is taken here.
         let Some((bytes, _)) = cursor.ahead(list.count, stride) else { return 0 };
         let field =
-            |at: usize, number: Number| Field::new(bytes.get(at..), (stride, number.size()), order);
+            |at: usize, number: Number| Field::new(bytes.get(at..), stride, number.size(), order);
         let taken = sink.triangle_records(&TriangleRecords {
             count: list.count as usize,
             corners: field(at + length.size(), number),

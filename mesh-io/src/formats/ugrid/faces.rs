@@ -17,7 +17,7 @@ pub(super) fn send(faces: &Table<'_, '_>, sink: &mut dyn Sink) -> Result<(), Rea
         let own = faces.items.own();
         taken = sink.triangle_records(&TriangleRecords {
             count: faces.count,
-            corners: Field::new(Some(own), (3 * width, width), faces.variable.order),
+            corners: Field::new(Some(own), 3 * width, width, faces.variable.order),
             first: 0,
             below: u64::MAX,
             regions: [Region::Same(0), Region::Same(0)],

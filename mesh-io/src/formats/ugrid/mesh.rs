@@ -1,7 +1,7 @@
 //! The mesh of a UGRID file: which variables it consists of.
 
 use crate::error::ReadError;
-use crate::formats::axes::Axes;
+use crate::formats::axes::{Axes, BinaryReals};
 use crate::formats::netcdf_axes::axes;
 use crate::netcdf::{Header, Number, Variable};
 use crate::text::cursor::Cursor;
@@ -75,7 +75,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         let Number::Real(precision) = x.number else {
             return Err(unfit(header, [x, y]));
         };
-        axes(header, &[x, y], (x.order, precision), 2, *nodes)
+        axes(header, &[x, y], BinaryReals { order: x.order, precision }, 2, *nodes)
     }
 
     /// The variables that an attribute of the mesh names.

@@ -126,7 +126,7 @@ impl File<'_> {
         };
         let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Encoding::bytes);
         let mut heights = Heights::new(sink);
-        let field = |axis: usize| Field::new(bytes.get(axis * size..), (stride, size), order);
+        let field = |axis: usize| Field::new(bytes.get(axis * size..), stride, size, order);
         let (x, y, tags) = (field(0), field(1), Tags::From(0));
         let place = |index| numbers.cursor(index * stride);
         NodeRecords { count, x, y, x_at: start, tags }.send(sink, place, |index| {
@@ -139,7 +139,7 @@ impl File<'_> {
         sink.end_nodes(&self.cursor(item))?;
         let numbers = Numbers::adjacent(order, precision);
         let home = if encoded.is_some() { Home::Points } else { Home::File };
-        heights.send_from("z", numbers.into(), (home, part), sink);
+        heights.send_from("z", numbers.into(), home, part, sink);
         let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);
         Ok((Layout { encoded, part, ..Layout::in_place(Format::Xdmf, numbers) }, count as u64))
     }

@@ -159,7 +159,7 @@ fn points(
         let start = cursor.taken();
         let count = bytes.len() / (3 * width);
         let [x, y, z] = [0, 1, 2]
-            .map(|axis| Field::new(bytes.get(axis * width..), (3 * width, width), Order::Big));
+            .map(|axis| Field::new(bytes.get(axis * width..), 3 * width, width, Order::Big));
         let place = |index| Cursor::at_byte_of(cursor.source, start + index * 3 * width);
         let not_finite = |index| place(index).error("a coordinate is not a finite number", REWRITE);
         let records = NodeRecords { count, x, y, x_at: start, tags: Tags::From(0) };

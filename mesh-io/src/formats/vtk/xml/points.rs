@@ -58,7 +58,7 @@ pub(super) fn read(file: &File<'_>, sink: &mut dyn Sink) -> Result<Stored, ReadE
         Box::new(Encoding::new(encoded, offsets)) as Box<dyn Encoded>
     });
     sink.end_nodes(&Cursor::new(file.source))?;
-    heights.send_from("z", numbers.into(), (home, 0), sink);
+    heights.send_from("z", numbers.into(), home, 0, sink);
     Ok(Stored { numbers, encoded })
 }
 
@@ -120,7 +120,7 @@ impl<'f> Points<'_, 'f> {
         let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
         let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
         let [x, y, z] = [0, 1, 2]
-            .map(|axis| Field::new(old.bytes.get(axis * wide..), (3 * wide, wide), wrapping.order));
+            .map(|axis| Field::new(old.bytes.get(axis * wide..), 3 * wide, wide, wrapping.order));
         let (tags, count) = (Tags::From(self.count), count as usize);
         let not_finite = |index| cursor.error(format!("point {index} is not finite"), REWRITE);
         let records = NodeRecords { count, x, y, x_at: start, tags };
