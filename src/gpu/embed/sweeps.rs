@@ -15,7 +15,7 @@ use crate::gpu::kernels::table::{Interface, Kernel, Positions};
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Scheme;
-use crate::run::corrections::OMEGA_BETWEEN;
+use crate::run::corrections::plan_steps::OMEGA_BETWEEN;
 use crate::run::{Guard, Method, Options, Plan, Step};
 
 /// A scheme bound to a mesh on the device. It encodes sweeps into the application's command encoder; it never submits

@@ -1,7 +1,7 @@
 //! The exponent of EDGE's p-norm in a run with corrections: when it doubles, how far it does, and what it leaves of f.
 
 use super::plan_steps::exponents;
-use super::{Correcting, Corrections, Stage};
+use super::state::{Correcting, Corrections, Stage};
 use crate::run::history::History;
 use crate::run::step::Sharpness;
 

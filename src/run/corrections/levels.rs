@@ -1,6 +1,7 @@
 //! When the coarser levels are built, and fitted to a mesh that has changed.
 
-use super::{Corrections, OMEGA_BETWEEN};
+use super::plan_steps::OMEGA_BETWEEN;
+use super::state::Corrections;
 use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;

@@ -6,7 +6,7 @@
 //! alone, and come again.
 
 use super::plan_steps::{FLAT, exponents, reopening_sweep};
-use super::{Corrections, Stage};
+use super::state::{Corrections, Stage};
 use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;

@@ -1,7 +1,7 @@
 //! The state of a corrected run as words of a checkpoint.
 
 use super::plan_steps::exponents;
-use super::{Correcting, Corrections, ESTIMATES, Stage};
+use super::state::{Correcting, Corrections, ESTIMATES, Stage};
 
 impl Corrections<'_> {
     /// Returns the state that decides how the run continues, as numbers for [`restore`](Self::restore).

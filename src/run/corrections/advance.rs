@@ -1,0 +1,221 @@
+//! The sweeps and corrections of a run: when corrections begin, pause and end.
+
+use super::plan_steps::{
+    OMEGA_ALTERNATING, OMEGA_BEFORE, OMEGA_BETWEEN, exponents, reopening_sweep,
+};
+use super::state::{Correcting, Corrections, Stage};
+use crate::error::GpuError;
+use crate::metric::Metric;
+use crate::run::engine::{Engine, Proposal};
+use crate::run::history::History;
+use crate::run::multilevel::{LEAST_FIRST, Search};
+use crate::run::objectives::Objectives;
+use crate::run::plan::Plan;
+use crate::run::step::Step;
+use crate::run::stop::{LEAST_SCALE, NOISE};
+
+/// Corrections begin when a sweep alone lowers the excess of f over its ideal value by less than this share. Earlier,
+/// a few bad triangles would force every correction to be short.
+const SWEEPS_PAY: f64 = 0.1;
+/// After [`MANY_SWEEPS`] sweeps alone, corrections begin by this share instead. On a mesh whose ideal can be reached, each sweep may lower the
+/// excess by the same 15 %, for hundreds of sweeps.
+const MANY_SWEEPS_PAY: f64 = 0.2;
+const MANY_SWEEPS: usize = 12;
+/// A correction shorter than this helps so little that it counts as refused, though it is taken. For EDGE lengths are a
+/// tenth of the usual ones, as its p-norm is stiffer across its kinks than the levels assume.
+const SHORT: f64 = 0.05;
+const SHORT_FOR_EDGE: f64 = 0.005;
+/// The least length that is tried first for EDGE; see [`LEAST_FIRST`] for other metrics.
+const LEAST_FIRST_FOR_EDGE: f64 = 0.1;
+/// Number of refused corrections in a row after which the run goes back to sweeps alone.
+const MOST_REFUSED: u32 = 2;
+/// The least number of sweeps alone before corrections begin again.
+const SWEEPS_BETWEEN: usize = 5;
+/// The most times that corrections can begin. If they are refused the last time, the run ends with sweeps alone.
+const ATTEMPTS: u32 = 5;
+
+/// A run ends if a correction is expected to gain nothing and a sweep gains less than this share of the tolerance.
+const SWEPT: f64 = 0.1;
+
+/// Corrections are accelerated once the slope along one is more than this share of the slope along the one before. On
+/// most meshes it falls to a sixth or less each time, and there is nothing to gain.
+const ACCELERATED_FROM: f64 = 0.3;
+
+impl Corrections<'_> {
+    /// Lists all distinct steps that a run can take.
+    pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
+        let base = plan.scheme.base();
+        let by_base = [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, base.properties().omega];
+        let by_base = by_base.map(|omega| (base, omega));
+        let others = plan.scheme.metrics().iter().filter(|&&metric| metric != base);
+        let others = others.map(|&metric| (metric, OMEGA_ALTERNATING));
+        let reopening = reopening_sweep(plan);
+        let kinds: Vec<_> = by_base.into_iter().chain(others).chain(reopening).collect();
+        let of_exponent = |sharpness| {
+            let step = move |&(metric, omega)| plan.step_with(metric, omega, sharpness);
+            kinds.iter().map(step)
+        };
+        exponents(plan).flat_map(of_exponent).collect()
+    }
+
+    /// Does up to `sweeps` further sweeps, or fewer if the run ends. Those that [reopen](super::reopening) triangles are not counted.
+    pub(crate) async fn advance(
+        &mut self,
+        engine: &mut impl Engine,
+        history: &mut History,
+        sweeps: u32,
+    ) -> Result<(), GpuError> {
+        if history.is_empty() {
+            let start = engine.objectives().await?;
+            self.record(start, history);
+        }
+        for _ in 0..sweeps {
+            if history.stop().is_some() {
+                break;
+            }
+            let objectives = match self.stage {
+                Stage::Before { until } => self.sweep_before(engine, history, until).await?,
+                Stage::Correcting(state) => self.sweep_and_correct(engine, history, state).await?,
+                Stage::Without { .. } => self.sweep_without(engine).await?,
+            };
+            let before = self.sharpness;
+            self.record(objectives, history);
+            self.reopen(engine, history, self.sharpness > before).await?;
+            if std::mem::take(&mut self.anew) {
+                engine.forget();
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the metrics of sweeps alone, in turn. They alternate until corrections have begun once.
+    fn turns(&self) -> &[Metric] {
+        let metrics = self.plan.scheme.metrics();
+        if self.attempts == 0 { metrics } else { &metrics[..1] }
+    }
+
+    /// Returns the step of a sweep alone, after `done` of them.
+    fn step_before(&self, done: usize) -> Step {
+        let turns = self.turns();
+        let omega = match done {
+            0 => 1.0,
+            _ if self.attempts == 0 && self.plan.scheme.alternates() => OMEGA_ALTERNATING,
+            _ => OMEGA_BEFORE,
+        };
+        self.plan.step_with(turns[done % turns.len()], omega, self.sharpness)
+    }
+
+    /// Does one sweep before corrections. Decides whether they begin with the next.
+    async fn sweep_before(
+        &mut self,
+        engine: &mut impl Engine,
+        history: &History,
+        until: usize,
+    ) -> Result<Objectives, GpuError> {
+        let done = history.f().len();
+        engine.sweep(&self.step_before(done - 1)).await?;
+        let objectives = engine.objectives().await?;
+        // If metrics alternate, compares with the last sweep by the same metric.
+        let period = self.turns().len();
+        let last = self.excess(history, done.saturating_sub(period));
+        let f = objectives.of(self.metric()).unwrap_or(f64::NAN);
+        let share = match self.attempts {
+            0 if done > MANY_SWEEPS * period => MANY_SWEEPS_PAY,
+            _ => SWEEPS_PAY,
+        };
+        let pays = 1.0 - (1.0 - share).powi(period as i32);
+        let gain = last - (f - self.metric().ideal_squared());
+        // Equal where f has its ideal value.
+        if done >= until.max(period) && gain <= pays * last {
+            if self.attempts == 0 {
+                self.alternated = done as u32;
+            }
+            self.attempts += 1;
+            self.begin_correcting(done, 1.0);
+            self.lowered.extend(self.metric().is_smooth().then_some(f));
+        }
+        Ok(objectives)
+    }
+
+    /// Does one sweep after corrections have ended.
+    async fn sweep_without(&self, engine: &mut impl Engine) -> Result<Objectives, GpuError> {
+        let own = self.metric().properties().omega;
+        engine.sweep(&self.step(own)).await?;
+        engine.objectives().await
+    }
+
+    /// Does one sweep and then a correction, if one lowers the objective.
+    async fn sweep_and_correct(
+        &mut self,
+        engine: &mut impl Engine,
+        history: &History,
+        state: Correcting,
+    ) -> Result<Objectives, GpuError> {
+        let Correcting { since, length: last_length, proposed, refused } = state;
+        let done = history.f().len();
+        let change = self.change_of_levels(history, done - 1, proposed);
+        if let Some(change) = change
+            && !self.change_levels(engine, change, done - 1).await?
+        {
+            self.stage = Stage::Without { since: done };
+            return self.sweep_without(engine).await;
+        }
+        let (short, least_first) = match self.metric().is_smooth() {
+            true => (SHORT, LEAST_FIRST),
+            false => (SHORT_FOR_EDGE, LEAST_FIRST_FOR_EDGE),
+        };
+        let mut length = Search::first_length(last_length, least_first);
+        let step = self.step(OMEGA_BETWEEN);
+        let mut proposal = engine.propose(&step, length, self.accelerated).await?;
+        // Levels by which a correction of all vertices leads uphill are no longer of the present stiffness.
+        let misleads = proposal.slope > 0.0 && !self.metric().is_smooth();
+        let proposed = if misleads { self.drop_levels(engine) } else { proposed + 1 };
+        if proposal.slope < 0.0 && proposal.there.is_none() && step.shape_guard.is_finite() {
+            proposal = engine.leave_out(length, !self.accelerated).await?;
+        }
+        let Proposal { here, slope, there } = proposal;
+        // The slope is the squared norm of the gradient, weighted by the levels: about twice what is left to gain in
+        // smooth modes. The other modes are left to sweeps, each of which removes most of them.
+        let ideal = self.metric().ideal_squared();
+        let scale = (here + ideal).max(LEAST_SCALE);
+        let swept = self.lowered.last().map_or(f64::INFINITY, |f| f - ideal - here);
+        self.settled = slope.abs() <= NOISE * scale
+            && swept <= (SWEPT * self.plan.stop.tolerance).max(NOISE) * scale;
+        let mut search = Search::new(here, slope);
+        if slope < 0.0 && !self.settled {
+            let mut next = search.tried(length, there);
+            while let Some(another) = next {
+                length = another;
+                next = search.tried(length, engine.excess_along(length).await?);
+            }
+        }
+        let (excess, length, refused) = match search.best() {
+            Some((length, there)) => {
+                engine.move_along(length).await?;
+                self.taken += 1;
+                (there, length, if length < short { refused + 1 } else { 0 })
+            }
+            None => (here, last_length, refused + 1),
+        };
+        // The secant pairs may be the reason why a direction fails, so they are dropped.
+        let slow = self.slope.is_some_and(|before| slope < ACCELERATED_FROM * before);
+        self.accelerated = (self.accelerated || slow) && refused == 0;
+        self.slope = Some(slope);
+        self.stage = match refused {
+            // With the last exponent, what is left is near the errors of single precision.
+            MOST_REFUSED if self.attempts == ATTEMPTS || self.has_grown() => {
+                Stage::Without { since: done }
+            }
+            MOST_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
+            _ => Stage::Correcting(Correcting { since, length, proposed, refused }),
+        };
+        self.lowered.push(ideal + excess);
+        // If f may rise, the engine stores the best state when it evaluates the objectives.
+        if self.plan.track_all || !self.plan.is_monotone() {
+            return engine.objectives().await;
+        }
+        let mut objectives = Objectives::untracked();
+        objectives.set(self.metric(), ideal + excess);
+        Ok(objectives)
+    }
+}
