@@ -6,7 +6,7 @@ use crate::outcome::GoalOutcome;
 use crate::run::{Desired, Goal, Keeper, Keeping, NOISE, Observer, Options, Phase, ROUNDING, Stop};
 use crate::whole::{Attempt, Device};
 
-use super::Smoother;
+use super::prepared::Smoother;
 
 impl Smoother<'_> {
     /// Returns the desired objective of a goal. If it is not given, finds it by runs to convergence; `None` if the

@@ -6,7 +6,8 @@ use crate::outcome::Outcome;
 use crate::run::{NoKeeper, Observer, Options};
 use crate::whole::Device;
 
-use super::{Smoother, unobserved};
+use super::calls::unobserved;
+use super::prepared::Smoother;
 
 impl Smoother<'_> {
     /// Uploads the mesh as [`DeviceMesh::new`] does, with the layout and the targets that are prepared already: sweeps

@@ -16,7 +16,7 @@ use crate::run::{
 use crate::slide::Sliding;
 use crate::whole::{Attempt, Device, Ended, Improving, altitude};
 
-use super::Smoother;
+use super::prepared::Smoother;
 use super::ways::Ways;
 
 impl Smoother<'_> {

@@ -12,7 +12,7 @@ use crate::topology::Topology;
 use crate::whole::altitude::{self, Floor};
 use crate::whole::{Attempt, Bound, Ended, Limit, Places, Rounds, in_rounds};
 
-use super::Smoother;
+use super::prepared::Smoother;
 
 /// The work that a run does between its sweeps, and its state.
 pub(super) struct Ways<'s> {
