@@ -2,6 +2,7 @@
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
+use crate::text::continued::{continued_end, is_left_out};
 use crate::text::syntax::{Commas, Items, Syntax};
 use crate::text::token::line_end;
 use std::ops::Range;
@@ -185,15 +186,21 @@ impl<'a> Cursor<'a> {
             (false, false) => end,
             (true, _) => self.joined_end(at, end),
             // A comment does not go on. If it did, each of many would look at all that follow.
-            (_, true) if self.is_left_out(at) => end,
-            (_, true) => self.continued_end(end),
+            (_, true) if is_left_out(self.bytes, at, self.syntax.comment) => end,
+            (_, true) => continued_end(self.bytes, end, self.syntax.comment),
         }
+    }
+
+    /// Returns the range of the current row, from the start of its first line on.
+    pub(crate) fn row_range(&self) -> Range<usize> {
+        let start = memchr::memrchr(b'\n', &self.bytes[..self.at]).map_or(0, |before| before + 1);
+        start.max(self.source.begin())..self.row_end(self.at)
     }
 
     /// Returns the end of the row that has this byte, or that has lines before and after this one.
     fn part_end(&self, at: usize) -> usize {
         match self.syntax.continues {
-            true => self.continued_end(line_end(self.bytes, at)),
+            true => continued_end(self.bytes, line_end(self.bytes, at), self.syntax.comment),
             false => self.row_end(at),
         }
     }

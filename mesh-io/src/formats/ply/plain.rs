@@ -1,6 +1,6 @@
 //! Reads lists of a PLY on all threads, as long as they are plain.
 
-use super::{Items, List, Number, Property};
+use super::header::{Items, List, Number, Property};
 use crate::binary::number_field::Field;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
