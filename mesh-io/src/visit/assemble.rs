@@ -339,14 +339,30 @@ impl Wanted<'_> {
     }
 }
 
+/// The error by which the walk ends early. Nobody sees it.
+fn found_all(cursor: &Cursor<'_>) -> ReadError {
+    cursor.error("", "")
+}
+
 impl Sink for Locator<'_> {
+    fn asks_for_nodes(&self) -> bool {
+        !self.nodes.left.is_empty()
+    }
+
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
         self.nodes.pass(&mut self.places, self.source, cursor, tag);
+    }
+
+    fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
+        if self.triangles.left.is_empty() { Err(found_all(cursor)) } else { Ok(()) }
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if element.kind == Kind::Triangle {
             self.triangles.pass(&mut self.places, self.source, cursor, element.tag);
+            if self.triangles.left.is_empty() {
+                return Err(found_all(cursor));
+            }
         }
         Ok(())
     }

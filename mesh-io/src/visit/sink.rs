@@ -112,6 +112,10 @@ pub(crate) trait Sink {
     fn takes_ahead(&self) -> bool {
         false
     }
+    /// Whether the sink takes nodes. If not, readers may leave out calls of [`node`](Self::node).
+    fn asks_for_nodes(&self) -> bool {
+        true
+    }
     /// Announces about how many nodes follow.
     fn expect_nodes(&mut self, _count: usize) {}
     /// Takes a node that was just read. `x_at` is the offset of x, and `at` are x and y. `dimension` is that of the

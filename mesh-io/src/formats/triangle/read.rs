@@ -82,6 +82,13 @@ impl<'s> Vertices<'s> {
         sink.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
         let listed = poly.map_or(0, listed_vertices);
         let mut numbers = Numbers { first: 0, count };
+        if !sink.asks_for_nodes() {
+            // The first row tells how vertices are numbered.
+            if cursor.next_row() {
+                numbers.first = cursor.integer("the number of a vertex")?;
+            }
+            return Ok(Vertices { numbers, attributes, has_markers, before });
+        }
         let read = |cursor: &mut Cursor<'_>| {
             let number = cursor.integer("the number of a vertex")?;
             Ok((number, cursor.point(format_args!("vertex {number}"))?))
