@@ -44,6 +44,8 @@ enum Role {
 /// All files that a command writes.
 pub(crate) struct Outputs {
     pub(crate) mesh: MeshOutput,
+    /// Whether the mesh may replace a file that holds another mesh, or no mesh.
+    pub(crate) replaces_any: bool,
     pub(crate) report: Option<PathBuf>,
     pub(crate) picture: Option<PictureRequest>,
     /// The page for a browser.
@@ -60,6 +62,7 @@ impl Outputs {
     pub(crate) fn of_mesh(mesh: MeshOutput) -> Self {
         Self {
             mesh,
+            replaces_any: false,
             report: None,
             picture: None,
             page: None,
@@ -82,6 +85,8 @@ impl Outputs {
                 Some(_) => MeshOutput::OfMany,
                 None => MeshOutput::Smoothed,
             },
+            // Who resumes says that the directory holds results.
+            replaces_any: args.force || args.resume,
             report: args.report.clone(),
             picture: PictureRequest::of(&args.picture)?,
             page: args.html.clone(),

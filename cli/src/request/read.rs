@@ -1,5 +1,7 @@
 //! The request on how meshes are read.
 
+use mesh_io::ReadOptions;
+
 use crate::args::ReadArgs;
 
 /// How meshes are read.
@@ -7,6 +9,13 @@ use crate::args::ReadArgs;
 pub(crate) struct ReadRequest {
     /// Whether corners of triangles at one place are joined to one vertex. Only an STL needs it.
     pub(crate) weld: bool,
+}
+
+impl ReadRequest {
+    /// Returns the options by which the library reads a mesh.
+    pub(crate) fn options(self) -> ReadOptions {
+        ReadOptions::new().weld(self.weld)
+    }
 }
 
 impl From<ReadArgs> for ReadRequest {

@@ -203,7 +203,8 @@ fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     make_pipe(&folder, "out.ele");
     let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
     let args =
-        [&["in", "out.node", "--engine", "cpu", "--report", "r.json"][..], &lasting].concat();
+        [&["in", "out.node", "--engine", "cpu", "--report", "r.json", "--force"][..], &lasting]
+            .concat();
     let mut run = Started::new(&folder, &args);
     run.first_of("gpu-smooth: sweep ");
     run.signal("-INT");

@@ -24,6 +24,7 @@ mod many;
 mod moving;
 mod options;
 mod output;
+mod overwrite;
 mod periodic;
 mod picture;
 mod plate;
