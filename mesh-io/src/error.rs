@@ -66,6 +66,23 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// A mesh file names a file outside of its directory, and was read without
+    /// [`ReadOptions::allow_outside`](crate::ReadOptions::allow_outside).
+    #[error(
+        "{}{location}: it names {names}, which is {}, outside of the directory of the mesh. Move the file beside the mesh, or, if you \
+         trust the mesh, let it name files elsewhere: ReadOptions::allow_outside",
+        path.display(), target.display()
+    )]
+    Outside {
+        /// The mesh file.
+        path: PathBuf,
+        /// Where it names the other file.
+        location: Location,
+        /// The name that it gives.
+        names: String,
+        /// The other file, without symbolic links.
+        target: PathBuf,
+    },
 }
 
 /// A file could not be written. A file that was there before is unchanged.

@@ -24,6 +24,7 @@ mod many;
 mod moving;
 mod options;
 mod output;
+mod outside;
 mod overwrite;
 mod periodic;
 mod picture;

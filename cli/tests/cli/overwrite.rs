@@ -94,7 +94,9 @@ fn many_meshes_replace_no_others_of_their_names() {
 #[test]
 fn a_conversion_replaces_its_own_result_and_no_other_mesh() {
     let folder = two_meshes();
-    for out in ["out.vtk", "out.su2", "out.stl", "out.node", "out.vtu", "out.ply", "out.bdf"] {
+    for out in
+        ["out.vtk", "out.su2", "out.node", "out.vtu", "out.ply", "out.off", "out.inp", "out.exo"]
+    {
         folder.line(&format!("convert a.msh {out} -q --lossy")).clean();
         folder.line(&format!("convert a.msh {out} -q --lossy")).clean();
         let refused = folder.line(&format!("convert b.msh {out} -q --lossy"));
