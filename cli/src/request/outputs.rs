@@ -175,6 +175,30 @@ impl Outputs {
         }
     }
 
+    /// Checks that OUT is not a file of the mesh beside the one that was given as IN: who names two files of a mesh may take them
+    /// for two meshes. `files` are all files of the mesh, the main file first.
+    ///
+    /// # Errors
+    /// Of the kind [`Output`](ErrorKind::Output).
+    pub(crate) fn check_companion(
+        input: &Path,
+        out: &Path,
+        files: &[PathBuf],
+    ) -> Result<(), CliError> {
+        let Some(part) = files.iter().position(|own| is_same(own, out)) else { return Ok(()) };
+        // A name without an ending is that of the whole mesh, and so is the main file then.
+        if is_same(input, out) || (part == 0 && !input.is_file()) {
+            return Ok(());
+        }
+        let (shown, input) = (out.display(), input.display());
+        let text =
+            format!("{shown}: this file and {input} are of one mesh, which it would replace");
+        let remedy = format!(
+            "To smooth the mesh in place, name one file twice ({input} {input}), or give OUT another name"
+        );
+        Err(CliError::output(text).with_remedy(remedy))
+    }
+
     /// Returns the error if the mesh may not replace one of its own files.
     fn mesh_in_place(&self, path: &Path, kind: ErrorKind) -> Option<CliError> {
         let path = path.display();

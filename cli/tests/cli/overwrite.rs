@@ -106,3 +106,19 @@ fn a_conversion_replaces_its_own_result_and_no_other_mesh() {
     fs::write(folder.path("notes.vtk"), "notes\n").unwrap();
     folder.line("convert a.msh notes.vtk -q --lossy").refused(&["notes.vtk: exists, and cannot"]);
 }
+
+/// Who gives the two files of a Triangle mesh may take them for IN and OUT.
+#[test]
+fn a_file_of_the_mesh_beside_in_is_no_place_for_out() {
+    let folder = small();
+    let before = folder.content();
+    for (input, out) in [("in.node", "in.ele"), ("in.ele", "in.node"), ("in", "./in.ele")] {
+        let file = format!("{out}: this file and {input} are of one mesh");
+        let parts = [&file, "name one file twice", "give OUT another name"];
+        folder.line(&format!("{input} {out} --engine cpu --force")).refused(&parts);
+        assert!(folder.content() == before, "files have changed");
+    }
+    for line in ["in.ele in.ele", "in in", "in in.node", "in.node ./in.node"] {
+        folder.line(&format!("{line} --engine cpu -q")).clean();
+    }
+}

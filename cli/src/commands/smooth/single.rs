@@ -41,7 +41,7 @@ pub(crate) fn run(
     let resumed = resumed.as_ref();
     let task = Task { request, verbosity, input, out, resumed };
     let display = Display::new(verbosity, request.estimated_end(), request.max_sweeps());
-    let mut follow = Shown { request, verbosity, out, display: &display };
+    let mut follow = Shown { request, verbosity, input, out, display: &display };
     // The driver starts while the mesh is read. If the size of the mesh decides on the engine, it starts while the mesh
     // is prepared.
     let done = std::thread::scope(|scope| {
@@ -66,6 +66,7 @@ pub(crate) fn run(
 struct Shown<'a> {
     request: &'a SmoothRequest,
     verbosity: Verbosity,
+    input: &'a Path,
     out: &'a Path,
     display: &'a Display,
 }
@@ -78,6 +79,7 @@ impl Follow for Shown<'_> {
     fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
         let written = streams::destinations(file, self.out)?;
         let SmoothRequest { outputs, reading, .. } = self.request;
+        Outputs::check_companion(self.input, self.out, &file.paths())?;
         outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
         if outputs.replaces_any {
             return Ok(());
