@@ -179,6 +179,12 @@ impl From<WriteError> for CliError {
             WriteError::Format { path, problem, remedy } => {
                 Self::output(format!("{}: {problem}", path.display())).with_remedy(remedy)
             }
+            WriteError::Changed { path } => {
+                let problem = "another program has changed this file since it was read, so it is not replaced";
+                Self::output(format!("{}: {problem}", path.display())).with_remedy(
+                    "Give OUT another name, or run again to smooth the mesh as it is now",
+                )
+            }
             WriteError::Points { .. } => Self::run(error.to_string()),
         }
     }

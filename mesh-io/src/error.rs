@@ -108,6 +108,16 @@ pub enum WriteError {
         /// What the user can do about it.
         remedy: String,
     },
+    /// The file is one that the mesh was read from, and another program has changed its content since.
+    #[error(
+        "{}: another program has changed this file since it was read, so it is not replaced. Write to another name, or read \
+         the mesh again",
+        path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// The points do not fit the mesh: a mistake in the calling program, not of its user.
     #[error("{}: not written: {problem}", path.display())]
     Points {

@@ -1,5 +1,7 @@
 //! Files that a mesh must not replace: another mesh, a file that is no mesh, a file of IN, and a file that has changed.
 
+#[cfg(unix)]
+use super::interrupt::Started;
 use super::{Folder, assert_holds, disturbed, small, support};
 use std::fs;
 
@@ -120,5 +122,27 @@ fn a_file_of_the_mesh_beside_in_is_no_place_for_out() {
     }
     for line in ["in.ele in.ele", "in in", "in in.node", "in.node ./in.node"] {
         folder.line(&format!("{line} --engine cpu -q")).clean();
+    }
+}
+
+/// A signal ends the run after another program has edited the mesh, which is smoothed in place.
+#[cfg(unix)]
+#[test]
+fn a_mesh_that_another_program_has_changed_meanwhile_is_not_replaced() {
+    let folder = small();
+    let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
+    let args = [&["in", "in", "--engine", "cpu"][..], &lasting].concat();
+    for name in ["in.node", "in.ele"] {
+        let mut run = Started::new(&folder, &args);
+        run.first_of("gpu-smooth: sweep ");
+        let edited = folder.text(name) + "# edited\n";
+        fs::write(folder.path(name), &edited).unwrap();
+        let before = folder.content();
+        run.signal("-INT");
+        let (code, out, err) = run.end();
+        assert_eq!((code, out.as_str()), (Some(1), ""), "{err}");
+        let problem = format!("error: {name}: another program has changed this file since");
+        assert_holds(&err, &[&problem, "Give OUT another name"]);
+        assert!(folder.content() == before, "files have changed");
     }
 }

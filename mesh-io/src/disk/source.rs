@@ -3,6 +3,7 @@
 use crate::compress::packed;
 use crate::compress::packed::{Packed, Unpackable};
 use crate::disk::replace::directory_of;
+use crate::disk::stamp::KnownState;
 use crate::error::{Location, ReadError};
 use crate::parallel::map_parts;
 use std::fs::{self, File};
@@ -55,6 +56,8 @@ pub(crate) struct Source {
     /// The compressed bytes of the file, if it is compressed.
     pub(crate) packed: Option<Packed>,
     pub(crate) options: ReadOptions,
+    /// The state of the file on the disk when it was read, or last written by this process.
+    pub(crate) known: KnownState,
     /// The other files of the mesh.
     pub(crate) companions: Vec<Companion>,
 }
@@ -77,8 +80,9 @@ impl Companion {
 
 impl Source {
     pub(crate) fn load(path: &Path) -> Result<Source, ReadError> {
+        let known = KnownState::before_reading(path);
         match content(path) {
-            Ok(bytes) => Source::new(path, bytes),
+            Ok(bytes) => Ok(Source { known, ..Source::new(path, bytes)? }),
             Err(source) => {
                 let remedy = match source.kind() {
                     ErrorKind::NotFound => "Check the name",
@@ -99,6 +103,7 @@ impl Source {
             bytes,
             packed: None,
             options: ReadOptions::new(),
+            known: KnownState::default(),
             companions: Vec::new(),
         };
         match packed::unpack(&source.bytes) {
@@ -163,6 +168,11 @@ impl Source {
     /// Returns the line of a byte, counted from 1.
     pub(crate) fn line_of(&self, at: usize) -> usize {
         1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
+    }
+
+    /// Returns the bytes that the file had when it was read, compressed if it is compressed.
+    pub(crate) fn stored(&self) -> &[u8] {
+        self.packed.as_ref().map_or(&self.bytes, |packed| &packed.bytes)
     }
 
     /// Returns the files of the mesh: this file, then its companions.
