@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::{fmt, io};
 
-/// A position in a file. Displays as a suffix of the file's name: `:18`, or `, byte 4711`.
+/// A position in a file. Displays as a suffix of the file's name: `:18`, `, byte 4711`, or nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// One-based line of a text file.
     Line(usize),
     /// Offset in a binary file, in bytes.
     Byte(usize),
+    /// Somewhere in the file: a second search of the file did not find the item.
+    Unknown,
 }
 
 impl fmt::Display for Location {
@@ -17,6 +19,7 @@ impl fmt::Display for Location {
         match self {
             Location::Line(line) => write!(f, ":{line}"),
             Location::Byte(at) => write!(f, ", byte {at}"),
+            Location::Unknown => Ok(()),
         }
     }
 }
