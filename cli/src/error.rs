@@ -157,6 +157,15 @@ impl From<ReadError> for CliError {
                 Self::input(format!("{}: {problem}", path.display()))
                     .with_remedy("Have corners at the same place joined: --weld")
             }
+            ReadError::Outside { path, location, names, target } => {
+                let (path, target) = (path.display(), target.display());
+                let problem = format!(
+                    "{path}{location}: it names {names}, which is {target}, outside of the directory of the mesh"
+                );
+                Self::input(problem).with_remedy(
+                    "Move the file beside the mesh, or, if you trust the mesh, let it name files elsewhere by --allow-outside",
+                )
+            }
         }
     }
 }
@@ -169,6 +178,12 @@ impl From<WriteError> for CliError {
             }
             WriteError::Format { path, problem, remedy } => {
                 Self::output(format!("{}: {problem}", path.display())).with_remedy(remedy)
+            }
+            WriteError::Changed { path } => {
+                let problem = "another program has changed this file since it was read, so it is not replaced";
+                Self::output(format!("{}: {problem}", path.display())).with_remedy(
+                    "Give OUT another name, or run again to smooth the mesh as it is now",
+                )
             }
             WriteError::Points { .. } => Self::run(error.to_string()),
         }

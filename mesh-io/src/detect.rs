@@ -189,6 +189,7 @@ fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
 mod tests {
     use super::*;
     use crate::disk::source::ReadOptions;
+    use crate::disk::stamp::KnownState;
 
     fn problem(name: &str, content_bytes: &[u8]) -> String {
         let source = Source {
@@ -196,6 +197,7 @@ mod tests {
             bytes: content_bytes.to_vec(),
             packed: None,
             options: ReadOptions::new(),
+            known: KnownState::default(),
             companions: Vec::new(),
         };
         match reader(&source) {

@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::{fmt, io};
 
-/// A position in a file. Displays as a suffix of the file's name: `:18`, or `, byte 4711`.
+/// A position in a file. Displays as a suffix of the file's name: `:18`, `, byte 4711`, or nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// One-based line of a text file.
     Line(usize),
     /// Offset in a binary file, in bytes.
     Byte(usize),
+    /// Somewhere in the file: a second search of the file did not find the item.
+    Unknown,
 }
 
 impl fmt::Display for Location {
@@ -17,6 +19,7 @@ impl fmt::Display for Location {
         match self {
             Location::Line(line) => write!(f, ":{line}"),
             Location::Byte(at) => write!(f, ", byte {at}"),
+            Location::Unknown => Ok(()),
         }
     }
 }
@@ -66,6 +69,23 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// A mesh file names a file outside of its directory, and was read without
+    /// [`ReadOptions::allow_outside`](crate::ReadOptions::allow_outside).
+    #[error(
+        "{}{location}: it names {names}, which is {}, outside of the directory of the mesh. Move the file beside the mesh, or, if you \
+         trust the mesh, let it name files elsewhere: ReadOptions::allow_outside",
+        path.display(), target.display()
+    )]
+    Outside {
+        /// The mesh file.
+        path: PathBuf,
+        /// Where it names the other file.
+        location: Location,
+        /// The name that it gives.
+        names: String,
+        /// The other file, without symbolic links.
+        target: PathBuf,
+    },
 }
 
 /// A file could not be written. A file that was there before is unchanged.
@@ -90,6 +110,16 @@ pub enum WriteError {
         problem: String,
         /// What the user can do about it.
         remedy: String,
+    },
+    /// The file is one that the mesh was read from, and another program has changed its content since.
+    #[error(
+        "{}: another program has changed this file since it was read, so it is not replaced. Write to another name, or read \
+         the mesh again",
+        path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
     },
     /// The points do not fit the mesh: a mistake in the calling program, not of its user.
     #[error("{}: not written: {problem}", path.display())]

@@ -152,6 +152,9 @@ pub(crate) struct ConvertArgs {
     /// Write the mesh even if the format does not hold all of it
     #[arg(long)]
     pub(crate) lossy: bool,
+    /// Replace OUT even if it holds another mesh than IN, or is no mesh
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
 }

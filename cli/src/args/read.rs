@@ -9,4 +9,8 @@ pub(crate) struct ReadArgs {
     /// themselves. No effect on other formats
     #[arg(long)]
     pub(crate) weld: bool,
+    /// Let a mesh name files outside of its directory: an XDMF its files of numbers, which a run in place replaces, and an Abaqus
+    /// input file what it includes
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
 }

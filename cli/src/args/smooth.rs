@@ -143,6 +143,10 @@ pub(crate) struct SmoothArgs {
     #[arg(long, requires = "untangle", help_heading = "Untangling")]
     pub(crate) keep_going: bool,
 
+    /// Replace OUT even if it holds another mesh than IN, or is no mesh. Without --force, OUT may be a new or empty file, IN itself, or
+    /// hold a mesh with the triangles and the fixed vertices of IN
+    #[arg(long, help_heading = "Output")]
+    pub(crate) force: bool,
     /// Write a report as JSON: the history of every sweep, and a certificate, for which the written mesh is read again and what
     /// `gpu-smooth compare` proves is proved of it, with hashes of both files. If inverted or flat triangles keep the mesh from
     /// being smoothed, the report lists them

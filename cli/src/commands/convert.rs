@@ -1,14 +1,18 @@
 //! `gpu-smooth convert IN OUT`: writes a mesh in another format.
 
+use std::fs;
 use std::io::Write;
+use std::path::PathBuf;
 use std::slice;
 
 use mesh_io::{Conversion, Format};
 
 use crate::args::{ConvertArgs, OutputArgs};
 use crate::error::{CliError, ErrorKind};
+use crate::load::LoadedMesh;
+use crate::load::overwrite::{self, Likeness};
 use crate::load::streams::{self, is_standard};
-use crate::request::{MeshOutput, Outputs};
+use crate::request::{MeshOutput, Outputs, ReadRequest};
 use crate::terminal::tell;
 
 /// Writes a mesh in another format. Returns an error if the format does not hold all of the mesh, unless `--lossy` is
@@ -51,6 +55,9 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     }
     let written = conversion.destinations(&args.output);
     outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
+    if !args.force {
+        check_overwrite(&file, &conversion, &written, args.reading.into())?;
+    }
     conversion.write(&args.output)?;
     if !show.quiet {
         let mesh = file.mesh();
@@ -61,6 +68,27 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
         ));
     }
     Ok(())
+}
+
+/// Checks that no file in `written` holds another mesh, or something else than a mesh.
+fn check_overwrite(
+    file: &LoadedMesh,
+    conversion: &Conversion,
+    written: &[PathBuf],
+    reading: ReadRequest,
+) -> Result<(), CliError> {
+    // The mesh that is there may be an STL, whatever the format of IN is.
+    let reading = ReadRequest { weld: true, ..reading };
+    let found = overwrite::check(file, written, reading.options(), Likeness::Triangles);
+    let Err(error) = found else { return Ok(()) };
+    // Formats may number vertices in another way. Then the file is known by its bytes.
+    let is_same = |path: &PathBuf, new: Vec<u8>| fs::read(path).is_ok_and(|old| old == new);
+    if let ([path], Some(new)) = (written, conversion.bytes())
+        && is_same(path, new)
+    {
+        return Ok(());
+    }
+    Err(error.with_remedy("Give OUT another name, or replace the file by --force"))
 }
 
 /// Returns the format to write: that of `--to`, or that of the ending of OUT.

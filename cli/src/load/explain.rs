@@ -48,10 +48,10 @@ pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTr
         file: place.path.display().to_string(),
         line: match place.location {
             Location::Line(line) => Some(line),
-            Location::Byte(_) => None,
+            Location::Byte(_) | Location::Unknown => None,
         },
         byte: match place.location {
-            Location::Line(_) => None,
+            Location::Line(_) | Location::Unknown => None,
             Location::Byte(byte) => Some(byte),
         },
         vertices: corners(bad).map(|v| names[&v].label),

@@ -4,6 +4,7 @@ pub(crate) mod explain;
 mod fields;
 mod mesh;
 mod movable;
+pub(crate) mod overwrite;
 pub(crate) mod remarks;
 mod slide;
 pub(crate) mod streams;

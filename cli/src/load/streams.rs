@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use mesh_io::{MeshFile, PointField, ReadOptions};
+use mesh_io::{MeshFile, PointField};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -16,7 +16,7 @@ pub(crate) fn read(path: &Path, request: ReadRequest) -> Result<LoadedMesh, CliE
 }
 
 fn read_source(path: &Path, request: ReadRequest) -> Result<MeshFile, CliError> {
-    let options = ReadOptions::new().weld(request.weld);
+    let options = request.options();
     if !is_standard(path) {
         return Ok(options.read(path)?);
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 use gpu_smooth::{
     Chart, Mesh, MeshError, Outside, Precision, Smoother, Surface, TargetField, Targets,
 };
-use mesh_io::{MeshFile, Solution, View};
+use mesh_io::{MeshFile, ReadError, Solution, View};
 
 use crate::load::{explain, lay_out};
 use crate::request::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};
@@ -123,7 +123,13 @@ fn field_of_mesh(
     what: TargetNumbers,
     surface: Surface,
 ) -> Result<TargetField, CliError> {
-    let read = MeshFile::read(path).map_err(|error| of_background(error.into()))?;
+    let read = MeshFile::read(path).map_err(|error| match error {
+        // No option lets a background mesh name files elsewhere.
+        ReadError::Outside { .. } => {
+            of_background(CliError::from(error).with_remedy("Move the file beside the mesh"))
+        }
+        error => of_background(error.into()),
+    })?;
     let mut background = LoadedMesh::new(read);
     lay_out(&mut background, surface)?;
     let numbers = given(&background, data, components(what))?;

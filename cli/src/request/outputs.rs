@@ -44,6 +44,8 @@ enum Role {
 /// All files that a command writes.
 pub(crate) struct Outputs {
     pub(crate) mesh: MeshOutput,
+    /// Whether the mesh may replace a file that holds another mesh, or no mesh.
+    pub(crate) replaces_any: bool,
     pub(crate) report: Option<PathBuf>,
     pub(crate) picture: Option<PictureRequest>,
     /// The page for a browser.
@@ -60,6 +62,7 @@ impl Outputs {
     pub(crate) fn of_mesh(mesh: MeshOutput) -> Self {
         Self {
             mesh,
+            replaces_any: false,
             report: None,
             picture: None,
             page: None,
@@ -82,6 +85,8 @@ impl Outputs {
                 Some(_) => MeshOutput::OfMany,
                 None => MeshOutput::Smoothed,
             },
+            // Who resumes says that the directory holds results.
+            replaces_any: args.force || args.resume,
             report: args.report.clone(),
             picture: PictureRequest::of(&args.picture)?,
             page: args.html.clone(),
@@ -168,6 +173,30 @@ impl Outputs {
             Some(error) => Err(error),
             None => Ok(()),
         }
+    }
+
+    /// Checks that OUT is not a file of the mesh beside the one that was given as IN: who names two files of a mesh may take them
+    /// for two meshes. `files` are all files of the mesh, the main file first.
+    ///
+    /// # Errors
+    /// Of the kind [`Output`](ErrorKind::Output).
+    pub(crate) fn check_companion(
+        input: &Path,
+        out: &Path,
+        files: &[PathBuf],
+    ) -> Result<(), CliError> {
+        let Some(part) = files.iter().position(|own| is_same(own, out)) else { return Ok(()) };
+        // A name without an ending is that of the whole mesh, and so is the main file then.
+        if is_same(input, out) || (part == 0 && !input.is_file()) {
+            return Ok(());
+        }
+        let (shown, input) = (out.display(), input.display());
+        let text =
+            format!("{shown}: this file and {input} are of one mesh, which it would replace");
+        let remedy = format!(
+            "To smooth the mesh in place, name one file twice ({input} {input}), or give OUT another name"
+        );
+        Err(CliError::output(text).with_remedy(remedy))
     }
 
     /// Returns the error if the mesh may not replace one of its own files.

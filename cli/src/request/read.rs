@@ -1,5 +1,7 @@
 //! The request on how meshes are read.
 
+use mesh_io::ReadOptions;
+
 use crate::args::ReadArgs;
 
 /// How meshes are read.
@@ -7,10 +9,19 @@ use crate::args::ReadArgs;
 pub(crate) struct ReadRequest {
     /// Whether corners of triangles at one place are joined to one vertex. Only an STL needs it.
     pub(crate) weld: bool,
+    /// Whether a mesh may name files outside of its directory.
+    pub(crate) allow_outside: bool,
+}
+
+impl ReadRequest {
+    /// Returns the options by which the library reads a mesh.
+    pub(crate) fn options(self) -> ReadOptions {
+        ReadOptions::new().weld(self.weld).allow_outside(self.allow_outside)
+    }
 }
 
 impl From<ReadArgs> for ReadRequest {
     fn from(args: ReadArgs) -> Self {
-        Self { weld: args.weld }
+        Self { weld: args.weld, allow_outside: args.allow_outside }
     }
 }

@@ -1,13 +1,17 @@
-//! The signals that ask a run to end: SIGINT (Ctrl-C) and SIGTERM.
+//! The signals that ask a run to end: SIGINT (Ctrl-C), SIGTERM, and SIGHUP of a closed terminal.
 //!
 //! Before there is a smoothed state, a signal ends the process at once. After that, the first signal ends the run at the
 //! next sweep, and the best mesh so far is written; a second one ends the process at once. No half-written file is left.
 
+#[cfg(unix)]
+use std::io::IsTerminal;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+#[cfg(unix)]
+use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{flag, low_level};
 
@@ -39,7 +43,7 @@ pub(crate) fn watch(quiet: bool) {
         let arrived = Arc::new(AtomicBool::new(false));
         flag::register(signal, Arc::clone(&arrived)).ok().map(|_| (signal, arrived))
     };
-    let signals: Vec<_> = [SIGINT, SIGTERM].into_iter().filter_map(register).collect();
+    let signals: Vec<_> = signals().into_iter().filter_map(register).collect();
     let wait = move || loop {
         std::thread::sleep(INTERVAL);
         for (signal, arrived) in &signals {
@@ -49,6 +53,29 @@ pub(crate) fn watch(quiet: bool) {
         }
     };
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
+}
+
+/// Lists the signals that ask a run to end. SIGHUP is none of them if the process was started to outlive its terminal, as by nohup.
+fn signals() -> Vec<i32> {
+    #[cfg(unix)]
+    if !ignores_hangup() {
+        return vec![SIGINT, SIGTERM, SIGHUP];
+    }
+    vec![SIGINT, SIGTERM]
+}
+
+/// Whether the process was started with SIGHUP ignored. Where the system does not tell it, it was if the standard output is no
+/// terminal, as nohup leaves none.
+#[cfg(unix)]
+fn ignores_hangup() -> bool {
+    let ignored = std::fs::read_to_string("/proc/self/status").ok().and_then(|status| {
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
+        u64::from_str_radix(mask.trim(), 16).ok()
+    });
+    match ignored {
+        Some(mask) => mask & (1 << (SIGHUP - 1)) != 0,
+        None => !std::io::stdout().is_terminal(),
+    }
 }
 
 /// Handles a signal: the first one asks the run to end if there is a result. Otherwise the process ends.
@@ -94,7 +121,7 @@ pub(crate) fn exit_code() -> ExitCode {
     }
 }
 
-/// Returns the exit status by which shells tell the end by a signal: 130 or 143.
+/// Returns the exit status by which shells tell the end by a signal: 130, 143 or 129.
 fn exit_status(signal: i32) -> u8 {
     128 + signal as u8
 }

@@ -1,6 +1,6 @@
 //! Prints everything that the program prints.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
 
+use std::fmt::Arguments;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,10 +27,16 @@ pub(crate) fn is_json() -> bool {
     JSON.load(Ordering::Relaxed)
 }
 
+/// Writes a line to standard error. Nothing is done if that fails, as where the terminal was closed: the run must go on to its
+/// end.
+fn put(line: Arguments<'_>) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
 /// Writes an event to standard error as a line of JSON, with the seconds since the process began.
 pub(crate) fn event(mut event: Value) {
     event["seconds"] = START.get_or_init(Instant::now).elapsed().as_secs_f64().into();
-    eprintln!("{event}");
+    put(format_args!("{event}"));
 }
 
 /// Prints a result to the standard output. It is no error if the reader has gone, as `head` does; a full disk ends the
@@ -47,7 +53,7 @@ pub(crate) fn say(text: &str) {
 
 /// Prints a result to the standard error, where the standard output is the mesh.
 pub(crate) fn aside(text: &str) {
-    eprintln!("{text}");
+    put(format_args!("{text}"));
 }
 
 /// Prints a remark to the standard error, unless `quiet`.
@@ -55,7 +61,7 @@ pub(crate) fn note(quiet: bool, text: &str) {
     match () {
         () if quiet => {}
         () if is_json() => event(json!({ "event": "note", "message": text })),
-        () => eprintln!("gpu-smooth: {}", printable(text)),
+        () => put(format_args!("gpu-smooth: {}", printable(text))),
     }
 }
 
@@ -72,7 +78,7 @@ fn printable(text: &str) -> String {
 /// Ends the last line of a terminal, where a bar may stand.
 pub(crate) fn leave_bar() {
     if std::io::stderr().is_terminal() && !is_json() {
-        eprintln!();
+        put(format_args!(""));
     }
 }
 
@@ -89,8 +95,10 @@ pub(crate) fn error(error: &CliError) {
             }
             event(line);
         }
-        false if is_colored() => eprintln!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {shown}"),
-        false => eprintln!("gpu-smooth: error: {shown}"),
+        false if is_colored() => {
+            put(format_args!("gpu-smooth: \u{1b}[1;31merror:\u{1b}[0m {shown}"));
+        }
+        false => put(format_args!("gpu-smooth: error: {shown}")),
     }
 }
 

@@ -96,7 +96,10 @@ fn conversions_that_cannot_work_are_refused() {
     fs::write(folder.path("out.poly"), "0").unwrap();
     let no_lines = SMS.replace("NS 1 2 -3 \"shore\"\n", "").replace("MAT 2 \"mud\"\n", "");
     fs::write(folder.path("plain.2dm"), no_lines).unwrap();
-    folder.line("convert plain.2dm out.node").refused(&["out.poly of another mesh is there"]);
+    folder.line("convert plain.2dm out.node").refused(&["out.poly: exists, and cannot be read"]);
+    folder
+        .line("convert plain.2dm out.node --force")
+        .refused(&["out.poly of another mesh is there"]);
     assert!(!folder.path("out.node").exists());
 }
 

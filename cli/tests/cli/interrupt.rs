@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// A running command that a test can send signals to.
 pub(crate) struct Started {
     child: Child,
-    err: BufReader<ChildStderr>,
+    err: Option<BufReader<ChildStderr>>,
     /// Dropped when the process has ended.
     _running: Sender<()>,
 }
@@ -23,9 +23,14 @@ pub(crate) struct Started {
 impl Started {
     pub(crate) fn new(folder: &Folder, args: &[&str]) -> Self {
         let mut command = folder.command();
-        command.args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.args(args);
+        Self::of(command)
+    }
+
+    fn of(mut command: Command) -> Self {
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
-        let err = BufReader::new(child.stderr.take().unwrap());
+        let err = Some(BufReader::new(child.stderr.take().unwrap()));
         let (running, ended) = mpsc::channel();
         let id = child.id().to_string();
         std::thread::spawn(move || {
@@ -49,7 +54,7 @@ impl Started {
     /// Returns the next line on standard error.
     fn line(&mut self) -> String {
         let mut line = String::new();
-        self.err.read_line(&mut line).unwrap();
+        self.err.as_mut().unwrap().read_line(&mut line).unwrap();
         line
     }
 
@@ -90,11 +95,22 @@ impl Started {
         }
     }
 
+    /// Closes the ends at which the output of the command is read.
+    fn close_streams(&mut self) {
+        self.err = None;
+        self.child.stdout = None;
+    }
+
+    /// Waits for the end. Returns the exit code.
+    fn wait(mut self) -> Option<i32> {
+        self.child.wait().unwrap().code()
+    }
+
     /// Waits for the end. Returns exit code, standard output, and the rest of standard error.
     pub(crate) fn end(mut self) -> (Option<i32>, String, String) {
         let (mut out, mut err) = (String::new(), String::new());
         self.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
-        self.err.read_to_string(&mut err).unwrap();
+        self.err.as_mut().unwrap().read_to_string(&mut err).unwrap();
         (self.child.wait().unwrap().code(), out, err)
     }
 }
@@ -121,7 +137,7 @@ pub(crate) fn names(folder: &Folder) -> Vec<String> {
 #[test]
 fn an_interrupted_run_leaves_the_best_mesh_so_far() {
     for (engine, signal, code) in
-        [("cpu", "-INT", 130), ("cpu", "-TERM", 143), ("gpu", "-INT", 130)]
+        [("cpu", "-INT", 130), ("cpu", "-TERM", 143), ("cpu", "-HUP", 129), ("gpu", "-INT", 130)]
     {
         let folder = Folder::new(&[]);
         let mut run =
@@ -164,6 +180,39 @@ fn an_interrupted_run_reports_that_its_goal_was_not_reached() {
     assert_holds(&out, &["\ninterrupted after ", " % of the way to f = 1.000000"]);
 }
 
+/// A closed terminal takes no more text: here the standard error is a pipe whose reader has gone.
+#[test]
+fn a_run_whose_terminal_is_closed_leaves_the_best_mesh_and_its_checkpoint() {
+    let folder = small();
+    let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
+    let args = ["in", "out", "--engine", "cpu", "--checkpoint", "state"];
+    let mut run = Started::new(&folder, &[&args[..], &lasting].concat());
+    run.first_of("gpu-smooth: sweep ");
+    run.close_streams();
+    run.signal("-HUP");
+    assert_eq!(run.wait(), Some(129));
+    assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
+    assert_eq!(names(&folder), ["in.ele", "in.node", "out.ele", "out.node", "state"]);
+}
+
+#[test]
+fn a_run_that_was_started_to_outlive_its_terminal_does() {
+    let folder = small();
+    let program = env!("CARGO_BIN_EXE_gpu-smooth");
+    let line = format!(
+        "trap '' HUP; exec {program} in out --engine cpu -v --tolerance 0 --max-sweeps 100000000"
+    );
+    let mut command = Command::new("sh");
+    command.current_dir(&folder.0).args(["-c", &line]);
+    let mut run = Started::of(command);
+    run.first_of("gpu-smooth: sweep ");
+    run.signal("-HUP");
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(!run.has_ended());
+    run.signal("-TERM");
+    assert_eq!(run.end().0, Some(143));
+}
+
 #[test]
 fn an_interrupt_while_the_file_is_read_ends_at_once_with_nothing_written() {
     let folder = Folder::new(&[]);
@@ -203,7 +252,8 @@ fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     make_pipe(&folder, "out.ele");
     let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
     let args =
-        [&["in", "out.node", "--engine", "cpu", "--report", "r.json"][..], &lasting].concat();
+        [&["in", "out.node", "--engine", "cpu", "--report", "r.json", "--force"][..], &lasting]
+            .concat();
     let mut run = Started::new(&folder, &args);
     run.first_of("gpu-smooth: sweep ");
     run.signal("-INT");

@@ -152,7 +152,7 @@ fn a_mesh_that_does_not_fit_on_the_disk_leaves_the_old_one() {
     let folder = Folder::new(&[&[("in.node", &*node), ("in.ele", &*ele)][..], &old].concat());
     let kept = folder.content();
     // One or two kilobytes: a block has 512 or 1024 bytes, depending on the shell.
-    let line = "ulimit -f 2; exec \"$0\" in out.node --engine cpu";
+    let line = "ulimit -f 2; exec \"$0\" in out.node --engine cpu --force";
     let mut command = std::process::Command::new("sh");
     command.current_dir(&folder.0).args(["-c", line, env!("CARGO_BIN_EXE_gpu-smooth")]);
     finish(&mut command).refused(&["out.node: ", "Let files be larger (ulimit -f)"]);

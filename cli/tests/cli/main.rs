@@ -24,6 +24,8 @@ mod many;
 mod moving;
 mod options;
 mod output;
+mod outside;
+mod overwrite;
 mod periodic;
 mod picture;
 mod plate;

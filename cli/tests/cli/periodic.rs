@@ -216,10 +216,10 @@ fn pairs_of_su2_are_found_by_its_motions_or_between_markers() {
     slides_together(&folder, "markers.su2", 3, "--periodic left,right");
     slides_together(&folder, "markers.su2", 3, "--periodic right,left");
     slides_together(&folder, "listed.su2", 3, "");
-    let run = folder.line("one.su2 out.su2 --engine cpu --slide");
+    let run = folder.line("one.su2 out.su2 --engine cpu --slide --force");
     assert_holds(&run.err, &["--slide: 20 vertices"]);
     for unknown in ["two.su2", "other.su2"] {
-        let run = folder.line(&format!("{unknown} out.su2 --engine cpu --slide"));
+        let run = folder.line(&format!("{unknown} out.su2 --engine cpu --slide --force"));
         assert_holds(
             &run.err,
             &["no vertex can slide", "the boundary stays, as the model is periodic"],
@@ -230,7 +230,7 @@ fn pairs_of_su2_are_found_by_its_motions_or_between_markers() {
         ("left,middle", "`gpu-smooth groups` lists"),
         ("left,left", "no translation or rotation"),
     ] {
-        let line = format!("markers.su2 out.su2 --engine cpu --slide --periodic {names}");
+        let line = format!("markers.su2 out.su2 --engine cpu --slide --force --periodic {names}");
         let run = folder.line(&line);
         assert!(run.code != Some(0), "{names}");
         assert_holds(&run.err, &[told]);

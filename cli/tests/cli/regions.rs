@@ -65,7 +65,7 @@ fn interfaces_that_lines_hold_are_told_where_they_were_to_be_free() {
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert_holds(&run.err, &[told]);
     assert_holds(&folder.json("r.json").to_string(), &[told]);
-    let run = folder.line("none.msh out.msh --engine cpu --free-interfaces");
+    let run = folder.line("none.msh out.msh --engine cpu --free-interfaces --force");
     assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
 }
 

@@ -186,7 +186,7 @@ fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
         ("sizes.pos", &view(&part)),
     ]);
     let f = |mesh: &str, target: &str| {
-        let options = "--engine cpu --surface sphere --report r.json";
+        let options = "--engine cpu --surface sphere --report r.json --force";
         let run = folder.line(&format!("{mesh} out.gr3 {options} --target {target}"));
         assert_eq!(run.code, Some(0), "{target}: {}", run.err);
         assert!(!run.err.contains("outside of"), "{}", run.err);

@@ -4,4 +4,5 @@
 mod faults;
 pub(crate) mod replace;
 pub(crate) mod source;
+pub(crate) mod stamp;
 pub(crate) mod system;

@@ -33,12 +33,33 @@ pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
     replace_all_on(&System, jobs)
 }
 
+/// Writes all of the files as [`replace_all`] does, if `check` succeeds when the new content is written and no file has taken its
+/// place.
+///
+/// # Errors
+/// Those of [`replace_all`], and the error of `check`; then what stood there is as it was.
+pub(crate) fn replace_all_if(
+    jobs: &[Job<'_>],
+    check: &dyn Fn() -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
+    replace_checked(&System, jobs, check)
+}
+
 pub(crate) fn replace_all_on(disk: &dyn Disk, jobs: &[Job<'_>]) -> Result<(), WriteError> {
+    replace_checked(disk, jobs, &|| Ok(()))
+}
+
+fn replace_checked(
+    disk: &dyn Disk,
+    jobs: &[Job<'_>],
+    check: &dyn Fn() -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
     let staged = jobs.iter().map(|(path, content)| stage(disk, path, content));
     let staged = staged.collect::<Result<Vec<_>, _>>()?;
     // Declared before what it protects, so that it is dropped after it.
     let _committing = lock(&COMMITTING);
     let mut staged = staged;
+    check()?;
     let Some((first, others)) = staged.split_first_mut() else { return Ok(()) };
     if others.iter().any(Staged::changes) {
         first.set_aside(disk).map_err(|source| refused(&first.target, source))?;
@@ -344,7 +365,8 @@ fn resolve(path: &Path) -> io::Result<(PathBuf, Option<fs::Metadata>)> {
     }
 }
 
-fn directory_of(path: &Path) -> &Path {
+/// Returns the directory that a path names; `.` if it names none.
+pub(crate) fn directory_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
         Some(parent) => parent,

@@ -2,6 +2,8 @@
 
 use crate::compress::packed;
 use crate::compress::packed::{Packed, Unpackable};
+use crate::disk::replace::directory_of;
+use crate::disk::stamp::KnownState;
 use crate::error::{Location, ReadError};
 use crate::parallel::map_parts;
 use std::fs::{self, File};
@@ -21,6 +23,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReadOptions {
     pub(crate) welds: bool,
+    pub(crate) allows_outside: bool,
 }
 
 impl ReadOptions {
@@ -34,7 +37,15 @@ impl ReadOptions {
     /// them, and a moved vertex is written wherever the file has it. Off by default.
     #[must_use]
     pub fn weld(self, welds: bool) -> ReadOptions {
-        ReadOptions { welds }
+        ReadOptions { welds, ..self }
+    }
+
+    /// Sets whether a mesh file may name files outside of its own directory, and so have them read, and replaced by a write in
+    /// place. Symbolic links are followed before the directories are compared. Off by default, as a mesh file may come from
+    /// someone else; such a file is then [`ReadError::Outside`].
+    #[must_use]
+    pub fn allow_outside(self, allows_outside: bool) -> ReadOptions {
+        ReadOptions { allows_outside, ..self }
     }
 }
 
@@ -45,6 +56,8 @@ pub(crate) struct Source {
     /// The compressed bytes of the file, if it is compressed.
     pub(crate) packed: Option<Packed>,
     pub(crate) options: ReadOptions,
+    /// The state of the file on the disk when it was read, or last written by this process.
+    pub(crate) known: KnownState,
     /// The other files of the mesh.
     pub(crate) companions: Vec<Companion>,
 }
@@ -67,8 +80,9 @@ impl Companion {
 
 impl Source {
     pub(crate) fn load(path: &Path) -> Result<Source, ReadError> {
+        let known = KnownState::before_reading(path);
         match content(path) {
-            Ok(bytes) => Source::new(path, bytes),
+            Ok(bytes) => Ok(Source { known, ..Source::new(path, bytes)? }),
             Err(source) => {
                 let remedy = match source.kind() {
                     ErrorKind::NotFound => "Check the name",
@@ -89,6 +103,7 @@ impl Source {
             bytes,
             packed: None,
             options: ReadOptions::new(),
+            known: KnownState::default(),
             companions: Vec::new(),
         };
         match packed::unpack(&source.bytes) {
@@ -118,6 +133,33 @@ impl Source {
         ReadError::Format { path, problem: problem.into(), remedy: remedy.into() }
     }
 
+    /// Checks that `path`, which `names` gives at a byte of this file, leads into the directory of the mesh file `mesh`, unless
+    /// the options of `mesh` allow other directories. A path without a file passes.
+    ///
+    /// # Errors
+    /// [`ReadError::Outside`] if the file is in another directory.
+    pub(crate) fn check_inside(
+        &self,
+        mesh: &Source,
+        path: &Path,
+        names: &str,
+        at: usize,
+    ) -> Result<(), ReadError> {
+        if mesh.options.allows_outside {
+            return Ok(());
+        }
+        let Ok(target) = fs::canonicalize(path) else { return Ok(()) };
+        let own = fs::canonicalize(directory_of(&mesh.path)).ok();
+        // The mesh file itself may be a link. What lies beside its target is also its own.
+        let linked = fs::canonicalize(&mesh.path).ok();
+        let linked = linked.as_deref().and_then(Path::parent);
+        if own.as_deref().into_iter().chain(linked).any(|folder| target.starts_with(folder)) {
+            return Ok(());
+        }
+        let (path, location) = (self.path.clone(), Location::Line(self.line_of(at)));
+        Err(ReadError::Outside { path, location, names: names.to_owned(), target })
+    }
+
     /// Returns the offset of the content, after a byte order mark if there is one.
     pub(crate) fn begin(&self) -> usize {
         if self.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 }
@@ -126,6 +168,11 @@ impl Source {
     /// Returns the line of a byte, counted from 1.
     pub(crate) fn line_of(&self, at: usize) -> usize {
         1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
+    }
+
+    /// Returns the bytes that the file had when it was read, compressed if it is compressed.
+    pub(crate) fn stored(&self) -> &[u8] {
+        self.packed.as_ref().map_or(&self.bytes, |packed| &packed.bytes)
     }
 
     /// Returns the files of the mesh: this file, then its companions.

@@ -9,8 +9,9 @@ use super::sum::Sum;
 use crate::edit::numbers::{Encoded, Splice};
 use std::ops::Range;
 
-/// Datasets whose numbers may change, one after another. What is compressed anew and is no longer than before takes the place it
-/// had, else it goes to the end of the file.
+/// Datasets whose numbers may change, one after another. A chunk that is compressed anew and is no longer than before takes the
+/// place it had, else it goes to the end of the file. Chunks of these datasets that lie at the end of the file already are put
+/// there one after another again, so that a file that is written in place many times does not grow without bound.
 pub(crate) struct Encoding {
     parts: Vec<Part>,
     /// The numbers of all of them.
@@ -68,6 +69,52 @@ impl Encoding {
         (value as u64).to_le_bytes()[..self.address.min(8)].to_vec()
     }
 
+    /// Puts the chunks that follow each other up to the end of the file there again, from the first one on that gets another
+    /// length, and takes their new bytes from `changed`. Does nothing if something else was put to the end before.
+    fn relay(
+        &self,
+        changed: &mut [(&Chunk, Option<Vec<u8>>)],
+        file: &[u8],
+        end: &mut usize,
+        splices: &mut Vec<Splice>,
+    ) {
+        if *end != file.len() {
+            return;
+        }
+        // Each chunk of the file with its index in `changed`.
+        let mut by_start: Vec<usize> = (0..changed.len()).collect();
+        by_start.sort_unstable_by_key(|&at| changed[at].0.range.start);
+        let index_of = |chunk: &Chunk| {
+            let found =
+                by_start.binary_search_by_key(&chunk.range.start, |&at| changed[at].0.range.start);
+            found.ok().map(|place| by_start[place])
+        };
+        let movable = self.chunks().filter(|chunk| chunk.entry.is_some());
+        let mut chunks: Vec<(&Chunk, Option<usize>)> =
+            movable.map(|chunk| (chunk, index_of(chunk))).collect();
+        chunks.sort_unstable_by_key(|(chunk, _)| chunk.range.start);
+        let (mut first, mut start) = (chunks.len(), file.len());
+        while first > 0 && chunks[first - 1].0.range.end == start {
+            first -= 1;
+            start = chunks[first].0.range.start;
+        }
+        let keeps_length = |(chunk, at): &&(&Chunk, Option<usize>)| {
+            let new = at.and_then(|at| changed[at].1.as_ref());
+            new.is_none_or(|new| new.len() == chunk.range.len())
+        };
+        first += chunks[first..].iter().take_while(keeps_length).count();
+        let Some(start) = chunks.get(first).map(|(chunk, _)| chunk.range.start) else { return };
+        let mut bytes = Vec::new();
+        for &(chunk, at) in &chunks[first..] {
+            let new = at.and_then(|at| changed[at].1.take());
+            let own = new.as_deref().unwrap_or(&file[chunk.range.clone()]);
+            self.enter(chunk, start + bytes.len(), own.len(), splices);
+            bytes.extend_from_slice(own);
+        }
+        *end = start + bytes.len();
+        splices.push(Splice { range: start..file.len(), bytes });
+    }
+
     /// What replaces a chunk that becomes these bytes; `end` is where the file ends so far.
     fn stored(
         &self,
@@ -77,13 +124,19 @@ impl Encoding {
         end: &mut usize,
         splices: &mut Vec<Splice>,
     ) {
-        let Chunk { range, entry, .. } = chunk;
-        let length = bytes.len();
+        let (range, length) = (&chunk.range, bytes.len());
         let (mut start, mut place) = (range.start, range.start..range.start + length);
         if length > range.len() {
             (start, place) = (*end, file.len()..file.len());
             *end += length;
         }
+        self.enter(chunk, start, length, splices);
+        splices.push(Splice { range: place, bytes });
+    }
+
+    /// Changes what the index says of a chunk that gets another place or length.
+    fn enter(&self, chunk: &Chunk, start: usize, length: usize, splices: &mut Vec<Splice>) {
+        let Chunk { range, entry, .. } = chunk;
         if let Some(Entry { address, size, .. }) = entry {
             if start != range.start {
                 let place = *address..*address + self.address;
@@ -94,7 +147,6 @@ impl Encoding {
                 splices.push(Splice { range: place.clone(), bytes: value });
             }
         }
-        splices.push(Splice { range: place, bytes });
     }
 }
 
@@ -116,7 +168,7 @@ impl Encoded for Encoding {
     }
 
     fn splices(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<Splice> {
-        let mut splices = Vec::new();
+        let mut changed: Vec<(&Chunk, Option<Vec<u8>>)> = Vec::new();
         for Part { pieces, own } in &self.parts {
             let (old, new) = (&self.bytes[own.clone()], &new[own.clone()]);
             let Some(lattice) = pieces.lattice.as_ref().filter(|_| old != new) else { continue };
@@ -134,6 +186,13 @@ impl Encoded for Encoding {
                     bytes.to_mut()[to..to + length].copy_from_slice(&new[at..at + length]);
                 });
                 let stored = filters::filtered(&pieces.filters, chunk.mask, bytes.into_owned());
+                changed.push((chunk, Some(stored)));
+            }
+        }
+        let mut splices = Vec::new();
+        self.relay(&mut changed, file, end, &mut splices);
+        for (chunk, stored) in changed {
+            if let Some(stored) = stored {
                 self.stored(chunk, stored, file, end, &mut splices);
             }
         }
@@ -142,7 +201,7 @@ impl Encoded for Encoding {
 
     fn follow(&self, file: &[u8], splices: &[Splice], end: usize) -> Vec<Splice> {
         let mut more = Vec::new();
-        if end > file.len() {
+        if end != file.len() {
             more.push(Splice { range: self.end.place.clone(), bytes: self.address_of(end) });
         }
         let mut sums: Vec<&Sum> = self.sums().collect();

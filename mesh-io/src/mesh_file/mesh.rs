@@ -135,10 +135,7 @@ impl MeshFile {
 
     /// Lists all files that were read, in the order of [`paths`](Self::paths), with their bytes.
     pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
-        self.parts().into_iter().map(|source| {
-            let bytes = source.packed.as_ref().map_or(&source.bytes, |packed| &packed.bytes);
-            (source.path.as_path(), &bytes[..])
-        })
+        self.parts().into_iter().map(|source| (source.path.as_path(), source.stored()))
     }
 
     /// Returns x and y of each vertex, in the order of the file, in its unit.

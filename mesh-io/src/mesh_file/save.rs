@@ -4,6 +4,7 @@ use crate::compress::packed::Packing;
 use crate::detect;
 use crate::disk::replace;
 use crate::disk::replace::Job;
+use crate::disk::source::Source;
 use crate::edit::column::Column;
 use crate::edit::numbers::{Encoded, Splice};
 use crate::edit::rewrite::Rewrite;
@@ -36,7 +37,8 @@ impl MeshFile {
     ///
     /// # Errors
     /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), if the points are not finite
-    /// or not one per vertex, or if the system refuses. Existing files are then unchanged.
+    /// or not one per vertex, if the system refuses, or if a file that was read would be replaced but has another content than
+    /// when it was read, or last written here ([`WriteError::Changed`]). Existing files are then unchanged.
     pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
         self.write_with(path, points, &[])
     }
@@ -67,13 +69,27 @@ impl MeshFile {
                 }),
             )
         };
-        let mut jobs: Vec<_> = self.destinations(path)?.into_iter().enumerate().map(job).collect();
+        let destinations = self.destinations(path)?;
+        let parts = self.parts().into_iter().zip(&destinations);
+        let in_place: Vec<&Source> = parts
+            .filter(|(part, destination)| replace::same_file(&part.path, destination))
+            .map(|(part, _)| part)
+            .collect();
+        let mut jobs: Vec<_> = destinations.iter().cloned().enumerate().map(job).collect();
         // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
         // leave its place if that is left to the one with the coordinates.
         if self.part() > 0 && self.is_written(&jobs[0].0, renamed) {
             jobs.swap(0, self.part());
         }
-        replace::replace_all(&jobs)
+        replace::replace_all_if(&jobs, &|| match in_place
+            .iter()
+            .find(|part| part.known.is_past(&part.path, part.stored()))
+        {
+            Some(changed) => Err(WriteError::Changed { path: changed.path.clone() }),
+            None => Ok(()),
+        })?;
+        in_place.iter().for_each(|part| part.known.note_written(&part.path));
+        Ok(())
     }
 
     /// Whether the destination of the main file already has exactly the bytes that would be written.

@@ -8,6 +8,7 @@ pub(crate) fn source(text: &[u8]) -> Source {
         bytes: text.to_vec(),
         packed: None,
         options: crate::ReadOptions::new(),
+        known: crate::disk::stamp::KnownState::default(),
         companions: Vec::new(),
     }
 }

@@ -39,7 +39,8 @@ pub(crate) fn parse_by(
     for (vertex, point) in points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let (location, label, part) = vertex_places(reader, source, &[vertex])[0];
+            let place = vertex_places(reader, source, &[vertex]).into_iter().next();
+            let (location, label, part) = place.unwrap_or(not_found(vertex));
             let source = source.parts().nth(part).unwrap_or(source);
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
@@ -69,7 +70,13 @@ pub(crate) fn parse_by(
     })
 }
 
-/// Location and tag, and which of the files that is, of the vertices with these indices, ascending, in a file that was read before.
+/// Returns what stands for the place and the tag of an item that a second walk did not find: the main file, and its index.
+pub(crate) fn not_found(index: usize) -> (Location, u64, usize) {
+    (Location::Unknown, index as u64, 0)
+}
+
+/// Location and tag, and which of the files that is, of the vertices with these indices, ascending, in a file that was read before. The last
+/// ones are left out if the walk does not come to them.
 pub(crate) fn vertex_places(
     reader: &Reader,
     source: &Source,
@@ -78,7 +85,8 @@ pub(crate) fn vertex_places(
     find(reader, source, indices, &[])
 }
 
-/// Location and tag, and which of the files that is, of the triangles with these indices, ascending, in a file that was read before.
+/// Location and tag, and which of the files that is, of the triangles with these indices, ascending, in a file that was read before. The last
+/// ones are left out if the walk does not come to them.
 pub(crate) fn triangle_places(
     reader: &Reader,
     source: &Source,
@@ -316,7 +324,7 @@ fn find(
     let places = Vec::with_capacity(nodes.len() + triangles.len());
     let mut locator =
         Locator { nodes: wanted(nodes), triangles: wanted(triangles), places, source };
-    // There is no error to handle: the file was read before without one.
+    // The file was read before without an error. If there is one now, items after it are not found.
     let _ = (reader.walk)(source, &mut locator);
     locator.places
 }

@@ -2,7 +2,7 @@
 
 use super::facts::fixed;
 use super::hdf5::{SAMPLES, bits, made, moved, refused};
-use mesh_io::{Conversion, MeshFile};
+use mesh_io::{Conversion, MeshFile, ReadError, ReadOptions};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -153,5 +153,46 @@ fn attributes_in_files_beside_a_mesh_are_read() {
         for (_, format) in Conversion::targets() {
             assert!(Conversion::new(&file, format).unwrap().is_some());
         }
+    }
+}
+
+#[test]
+fn files_outside_of_the_directory_of_a_mesh_are_errors_without_leave() {
+    let sample = &SAMPLES[0];
+    let folder = sample.folder();
+    fs::create_dir_all(folder.path("sub/deep")).unwrap();
+    let text = folder.text(sample.name);
+    let write = |at: &str, file: &str| {
+        fs::write(folder.path(at), text.replace("dolfin.h5", file)).unwrap();
+        folder.path(at)
+    };
+    let path = write("sub/in.xdmf", "../dolfin.h5");
+    match MeshFile::read(&path) {
+        Err(ReadError::Outside { names, target, .. }) => {
+            assert_eq!(names, "../dolfin.h5");
+            assert_eq!(target, fs::canonicalize(folder.path("dolfin.h5")).unwrap());
+        }
+        other => panic!("{other:?}"),
+    }
+    refused(MeshFile::read(&path), &["sub/in.xdmf:7: it names", "ReadOptions::allow_outside"]);
+    ReadOptions::new().allow_outside(true).read(&path).unwrap();
+    // Below the directory, and there and back, is inside.
+    fs::copy(folder.path("dolfin.h5"), folder.path("sub/deep/v.h5")).unwrap();
+    MeshFile::read(&write("sub/below.xdmf", "deep/v.h5")).unwrap();
+    MeshFile::read(&write("sub/back.xdmf", "../sub/deep/v.h5")).unwrap();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::symlink;
+        // A mesh that is reached by a link may have the files beside its target.
+        write("sub/y.xdmf", "y.h5");
+        fs::copy(folder.path("dolfin.h5"), folder.path("sub/y.h5")).unwrap();
+        for name in ["y.xdmf", "y.h5"] {
+            symlink(format!("../{name}"), folder.path(&format!("sub/deep/{name}"))).unwrap();
+        }
+        MeshFile::read(&folder.path("sub/deep/y.xdmf")).unwrap();
+        symlink("v.h5", folder.path("sub/deep/w.h5")).unwrap();
+        MeshFile::read(&write("sub/deep/in.xdmf", "w.h5")).unwrap();
+        symlink("../dolfin.h5", folder.path("sub/x.h5")).unwrap();
+        refused(MeshFile::read(&write("sub/x.xdmf", "x.h5")), &["names x.h5, which is "]);
     }
 }

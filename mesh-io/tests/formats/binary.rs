@@ -189,7 +189,7 @@ fn long_binary_files_come_back_but_for_what_moved() {
         // A tag that is out of order, and a triangle that starts at another corner or is wound the other way.
         let start = |triangle| match file.triangle_place(triangle).location {
             Location::Byte(at) => at,
-            Location::Line(line) => panic!("line {line}"),
+            other => panic!("{other:?}"),
         };
         let (corners, width) = match file.format() {
             Format::Gmsh22Binary => (12, 4),

@@ -170,6 +170,30 @@ fn only_coordinates_change() {
     }
 }
 
+/// Chunks of other lengths at the end of the file take the place of those that are there.
+#[test]
+fn a_mesh_that_is_written_in_place_many_times_does_not_grow_without_bound() {
+    for sample in SAMPLES.iter().filter(|sample| !sample.is_plain) {
+        let folder = sample.folder();
+        let mut lengths = Vec::new();
+        for round in 0..40 {
+            let file = folder.read(sample.name);
+            let to = match round % 4 {
+                // Points that compress better.
+                3 => file.points().iter().map(|p| p.map(|x| (x * 64.0).round() / 64.0)).collect(),
+                _ => moved(&file, f64::from(round)),
+            };
+            file.write(&folder.path(sample.name), &to).unwrap();
+            let again = folder.read(sample.name);
+            assert_eq!(bits(again.points()), bits(&to), "{}", sample.name);
+            lengths.push(sample.bytes(&again).iter().map(Vec::len).sum::<usize>());
+        }
+        let most = |part: &[usize]| part.iter().copied().max().unwrap_or_default();
+        let [early, late] = [&lengths[..20], &lengths[20..]].map(most);
+        assert!(late <= early + early / 100, "{}: {lengths:?}", sample.name);
+    }
+}
+
 /// A byte that is none of a coordinate shows, wherever it is.
 #[test]
 fn compare_finds_a_changed_byte_outside_coordinates() {

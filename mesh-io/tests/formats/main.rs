@@ -3,6 +3,7 @@
 mod abaqus;
 mod beside;
 mod binary;
+mod changed;
 mod content;
 mod convert;
 mod damage;

@@ -216,6 +216,7 @@ fn places_in_the_file_are_those_of_vertices_and_triangles() {
                     Location::Byte(at) => {
                         assert!(!made.is_text() && range.contains(&at), "{what}: {at}, {range:?}");
                     }
+                    Location::Unknown => panic!("{what} is not found"),
                 }
             }
         }

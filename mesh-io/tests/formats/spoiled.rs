@@ -21,6 +21,7 @@ pub(crate) fn mesh_or_error(folder: &Folder, name: &str) -> Result<MeshFile, Str
             let inside = |location| match location {
                 Location::Line(line) => (1..=length).contains(&line),
                 Location::Byte(at) => at <= length,
+                Location::Unknown => false,
             };
             let places = file.vertex_places(0..vertices as u32);
             assert_eq!(places.len(), vertices);

@@ -2,6 +2,7 @@
 
 use crate::commands::batch::{listing, table, workers};
 use crate::error::{CliError, ErrorKind};
+use crate::load::overwrite::{self, Likeness};
 use crate::load::{LoadedMesh, streams};
 use std::path::Path;
 use std::time::Instant;
@@ -125,7 +126,7 @@ impl Watch for Watched<'_> {
 fn smooth(request: &SmoothRequest, engines: &Engines<'_>, mesh: &Listed) -> Told {
     let (input, out) = (&mesh.input, &mesh.out);
     let task = Task { request, verbosity: SILENT, input, out, resumed: None };
-    let mut follow = Followed { mesh, outputs: &request.outputs, remarks: Vec::new() };
+    let mut follow = Followed { mesh, request, remarks: Vec::new() };
     let engine = |size| Ok(engines.take(size));
     match carry_out(&task, engine, &mut follow, |done| Ok(done.report)) {
         Ok(report) => Told::Smoothed { report: Box::new(report), remarks: follow.remarks },
@@ -137,7 +138,7 @@ fn smooth(request: &SmoothRequest, engines: &Engines<'_>, mesh: &Listed) -> Told
 /// Keeps the remarks on a mesh.
 struct Followed<'a> {
     mesh: &'a Listed,
-    outputs: &'a Outputs,
+    request: &'a SmoothRequest,
     remarks: Vec<String>,
 }
 
@@ -148,7 +149,14 @@ impl Follow for Followed<'_> {
         }
         // A file may have two names, which the list could not tell.
         let written = streams::destinations(file, &self.mesh.out)?;
-        self.outputs.check_files(&file.paths(), &written, ErrorKind::Output)
+        let SmoothRequest { outputs, reading, .. } = self.request;
+        outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
+        if outputs.replaces_any {
+            return Ok(());
+        }
+        overwrite::check(file, &written, reading.options(), Likeness::Mesh).map_err(|error| {
+            error.with_remedy("Give another directory to --out-dir, or replace the file by --force")
+        })
     }
 
     fn remark(&mut self, text: &str) {

@@ -70,11 +70,12 @@ fn histogram(histogram: &Histogram) -> Value {
 
 /// Writes a triangle, under `key`, and its place in the file.
 fn placed(key: &str, place: &Place) -> Map<String, Value> {
-    let (kind, at) = location(place);
     let mut object = Map::new();
     object.insert(key.to_owned(), place.label.into());
     object.insert("file".into(), place.path.display().to_string().into());
-    object.insert(kind.into(), at.into());
+    if let Some((kind, at)) = location(place) {
+        object.insert(kind.into(), at.into());
+    }
     object
 }
 

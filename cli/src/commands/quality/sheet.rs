@@ -236,10 +236,11 @@ fn violation(file: &LoadedMesh, measured: &Measured<'_>, threshold: &Threshold) 
     Violation { threshold: threshold.clone(), count, worst }
 }
 
-/// Returns the line or byte of a place, with its key in JSON.
-pub(crate) fn location(place: &Place) -> (&'static str, usize) {
+/// Returns the line or byte of a place, with its key in JSON; `None` if it is not known.
+pub(crate) fn location(place: &Place) -> Option<(&'static str, usize)> {
     match place.location {
-        Location::Line(line) => ("line", line),
-        Location::Byte(byte) => ("byte", byte),
+        Location::Line(line) => Some(("line", line)),
+        Location::Byte(byte) => Some(("byte", byte)),
+        Location::Unknown => None,
     }
 }

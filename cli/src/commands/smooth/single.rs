@@ -10,6 +10,7 @@ use mesh_io::atomic;
 use serde::Serialize;
 use serde_json::json;
 
+use crate::load::overwrite::{self, Likeness};
 use crate::load::streams;
 use crate::render::html;
 use crate::render::picture::{self, PictureSubject, Shot};
@@ -40,7 +41,7 @@ pub(crate) fn run(
     let resumed = resumed.as_ref();
     let task = Task { request, verbosity, input, out, resumed };
     let display = Display::new(verbosity, request.estimated_end(), request.max_sweeps());
-    let mut follow = Shown { outputs: &request.outputs, verbosity, out, display: &display };
+    let mut follow = Shown { request, verbosity, input, out, display: &display };
     // The driver starts while the mesh is read. If the size of the mesh decides on the engine, it starts while the mesh
     // is prepared.
     let done = std::thread::scope(|scope| {
@@ -63,8 +64,9 @@ pub(crate) fn run(
 
 /// Shows a run on the terminal.
 struct Shown<'a> {
-    outputs: &'a Outputs,
+    request: &'a SmoothRequest,
     verbosity: Verbosity,
+    input: &'a Path,
     out: &'a Path,
     display: &'a Display,
 }
@@ -76,7 +78,17 @@ impl Follow for Shown<'_> {
 
     fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
         let written = streams::destinations(file, self.out)?;
-        self.outputs.check_files(&file.paths(), &written, ErrorKind::Output)
+        let SmoothRequest { outputs, reading, .. } = self.request;
+        Outputs::check_companion(self.input, self.out, &file.paths())?;
+        outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
+        if outputs.replaces_any {
+            return Ok(());
+        }
+        overwrite::check(file, &written, reading.options(), Likeness::Mesh).map_err(|error| {
+            error.with_remedy(
+                "To smooth several meshes, name a directory by --out-dir; to replace the file all the same, add --force",
+            )
+        })
     }
 
     fn remark(&mut self, text: &str) {
@@ -97,7 +109,7 @@ impl Follow for Shown<'_> {
             self.display.aside(|| tell::note(self.verbosity.quiet, text));
         }
         interrupt::has_result();
-        self.outputs.check_report()
+        self.request.outputs.check_report()
     }
 }
 

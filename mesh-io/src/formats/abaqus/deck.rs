@@ -113,7 +113,8 @@ impl<'a> Deck<'a> {
             let Some(name) = block.name("INPUT").filter(|_| block.is("INCLUDE")) else { continue };
             let before = at.checked_sub(1).map(|before| &self.blocks[before].0);
             let continues = before.is_some_and(|before| before.is("NODE") || before.is("ELEMENT"));
-            match included(&source.path, name, continues, &mut seen, DEPTH) {
+            let place = Inclusion { from: source, at: block.at, name };
+            match included(source, place, continues, &mut seen, DEPTH)? {
                 Included::Mesh => {
                     let shown = quoted(name);
                     let problem =
@@ -191,27 +192,42 @@ enum Included {
     Mesh,
 }
 
-/// Looks into an included file, once. Its first rows are part of a list if the list `continues` there.
+/// The line of a file that includes another file.
+#[derive(Clone, Copy)]
+struct Inclusion<'a> {
+    from: &'a Source,
+    /// Where the keyword stands.
+    at: usize,
+    /// The name of the included file.
+    name: &'a [u8],
+}
+
+/// Looks into a file that the mesh file `mesh`, or a file that is included there, includes, once. Its first rows are part of a
+/// list if the list `continues` there.
+///
+/// # Errors
+/// [`ReadError::Outside`] if the file is outside of the directory of `mesh`, unless the options of `mesh` allow that.
 fn included(
-    path: &Path,
-    name: &[u8],
+    mesh: &Source,
+    Inclusion { from, at, name }: Inclusion<'_>,
     continues: bool,
     seen: &mut HashSet<(PathBuf, bool)>,
     depth: u32,
-) -> Included {
-    let name = String::from_utf8_lossy(name).into_owned();
-    let path = path.parent().unwrap_or(Path::new("")).join(name);
+) -> Result<Included, ReadError> {
+    let path = from.path.parent().unwrap_or(Path::new(""));
+    let path = path.join(String::from_utf8_lossy(name).into_owned());
     if !seen.insert((path.clone(), continues)) {
-        return Included::Other;
+        return Ok(Included::Other);
     }
+    from.check_inside(mesh, &path, &quoted(name), at)?;
     let is_file = std::fs::metadata(&path).is_ok_and(|about| about.is_file());
     let loaded = if is_file && depth > 0 { Source::load(&path).ok() } else { None };
-    let Some(source) = loaded else { return Included::Unknown };
+    let Some(source) = loaded else { return Ok(Included::Unknown) };
     let blocks = blocks::blocks(&source);
     let first = blocks.first().map_or(source.bytes.len(), |block| block.at);
     let mut rows = source.bytes[source.begin()..first].split(|&byte| byte == b'\n');
     if continues && rows.any(|row| !matches!(row.trim_ascii(), [] | [b'*', ..])) {
-        return Included::Mesh;
+        return Ok(Included::Mesh);
     }
     let mut found = Included::Other;
     for block in &blocks {
@@ -220,8 +236,11 @@ fn included(
                 || GENERATORS.iter().any(|keyword| block.is(keyword));
         let is_set = ["ELSET", "NSET", "SURFACE"].iter().any(|keyword| block.is(keyword));
         let own = match block.name("INPUT").filter(|_| block.is("INCLUDE")) {
-            Some(name) => included(&path, name, false, seen, depth - 1),
-            None if is_mesh => return Included::Mesh,
+            Some(name) => {
+                let place = Inclusion { from: &source, at: block.at, name };
+                included(mesh, place, false, seen, depth - 1)?
+            }
+            None if is_mesh => return Ok(Included::Mesh),
             None if is_set || is_section(block) => Included::Sets,
             None => Included::Other,
         };
@@ -229,7 +248,7 @@ fn included(
             found = own;
         }
     }
-    found
+    Ok(found)
 }
 
 /// Whether a block gives elements a material.

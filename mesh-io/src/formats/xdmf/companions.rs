@@ -21,7 +21,7 @@ pub(super) struct Reference {
 /// Loads the files that `main` refers to, each once, and adds them to the companions of `main`.
 ///
 /// # Errors
-/// If a file is missing or cannot be read, is compressed, or is `main` itself, and if `main` is compressed but refers to
+/// If a file is missing or cannot be read, is outside of the directory of `main` without leave, is compressed, or is `main` itself, and if `main` is compressed but refers to
 /// other files.
 pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), ReadError> {
     if !references.is_empty() && main.packed.is_some() {
@@ -39,6 +39,7 @@ pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), 
             let problem = "it names itself as a file of numbers";
             return Err(main.error_at(place, problem, CORRECT));
         }
+        main.check_inside(main, &path, &quoted(name.as_bytes()), at.start)?;
         // Two names may stand for the same file.
         if let Some(known) =
             main.companions.iter_mut().find(|own| same_file(&own.source.path, &path))

@@ -1,0 +1,98 @@
+//! The check that a written mesh replaces no other mesh and no file that is no mesh.
+
+use std::fs;
+use std::path::PathBuf;
+
+use mesh_io::{MeshFile, ReadOptions, atomic};
+
+use crate::error::CliError;
+use crate::load::LoadedMesh;
+
+/// What two meshes must have in common so that one may replace the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Likeness {
+    /// The triangles and the fixed vertices.
+    Mesh,
+    /// The triangles. A format may hold no groups, so a conversion may lose what fixes vertices.
+    Triangles,
+}
+
+/// Checks that the files `written`, the main file first, hold nothing, the mesh that was read, or an earlier state of this
+/// mesh. Devices and pipes hold nothing. `options` are those by which the mesh was read.
+///
+/// # Errors
+/// Of the kind [`Output`](crate::error::ErrorKind::Output) if a file holds another mesh, or is not empty and cannot be read as
+/// a mesh.
+pub(crate) fn check(
+    file: &LoadedMesh,
+    written: &[PathBuf],
+    options: ReadOptions,
+    likeness: Likeness,
+) -> Result<(), CliError> {
+    let Some(main) = written.first() else { return Ok(()) };
+    if atomic::same_file(main, file.source.path()) {
+        return Ok(());
+    }
+    let is_full = |path: &PathBuf| fs::metadata(path).is_ok_and(|at| at.is_file() && at.len() > 0);
+    // A killed run may leave the companions of its mesh without the main file. Of a Triangle mesh they are copies.
+    let own: Vec<&[u8]> = file.source.contents().map(|(_, bytes)| bytes).collect();
+    let is_copy = |(part, path): (usize, &PathBuf)| {
+        !is_full(path)
+            || own.get(part).is_some_and(|&own| fs::read(path).is_ok_and(|old| old == own))
+    };
+    let Some(first) = written.iter().find(|path| is_full(path)) else { return Ok(()) };
+    if !main.exists() && written.iter().enumerate().skip(1).all(is_copy) {
+        return Ok(());
+    }
+    // Reading a pipe would wait for its writer.
+    let is_readable = written.iter().all(|path| !path.exists() || path.is_file());
+    let old = match is_readable {
+        true => options.read(main).map_err(|error| error.to_string()),
+        false => Err("one of its files is no regular file".to_owned()),
+    };
+    let (path, read) = (first.display(), file.source.path().display());
+    let text = match old.map(|old| difference(&file.source, &old, likeness)) {
+        Ok(None) => return Ok(()),
+        Ok(Some(difference)) => format!("{path}: holds another mesh than {read}: {difference}"),
+        Err(problem) => format!("{path}: exists, and cannot be read as a mesh: {problem}"),
+    };
+    Err(CliError::output(text))
+}
+
+/// Describes the first difference between two meshes; `None` if one may replace the other.
+fn difference(new: &MeshFile, old: &MeshFile, likeness: Likeness) -> Option<String> {
+    let counts = |file: &MeshFile| [file.points().len(), file.triangles().len()];
+    if counts(new) != counts(old) {
+        let [vertices, triangles] = counts(old);
+        let [own_vertices, own_triangles] = counts(new);
+        return Some(format!(
+            "it has {vertices} vertices and {triangles} triangles, not {own_vertices} and {own_triangles}"
+        ));
+    }
+    if new.triangles() != old.triangles() && ascending(new) != ascending(old) {
+        return Some("the vertices of its triangles are others".to_owned());
+    }
+    (likeness == Likeness::Mesh && fixed(new) != fixed(old))
+        .then(|| "its fixed vertices are others".to_owned())
+}
+
+/// Returns the triangles in an order that does not depend on the order of the file.
+fn ascending(file: &MeshFile) -> Vec<[u32; 3]> {
+    let sorted = |corners: &[u32; 3]| {
+        let mut corners = *corners;
+        corners.sort_unstable();
+        corners
+    };
+    let mut triangles: Vec<_> = file.triangles().iter().map(sorted).collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+/// Returns the vertices that the file fixes, ascending.
+fn fixed(file: &MeshFile) -> Vec<u32> {
+    let mut fixed = file.constraints().vertices.clone();
+    fixed.extend(file.interface_vertices());
+    fixed.sort_unstable();
+    fixed.dedup();
+    fixed
+}

@@ -1,0 +1,148 @@
+//! Files that a mesh must not replace: another mesh, a file that is no mesh, a file of IN, and a file that has changed.
+
+#[cfg(unix)]
+use super::interrupt::Started;
+use super::{Folder, assert_holds, disturbed, small, support};
+use std::fs;
+
+/// A folder with two meshes, `a.msh` and `b.msh`, of different triangles, and the first once more with other positions.
+fn two_meshes() -> Folder {
+    let mesh = disturbed();
+    let other = support::perturb_random(&support::lattice(12, 8), 0.5, 5);
+    let moved = support::perturb_random(&mesh, 0.1, 9);
+    let text = [&mesh, &other, &moved].map(support::write_msh22);
+    Folder::new(&[("a.msh", &text[0]), ("b.msh", &text[1]), ("moved.msh", &text[2])])
+}
+
+/// What a shell makes of `gpu-smooth *.msh` without `--out-dir`.
+#[test]
+fn another_mesh_is_replaced_by_force_only() {
+    let folder = two_meshes();
+    let before = folder.content();
+    folder.line("a.msh b.msh --engine cpu").refused(&[
+        "b.msh: holds another mesh than a.msh: it has 117 vertices",
+        "name a directory by --out-dir",
+        "--force",
+    ]);
+    assert!(folder.content() == before, "files have changed");
+    folder.line("a.msh b.msh --engine cpu -q --force").clean();
+    folder.line("a.msh out.msh --engine cpu -q").clean();
+    assert_eq!(folder.text("b.msh"), folder.text("out.msh"));
+}
+
+#[test]
+fn an_earlier_state_of_the_mesh_is_replaced_without_force() {
+    let folder = two_meshes();
+    folder.line("a.msh out.msh --engine cpu -q --max-sweeps 1").clean();
+    folder.line("a.msh out.msh --engine cpu -q").clean();
+    folder.line("a.msh moved.msh --engine cpu -q").clean();
+    assert_eq!(folder.text("moved.msh"), folder.text("out.msh"));
+    fs::write(folder.path("empty.msh"), "").unwrap();
+    folder.line("a.msh empty.msh --engine cpu -q").clean();
+    let parts = small();
+    parts.line("in out --engine cpu -q --max-sweeps 1").clean();
+    parts.line("in out.ele --engine cpu -q").clean();
+    // As a killed run may leave a mesh that was not there before.
+    fs::remove_file(parts.path("out.node")).unwrap();
+    parts.line("in out --engine cpu -q").clean();
+}
+
+#[test]
+fn a_mesh_with_other_fixed_vertices_is_another_mesh() {
+    let text = support::write_msh22(&disturbed());
+    let folder = Folder::new(&[("a.msh", &text)]);
+    let (head, elements) = text.split_once("$Elements\n").unwrap();
+    let (count, rows) = elements.split_once('\n').unwrap();
+    let count: usize = count.parse().unwrap();
+    let with_point = format!("{head}$Elements\n{}\n{}15 2 0 1 50\n", count + 1, "9999 ");
+    fs::write(folder.path("b.msh"), with_point + rows).unwrap();
+    let refused = folder.line("a.msh b.msh --engine cpu");
+    refused.refused(&["b.msh: holds another mesh than a.msh: its fixed vertices are others"]);
+}
+
+#[test]
+fn a_file_that_is_no_mesh_is_replaced_by_force_only() {
+    let folder = small();
+    for name in ["notes", "half.node", "half.ele"] {
+        fs::write(folder.path(name), "5 2 0 0\n1 0 0\n").unwrap();
+    }
+    fs::write(folder.path("alone.ele"), "1 3 0\n1 1 2 3\n").unwrap();
+    fs::write(folder.path("a.msh"), support::write_msh22(&disturbed())).unwrap();
+    let before = folder.content();
+    for (line, file) in
+        [("a.msh notes", "notes"), ("in half", "half.node"), ("in alone", "alone.ele")]
+    {
+        let part = format!("{file}: exists, and cannot be read as a mesh: ");
+        folder.line(&format!("{line} --engine cpu")).refused(&[&part, "--force"]);
+        assert!(folder.content() == before, "{line} has changed files");
+    }
+    folder.line("a.msh notes --engine cpu -q --force").clean();
+    folder.line("in half --engine cpu -q --force").clean();
+    folder.line("in alone --engine cpu -q --force").clean();
+}
+
+#[test]
+fn many_meshes_replace_no_others_of_their_names() {
+    let folder = two_meshes();
+    fs::create_dir(folder.path("out")).unwrap();
+    fs::copy(folder.path("a.msh"), folder.path("out/b.msh")).unwrap();
+    let run = folder.line("a.msh b.msh --out-dir out --engine cpu -q");
+    assert_eq!(run.code, Some(1));
+    assert_holds(&run.err, &["out/b.msh: holds another mesh than b.msh", "--force"]);
+    assert_eq!(folder.text("out/b.msh"), folder.text("a.msh"));
+    folder.line("a.msh b.msh --out-dir out --engine cpu -q --force").clean();
+}
+
+#[test]
+fn a_conversion_replaces_its_own_result_and_no_other_mesh() {
+    let folder = two_meshes();
+    for out in
+        ["out.vtk", "out.su2", "out.node", "out.vtu", "out.ply", "out.off", "out.inp", "out.exo"]
+    {
+        folder.line(&format!("convert a.msh {out} -q --lossy")).clean();
+        folder.line(&format!("convert a.msh {out} -q --lossy")).clean();
+        let refused = folder.line(&format!("convert b.msh {out} -q --lossy"));
+        refused.refused(&[out, ": holds another mesh than b.msh: ", "--force"]);
+    }
+    folder.line("convert b.msh out.vtk -q --lossy --force").clean();
+    fs::write(folder.path("notes.vtk"), "notes\n").unwrap();
+    folder.line("convert a.msh notes.vtk -q --lossy").refused(&["notes.vtk: exists, and cannot"]);
+}
+
+/// Who gives the two files of a Triangle mesh may take them for IN and OUT.
+#[test]
+fn a_file_of_the_mesh_beside_in_is_no_place_for_out() {
+    let folder = small();
+    let before = folder.content();
+    for (input, out) in [("in.node", "in.ele"), ("in.ele", "in.node"), ("in", "./in.ele")] {
+        let file = format!("{out}: this file and {input} are of one mesh");
+        let parts = [&file, "name one file twice", "give OUT another name"];
+        folder.line(&format!("{input} {out} --engine cpu --force")).refused(&parts);
+        assert!(folder.content() == before, "files have changed");
+    }
+    for line in ["in.ele in.ele", "in in", "in in.node", "in.node ./in.node"] {
+        folder.line(&format!("{line} --engine cpu -q")).clean();
+    }
+}
+
+/// A signal ends the run after another program has edited the mesh, which is smoothed in place.
+#[cfg(unix)]
+#[test]
+fn a_mesh_that_another_program_has_changed_meanwhile_is_not_replaced() {
+    let folder = small();
+    let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
+    let args = [&["in", "in", "--engine", "cpu"][..], &lasting].concat();
+    for name in ["in.node", "in.ele"] {
+        let mut run = Started::new(&folder, &args);
+        run.first_of("gpu-smooth: sweep ");
+        let edited = folder.text(name) + "# edited\n";
+        fs::write(folder.path(name), &edited).unwrap();
+        let before = folder.content();
+        run.signal("-INT");
+        let (code, out, err) = run.end();
+        assert_eq!((code, out.as_str()), (Some(1), ""), "{err}");
+        let problem = format!("error: {name}: another program has changed this file since");
+        assert_holds(&err, &[&problem, "Give OUT another name"]);
+        assert!(folder.content() == before, "files have changed");
+    }
+}
