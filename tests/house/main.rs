@@ -215,6 +215,8 @@ fn only_the_command_asks_the_clock_of_the_standard_library() {
     for source in ["src", "mesh-io/src"] {
         let mut files = Vec::new();
         rust_files(&root().join(source), &mut files);
+        // The age of a file is asked for files alone, which browsers do not have.
+        files.retain(|file| !file.ends_with("disk/stamp.rs"));
         for file in files {
             let text = fs::read_to_string(&file).unwrap();
             let code = text.split("#[cfg(test)]").next().unwrap();
