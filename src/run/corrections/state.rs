@@ -9,7 +9,7 @@ use crate::run::plan::Plan;
 use crate::run::step::Step;
 
 /// Number of estimates in a row that must agree before a run with accelerated corrections ends, as its gains are
-/// irregular. One is enough if the last gains were each less than [`STEADY`](super::record::STEADY) times the one before.
+/// irregular. One is enough if the last gains were each less than 0.3 times (`STEADY` in `record.rs`) the one before.
 pub(super) const ESTIMATES: usize = 4;
 
 /// The state of a run with corrections from coarser levels.

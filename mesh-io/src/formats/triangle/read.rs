@@ -219,21 +219,27 @@ struct Attributes<'a> {
     /// The region of each text.
     regions: Vec<u32>,
     names: Numbering<String>,
-    /// The text whose groups the sink has.
-    last: Option<&'a [u8]>,
+    /// The text whose groups the sink has, and its region.
+    last: Option<(&'a [u8], u32)>,
 }
 
 impl<'a> Attributes<'a> {
     /// Returns the region of triangles with these attributes, and hands their groups to a sink that asks for groups.
     #[inline]
     fn region(&mut self, text: &'a [u8], sink: &mut dyn Sink) -> u32 {
-        if self.last != Some(text) {
-            self.last = Some(text);
-            if self.columns > 0 && sink.asks_for_groups() {
-                self.send_groups(text, sink);
-            }
+        match self.last {
+            Some((last, region)) if last == text => region,
+            _ => self.next_region(text, sink),
         }
-        self.number(text)
+    }
+
+    fn next_region(&mut self, text: &'a [u8], sink: &mut dyn Sink) -> u32 {
+        if self.columns > 0 && sink.asks_for_groups() {
+            self.send_groups(text, sink);
+        }
+        let region = self.number(text);
+        self.last = Some((text, region));
+        region
     }
 
     #[inline]
