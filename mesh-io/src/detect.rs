@@ -2,16 +2,17 @@
 
 use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
-use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE};
+use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE, XDMF};
 use crate::format::Format;
 use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle;
+use crate::formats::triangle::names::Names;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
-use crate::visit::sink::Reader;
-use std::path::Path;
+use crate::visit::reader::Reader;
+use std::path::{Path, PathBuf};
 
 /// Finds the format of a file. If no reader exists for it, the error names the format if it is known.
 pub(crate) fn reader(source: &Source) -> Result<&'static Reader, ReadError> {
@@ -115,6 +116,18 @@ impl Format {
     /// need not be one that is read. `None` if the ending is that of no mesh.
     pub fn name_of_ending(path: &Path) -> Option<&'static str> {
         owner_of_ending(path)
+    }
+
+    /// Lists the files of the mesh that has a file of this name, as far as names tell: `.node`, `.ele` and `.poly` of Triangle,
+    /// an XDMF and an `.h5` of the same name, else the file alone. They need not exist.
+    pub fn files_of(path: &Path) -> Vec<PathBuf> {
+        if let Some(Names { node, ele, poly }) = Names::of_file(path) {
+            return vec![node, ele, poly];
+        }
+        match XDMF.has_ending_of(path) {
+            true => vec![path.to_owned(), path.with_extension("h5")],
+            false => vec![path.to_owned()],
+        }
     }
 
     /// Returns the name of a format whose files begin with the first words or bytes of `head`, which may be the beginning of a

@@ -9,7 +9,7 @@ use crate::formats::{
     nastran, obj, off, ply, selafin, sms, stl, triangle, ugrid, xdmf,
 };
 use crate::formats::{medit, su2};
-use crate::visit::sink::{Reader, Walk};
+use crate::visit::reader::{Reader, Walk};
 use std::path::Path;
 
 const fn reader<W: Walk>() -> Reader {
@@ -180,7 +180,7 @@ static CONTAINER: Family = family(
 );
 static CGNS: Family =
     family("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
-static XDMF: Family =
+pub(crate) static XDMF: Family =
     family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
 static ABAQUS: Family = family(
     "Abaqus",

@@ -55,7 +55,8 @@ pub use crate::visit::field::PointField;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {
-    pub use crate::disk::replace::{AbandonedWrites, abandon_writes, check, replace, same_file};
+    pub use crate::disk::paths::same_file;
+    pub use crate::disk::replace::{AbandonedWrites, abandon_writes, check, replace};
 }
 
 /// Compiles the code of the README with the tests.

@@ -26,7 +26,7 @@ pub(crate) struct Done<'a> {
     pub(crate) file: &'a LoadedMesh,
     pub(crate) smoother: &'a Smoother<'a>,
     pub(crate) outcome: &'a Outcome,
-    /// How many sweeps were done, and after how many seconds of the run, where that is known.
+    /// Pairs of a number of sweeps and the seconds of the run after which these sweeps were done.
     pub(crate) times: Vec<(u32, f64)>,
     pub(crate) report: Report,
 }

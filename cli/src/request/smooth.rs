@@ -67,10 +67,10 @@ pub(crate) enum TableForm {
     Json,
 }
 
-/// Where a run computes.
+/// The processor on which a run computes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum EngineRequest {
-    /// Where it is estimated to be done first.
+    /// The CPU or a GPU, whichever is estimated to end the run sooner.
     Auto,
     Cpu,
     /// On the first adapter with this text in its name, or on the best one.

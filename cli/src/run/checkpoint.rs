@@ -16,7 +16,7 @@ use crate::run::observer::Follow;
 
 const WITHOUT_CONTINUE: &str = "Without --continue the run starts anew";
 
-/// Reads the checkpoint to go on from, if there is one.
+/// Reads the checkpoint from which the run continues. `None` without `--continue`.
 pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>, CliError> {
     let Some(path) = continue_from else { return Ok(None) };
     let name = path.display();

@@ -23,6 +23,15 @@ pub(crate) struct Started {
 impl Started {
     pub(crate) fn new(folder: &Folder, args: &[&str]) -> Self {
         let mut command = folder.command();
+        // A program whose parent ignores SIGHUP, as tests under nohup do, ignores the signal too.
+        #[cfg(target_os = "linux")]
+        {
+            let program = command;
+            command = Command::new("env");
+            command.arg("--default-signal=HUP").arg(program.get_program()).stdin(Stdio::null());
+            command.current_dir(&folder.0);
+            command.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
+        }
         command.args(args);
         Self::of(command)
     }

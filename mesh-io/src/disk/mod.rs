@@ -2,6 +2,7 @@
 
 #[cfg(test)]
 mod faults;
+pub(crate) mod paths;
 pub(crate) mod replace;
 pub(crate) mod source;
 pub(crate) mod stamp;

@@ -1,6 +1,7 @@
 //! Replaces files as a whole: whatever happens, the old content is there or the new one, and several files are
 //! replaced together or not at all.
 
+use crate::disk::paths::{directory_of, resolve};
 use crate::disk::system::{Disk, NewFile, System};
 use crate::error::WriteError;
 use std::fs::{self, OpenOptions};
@@ -23,33 +24,22 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     replace_all(&[(path.to_owned(), Box::new(|out| out.write_all(content)))])
 }
 
-/// Writes all of the files, each as [`replace`] does, or leaves what stood there as it was.
+/// Writes all of the files, each as [`replace`] does, or none.
 ///
 /// The first file takes its place last, when all others have theirs: so it should be the one without which they are no mesh. Where the
 /// process is killed between, a file that was not there before is then not there yet, and of a mesh that is replaced by
 /// the same with other coordinates, every moment is the old or the new one. Where other files change as well, the first is
 /// out of its place until they have: no moment is a mixture.
 pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
-    replace_all_on(&System, jobs)
+    replace_all_if(&System, jobs, &|| Ok(()))
 }
 
-/// Writes all of the files as [`replace_all`] does, if `check` succeeds when the new content is written and no file has taken its
-/// place.
+/// Writes all of the files as [`replace_all`] does, on this disk. Once all new content is written under temporary names,
+/// `check` may refuse: then no file is replaced.
 ///
 /// # Errors
-/// Those of [`replace_all`], and the error of `check`; then what stood there is as it was.
+/// Those of [`replace_all`], and the error of `check`.
 pub(crate) fn replace_all_if(
-    jobs: &[Job<'_>],
-    check: &dyn Fn() -> Result<(), WriteError>,
-) -> Result<(), WriteError> {
-    replace_checked(&System, jobs, check)
-}
-
-pub(crate) fn replace_all_on(disk: &dyn Disk, jobs: &[Job<'_>]) -> Result<(), WriteError> {
-    replace_checked(disk, jobs, &|| Ok(()))
-}
-
-fn replace_checked(
     disk: &dyn Disk,
     jobs: &[Job<'_>],
     check: &dyn Fn() -> Result<(), WriteError>,
@@ -145,38 +135,6 @@ pub fn check(path: &Path) -> Result<(), WriteError> {
         });
     }
     Temporary::create(&System, directory).map(drop).map_err(|source| refused(directory, source))
-}
-
-/// Whether two paths lead to one file, also by another spelling, a symbolic link or a hard link. The file need not exist
-/// yet. Hard links are recognized on Unix only.
-pub fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((identity(a), identity(b)), (Some(a), Some(b)) if a == b)
-}
-
-/// What identifies a file.
-#[derive(PartialEq)]
-enum Identity {
-    #[cfg(unix)]
-    Inode {
-        device: u64,
-        number: u64,
-    },
-    Path(PathBuf),
-}
-
-/// The identity of the file at a path. None where no file could be written anyway, as without a directory.
-fn identity(path: &Path) -> Option<Identity> {
-    let (target, existing) = resolve(path).ok()?;
-    #[cfg(unix)]
-    if let Some(existing) = &existing {
-        use std::os::unix::fs::MetadataExt;
-        return Some(Identity::Inode { device: existing.dev(), number: existing.ino() });
-    }
-    if existing.is_some() {
-        return fs::canonicalize(target).ok().map(Identity::Path);
-    }
-    let directory = fs::canonicalize(directory_of(&target)).ok()?;
-    Some(Identity::Path(directory.join(target.file_name()?)))
 }
 
 fn refused(path: &Path, source: io::Error) -> WriteError {
@@ -347,33 +305,6 @@ impl Drop for Temporary<'_> {
     }
 }
 
-/// Where the path leads through all symbolic links, and the metadata of what is there, if anything: the last link may
-/// point to nothing yet.
-fn resolve(path: &Path) -> io::Result<(PathBuf, Option<fs::Metadata>)> {
-    match fs::metadata(path) {
-        // A device or pipe may be reached by a link, as /proc has them, that is not a path.
-        Ok(existing) if !existing.is_file() => Ok((path.to_owned(), Some(existing))),
-        Ok(existing) => Ok((fs::canonicalize(path)?, Some(existing))),
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            let mut target = path.to_owned();
-            while let Ok(next) = fs::read_link(&target) {
-                target = directory_of(&target).join(next);
-            }
-            Ok((target, None))
-        }
-        Err(error) => Err(error),
-    }
-}
-
-/// Returns the directory that a path names; `.` if it names none.
-pub(crate) fn directory_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
-        Some(parent) => parent,
-        None => path,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -428,35 +359,5 @@ mod tests {
         assert_eq!(fs::read_to_string(&a).unwrap(), "1");
         assert_eq!(fs::read_to_string(&b).unwrap(), "2");
         assert_eq!(entries(directory.path()), 2);
-    }
-
-    #[test]
-    fn a_file_is_known_by_any_of_its_names() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = |name: &str| directory.path().join(name);
-        fs::create_dir(at("sub")).unwrap();
-        fs::write(at("a"), "").unwrap();
-        fs::write(at("b"), "").unwrap();
-        let same = |a: &str, b: &str| same_file(&at(a), &at(b));
-        for (there, not_yet) in [("a", "new"), ("sub", "sub/new")] {
-            for name in [there, not_yet] {
-                assert!(same(name, name) && same(name, &format!("sub/../{name}")), "{name}");
-                assert!(same(name, &format!("./{name}")), "{name}");
-            }
-            assert!(!same(there, not_yet) && !same(not_yet, "b"));
-        }
-        assert!(!same("a", "b") && !same("a", "sub/a") && !same("new", "sub/new"));
-        assert!(!same("none/a", "none/a"));
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::symlink;
-            for (target, link) in [("a", "to-a"), ("new", "to-new"), ("sub", "to-sub")] {
-                symlink(target, at(link)).unwrap();
-                assert!(same(target, link));
-            }
-            fs::hard_link(at("a"), at("also-a")).unwrap();
-            assert!(same("a", "also-a") && same("to-a", "also-a") && !same("b", "also-a"));
-            assert!(same("to-sub/new", "sub/new"));
-        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::compress::packed;
 use crate::compress::packed::{Packed, Unpackable};
-use crate::disk::replace::directory_of;
+use crate::disk::paths::directory_of;
 use crate::disk::stamp::KnownState;
 use crate::error::{Location, ReadError};
 use crate::parallel::map_parts;

@@ -8,7 +8,9 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::scatter;
-use crate::visit::sink::{Column, Element, Kind, PointNumbers, Reader, Sink, Within};
+use crate::visit::items::{Column, Element, Kind, PointNumbers, Within};
+use crate::visit::reader::Reader;
+use crate::visit::sink::Sink;
 use std::collections::HashMap;
 
 /// Reads the description of a mesh, from a file that was read before.

@@ -1,7 +1,7 @@
 //! A mesh in memory with all that its file says of it, independent of any format.
 
 use crate::content::label::Label;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 
 /// A mesh with its cells of all kinds, groups and data, independent of a format. Made by
 /// [`MeshFile::content`](crate::MeshFile::content).
@@ -146,8 +146,7 @@ impl Data {
         self.is_real
     }
 
-    /// Returns the numbers, [`components`](Self::components) for each vertex or cell in order. NaN stands for a number
-    /// that the file does not give.
+    /// Returns the numbers, [`components`](Self::components) for each vertex or cell in order. A missing number is NaN.
     pub fn values(&self) -> &[f64] {
         &self.values
     }

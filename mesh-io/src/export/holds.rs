@@ -6,7 +6,7 @@ use super::spelling::Spelling;
 use super::tags::{Tags, decides};
 use crate::content::label::Label;
 use crate::precision::Precision;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 
 /// What a format can hold of a mesh.
 #[derive(Clone, Copy)]

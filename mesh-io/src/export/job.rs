@@ -4,7 +4,7 @@ use super::content::{Content, ContentGroup, Data};
 use super::holds::Holds;
 use super::tags::Tags;
 use crate::content::label::Label;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 
 /// A mesh to be written, with what the format holds of it.
 pub(crate) struct Job<'a> {

@@ -2,7 +2,7 @@
 
 use super::content::{Content, Data};
 use super::tags::Tags;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::collections::HashSet;
 
 /// Returns the two ends of a line in ascending order.

@@ -13,7 +13,11 @@ use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row, nodes};
+use crate::visit::items::{Element, Kind, Within};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Adcirc;
 

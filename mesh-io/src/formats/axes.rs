@@ -12,7 +12,8 @@ use crate::text::cursor::Cursor;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::send::REWRITE;
-use crate::visit::sink::{Home, Layout, Sink};
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Home, Layout};
 use std::ops::Range;
 
 /// The encoding of real numbers in binary.

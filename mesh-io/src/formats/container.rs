@@ -9,7 +9,9 @@ use crate::formats::med;
 use crate::formats::med::Med;
 use crate::formats::ugrid;
 use crate::formats::ugrid::Ugrid;
-use crate::visit::sink::{Layout, Sink, Walk};
+use crate::visit::reader::Walk;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Container;
 

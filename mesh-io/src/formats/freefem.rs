@@ -10,7 +10,11 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::visit::items::{Column, Element, Kind};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct FreeFem;
 

@@ -12,7 +12,11 @@ use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value};
-use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::visit::items::{Element, Kind};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Fvcom;
 

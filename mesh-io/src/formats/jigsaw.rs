@@ -15,7 +15,11 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
 use crate::visit::heights::TextNumbers;
-use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::visit::items::{Column, Element, Kind};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Jigsaw;
 

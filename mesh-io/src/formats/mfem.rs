@@ -11,7 +11,11 @@ use crate::formats::numbered_nodes::{Names, counted_nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
-use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, each_row, nodes, volume};
+use crate::visit::items::{Column, Element, Kind};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Mfem;
 

@@ -3,7 +3,9 @@
 use crate::edit::numbers::{Encoded, Form, Places};
 use crate::hdf5::Encoding;
 use crate::netcdf::{Header, Items, Number, Variable};
-use crate::visit::sink::{Home, PointNumbers, Sink, Stored};
+use crate::visit::items::PointNumbers;
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Home, Stored};
 use std::ops::Range;
 use std::sync::Arc;
 

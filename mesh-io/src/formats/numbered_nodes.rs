@@ -4,7 +4,8 @@ use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_HEIGHT;
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Sink, each_row};
+use crate::visit::rows::each_row;
+use crate::visit::sink::Sink;
 
 /// Reads a list of nodes, each a number, x, y and a third coordinate or depth, and hands them to the sink. Returns the
 /// third numbers. If these are optional, a node may end after y.

@@ -14,7 +14,11 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, all_rows};
+use crate::visit::items::{Element, Kind, Within};
+use crate::visit::reader::Walk;
+use crate::visit::rows::all_rows;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Obj;
 

@@ -11,7 +11,11 @@ use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, each_row, nodes};
+use crate::visit::items::{Element, Kind};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Off;
 

@@ -11,9 +11,13 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
+use crate::visit::items::{Kind, PointNumbers};
+use crate::visit::reader::Walk;
 use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::rows::volume;
 use crate::visit::send::{ElementRecords, REWRITE};
-use crate::visit::sink::{Kind, Layout, PointNumbers, Sink, Stored, Walk, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Layout, Stored};
 
 pub(crate) struct Selafin;
 

@@ -12,7 +12,11 @@ use crate::format::Format;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::unquoted;
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Column, Element, Kind, Layout, Sink, Walk, Within, all_rows, nodes};
+use crate::visit::items::{Column, Element, Kind, Within};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{all_rows, nodes};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Sms;
 

@@ -13,9 +13,11 @@ use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::sink::{
-    Copies, Element, Kind, Layout, PointNumbers, Sink, Walk, Within, all_rows, volume,
-};
+use crate::visit::items::{Element, Kind, PointNumbers, Within};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{all_rows, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Copies, Layout};
 use std::collections::HashMap;
 
 pub(crate) struct Stl;

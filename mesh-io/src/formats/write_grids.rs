@@ -4,7 +4,7 @@ use crate::export::content::{Content, Data};
 use crate::export::job::Job;
 use crate::export::put;
 use crate::format::Format;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 

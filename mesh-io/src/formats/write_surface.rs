@@ -2,7 +2,7 @@
 
 use crate::export::job::Job;
 use crate::export::put;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::fmt::Write;
 
 pub(crate) fn write_obj(job: &Job<'_>) -> String {

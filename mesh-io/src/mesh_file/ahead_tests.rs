@@ -51,7 +51,7 @@ impl Binary {
 const NEXT_FILE: &[u8] = b"# next file\n";
 
 /// Returns meshes in the formats that have records, and one of Triangle, whose two files are separated by
-/// [`NEXT_FILE`]. Some elements are of another kind than most.
+/// [`NEXT_FILE`]. A few elements are no triangles.
 fn files() -> Vec<(&'static str, Vec<u8>)> {
     let points: Vec<[f64; 2]> = (0..SIDE * SIDE)
         .map(|v| [(v % SIDE) as f64 + 1.0 / (v + 2) as f64, (v / SIDE) as f64])

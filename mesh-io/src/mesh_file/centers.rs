@@ -5,7 +5,8 @@ use crate::error::FieldError;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
-use crate::visit::sink::{Centers, Sink};
+use crate::visit::items::Centers;
+use crate::visit::sink::Sink;
 
 /// How far a number may be from the center that it is taken for, as a share of how far the element reaches.
 const CLOSE: f64 = 1e-6;

@@ -6,7 +6,7 @@ use crate::mesh_file::mesh::MeshFile;
 use crate::mesh_file::place::Place;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
-use crate::visit::sink::{Home, Stored};
+use crate::visit::storage::{Home, Stored};
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.

@@ -9,7 +9,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::visit::parsed::Parsed;
-use crate::visit::sink::Reader;
+use crate::visit::reader::Reader;
 use std::fmt;
 use std::path::Path;
 
@@ -47,25 +47,7 @@ use std::path::Path;
 /// A mesh file never changes after it is read, and says nothing about which vertices may move. [`constraints`](Self::constraints) and
 /// [`regions`](Self::regions) are the facts by which a program decides.
 pub struct MeshFile {
-    points: Vec<[f64; 2]>,
-    triangles: Vec<[u32; 3]>,
-    format: Format,
-    remarks: Vec<Remark>,
-    data: Vec<String>,
-    has_parameters: bool,
-    has_centers: bool,
-    /// The bytes at which the x of vertices start in the part that has the coordinates.
-    x_at: Places,
-    /// The vertex of each offset in `x_at`, if a vertex may have several.
-    owners: Option<Vec<u32>>,
-    /// How that part has the coordinates.
-    numbers: Numbers,
-    /// Which of the parts has the coordinates.
-    part: usize,
-    /// The points, if that part has them encoded.
-    encoded: Option<Box<dyn Encoded>>,
-    regions: Option<Vec<u32>>,
-    constraints: Constraints,
+    parsed: Parsed,
     reader: &'static Reader,
     /// The main file, with its companions. The main file of a Triangle mesh is the `.node`.
     source: Source,
@@ -81,45 +63,12 @@ impl MeshFile {
         reader: &'static Reader,
         source: Source,
     ) -> Result<MeshFile, ReadError> {
-        let Parsed {
-            format,
-            points,
-            triangles,
-            x_at,
-            owners,
-            numbers,
-            part,
-            encoded,
-            regions,
-            constraints,
-            remarks,
-            data,
-            has_parameters,
-            has_centers,
-        } = parsed;
-        if triangles.is_empty() {
-            let problem = format!("{} vertices, but no triangle", points.len());
+        if parsed.triangles.is_empty() {
+            let problem = format!("{} vertices, but no triangle", parsed.points.len());
             let remedy = "Meshes are read by their triangles: mesh the surface with triangles, and save all its elements";
             return Err(source.error(problem, remedy));
         }
-        Ok(MeshFile {
-            points,
-            triangles,
-            format,
-            remarks,
-            data,
-            has_parameters,
-            has_centers,
-            x_at,
-            owners,
-            numbers,
-            part,
-            encoded,
-            regions,
-            constraints,
-            reader,
-            source,
-        })
+        Ok(MeshFile { parsed, reader, source })
     }
 
     /// Returns the path of the file that was read; for a Triangle mesh, that of its `.node`.
@@ -140,45 +89,45 @@ impl MeshFile {
 
     /// Returns x and y of each vertex, in the order of the file, in its unit.
     pub fn points(&self) -> &[[f64; 2]] {
-        &self.points
+        &self.parsed.points
     }
 
     /// Returns the vertex indices of each triangle, zero-based, in the order and the winding of the file.
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        &self.parsed.triangles
     }
 
     /// Returns the lines, points, other elements and periodic pairs of the file.
     pub fn constraints(&self) -> &Constraints {
-        &self.constraints
+        &self.parsed.constraints
     }
 
     /// Returns the [region](Self#regions) of each triangle, in the order of [`triangles`](Self::triangles). Regions are
     /// numbered from 0 in the order in which the file first names them. `None` if all triangles are of one region.
     pub fn regions(&self) -> Option<&[u32]> {
-        self.regions.as_deref()
+        self.parsed.regions.as_deref()
     }
 
     /// Returns the vertices inside the mesh at which triangles of different [regions](Self#regions) meet, ascending.
     /// Vertices on the boundary are left out.
     pub fn interface_vertices(&self) -> Vec<u32> {
-        let regions = self.regions.as_deref();
+        let regions = self.parsed.regions.as_deref();
         regions.map_or_else(Vec::new, |regions| {
-            interface_vertices(regions, &self.triangles, self.points.len())
+            interface_vertices(regions, &self.parsed.triangles, self.parsed.points.len())
         })
     }
 
     /// Returns the edges between triangles of different [regions](Self#regions), ascending.
     pub fn interface_edges(&self) -> Vec<[u32; 2]> {
-        let regions = self.regions.as_deref();
+        let regions = self.parsed.regions.as_deref();
         regions.map_or_else(Vec::new, |regions| {
-            edges_between_regions(regions, &self.triangles, self.points.len())
+            edges_between_regions(regions, &self.parsed.triangles, self.parsed.points.len())
         })
     }
 
     /// Returns the format that the file was read in, which is also written.
     pub fn format(&self) -> Format {
-        self.format
+        self.parsed.format
     }
 
     /// Returns the reader by which the file was read.
@@ -198,53 +147,53 @@ impl MeshFile {
 
     /// Returns the index of the file that has the coordinates, in the order of [`parts`](Self::parts).
     pub(crate) fn part(&self) -> usize {
-        self.part
+        self.parsed.part
     }
 
     pub(crate) fn x_at(&self) -> &Places {
-        &self.x_at
+        &self.parsed.x_at
     }
 
     pub(crate) fn owners(&self) -> Option<&[u32]> {
-        self.owners.as_deref()
+        self.parsed.owners.as_deref()
     }
 
     pub(crate) fn numbers(&self) -> Numbers {
-        self.numbers
+        self.parsed.numbers
     }
 
     /// Returns the encoded points, if the file has them encoded.
     pub(crate) fn encoded(&self) -> Option<&dyn Encoded> {
-        self.encoded.as_deref()
+        self.parsed.encoded.as_deref()
     }
 
     /// Returns the precision of coordinates in the file, to which [`write`](Self::write) rounds.
     pub fn precision(&self) -> Precision {
-        self.numbers.precision()
+        self.parsed.numbers.precision()
     }
 
     /// Returns remarks for the user, such as on elements other than triangles.
     pub fn remarks(&self) -> &[Remark] {
-        &self.remarks
+        &self.parsed.remarks
     }
 
     /// Returns the names of the real numbers that the file gives vertices besides x and y: depths, third coordinates
     /// that differ, point data. [`write`](Self::write) keeps these numbers, so they no longer fit where vertices move.
     /// [`point_fields`](Self::point_fields) reads them.
     pub fn data_names(&self) -> &[String] {
-        &self.data
+        &self.parsed.data
     }
 
     /// Whether the file gives vertices parameters on surfaces of a model, as gmsh 4.1 may. [`write`](Self::write) keeps
     /// these parameters; [`plane_parameters`](Self::plane_parameters) updates them.
     pub fn has_parameters(&self) -> bool {
-        self.has_parameters
+        self.parsed.has_parameters
     }
 
     /// Whether the file has the centers of faces or edges, as UGRID may. [`write`](Self::write) keeps them;
     /// [`centers`](Self::centers) updates them.
     pub fn has_centers(&self) -> bool {
-        self.has_centers
+        self.parsed.has_centers
     }
 }
 
@@ -253,9 +202,9 @@ impl fmt::Debug for MeshFile {
         let paths: Vec<_> = self.paths().collect();
         f.debug_struct("MeshFile")
             .field("paths", &paths)
-            .field("format", &self.format)
-            .field("vertices", &self.points.len())
-            .field("triangles", &self.triangles.len())
+            .field("format", &self.parsed.format)
+            .field("vertices", &self.parsed.points.len())
+            .field("triangles", &self.parsed.triangles.len())
             .finish_non_exhaustive()
     }
 }

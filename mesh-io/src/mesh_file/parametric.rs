@@ -5,7 +5,9 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
-use crate::visit::sink::{PointNumbers, Reader, Sink};
+use crate::visit::items::PointNumbers;
+use crate::visit::reader::Reader;
+use crate::visit::sink::Sink;
 
 /// Returns a field for each surface, with two parameters for each of its vertices. The file must have been read before.
 pub(crate) fn parameters(reader: &Reader, source: &Source) -> Result<Vec<PointField>, ReadError> {

@@ -2,7 +2,7 @@
 
 use crate::error::Location;
 use crate::mesh_file::mesh::MeshFile;
-use crate::visit::assemble;
+use crate::visit::locate::{Found, List, locate};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ impl MeshFile {
     pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
         let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
         keep_ascending(&mut wanted, self.points().len());
-        let found = assemble::vertex_places(self.reader(), self.source(), &wanted);
+        let found = locate(self.reader(), self.source(), List::Nodes, &wanted);
         self.places(&wanted, found).map(|(v, place)| (v as u32, place)).collect()
     }
 
@@ -66,21 +66,18 @@ impl MeshFile {
     ) -> BTreeMap<usize, Place> {
         let mut wanted: Vec<usize> = indices.into_iter().collect();
         keep_ascending(&mut wanted, self.triangles().len());
-        let found = assemble::triangle_places(self.reader(), self.source(), &wanted);
+        let found = locate(self.reader(), self.source(), List::Triangles, &wanted);
         self.places(&wanted, found).collect()
     }
 
-    /// Returns the place of each of these items. The last ones may not have been found.
+    /// Returns the place of each of these items with the index of the item.
     fn places<'a>(
         &'a self,
         wanted: &'a [usize],
-        found: Vec<(Location, u64, usize)>,
+        found: Vec<Found>,
     ) -> impl Iterator<Item = (usize, Place)> + 'a {
         let source = self.source();
-        let mut found = found.into_iter();
-        wanted.iter().map(move |&index| {
-            let (location, label, part) =
-                found.next().unwrap_or_else(|| assemble::not_found(index));
+        wanted.iter().zip(found).map(move |(&index, Found { location, label, part })| {
             let path = source.parts().nth(part).unwrap_or(source).path.clone();
             (index, Place { path, location, label })
         })
@@ -100,8 +97,10 @@ mod tests {
     use crate::detect;
     use crate::disk::source::Source;
     use crate::error::ReadError;
-    use crate::visit::sink::Reader;
-    use crate::visit::sink::{Layout, Sink};
+    use crate::visit::assemble;
+    use crate::visit::reader::Reader;
+    use crate::visit::sink::Sink;
+    use crate::visit::storage::Layout;
     use std::panic::AssertUnwindSafe;
     use std::path::Path;
     use std::sync::atomic::{AtomicBool, Ordering};

@@ -6,7 +6,7 @@ use crate::error::ReadError;
 use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
 use crate::visit::assemble;
-use crate::visit::sink::Reader;
+use crate::visit::reader::Reader;
 use std::path::Path;
 
 impl MeshFile {

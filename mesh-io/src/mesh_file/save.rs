@@ -2,9 +2,11 @@
 
 use crate::compress::packed::Packing;
 use crate::detect;
+use crate::disk::paths::same_file;
 use crate::disk::replace;
 use crate::disk::replace::Job;
 use crate::disk::source::Source;
+use crate::disk::system::System;
 use crate::edit::column::Column;
 use crate::edit::numbers::{Encoded, Splice};
 use crate::edit::rewrite::Rewrite;
@@ -12,7 +14,7 @@ use crate::error::WriteError;
 use crate::families::Family;
 use crate::mesh_file::mesh::MeshFile;
 use crate::visit::field::PointField;
-use crate::visit::sink::{Home, Stored};
+use crate::visit::storage::{Home, Stored};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -72,7 +74,7 @@ impl MeshFile {
         let destinations = self.destinations(path)?;
         let parts = self.parts().into_iter().zip(&destinations);
         let in_place: Vec<&Source> = parts
-            .filter(|(part, destination)| replace::same_file(&part.path, destination))
+            .filter(|(part, destination)| same_file(&part.path, destination))
             .map(|(part, _)| part)
             .collect();
         let mut jobs: Vec<_> = destinations.iter().cloned().enumerate().map(job).collect();
@@ -81,7 +83,7 @@ impl MeshFile {
         if self.part() > 0 && self.is_written(&jobs[0].0, renamed) {
             jobs.swap(0, self.part());
         }
-        replace::replace_all_if(&jobs, &|| match in_place
+        replace::replace_all_if(&System, &jobs, &|| match in_place
             .iter()
             .find(|part| part.known.is_past(&part.path, part.stored()))
         {

@@ -1,4 +1,4 @@
-//! Makes a mesh from a file's nodes and elements, or finds where they stand in the file.
+//! Makes a mesh from a file's nodes and elements.
 
 use crate::content::constraints::{Constraints, PeriodicPairs};
 use crate::content::regions::{Numbering, Regions};
@@ -6,11 +6,16 @@ use crate::content::remark::Remark;
 use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
 use crate::edit::numbers::{FoundPlaces, Places};
-use crate::error::{Location, ReadError};
+use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::items::{Element, Kind, Pairs};
+use crate::visit::locate::{Found, List, locate};
 use crate::visit::parsed::Parsed;
+use crate::visit::reader::Reader;
 use crate::visit::records::{NodeRecords, TriangleRecords};
-use crate::visit::sink::{Copies, Element, Kind, Layout, Pairs, Reader, Sink};
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Copies, Layout};
+use std::collections::HashSet;
 
 /// Reads a mesh, long lists on all threads.
 pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
@@ -39,8 +44,7 @@ pub(crate) fn parse_by(
     for (vertex, point) in points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let place = vertex_places(reader, source, &[vertex]).into_iter().next();
-            let (location, label, part) = place.unwrap_or(not_found(vertex));
+            let Found { location, label, part } = locate(reader, source, List::Nodes, &[vertex])[0];
             let source = source.parts().nth(part).unwrap_or(source);
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
@@ -70,31 +74,6 @@ pub(crate) fn parse_by(
     })
 }
 
-/// Returns what stands for the place and the tag of an item that a second walk did not find: the main file, and its index.
-pub(crate) fn not_found(index: usize) -> (Location, u64, usize) {
-    (Location::Unknown, index as u64, 0)
-}
-
-/// Location and tag, and which of the files that is, of the vertices with these indices, ascending, in a file that was read before. The last
-/// ones are left out if the walk does not come to them.
-pub(crate) fn vertex_places(
-    reader: &Reader,
-    source: &Source,
-    indices: &[usize],
-) -> Vec<(Location, u64, usize)> {
-    find(reader, source, indices, &[])
-}
-
-/// Location and tag, and which of the files that is, of the triangles with these indices, ascending, in a file that was read before. The last
-/// ones are left out if the walk does not come to them.
-pub(crate) fn triangle_places(
-    reader: &Reader,
-    source: &Source,
-    indices: &[usize],
-) -> Vec<(Location, u64, usize)> {
-    find(reader, source, &[], indices)
-}
-
 #[derive(Default)]
 struct Assembler {
     /// Whether items that were read on all threads are taken.
@@ -110,6 +89,8 @@ struct Assembler {
     remarks: Vec<Remark>,
     /// The names of the real numbers that the file gives vertices besides x and y.
     data: Vec<String>,
+    /// The names in `data`. A damaged file may announce any number of them.
+    named: HashSet<String>,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
     has_centers: bool,
@@ -235,7 +216,7 @@ impl Sink for Assembler {
 
     fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {
         let name = String::from_utf8_lossy(name).into_owned();
-        if is_real && !self.data.contains(&name) {
+        if is_real && self.named.insert(name.clone()) {
             self.data.push(name);
         }
         false
@@ -294,84 +275,5 @@ impl Sink for Assembler {
                 Ok(())
             }
         }
-    }
-}
-
-/// Finds the locations of nodes and triangles, in another walk through the file. They are needed for messages only, so
-/// they are not kept.
-struct Locator<'a> {
-    nodes: Wanted<'a>,
-    triangles: Wanted<'a>,
-    places: Vec<(Location, u64, usize)>,
-    source: &'a Source,
-}
-
-/// The items to be found in a list.
-struct Wanted<'a> {
-    /// The indices not found yet, ascending.
-    left: &'a [usize],
-    /// The index of the next item in the file.
-    next: usize,
-}
-
-fn find(
-    reader: &Reader,
-    source: &Source,
-    nodes: &[usize],
-    triangles: &[usize],
-) -> Vec<(Location, u64, usize)> {
-    let wanted = |left| Wanted { left, next: 0 };
-    let places = Vec::with_capacity(nodes.len() + triangles.len());
-    let mut locator =
-        Locator { nodes: wanted(nodes), triangles: wanted(triangles), places, source };
-    // The file was read before without an error. If there is one now, items after it are not found.
-    let _ = (reader.walk)(source, &mut locator);
-    locator.places
-}
-
-impl Wanted<'_> {
-    /// Notes the place of the next node or triangle in the file, if it is looked for.
-    fn pass(
-        &mut self,
-        places: &mut Vec<(Location, u64, usize)>,
-        source: &Source,
-        cursor: &Cursor<'_>,
-        tag: u64,
-    ) {
-        if self.left.first() == Some(&self.next) {
-            let part = source.parts().position(|part| std::ptr::eq(part, cursor.source));
-            places.push((cursor.location(), tag, part.unwrap_or(0)));
-            self.left = &self.left[1..];
-        }
-        self.next += 1;
-    }
-}
-
-/// The error by which the walk ends early. Nobody sees it.
-fn found_all(cursor: &Cursor<'_>) -> ReadError {
-    cursor.error("", "")
-}
-
-impl Sink for Locator<'_> {
-    fn asks_for_nodes(&self) -> bool {
-        !self.nodes.left.is_empty()
-    }
-
-    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.nodes.pass(&mut self.places, self.source, cursor, tag);
-    }
-
-    fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
-        if self.triangles.left.is_empty() { Err(found_all(cursor)) } else { Ok(()) }
-    }
-
-    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        if element.kind == Kind::Triangle {
-            self.triangles.pass(&mut self.places, self.source, cursor, element.tag);
-            if self.triangles.left.is_empty() {
-                return Err(found_all(cursor));
-            }
-        }
-        Ok(())
     }
 }

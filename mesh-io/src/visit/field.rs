@@ -2,7 +2,8 @@
 
 use crate::edit::column::Column;
 use crate::error::FieldError;
-use crate::visit::sink::{PointNumbers, Stored};
+use crate::visit::items::PointNumbers;
+use crate::visit::storage::Stored;
 
 /// Real numbers that a mesh file gives its vertices: depths, third coordinates, point data.
 /// [`MeshFile::point_fields`](crate::MeshFile::point_fields) reads them. With new values,

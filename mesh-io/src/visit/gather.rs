@@ -7,7 +7,9 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::group_table::GroupTable;
-use crate::visit::sink::{Column, Element, Kind, Reader, Sink, Within};
+use crate::visit::items::{Column, Element, Kind, Within};
+use crate::visit::reader::Reader;
+use crate::visit::sink::Sink;
 
 /// Gathers the groups of a file.
 pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {

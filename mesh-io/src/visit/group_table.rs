@@ -3,7 +3,7 @@
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;
 use crate::content::label::Label;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::collections::HashMap;
 
 /// The groups found so far. Their indices are their numbers.

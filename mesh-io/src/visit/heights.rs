@@ -6,8 +6,10 @@ use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::visit::items::PointNumbers;
 use crate::visit::records::LONG;
-use crate::visit::sink::{Home, PointNumbers, Sink, Stored};
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Home, Stored};
 
 /// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the sink asks for
 /// data.

@@ -5,7 +5,10 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
-use crate::visit::sink::{PointNumbers, Reader, Sink};
+use crate::visit::items::PointNumbers;
+use crate::visit::reader::Reader;
+use crate::visit::sink::Sink;
+use std::collections::HashSet;
 
 /// Which arrays are looked for.
 #[derive(Clone, Copy)]
@@ -31,8 +34,8 @@ pub(crate) fn point_data(
     source: &Source,
     wanted: Wanted<'_>,
 ) -> Result<PointData, ReadError> {
-    let (last, tags) = (Default::default(), TagIndex::default());
-    let mut seeker = Seeker { wanted, last, tags, found: PointData::default() };
+    let (last, tags, found) = (Default::default(), TagIndex::default(), PointData::default());
+    let mut seeker = Seeker { wanted, last, tags, found, named: HashSet::new() };
     (reader.walk)(source, &mut seeker)?;
     Ok(seeker.found)
 }
@@ -43,6 +46,8 @@ struct Seeker<'n> {
     last: (String, usize),
     tags: TagIndex,
     found: PointData,
+    /// The names in `found.known`. A damaged file may announce any number of them.
+    named: HashSet<String>,
 }
 
 impl Sink for Seeker<'_> {
@@ -64,7 +69,7 @@ impl Sink for Seeker<'_> {
             Wanted::Named(names) => names.contains(&name),
             Wanted::Real => is_real,
         };
-        if !self.found.known.iter().any(|(known, _)| *known == name) {
+        if self.named.insert(name.clone()) {
             self.found.known.push((name.clone(), is_real));
         }
         self.last = (name, usize::try_from(components).unwrap_or(usize::MAX));

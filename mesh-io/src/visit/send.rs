@@ -3,10 +3,11 @@
 use crate::binary::number_field::Field;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
+use crate::visit::items::{Element, Kind};
 use crate::visit::records::{NodeRecords, Region, TriangleRecords};
-use crate::visit::sink::{Element, Kind, Sink};
+use crate::visit::sink::Sink;
 
-/// What to do about a coordinate that is no number or infinite.
+/// The remedy for a coordinate that is not a finite number.
 pub(crate) const REWRITE: &str = "Write the mesh again";
 
 impl NodeRecords<'_> {
@@ -38,7 +39,7 @@ pub(crate) struct ElementRecords<'a> {
     pub(crate) count: usize,
     /// The tag of the first element. Tags are consecutive.
     pub(crate) first_tag: u64,
-    /// The tags of the nodes, as many as the kind has.
+    /// The tags of an element's nodes, side by side.
     pub(crate) nodes: Field<'a>,
     /// Whether tags of nodes are signed. A negative tag becomes 0, which no node has.
     pub(crate) is_signed: bool,

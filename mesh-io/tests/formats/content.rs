@@ -3,7 +3,7 @@
 use super::{ELE, Folder, GMSH22, NODE, POLY};
 use mesh_io::CellKind::{self, Line, Point, Quadrilateral, Triangle};
 
-/// The kind of each cell, with its number and vertices.
+/// Returns kind, number and vertices of each cell.
 fn cells(content: &mesh_io::Content) -> Vec<(CellKind, u64, Vec<u32>)> {
     content.cells().map(|cell| (cell.kind, cell.id, cell.vertices.to_vec())).collect()
 }
@@ -63,6 +63,18 @@ fn a_mesh_of_triangle_has_attributes_markers_and_segments() {
     assert_eq!(of_vertices, [("marker", Some(1), vec![0, 1, 2, 3])]);
     let [data] = content.point_data() else { panic!("{} data", content.point_data().len()) };
     assert_eq!((data.name(), data.values()), ("attribute", &[7.5; 5][..]));
+}
+
+/// A damaged header may announce as many attributes as the file has bytes. Names that are compared in pairs would take minutes.
+#[test]
+fn a_wrong_number_of_attributes_does_not_hold_up_reading() {
+    let node = NODE.replace("5 2 1 1", "5 2 4000000000 0") + &"# padding\n".repeat(100_000);
+    let folder = Folder::new(&[("a.node", &node), ("a.ele", ELE)]);
+    let file = folder.read("a.node");
+    assert_eq!(file.points().len(), 5);
+    assert!(file.data_names().len() > 100_000);
+    let error = file.point_array("none").err().unwrap().to_string();
+    assert!(error.contains("no point data is called 'none'"), "{}", &error[..200]);
 }
 
 /// Triangle's `.ele` may have any number of attributes. Groups and content have all of them.

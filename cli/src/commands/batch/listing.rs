@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use mesh_io::atomic;
+use mesh_io::{Format, atomic};
 
 use crate::error::CliError;
 use crate::load::streams::is_standard;
@@ -82,35 +82,11 @@ fn key_of(out: &Path) -> PathBuf {
     }
 }
 
-/// The files of the mesh that a path names, as far as they are there and their names tell: two or three of Triangle, an XDMF and its
-/// HDF5, else one.
+/// Lists the files of the mesh that a path names, as far as they exist and their names tell.
 fn parts(path: &Path) -> Vec<PathBuf> {
-    let with = |ending: &str| {
-        let mut name = path.with_extension("").into_os_string();
-        name.push(ending);
-        PathBuf::from(name)
-    };
-    let (Some(_), Some(own)) = (stem(path), path.extension()) else {
-        let beside = with(".h5");
-        let has_beside = is_xdmf(path) && beside.is_file();
-        return [path.to_owned()].into_iter().chain(has_beside.then_some(beside)).collect();
-    };
-    let own = own.to_string_lossy();
-    let endings = ["node", "ele", "poly"].map(|ending| spelled_like(&own, ending));
-    let parts = endings.iter().map(|ending| with(&format!(".{ending}")));
-    parts.filter(|part| part.is_file()).collect()
-}
-
-/// Spells an ending of a Triangle mesh as mesh-io does beside a file with the ending `own`: in capitals, with a capital first,
-/// or in small letters. The given file keeps its spelling.
-fn spelled_like(own: &str, ending: &str) -> String {
-    let (first, rest) = ending.split_at(1);
-    match own {
-        _ if own.eq_ignore_ascii_case(ending) => own.to_owned(),
-        "NODE" | "ELE" | "POLY" => ending.to_uppercase(),
-        "Node" | "Ele" | "Poly" => first.to_uppercase() + rest,
-        _ => ending.to_owned(),
-    }
+    let mut parts = Format::files_of(path);
+    parts.retain(|part| part.is_file());
+    parts
 }
 
 /// Lists the meshes that some paths name, each once, with the files in `directory` that they are written to.

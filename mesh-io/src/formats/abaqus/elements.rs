@@ -11,7 +11,8 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::sink::{Element, Kind, Sink, Within};
+use crate::visit::items::{Element, Kind, Within};
+use crate::visit::sink::Sink;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// What is found out of elements before they are handed on. All lists are empty if they are not needed.

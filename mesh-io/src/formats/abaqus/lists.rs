@@ -8,7 +8,8 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::sink::{Kind, volume};
+use crate::visit::items::Kind;
+use crate::visit::rows::volume;
 
 /// A list of elements of one type.
 pub(super) struct List<'d, 'a> {

@@ -7,7 +7,9 @@ use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::integer;
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Kind, Sink, all_rows, nodes};
+use crate::visit::items::Kind;
+use crate::visit::rows::{all_rows, nodes};
+use crate::visit::sink::Sink;
 
 /// Moves the cursor on to the lines of data of a block. Returns one that does not read beyond them.
 pub(super) fn of<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {

@@ -2,7 +2,7 @@
 //!
 //! A name is that of a family, the number of nodes or the order, and letters for variants: `CPS4R`, `B31H`, `STRI65`.
 
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 
 /// What elements of a type are in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

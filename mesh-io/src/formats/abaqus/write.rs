@@ -5,7 +5,7 @@ use crate::export::job::Job;
 use crate::export::put;
 use crate::export::spelling::{Spelling, distinct};
 use crate::precision::short_text;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::fmt::Write;
 
 /// How many numbers a row of a set has.

@@ -3,7 +3,8 @@
 use super::file::{File, labeled};
 use crate::content::label::Label;
 use crate::hdf5::Object;
-use crate::visit::sink::{Sink, Within};
+use crate::visit::items::Within;
+use crate::visit::sink::Sink;
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::ops::RangeInclusive;

@@ -9,9 +9,11 @@ use crate::error::ReadError;
 use crate::hdf5::{Array, Number, Object};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::items::{Column, Element, Kind};
 use crate::visit::records::Region;
+use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::{Column, Element, Kind, Sink, volume};
+use crate::visit::sink::Sink;
 
 /// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
 const MIXED: i64 = 20;

@@ -7,9 +7,11 @@ use crate::error::ReadError;
 use crate::netcdf::{Items, Number, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::items::Kind;
 use crate::visit::records::Region;
+use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::{Kind, Sink, volume};
+use crate::visit::sink::Sink;
 
 /// Elements of one type.
 pub(super) struct Block<'a> {

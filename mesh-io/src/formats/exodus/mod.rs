@@ -17,7 +17,10 @@ use crate::formats::netcdf_axes::axes;
 use crate::hdf5::Hdf5;
 use crate::netcdf::{self, Header, Number, Variable};
 use crate::text::cursor::Cursor;
-use crate::visit::sink::{Column, Layout, Sink, Walk};
+use crate::visit::items::Column;
+use crate::visit::reader::Walk;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Exodus;
 

@@ -5,7 +5,8 @@ use super::{File, NO_BLOCK};
 use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::sink::{Element, Kind, Sink, Within};
+use crate::visit::items::{Element, Kind, Within};
+use crate::visit::sink::Sink;
 
 impl File<'_> {
     /// Hands on the sides of triangles and quadrilaterals in side sets as lines.

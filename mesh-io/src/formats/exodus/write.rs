@@ -7,7 +7,7 @@ use crate::export::content::ContentGroup;
 use crate::export::job::Job;
 use crate::export::sides::{pair, sides};
 use crate::netcdf::write::{NetCdf, Values};
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::collections::{HashMap, HashSet};
 
 /// The dimension of time steps.

@@ -10,8 +10,9 @@ use crate::binary::order::Order;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::heights::Heights;
+use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::visit::sink::{Element, Kind, Sink};
+use crate::visit::sink::Sink;
 
 /// Reads `$Nodes` or `$ParametricNodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

@@ -11,8 +11,10 @@ use crate::edit::numbers::Places;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::heights::Heights;
+use crate::visit::items::{Element, Kind, PointNumbers};
 use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::visit::sink::{Element, Kind, PointNumbers, Sink, Stored};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Stored;
 
 /// The size of a block's header in bytes: three `int`, and a `size_t` (an `unsigned long` in 4.0).
 pub(super) const BLOCK_HEADER: usize = 20;

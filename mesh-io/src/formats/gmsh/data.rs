@@ -7,7 +7,9 @@ use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::unquoted;
 use crate::visit::heights::TextNumbers;
-use crate::visit::sink::{PointNumbers, Sink, Stored};
+use crate::visit::items::PointNumbers;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Stored;
 
 /// Data of nodes are skipped if fewer than one in this many nodes has them.
 const FEW: u64 = 16;

@@ -2,7 +2,7 @@
 
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 
 /// Returns the kind of an element by its number in gmsh, or an error on the current line.
 pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {

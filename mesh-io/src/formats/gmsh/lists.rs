@@ -6,7 +6,8 @@ use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::layout::of_rows_or_words;
 use crate::text::syntax::Syntax;
-use crate::visit::sink::{Sink, each_item};
+use crate::visit::rows::each_item;
+use crate::visit::sink::Sink;
 
 /// A remark for the user on parameters that cannot be updated.
 const PARAMETRIC: &str =

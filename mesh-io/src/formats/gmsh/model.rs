@@ -8,7 +8,8 @@ use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::in_quotes;
-use crate::visit::sink::{Kind, Sink, Within};
+use crate::visit::items::{Kind, Within};
+use crate::visit::sink::Sink;
 use std::collections::HashMap;
 
 /// Reads `$PhysicalNames` after its first line and hands on the names. Returns how many there are.

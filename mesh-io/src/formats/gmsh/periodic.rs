@@ -6,7 +6,7 @@ use crate::content::constraints::Affine;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
-use crate::visit::sink::Pairs;
+use crate::visit::items::Pairs;
 
 /// The numbers of a motion of space: a matrix of four by four, row by row.
 const AFFINE: usize = 16;

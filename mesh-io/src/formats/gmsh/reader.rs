@@ -13,7 +13,9 @@ use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Layout, Sink, Walk};
+use crate::visit::reader::Walk;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 /// The reader of gmsh's `.msh`.
 pub(crate) struct Gmsh;

@@ -6,7 +6,8 @@ use super::words::Progress;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Column, Element, Sink};
+use crate::visit::items::{Column, Element};
+use crate::visit::sink::Sink;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(

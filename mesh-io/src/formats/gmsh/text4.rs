@@ -10,7 +10,8 @@ use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::visit::heights::{Heights, TextNumbers};
-use crate::visit::sink::{Element, Sink};
+use crate::visit::items::Element;
+use crate::visit::sink::Sink;
 use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.

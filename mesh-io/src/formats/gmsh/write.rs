@@ -3,7 +3,7 @@
 use crate::export::content::Data;
 use crate::export::job::Job;
 use crate::export::put;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 

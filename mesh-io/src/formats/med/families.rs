@@ -2,7 +2,8 @@
 
 use crate::content::label::Label;
 use crate::hdf5::{Hdf5, Object};
-use crate::visit::sink::{Sink, Within};
+use crate::visit::items::Within;
+use crate::visit::sink::Sink;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The groups of each family of a mesh.

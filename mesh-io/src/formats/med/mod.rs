@@ -16,9 +16,13 @@ use crate::formats::axes::{Axes, BinaryReals};
 use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::items::{Column, Kind};
+use crate::visit::reader::Walk;
 use crate::visit::records::Region;
+use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::{Column, Kind, Layout, Sink, Walk, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 use families::Families;
 
 pub(crate) struct Med;

@@ -15,9 +15,13 @@ use crate::formats::medit::required::hold_required;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::heights::Heights;
+use crate::visit::items::{Column, Kind, Within};
+use crate::visit::reader::Walk;
 use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::rows::volume;
 use crate::visit::send::{ElementRecords, REWRITE};
-use crate::visit::sink::{Column, Kind, Layout, Sink, Walk, Within, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct MeditBinary;
 

@@ -4,7 +4,8 @@ use crate::content::label::Label;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::sink::{Element, Kind, Sink, Within};
+use crate::visit::items::{Element, Kind, Within};
+use crate::visit::sink::Sink;
 
 /// Hands on the corners of the required triangles. `required` are the numbers of the triangles, counted from 1 through all
 /// lists. `counts` are the lengths of the lists of triangles. `triangle` reads the triangle with an index in a list, counted

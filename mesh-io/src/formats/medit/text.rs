@@ -14,9 +14,11 @@ use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
 use crate::visit::heights::Heights;
-use crate::visit::sink::{
-    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
-};
+use crate::visit::items::{Column, Element, Kind, Within};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 
 pub(crate) struct Medit;
 

@@ -2,7 +2,7 @@
 
 use crate::export::job::Job;
 use crate::export::put;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::fmt::Write;
 
 /// A list of elements: its name, its keyword in binary files, how many numbers each element has, and the numbers.

@@ -8,7 +8,9 @@ use crate::text::card;
 use crate::text::card::{Line, Name, letters};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
-use crate::visit::sink::{Column, Element, Kind, Sink, all_rows, volume};
+use crate::visit::items::{Column, Element, Kind};
+use crate::visit::rows::{all_rows, volume};
+use crate::visit::sink::Sink;
 use std::collections::{BTreeSet, HashSet};
 
 /// A card, as far as it is of elements.

@@ -19,7 +19,9 @@ use crate::text::card::{Line, letters};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
-use crate::visit::sink::{Layout, Sink, Walk};
+use crate::visit::reader::Walk;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 use types::Class;
 
 pub(crate) struct Nastran;

@@ -10,7 +10,8 @@ use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_HEIGHT;
 use crate::text::token::{float, fortran_float, integer};
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Sink, all_rows};
+use crate::visit::rows::all_rows;
+use crate::visit::sink::Sink;
 use std::ops::Range;
 
 /// A card, as far as it is of nodes.

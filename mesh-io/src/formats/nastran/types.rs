@@ -1,7 +1,7 @@
 //! The cards of elements, by their names.
 
 use crate::text::card::{Name, letters};
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 
 /// What elements are in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,7 +11,10 @@ use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::visit::heights::Heights;
-use crate::visit::sink::{Element, Kind, Layout, PointNumbers, Sink, Stored, Walk};
+use crate::visit::items::{Element, Kind, PointNumbers};
+use crate::visit::reader::Walk;
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Layout, Stored};
 
 use header::{Items, List, Number, Property, header};
 

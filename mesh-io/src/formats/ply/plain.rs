@@ -5,8 +5,10 @@ use crate::binary::number_field::Field;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::visit::heights::Heights;
+use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::visit::sink::{Element, Kind, Sink, nodes};
+use crate::visit::rows::nodes;
+use crate::visit::sink::Sink;
 
 impl Items {
     /// Hands on the first vertices as long as they are plain, if all have the same number of bytes. `x` and `z` are

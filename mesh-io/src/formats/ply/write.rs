@@ -3,7 +3,7 @@
 use crate::export::content::Data;
 use crate::export::job::{Job, text_of};
 use crate::export::put;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::fmt::Write;
 
 /// Writes PLY as text, with data of one number among the properties of vertices.

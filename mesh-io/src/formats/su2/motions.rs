@@ -2,7 +2,7 @@
 
 use crate::content::constraints::Affine;
 use crate::text::token::float;
-use crate::visit::sink::Pairs;
+use crate::visit::items::Pairs;
 
 /// The motions read so far, in the order of the file.
 #[derive(Default)]

@@ -14,9 +14,11 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
-use crate::visit::sink::{
-    Column, Element, Kind, Layout, Sink, Walk, Within, each_row, nodes, volume,
-};
+use crate::visit::items::{Column, Element, Kind, Within};
+use crate::visit::reader::Walk;
+use crate::visit::rows::{each_row, nodes, volume};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 use std::ops::Range;
 
 pub(crate) struct Su2;

@@ -64,9 +64,7 @@ pub(crate) fn load_by_stem(path: &Path) -> Option<Result<Source, ReadError>> {
 
 /// Loads the other files of the mesh that `given` belongs to. Returns the `.node`, with the other files as companions.
 pub(super) fn load_companions(given: Source) -> Result<Source, ReadError> {
-    let Some(names) = names(&given) else {
-        return Err(given.error(ONE_OF_TWO, "Name its .node, so that both are read"));
-    };
+    let Some(names) = names(&given) else { return Err(one_of_two(&given)) };
     let (mut node, ele) = match given.path == names.ele {
         true => (load(&names.node, &names)?, given),
         false => (given, load(&names.ele, &names)?),
@@ -81,11 +79,14 @@ pub(super) fn load_companions(given: Source) -> Result<Source, ReadError> {
     Ok(node)
 }
 
-const ONE_OF_TWO: &str = "one of the two files of a Triangle mesh";
-
 /// Refuses a file that was not read from the disk, where its companions are.
 pub(super) fn require_single(source: &Source) -> Result<(), ReadError> {
-    Err(source.error(ONE_OF_TWO, "Name its .node, so that both are read"))
+    Err(one_of_two(source))
+}
+
+fn one_of_two(source: &Source) -> ReadError {
+    let problem = "one of the two files of a Triangle mesh";
+    source.error(problem, "Name its .node, so that both are read")
 }
 
 fn load(path: &Path, names: &Names) -> Result<Source, ReadError> {

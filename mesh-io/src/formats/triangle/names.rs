@@ -12,15 +12,30 @@ pub(crate) struct Names {
 impl Names {
     /// Returns the files of the mesh that `path` names by its `.node`, by its `.ele`, or without an ending.
     pub(crate) fn of(path: &Path) -> Names {
-        let ending = path.extension().unwrap_or_default().to_string_lossy();
-        let is = |name: &str| ending.eq_ignore_ascii_case(name);
-        let stem = if is("node") || is("ele") { path.with_extension("") } else { path.to_owned() };
-        let with = |name: &str| match is(name) {
+        Self::by_ending(path, &["node", "ele"])
+            .unwrap_or_else(|| Names::with(|name| appended(path, &format!(".{name}"))))
+    }
+
+    /// Returns the files of the mesh that has a file of this name. `None` if the name has none of Triangle's endings.
+    pub(crate) fn of_file(path: &Path) -> Option<Names> {
+        Self::by_ending(path, &["node", "ele", "poly"])
+    }
+
+    fn by_ending(path: &Path, endings: &[&str]) -> Option<Names> {
+        let own = path.extension()?.to_string_lossy();
+        if !endings.iter().any(|ending| own.eq_ignore_ascii_case(ending)) {
+            return None;
+        }
+        let stem = path.with_extension("");
+        Some(Names::with(|name| match own.eq_ignore_ascii_case(name) {
             // The given path keeps its spelling.
             true => path.to_owned(),
-            false => appended(&stem, &format!(".{}", like(&ending, name))),
-        };
-        Names { node: with("node"), ele: with("ele"), poly: with("poly") }
+            false => appended(&stem, &format!(".{}", like(&own, name))),
+        }))
+    }
+
+    fn with(path_of: impl Fn(&str) -> PathBuf) -> Names {
+        Names { node: path_of("node"), ele: path_of("ele"), poly: path_of("poly") }
     }
 }
 
@@ -28,8 +43,8 @@ impl Names {
 fn like(other: &str, name: &str) -> String {
     let (first, rest) = name.split_at(1);
     match other.as_bytes() {
-        b"NODE" | b"ELE" => name.to_uppercase(),
-        b"Node" | b"Ele" => first.to_uppercase() + rest,
+        b"NODE" | b"ELE" | b"POLY" => name.to_uppercase(),
+        b"Node" | b"Ele" | b"Poly" => first.to_uppercase() + rest,
         _ => name.to_owned(),
     }
 }
@@ -62,5 +77,16 @@ mod tests {
             let expected = [node, ele, poly].map(Path::new);
             assert_eq!([names.node, names.ele, names.poly], expected.map(Path::to_path_buf));
         }
+    }
+
+    #[test]
+    fn each_file_of_a_mesh_names_all_files() {
+        for (given, node, poly) in
+            [("d/A.POLY", "d/A.NODE", "d/A.POLY"), ("la.1.Ele", "la.1.Node", "la.1.Poly")]
+        {
+            let names = Names::of_file(Path::new(given)).unwrap();
+            assert_eq!([names.node, names.poly], [node, poly].map(PathBuf::from));
+        }
+        assert!(Names::of_file(Path::new("la.1")).is_none());
     }
 }

@@ -17,7 +17,11 @@ use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::float;
 use crate::visit::heights::TextNumbers;
-use crate::visit::sink::{Element, Kind, Layout, Sink, Walk, Within, each_row};
+use crate::visit::items::{Element, Kind, Within};
+use crate::visit::reader::Walk;
+use crate::visit::rows::each_row;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 use std::path::{Path, PathBuf};
 
 /// The reader. The source is the `.node`; its companions are the `.ele` and, if there is one, the `.poly`.

@@ -12,7 +12,7 @@ pub(super) fn listed_vertices(poly: &Source) -> u64 {
 
 /// Reads the segments of a `.poly` row by row.
 pub(super) struct Segments<'s> {
-    /// Stands after the number of segments at first, then after the vertices of the last segment.
+    /// The cursor: after the number of segments at first, then after the vertices of the segment read last.
     pub(super) cursor: Cursor<'s>,
     /// The number of segments.
     pub(super) count: u64,

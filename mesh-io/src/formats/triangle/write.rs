@@ -2,7 +2,7 @@
 
 use crate::export::job::{Job, text_of};
 use crate::export::put;
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::fmt::Write;
 
 /// Returns the contents of the `.node`, the `.ele`, and the `.poly` if there are lines.

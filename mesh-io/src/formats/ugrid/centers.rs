@@ -4,7 +4,8 @@ use super::mesh::{Mesh, axis_of};
 use super::table::{Table, What};
 use crate::formats::netcdf_points::{Parts, PointData};
 use crate::netcdf::{Number, Variable};
-use crate::visit::sink::{Centers, Sink};
+use crate::visit::items::Centers;
+use crate::visit::sink::Sink;
 
 /// The nodes of the faces of a mesh, and those of its edges if the file has edges.
 pub(super) struct Tables<'h, 'a> {

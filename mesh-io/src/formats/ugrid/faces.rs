@@ -4,8 +4,9 @@ use super::table::Table;
 use crate::binary::number_field::Field;
 use crate::error::ReadError;
 use crate::netcdf::Number;
+use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Region, TriangleRecords};
-use crate::visit::sink::{Element, Kind, Sink};
+use crate::visit::sink::Sink;
 
 /// Hands on all faces.
 pub(super) fn send(faces: &Table<'_, '_>, sink: &mut dyn Sink) -> Result<(), ReadError> {

@@ -15,7 +15,9 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::Hdf5;
 use crate::netcdf;
-use crate::visit::sink::{Layout, Sink, Walk};
+use crate::visit::reader::Walk;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 use mesh::Mesh;
 use table::{Table, What};
 

@@ -5,8 +5,10 @@ use crate::binary::whole::Whole;
 use crate::error::ReadError;
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Expected, LONG, Region, TriangleRecords};
-use crate::visit::sink::{Element, Kind, Sink, volume};
+use crate::visit::rows::volume;
+use crate::visit::sink::Sink;
 use std::ops::Range;
 
 /// A cell of one of VTK's formats.

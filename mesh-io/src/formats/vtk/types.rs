@@ -1,6 +1,6 @@
 //! VTK's numbers of the types of cells, which SU2 uses too.
 
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 
 /// An empty cell, which has no vertices.
 pub(crate) const EMPTY: u64 = 0;

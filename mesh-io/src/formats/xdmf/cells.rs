@@ -10,8 +10,9 @@ use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
+use crate::visit::items::Column;
 use crate::visit::records::TriangleRecords;
-use crate::visit::sink::{Column, Sink};
+use crate::visit::sink::Sink;
 
 /// The whole numbers of a topology, one after another.
 enum Words<'a> {

@@ -1,7 +1,7 @@
 //! The files of numbers that an XDMF file refers to: their loading, and their names when the mesh is written.
 
 use crate::compress::packed::Packing;
-use crate::disk::replace::same_file;
+use crate::disk::paths::same_file;
 use crate::disk::source::{Companion, Source, file_name};
 use crate::edit::numbers::Splice;
 use crate::error::{Location, ReadError, WriteError};

@@ -8,7 +8,7 @@ use crate::error::ReadError;
 use crate::hdf5::{Array, Encoding, Hdf5, Number};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::sink::{Home, Stored};
+use crate::visit::storage::{Home, Stored};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;

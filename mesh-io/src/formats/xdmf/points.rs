@@ -14,7 +14,8 @@ use crate::text::token::quoted;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::send::REWRITE;
-use crate::visit::sink::{Home, Layout, Sink};
+use crate::visit::sink::Sink;
+use crate::visit::storage::{Home, Layout};
 
 impl File<'_> {
     /// Hands on the points. Returns how they stand, and how many there are.

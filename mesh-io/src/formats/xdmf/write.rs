@@ -3,7 +3,7 @@
 use crate::export::job::Job;
 use crate::export::put;
 use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
-use crate::visit::sink::Kind;
+use crate::visit::items::Kind;
 use std::fmt::Write;
 
 pub(crate) fn write_xdmf(job: &Job<'_>) -> String {

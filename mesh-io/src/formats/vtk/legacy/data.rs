@@ -9,7 +9,9 @@ use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::visit::heights::TextNumbers;
-use crate::visit::sink::{Column, PointNumbers, Sink, Stored};
+use crate::visit::items::{Column, PointNumbers};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Stored;
 use std::borrow::Cow;
 
 /// The arrays that tell the regions of cells.

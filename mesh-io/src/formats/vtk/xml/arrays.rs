@@ -11,7 +11,8 @@ use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::heights::TextNumbers;
-use crate::visit::sink::{Home, PointNumbers, Stored};
+use crate::visit::items::PointNumbers;
+use crate::visit::storage::{Home, Stored};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -8,7 +8,8 @@ use crate::formats::vtk::cells::{Cell, Triangles, Tries};
 use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::sink::{Column, Sink};
+use crate::visit::items::Column;
+use crate::visit::sink::Sink;
 
 /// The types of the cells of a list.
 enum Types<'a> {

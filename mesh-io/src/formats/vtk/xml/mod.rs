@@ -14,7 +14,9 @@ mod points;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::visit::sink::{Layout, Sink, Walk};
+use crate::visit::reader::Walk;
+use crate::visit::sink::Sink;
+use crate::visit::storage::Layout;
 use arrays::File;
 use document::{Content, Document};
 

@@ -13,7 +13,8 @@ use crate::text::token::quoted;
 use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::send::REWRITE;
-use crate::visit::sink::{Home, Sink};
+use crate::visit::sink::Sink;
+use crate::visit::storage::Home;
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -1,0 +1,126 @@
+//! The items that readers hand on: elements, groups, periodic pairs, and numbers of points.
+
+use crate::content::constraints::Affine;
+use crate::content::label::Label;
+use crate::visit::storage::Stored;
+
+/// The kinds of elements. The vertices of all elements but triangles are constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Point,
+    /// A corner of a polygon with more corners than a quadrilateral.
+    Corner,
+    Line,
+    Triangle,
+    Quadrilateral,
+}
+
+impl Kind {
+    pub(crate) fn nodes(self) -> usize {
+        match self {
+            Kind::Point | Kind::Corner => 1,
+            Kind::Line => 2,
+            Kind::Triangle => 3,
+            Kind::Quadrilateral => 4,
+        }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Kind::Point => "point",
+            Kind::Corner => "polygon",
+            Kind::Line => "line",
+            Kind::Triangle => "triangle",
+            Kind::Quadrilateral => "quadrilateral",
+        }
+    }
+
+    /// Returns the dimension of the elements: 0 for points, 1 for lines, 2 for surfaces.
+    pub(crate) fn dimension(self) -> u8 {
+        match self {
+            Kind::Point => 0,
+            Kind::Line => 1,
+            Kind::Triangle | Kind::Quadrilateral | Kind::Corner => 2,
+        }
+    }
+
+    /// Returns the kind of a polygon with this many corners, if there is one.
+    pub(crate) fn of_polygon(corners: u64) -> Option<Kind> {
+        [Kind::Point, Kind::Line, Kind::Triangle, Kind::Quadrilateral]
+            .into_iter()
+            .find(|kind| kind.nodes() as u64 == corners)
+    }
+}
+
+/// An element of a file.
+pub(crate) struct Element {
+    /// The file's number of the element. If it has none, its position in the list, counted as the file counts.
+    pub(crate) tag: u64,
+    pub(crate) kind: Kind,
+    /// Numbers that name the element's region; 0 where the format has none.
+    pub(crate) region: [i64; 2],
+    /// The tags of as many nodes as the kind has.
+    pub(crate) nodes: [u64; 4],
+}
+
+/// The meaning of one number of [`Element::region`].
+pub(crate) struct Column {
+    /// The kind of group that the number stands for: `physical`, `reference`, or the name of an array.
+    pub(crate) what: String,
+    /// The least dimension of elements that have this number.
+    pub(crate) from_dimension: u8,
+    /// Returns the label that a number stands for; `None` if it stands for no group.
+    pub(crate) label: fn(i64) -> Option<Label>,
+}
+
+impl Column {
+    /// Makes a column of tags that all stand for groups.
+    pub(crate) fn tags(what: &str, from_dimension: u8) -> Column {
+        Column { what: what.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
+    }
+
+    /// Makes a column of tags in which 0 stands for no group.
+    pub(crate) fn tags_from_one(what: &str) -> Column {
+        let label = |tag| (tag != 0).then_some(Label::Tag(tag));
+        Column { what: what.into(), from_dimension: 0, label }
+    }
+}
+
+/// A group whose elements stand together in the file.
+#[derive(Clone, Debug)]
+pub(crate) struct Within<'w> {
+    /// The kind of group, as the format calls it.
+    pub(crate) what: &'w str,
+    pub(crate) label: Label,
+    /// The dimension of the group, if it differs from that of its elements.
+    pub(crate) dimension: Option<u8>,
+}
+
+/// Nodes that belong together in pairs, as in a periodic model.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Pairs {
+    /// The motion that takes the first node of each pair to the second, if the file gives it.
+    pub(crate) motion: Option<Affine>,
+    /// The tags of the two nodes of each pair; empty if the file gives only the motion.
+    pub(crate) nodes: Vec<[u64; 2]>,
+}
+
+/// The numbers of an array of point data.
+pub(crate) struct PointNumbers {
+    /// The numbers, tuple by tuple in the order of the file.
+    pub(crate) numbers: Vec<f64>,
+    /// The tag of each tuple's node; `None` if there is a tuple for each node in order.
+    pub(crate) nodes: Option<Vec<u64>>,
+    /// Where the numbers stand; `None` if they cannot be replaced.
+    pub(crate) stored: Option<Stored>,
+}
+
+/// One coordinate of the centers of some elements: faces, edges, or single nodes.
+pub(crate) struct Centers {
+    /// The tags of the nodes of all elements, one element after another, and where those of each end. An element without nodes has
+    /// no center.
+    pub(crate) nodes: Vec<u64>,
+    pub(crate) ends: Vec<usize>,
+    /// A number for each element.
+    pub(crate) numbers: PointNumbers,
+}

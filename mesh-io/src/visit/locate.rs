@@ -1,0 +1,96 @@
+//! Finds where nodes and triangles stand in a file that was read before. Messages alone need it, so that no place is kept.
+
+use crate::disk::source::Source;
+use crate::error::{Location, ReadError};
+use crate::text::cursor::Cursor;
+use crate::visit::items::{Element, Kind};
+use crate::visit::reader::Reader;
+use crate::visit::sink::Sink;
+
+/// The list in which items are looked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum List {
+    Nodes,
+    Triangles,
+}
+
+/// Where an item stands.
+#[derive(Clone, Copy)]
+pub(crate) struct Found {
+    /// [`Location::Unknown`] if the walk does not come to the item.
+    pub(crate) location: Location,
+    /// The file's number of the item; its index in the list if the location is unknown.
+    pub(crate) label: u64,
+    /// The index of the file, in the order of [`Source::parts`].
+    pub(crate) part: usize,
+}
+
+/// Walks through the file and returns one place for each of these items of a list. `indices` are ascending.
+pub(crate) fn locate(
+    reader: &Reader,
+    source: &Source,
+    list: List,
+    indices: &[usize],
+) -> Vec<Found> {
+    let found = Vec::with_capacity(indices.len());
+    let mut locator = Locator { list, left: indices, next: 0, found, source };
+    // The file was read before without an error. If there is one now, items after it are not found.
+    let _ = (reader.walk)(source, &mut locator);
+    let Locator { left, mut found, .. } = locator;
+    let unknown =
+        |&index: &usize| Found { location: Location::Unknown, label: index as u64, part: 0 };
+    found.extend(left.iter().map(unknown));
+    found
+}
+
+struct Locator<'a> {
+    list: List,
+    /// The indices not found yet, ascending.
+    left: &'a [usize],
+    /// The index of the next item of the list.
+    next: usize,
+    found: Vec<Found>,
+    source: &'a Source,
+}
+
+impl Locator<'_> {
+    /// Notes the place of the next item of the list, if the item is looked for.
+    fn pass(&mut self, cursor: &Cursor<'_>, label: u64) {
+        if self.left.first() == Some(&self.next) {
+            let mut parts = self.source.parts();
+            let part = parts.position(|part| std::ptr::eq(part, cursor.source)).unwrap_or(0);
+            self.found.push(Found { location: cursor.location(), label, part });
+            self.left = &self.left[1..];
+        }
+        self.next += 1;
+    }
+
+    /// Ends the walk by an error, which nobody sees, once all items are found.
+    fn end_if_found(&self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
+        if self.left.is_empty() { Err(cursor.error("", "")) } else { Ok(()) }
+    }
+}
+
+impl Sink for Locator<'_> {
+    fn asks_for_nodes(&self) -> bool {
+        self.list == List::Nodes
+    }
+
+    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+        if self.list == List::Nodes {
+            self.pass(cursor, tag);
+        }
+    }
+
+    fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
+        self.end_if_found(cursor)
+    }
+
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        if self.list == List::Triangles && element.kind == Kind::Triangle {
+            self.pass(cursor, element.tag);
+            return self.end_if_found(cursor);
+        }
+        Ok(())
+    }
+}
