@@ -37,7 +37,7 @@ pub(crate) struct Layout {
     pub(crate) encoded: Option<Box<dyn Encoded>>,
     /// Where the coordinates stand, if a vertex may have them in several places.
     pub(crate) copies: Option<Copies>,
-    /// The index of the file that has the coordinates, in the order of [`Source::parts`].
+    /// The index of the file that has the coordinates, in the order of [`Source::parts`](crate::disk::source::Source::parts).
     pub(crate) part: usize,
 }
 
