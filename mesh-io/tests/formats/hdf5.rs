@@ -359,7 +359,7 @@ fn damaged_files_of_hdf5_never_panic() {
                     content
                 }
             };
-            fs::write(folder.path(files[part]), &content).unwrap();
+            folder.put(files[part], &content);
             let start = Instant::now();
             let read_again = mesh_or_error(&folder, sample);
             read += usize::from(read_again.is_some());
@@ -377,7 +377,7 @@ fn damaged_files_of_hdf5_never_panic() {
             // What was damaged, and what was written.
             for (name, bytes) in files.iter().zip(&whole) {
                 if name == &files[part] || round % 7 == 0 {
-                    fs::write(folder.path(name), bytes).unwrap();
+                    folder.put(name, bytes);
                 }
             }
         }

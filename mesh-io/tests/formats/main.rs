@@ -70,6 +70,12 @@ impl Folder {
         folder
     }
 
+    /// Writes a file. Removes an earlier one first: some file systems write a shortened file to the disk at once.
+    fn put(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        let _ = fs::remove_file(self.path(name));
+        fs::write(self.path(name), bytes).unwrap();
+    }
+
     fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }

@@ -10,13 +10,26 @@ use mesh_io::{Format, Location, MeshFile};
 use std::collections::BTreeSet;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Runs a check on every variant, and fails with the names of those that failed.
 #[track_caller]
-pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made)) {
+pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made) + Sync) {
     let all = all(mesh);
-    let fails = |made: &&Made| catch_unwind(AssertUnwindSafe(|| check(made))).is_err();
-    let failed: Vec<_> = all.iter().filter(fails).map(|made| &made.what).collect();
+    let (next, failed) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let work = || {
+        while let Some(made) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if catch_unwind(AssertUnwindSafe(|| check(made))).is_err() {
+                failed.lock().unwrap().push(&made.what);
+            }
+        }
+    };
+    // Threads of their own: a thread of rayon would go on with another variant while it waits for the parts of a file.
+    std::thread::scope(|scope| {
+        (0..4).for_each(|_| drop(scope.spawn(work)));
+    });
+    let failed = failed.into_inner().unwrap();
     assert!(failed.is_empty(), "{} of {} failed: {failed:#?}", failed.len(), all.len());
 }
 

@@ -46,7 +46,7 @@ fn a_file_cut_off_anywhere_is_an_error_or_a_mesh() {
     for_each(&base(), |made| {
         let folder = folder(made, &[]);
         for cut in 0..made.bytes.len() {
-            fs::write(folder.path(made.name), &made.bytes[..cut]).unwrap();
+            folder.put(made.name, &made.bytes[..cut]);
             let read = mesh_or_error(&folder, made.name);
             let in_a_list = made.lists.iter().any(|list| list.contains(&cut));
             assert!(!in_a_list || read.is_err(), "a mesh of the first {cut} bytes");
@@ -124,7 +124,7 @@ fn damaged_files_of_other_programs_never_panic() {
         for round in 0..rounds {
             let (made, folder) = (samples[round % samples.len()], &folders[round % samples.len()]);
             let content = damaged(&made.bytes, &mut random);
-            fs::write(folder.path(made.name), &content).unwrap();
+            folder.put(made.name, &content);
             let start = Instant::now();
             if let Ok(file) = mesh_or_error(folder, made.name) {
                 read += 1;

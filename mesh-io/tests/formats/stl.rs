@@ -66,7 +66,7 @@ fn binary(mesh: &Mesh, points: &[[f64; 2]], z: f64) -> Vec<u8> {
 
 fn read(name: &str, bytes: &[u8]) -> (Folder, MeshFile) {
     let folder = Folder::new(&[]);
-    fs::write(folder.path(name), bytes).unwrap();
+    folder.put(name, bytes);
     let file = ReadOptions::new().weld(true).read(&folder.path(name)).unwrap();
     (folder, file)
 }
@@ -144,7 +144,7 @@ fn every_copy_of_a_moved_corner_is_written() {
             _ => torn.windows(6).rposition(|w| w == b"vertex").unwrap() + 7,
         };
         torn[at] ^= 1;
-        fs::write(folder.path("out.stl"), torn).unwrap();
+        folder.put("out.stl", torn);
         let torn = ReadOptions::new().weld(true).read(&folder.path("out.stl")).unwrap();
         assert!(file.difference(&torn).is_some());
     }
@@ -173,7 +173,7 @@ fn an_stl_that_is_no_plane_mesh_is_refused() {
     let bytes = binary(&mesh, &mesh.points, 1.0);
     let refused = |bytes: &[u8], parts: &[&str]| {
         let folder = Folder::new(&[]);
-        fs::write(folder.path("a.stl"), bytes).unwrap();
+        folder.put("a.stl", bytes);
         let error = mesh_or_error(&folder, "a.stl").unwrap_err();
         assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
     };
@@ -204,7 +204,7 @@ fn files_cut_off_or_damaged_never_panic() {
     let mut random = random(29);
     for (format, bytes) in samples() {
         for cut in 0..bytes.len() {
-            fs::write(folder.path("a.stl"), &bytes[..cut]).unwrap();
+            folder.put("a.stl", &bytes[..cut]);
             let last = bytes[..cut].split(|&byte| byte == b'\n').rfind(|line| !line.is_empty());
             let is_whole = last.is_some_and(|line| line.starts_with(b"endsolid"));
             let read = mesh_or_error(&folder, "a.stl");
@@ -213,7 +213,7 @@ fn files_cut_off_or_damaged_never_panic() {
         let mut read = 0;
         let rounds = rounds(2000);
         for _ in 0..rounds {
-            fs::write(folder.path("a.stl"), damaged(&bytes, &mut random)).unwrap();
+            folder.put("a.stl", damaged(&bytes, &mut random));
             read += usize::from(mesh_or_error(&folder, "a.stl").is_ok());
         }
         let few = rounds / 50;

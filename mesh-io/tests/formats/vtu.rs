@@ -13,7 +13,7 @@ use mesh_io::{Conversion, Format, Location, MeshFile, PointField};
 use std::fs;
 pub(crate) fn folder(bytes: &[u8]) -> Folder {
     let folder = Folder::new(&[]);
-    fs::write(folder.path("in.vtu"), bytes).unwrap();
+    folder.put("in.vtu", bytes);
     folder
 }
 
@@ -137,7 +137,7 @@ fn cut_off_and_damaged_files_never_panic() {
         let bytes = write(&mesh, style);
         let folder = folder(&bytes);
         let read = |content: &[u8]| {
-            fs::write(folder.path("in.vtu"), content).unwrap();
+            folder.put("in.vtu", content);
             match MeshFile::read(&folder.path("in.vtu")) {
                 Ok(file) => {
                     let points = file.points();
@@ -212,7 +212,7 @@ fn pieces_and_polygons_are_read_and_come_back() {
         let bytes = write_pieces(&meshes, style, polygons);
         let names = if polygons { ["in.vtp", "out.vtp"] } else { ["in.vtu", "out.vtu"] };
         let folder = Folder::new(&[]);
-        fs::write(folder.path(names[0]), &bytes).unwrap();
+        folder.put(names[0], &bytes);
         let file = folder.read(names[0]);
         let format = if polygons { Format::Vtp } else { Format::Vtu };
         assert_eq!((file.format(), file.precision()), (format, style.precision), "{style:?}");
