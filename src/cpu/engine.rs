@@ -20,8 +20,8 @@ use crate::run::{CPU, Engine, EngineState, History, LEFT_OUT, Objectives, Plan, 
 const CHUNK: usize = 1 << 12;
 
 /// The state of a run on the CPU.
-pub(crate) struct CpuEngine<'a> {
-    problem: &'a Problem,
+pub(crate) struct CpuEngine {
+    problem: Problem,
     base: Metric,
     tracked: Vec<Metric>,
     /// The step of the base metric. Corrections use its shape guard, and its exponent, which is that of the last
@@ -31,6 +31,8 @@ pub(crate) struct CpuEngine<'a> {
     /// The positions of the best state, and the objective there; `None` if every sweep improves the mesh, so that the last state is
     /// the best.
     best: Option<(Vec<DVec2>, f64)>,
+    /// Which free vertices are held; empty if none is.
+    held: Vec<bool>,
     /// Scratch memory for sweeps.
     moved: Vec<DVec2>,
     hierarchy: Option<Hierarchy>,
@@ -40,17 +42,18 @@ pub(crate) struct CpuEngine<'a> {
     secants: Option<Secants>,
 }
 
-impl<'a> CpuEngine<'a> {
+impl CpuEngine {
     /// Starts at `positions`, which are normalized and in the problem's order.
-    pub(crate) fn new(problem: &'a Problem, positions: Vec<DVec2>, plan: &Plan) -> Self {
+    pub(crate) fn new(problem: &Problem, positions: Vec<DVec2>, plan: &Plan) -> Self {
         let best = (!plan.is_monotone()).then(|| (positions.clone(), f64::INFINITY));
         Self {
-            problem,
+            problem: problem.clone(),
             base: plan.scheme.base(),
             tracked: plan.tracked(),
             step: plan.base_step(1.0),
             positions,
             best,
+            held: Vec::new(),
             moved: Vec::new(),
             hierarchy: None,
             gradient: Vec::new(),
@@ -60,14 +63,15 @@ impl<'a> CpuEngine<'a> {
     }
 
     fn sweep_now(&mut self, step: &Step) {
-        sweep::sweep(self.problem, &mut self.positions, &mut self.moved, step);
+        let Self { problem, positions, held, moved, .. } = self;
+        sweep::sweep(problem, positions, held, moved, step);
     }
 
     /// Evaluates the objectives, and keeps the positions if they are the best so far.
     fn objectives_now(&mut self) -> Objectives {
         let mut values = Objectives::untracked();
         for &metric in &self.tracked {
-            let excess = mean_excess(metric, self.problem, &self.positions);
+            let excess = mean_excess(metric, &self.problem, &self.positions);
             values.set(metric, metric.ideal_squared() + excess);
         }
         if let Some((best, least)) = &mut self.best
@@ -106,19 +110,33 @@ impl<'a> CpuEngine<'a> {
     fn try_length(&self, length: f64) -> Option<f64> {
         let Self { positions, direction, .. } = self;
         let along = Along { positions, direction, length };
-        mean_excess_along(&self.step, self.problem, &along)
+        mean_excess_along(&self.step, &self.problem, &along)
     }
 }
 
-/// Computes the correction by the coarser levels from the gradient at the free vertices.
-fn correction(hierarchy: Option<&Hierarchy>, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
-    match hierarchy {
+/// Computes the correction by the coarser levels from the gradient at the free vertices, which must be zero at `held` ones.
+fn correction(
+    hierarchy: Option<&Hierarchy>,
+    problem: &Problem,
+    held: &[bool],
+    gradient: &[Vec2],
+) -> Vec<Vec2> {
+    let mut correction = match hierarchy {
         Some(hierarchy) if problem.is_stretched() => {
             let shown = vcycle::correction(hierarchy, problem, &as_shown(problem, gradient));
             as_shown(problem, &shown)
         }
         Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),
         None => vec![Vec2::ZERO; gradient.len()],
+    };
+    set_to_zero(&mut correction, held);
+    correction
+}
+
+/// Sets vectors at the free vertices to zero where vertices are held.
+fn set_to_zero(vectors: &mut [Vec2], held: &[bool]) {
+    for (vector, _) in vectors.iter_mut().zip(held).filter(|(_, held)| **held) {
+        *vector = Vec2::ZERO;
     }
 }
 
@@ -133,7 +151,7 @@ fn as_shown(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
     })
 }
 
-impl Engine for CpuEngine<'_> {
+impl Engine for CpuEngine {
     async fn sweep(&mut self, step: &Step) -> Result<(), GpuError> {
         self.sweep_now(step);
         Ok(())
@@ -157,6 +175,25 @@ impl Engine for CpuEngine<'_> {
         Ok(())
     }
 
+    fn set_positions(&mut self, positions: &[DVec2]) -> Result<(), GpuError> {
+        self.positions.copy_from_slice(positions);
+        self.forget();
+        Ok(())
+    }
+
+    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError> {
+        self.held.clear();
+        if held.contains(&true) {
+            self.held.extend_from_slice(held);
+        }
+        Ok(())
+    }
+
+    fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
+        self.problem = problem.clone();
+        Ok(())
+    }
+
     async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
         Ok(Cow::Borrowed(&self.positions))
     }
@@ -175,7 +212,7 @@ impl Engine for CpuEngine<'_> {
     }
 
     async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
-        Ok(sweep::stiffness_roots(self.base, self.problem, &self.positions, smoothing))
+        Ok(sweep::stiffness_roots(self.base, &self.problem, &self.positions, smoothing))
     }
 
     async fn propose(
@@ -186,11 +223,12 @@ impl Engine for CpuEngine<'_> {
     ) -> Result<Proposal, GpuError> {
         self.sweep_now(step);
         (self.step.sharpness, self.step.penalized) = (step.sharpness, step.penalized);
-        let Self { base, problem, positions, gradient, secants, .. } = self;
+        let Self { base, problem, positions, held, gradient, secants, .. } = self;
         sweep::gradient(*base, problem, positions, step.smoothing(), gradient);
+        set_to_zero(gradient, held);
         // The correction allocates a new direction. The last one is freed before.
         self.direction = Vec::new();
-        let levels = |vector: &[Vec2]| correction(self.hierarchy.as_ref(), problem, vector);
+        let levels = |vector: &[Vec2]| correction(self.hierarchy.as_ref(), problem, held, vector);
         self.direction = if accelerated {
             secants.get_or_insert_default().direction(positions, gradient, levels)
         } else {
@@ -207,7 +245,8 @@ impl Engine for CpuEngine<'_> {
     async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
         if anew {
             self.leave_out_broken(length);
-            self.direction = correction(self.hierarchy.as_ref(), self.problem, &self.gradient);
+            let Self { hierarchy, problem, held, gradient, .. } = self;
+            self.direction = correction(hierarchy.as_ref(), problem, held, gradient);
         }
         for _ in 0..LEFT_OUT {
             self.leave_out_broken(length);
@@ -257,9 +296,9 @@ impl Engine for CpuEngine<'_> {
         self.positions.clone_from(&state.positions);
         if let Some((kept, least)) = &mut self.best {
             kept.clone_from(best);
-            *least = self.base.ideal_squared() + mean_excess(self.base, self.problem, kept);
+            *least = self.base.ideal_squared() + mean_excess(self.base, &self.problem, kept);
         }
-        self.hierarchy = Hierarchy::of_recipe(self.problem, &state.roots);
+        self.hierarchy = Hierarchy::of_recipe(&self.problem, &state.roots);
         self.secants = Secants::saved_in(state, self.problem.free_count());
         Ok(self.hierarchy.is_some() || state.roots.is_empty())
     }

@@ -48,10 +48,12 @@ enum Sought {
     StiffnessRoot,
 }
 
-/// Visits every free vertex once, color by color. `moved` is scratch memory.
+/// Visits every free vertex once, color by color. Vertices stay if `held`, which is empty for none, has true for them.
+/// `moved` is scratch memory.
 pub(crate) fn sweep(
     problem: &Problem,
     positions: &mut [DVec2],
+    held: &[bool],
     moved: &mut Vec<DVec2>,
     step: &Step,
 ) {
@@ -60,8 +62,18 @@ pub(crate) fn sweep(
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of one color are not neighbors, so none reads the position of another.
         visit(problem, positions, first, step, Sought::Gradient, moved);
+        let held = held.get(first..first + color.len()).unwrap_or_default();
         for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
-            to.copy_from_slice(&moved[at..][..to.len()]);
+            let moved = &moved[at..][..to.len()];
+            if held.is_empty() {
+                to.copy_from_slice(moved);
+                return;
+            }
+            for ((to, moved), held) in to.iter_mut().zip(moved).zip(&held[at..]) {
+                if !held {
+                    *to = *moved;
+                }
+            }
         });
     }
 }
@@ -120,11 +132,17 @@ fn find(
 /// A vertex counts as held back if the shape guard shortens its step by more than this share of an edge.
 const HELD_BACK: f64 = 1e-3;
 
-/// Returns the number of free vertices that the shape guard of `step` holds back.
-pub(crate) fn held_back(problem: &Problem, positions: &[DVec2], step: &Step) -> usize {
+/// Returns the number of free vertices that the shape guard of `step` holds back. Those that are `held` otherwise do not
+/// count.
+pub(crate) fn held_back(
+    problem: &Problem,
+    positions: &[DVec2],
+    held: &[bool],
+    step: &Step,
+) -> usize {
     let free = Step { shape_guard: f64::INFINITY, ..*step };
     let (mut guarded, mut unguarded) = (Vec::new(), Vec::new());
-    let mut held = 0;
+    let mut count = 0;
     for color in problem.colors() {
         let first = color.start as usize;
         for (moved, step) in [(&mut guarded, step), (&mut unguarded, &free)] {
@@ -133,11 +151,12 @@ pub(crate) fn held_back(problem: &Problem, positions: &[DVec2], step: &Step) -> 
         }
         let is_held = |&(v, (kept, wanted)): &(u32, (&DVec2, &DVec2))| {
             let edge = positions[problem.ring_of(v)[0] as usize] - positions[v as usize];
-            kept.distance(*wanted) > HELD_BACK * edge.length()
+            let is_free = !held.get(v as usize).is_some_and(|held| *held);
+            is_free && kept.distance(*wanted) > HELD_BACK * edge.length()
         };
-        held += color.clone().zip(guarded.iter().zip(&unguarded)).filter(is_held).count();
+        count += color.clone().zip(guarded.iter().zip(&unguarded)).filter(is_held).count();
     }
-    held
+    count
 }
 
 /// Visits the vertices from `first` on, in parallel, and writes the results to `found`.

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 use glam::DVec2;
@@ -30,19 +31,26 @@ const LONG: usize = 1 << 14;
 /// mesh far from the origin is subtracted. Neither rounds, so elements keep all digits that the mesh has, however small
 /// they are. Single precision then suffices for meshes of any size and position, and areas far below or above the mean
 /// neither underflow nor overflow.
+/// A clone shares the layout and the target maps.
 #[derive(Clone, Debug)]
 pub struct Problem {
+    layout: Arc<Layout>,
+    /// The target map of each vertex, if the mesh has targets. In single precision, so that both engines use the same
+    /// values.
+    targets: Option<Arc<[[f32; 3]]>>,
+    /// Whether targets are longer in one direction than in another.
+    is_stretched: bool,
+    mean_area: f64,
+}
+
+/// The parts of a [`Problem`] that do not depend on targets.
+#[derive(Debug)]
+struct Layout {
     positions: Vec<DVec2>,
     colors: Vec<Range<u32>>,
     ring_start: Vec<u32>,
     ring: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    /// The target map of each vertex, if the mesh has targets. In single precision, so that both engines use the same
-    /// values.
-    targets: Option<Vec<[f32; 3]>>,
-    /// Whether targets are longer in one direction than in another.
-    is_stretched: bool,
-    mean_area: f64,
     vertices: Vec<u32>,
     center: DVec2,
     scale: f64,
@@ -92,28 +100,16 @@ impl Problem {
             mean if mean > 0.0 => mean,
             _ => exact_mean,
         };
-        let targets = None;
-        Self {
-            positions,
-            colors,
-            ring_start,
-            ring,
-            triangles,
-            targets,
-            is_stretched: false,
-            mean_area,
-            vertices,
-            center,
-            scale,
-        }
+        let layout =
+            Layout { positions, colors, ring_start, ring, triangles, vertices, center, scale };
+        Self { layout: Arc::new(layout), targets: None, is_stretched: false, mean_area }
     }
 
     /// Sets the target maps of all vertices of the mesh, in any unit. The maps are scaled by a common factor so that
     /// the mean area of the triangles, after their maps are applied, is 1.
     pub(crate) fn set_targets(&mut self, maps: &[Tensor]) {
-        let positions = std::mem::take(&mut self.positions);
-        self.set_targets_at(maps, &positions);
-        self.positions = positions;
+        let layout = Arc::clone(&self.layout);
+        self.set_targets_at(maps, &layout.positions);
     }
 
     /// Sets target maps as [`set_targets`](Self::set_targets) does, scaled for vertices at the given normalized
@@ -122,42 +118,45 @@ impl Problem {
         let map = |v: u32| maps[v as usize].0;
         let area = |t: &[u32; 3]| {
             let [p, q, r] = t.map(|v| positions[v as usize]);
-            let map = TargetMap::mean(t.map(|v| map(self.vertices[v as usize])));
+            let map = TargetMap::mean(t.map(|v| map(self.layout.vertices[v as usize])));
             let [a, b] = [q - p, r - p].map(|edge| map.apply(edge.to_array()));
             0.5 * (a[0] * b[1] - a[1] * b[0])
         };
-        let scale = (sum(&self.triangles, area) / self.triangles.len() as f64).sqrt().recip();
+        let scale =
+            (sum(&self.layout.triangles, area) / self.layout.triangles.len() as f64).sqrt().recip();
         let scaled = |v: u32| map(v).map(|x| (x * scale) as f32);
-        self.targets = Some(collect(self.vertices.len(), |i| scaled(self.vertices[i])));
+        let maps = collect(self.layout.vertices.len(), |i| scaled(self.layout.vertices[i]));
+        self.targets = Some(maps.into());
         let is_longer = |&[xx, xy, yy]: &[f32; 3]| xx != yy || xy != 0.0;
         self.is_stretched = self.targets().is_some_and(|maps| maps.iter().any(is_longer));
         let shown = |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
-        self.mean_area = sum(&self.triangles, shown) / self.triangles.len() as f64;
+        self.mean_area = sum(&self.layout.triangles, shown) / self.layout.triangles.len() as f64;
     }
 
     /// Copies the targets of another problem of the same mesh. `number` gives the number there of each vertex of the
     /// mesh.
+    #[cfg(feature = "gpu")]
     pub(crate) fn take_targets(&mut self, other: &Self, number: &[u32]) {
         self.targets = other.targets().map(|maps| {
             let of = |&v: &u32| maps[number[v as usize] as usize];
-            self.vertices.iter().map(of).collect()
+            self.layout.vertices.iter().map(of).collect()
         });
         (self.is_stretched, self.mean_area) = (other.is_stretched, other.mean_area);
     }
 
     /// Normalized position of each vertex.
     pub fn positions(&self) -> &[DVec2] {
-        &self.positions
+        &self.layout.positions
     }
 
     /// The range of free vertices for each color.
     pub fn colors(&self) -> &[Range<u32>] {
-        &self.colors
+        &self.layout.colors
     }
 
     /// Number of free vertices. They are the first vertices.
     pub fn free_count(&self) -> usize {
-        self.ring_start.len() - 1
+        self.layout.ring_start.len() - 1
     }
 
     /// Whether one of these vertices, those of a triangle, is free.
@@ -167,24 +166,25 @@ impl Problem {
 
     /// Where each free vertex's neighbors start in [`Self::ring`], and one past the last neighbor.
     pub fn ring_start(&self) -> &[u32] {
-        &self.ring_start
+        &self.layout.ring_start
     }
 
     /// The neighbors of all free vertices, vertex by vertex, in counter-clockwise order around each.
     pub fn ring(&self) -> &[u32] {
-        &self.ring
+        &self.layout.ring
     }
 
     /// The neighbors of one free vertex, counter-clockwise.
     #[inline]
     pub(crate) fn ring_of(&self, vertex: u32) -> &[u32] {
         let vertex = vertex as usize;
-        &self.ring[self.ring_start[vertex] as usize..self.ring_start[vertex + 1] as usize]
+        &self.layout.ring
+            [self.layout.ring_start[vertex] as usize..self.layout.ring_start[vertex + 1] as usize]
     }
 
     /// All triangles, counter-clockwise.
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        &self.layout.triangles
     }
 
     /// The target map of each vertex, in the order of the positions, if the mesh has targets.
@@ -216,27 +216,38 @@ impl Problem {
 
     /// The number of each vertex in the mesh.
     pub fn vertices(&self) -> &[u32] {
-        &self.vertices
+        &self.layout.vertices
+    }
+
+    /// Returns the number here of each of the mesh's vertices, of which there are `count`; `u32::MAX` for a vertex that no
+    /// triangle uses.
+    pub(crate) fn numbers(&self, count: usize) -> Vec<u32> {
+        let mut numbers = vec![u32::MAX; count];
+        for (new, &v) in (0..).zip(self.vertices()) {
+            numbers[v as usize] = new;
+        }
+        numbers
     }
 
     /// The center and the scale of the normalization: normalized positions are (x - center) · scale, without rounding.
     pub fn normalization(&self) -> (DVec2, f64) {
-        (self.center, self.scale)
+        (self.layout.center, self.layout.scale)
     }
 
     /// Converts the normalized positions of all vertices, fixed ones included, to the mesh's units. Returns each with
     /// the number that its vertex has in the mesh.
     pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
-        let point = |&now: &DVec2| (self.center + now / self.scale).to_array();
-        self.vertices.iter().copied().zip(positions.iter().map(point))
+        let point = |&now: &DVec2| (self.layout.center + now / self.layout.scale).to_array();
+        self.layout.vertices.iter().copied().zip(positions.iter().map(point))
     }
 
     /// Returns the normalized positions of points given in the mesh's order and units. Reuses the memory of `room`.
     pub(crate) fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
-        room.resize(self.vertices.len(), DVec2::ZERO);
+        room.resize(self.layout.vertices.len(), DVec2::ZERO);
         for_each_chunk(&mut room, CHUNK, |first, positions| {
-            for (position, &v) in positions.iter_mut().zip(&self.vertices[first..]) {
-                *position = (DVec2::from(points[v as usize]) - self.center) * self.scale;
+            for (position, &v) in positions.iter_mut().zip(&self.layout.vertices[first..]) {
+                *position =
+                    (DVec2::from(points[v as usize]) - self.layout.center) * self.layout.scale;
             }
         });
         room
@@ -252,7 +263,7 @@ impl Problem {
                 !(ratio * ratio).is_finite()
             })
         };
-        let found = map_parts(self.triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
+        let found = map_parts(self.layout.triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
             let beyond = part.iter().zip(chunk * CHUNK..).filter(|(t, _)| is_beyond(t));
             beyond.map(|(_, t)| t as u32).collect()
         });
@@ -268,7 +279,9 @@ impl Problem {
             vertices.sort_unstable();
             vertices
         };
-        let of = |&t: &u32| sorted(self.triangles[t as usize].map(|v| self.vertices[v as usize]));
+        let of = |&t: &u32| {
+            sorted(self.layout.triangles[t as usize].map(|v| self.layout.vertices[v as usize]))
+        };
         let sought: HashSet<[u32; 3]> = triangles.iter().map(of).collect();
         (0..given.len()).filter(|&t| sought.contains(&sorted(given[t]))).collect()
     }
@@ -277,10 +290,10 @@ impl Problem {
     /// exactly its position in the mesh.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
         let mut points = mesh.points.clone();
-        let free = self.vertices[..self.free_count()].iter();
-        for ((&v, &now), &was) in free.zip(positions).zip(&self.positions) {
+        let free = self.layout.vertices[..self.free_count()].iter();
+        for ((&v, &now), &was) in free.zip(positions).zip(&self.layout.positions) {
             if now != was {
-                points[v as usize] = (self.center + now / self.scale).to_array();
+                points[v as usize] = (self.layout.center + now / self.layout.scale).to_array();
             }
         }
         points

@@ -1,4 +1,4 @@
-//! The loop over the sweeps of a run, the same for every engine.
+//! A run in progress: an engine, and the state by which its next sweeps are chosen.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -12,6 +12,7 @@ use crate::run::corrections::Corrections;
 use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::keeper::{Keeper, Keeping};
+use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::saved::Saved;
 use crate::run::step::Step;
@@ -47,144 +48,180 @@ pub enum Phase {
 }
 
 /// Whether the sweeps of a run are corrected.
-pub(crate) enum Strategy<'a> {
+enum Strategy {
     /// Sweeps alone.
     Sweeps,
     /// Sweeps corrected from coarser levels.
-    Corrected(Box<Corrections<'a>>),
+    Corrected(Box<Corrections>),
 }
 
-impl<'a> Strategy<'a> {
-    pub(crate) fn new(problem: &'a Problem, plan: &'a Plan, corrected: bool) -> Self {
-        match corrected {
+/// Lists all distinct steps that a run by `plan` can take.
+pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
+    if corrected { Corrections::steps(plan) } else { plan.steps() }
+}
+
+/// A part of a run, as it is reported to the observer.
+#[derive(Clone, Copy)]
+pub(crate) struct Report {
+    pub(crate) phase: Phase,
+    /// Number of sweeps before this part, to be added in reports.
+    pub(crate) done: u32,
+}
+
+/// A run in progress. The engine lives as long as the run.
+pub(crate) struct Session<E> {
+    pub(crate) engine: E,
+    plan: Plan,
+    strategy: Strategy,
+    history: History,
+    /// Number of sweeps to do between two calls of the observer. Begins with one, as the duration of a sweep is not known
+    /// yet, and drivers stop submissions that take seconds.
+    batch: u32,
+}
+
+impl<E: Engine> Session<E> {
+    /// Begins a run by `plan` on an engine that stands at its start, or after the sweeps that `log` records.
+    pub(crate) fn new(
+        engine: E,
+        problem: &Problem,
+        plan: &Plan,
+        corrected: bool,
+        log: &[Objectives],
+    ) -> Self {
+        let strategy = match corrected {
             true => Strategy::Corrected(Box::new(Corrections::new(problem, plan))),
             false => Strategy::Sweeps,
-        }
+        };
+        let history = History::resumed(plan, log, None);
+        Self { engine, plan: plan.clone(), strategy, history, batch: 1 }
     }
 
-    /// Lists all distinct steps that a run by `plan` can take.
-    pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
-        if corrected { Corrections::steps(plan) } else { plan.steps() }
-    }
-
-    /// Does up to `sweeps` further sweeps, or fewer if the run ends.
-    async fn advance(
-        &mut self,
-        engine: &mut impl Engine,
-        plan: &Plan,
-        history: &mut History,
-        sweeps: u32,
-    ) -> Result<(), GpuError> {
-        match self {
-            Strategy::Sweeps => sweeps::advance(engine, plan, history, sweeps).await,
-            Strategy::Corrected(corrections) => corrections.advance(engine, history, sweeps).await,
-        }
-    }
-
-    /// Returns the state of the corrections, for a saved state of the run.
-    fn saved(&self) -> Option<Vec<u64>> {
-        match self {
-            Strategy::Sweeps => None,
-            Strategy::Corrected(corrections) => Some(corrections.save()),
-        }
-    }
-
-    /// Restores a saved state, and returns its history.
-    fn restored(
-        &mut self,
-        engine: &mut impl Engine,
-        plan: &Plan,
-        saved: Saved,
-    ) -> Result<History, DriveError> {
+    /// Returns to a saved state.
+    pub(crate) fn restore(&mut self, saved: Saved) -> Result<(), DriveError> {
         let Saved { log, remaining, corrections, engine: state } = saved;
-        let history = History::resumed(plan, &log, remaining);
-        let fits = match (self, corrections) {
+        self.history = History::resumed(&self.plan, &log, remaining);
+        let fits = match (&mut self.strategy, corrections) {
             (Strategy::Sweeps, None) => true,
             (Strategy::Corrected(strategy), Some(words)) => {
                 strategy.restore(&words, log.len(), !state.roots.is_empty())
             }
             _ => false,
         };
-        let is_finite = !log.is_empty() && history.first_not_finite(0).is_none();
-        match fits && is_finite && engine.restore(&state)? {
-            true => Ok(history),
+        let is_finite = !log.is_empty() && self.history.first_not_finite(0).is_none();
+        match fits && is_finite && self.engine.restore(&state)? {
+            true => Ok(()),
             false => Err(DriveError::Foreign),
+        }
+    }
+
+    pub(crate) fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// Sweeps until `until` sweeps are done, or the run ends. Returns the reason if it ends. If `requires_levels`, a
+    /// device that has no room for the coarser levels is an error.
+    pub(crate) async fn advance<K: Keeper + ?Sized>(
+        &mut self,
+        until: u32,
+        requires_levels: bool,
+        report: Report,
+        keeping: &mut Keeping<'_, K>,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Option<Stop>, DriveError> {
+        let Report { phase, done } = report;
+        loop {
+            let left = until - self.history.sweeps().min(until);
+            if left == 0 && !self.history.is_empty() {
+                return Ok(None);
+            }
+            let (start, known) = (Instant::now(), self.history.f().len());
+            let sweeps = self.batch.min(left);
+            self.sweep(sweeps).await?;
+            self.batch = next_batch(sweeps.max(1), start.elapsed());
+            if let Some(sweep) = self.history.first_not_finite(known) {
+                return Err(DriveError::NotFinite { sweep: done + sweep });
+            }
+            if let (true, Strategy::Corrected(corrections)) = (requires_levels, &self.strategy)
+                && let Some(error) = corrections.left_out()
+            {
+                return Err(DriveError::LeftOut(error.clone()));
+            }
+            if let Some(stop) = self.history.stop() {
+                return Ok(Some(stop));
+            }
+            let sweep = done + self.history.sweeps();
+            let f = self.history.last();
+            let is_ending = observe(&Progress { phase, sweep, f }).is_break();
+            let Self { engine, strategy, history, .. } = self;
+            let corrections = || match strategy {
+                Strategy::Sweeps => None,
+                Strategy::Corrected(corrections) => Some(corrections.save()),
+            };
+            keeping.after_sweeps(engine, history, corrections, is_ending).await?;
+            if is_ending {
+                return Ok(Some(Stop::Canceled));
+            }
+        }
+    }
+
+    /// Does up to `sweeps` further sweeps, or fewer if the run ends.
+    async fn sweep(&mut self, sweeps: u32) -> Result<(), GpuError> {
+        let Self { engine, plan, strategy, history, .. } = self;
+        match strategy {
+            Strategy::Sweeps => sweeps::advance(engine, plan, history, sweeps).await,
+            Strategy::Corrected(corrections) => corrections.advance(engine, history, sweeps).await,
+        }
+    }
+
+    /// Takes note that the host has moved vertices after `from` sweeps, or has changed targets. The objectives are `now`,
+    /// and the run goes on. Lower objectives of the sweeps after `from` no longer count.
+    pub(crate) fn disturbed(&mut self, from: u32, now: Objectives) {
+        self.history.replace_after(from, now);
+        self.history.end(None, self.history.remaining());
+        if let Strategy::Corrected(corrections) = &mut self.strategy {
+            corrections.disturbed(self.history.last());
+        }
+    }
+
+    /// Adds sweeps that another engine has done, and takes their positions.
+    pub(crate) fn add(&mut self, log: &[Objectives], positions: &[DVec2]) -> Result<(), GpuError> {
+        for objectives in log {
+            self.history.add(*objectives);
+        }
+        self.engine.set_positions(positions)
+    }
+
+    /// Takes the targets of a problem with the same layout.
+    pub(crate) fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
+        if let Strategy::Corrected(corrections) = &mut self.strategy {
+            corrections.set_targets(problem);
+        }
+        self.engine.set_targets(problem)
+    }
+
+    /// Returns the counts of a run for its report.
+    pub(crate) fn counts(&self) -> Counts {
+        let sweeps = self.history.sweeps();
+        match &self.strategy {
+            Strategy::Sweeps => {
+                Counts { alternated: sweeps, corrections: 0, levels_left_out: false }
+            }
+            Strategy::Corrected(corrections) => Counts {
+                alternated: corrections.alternated().unwrap_or(sweeps),
+                corrections: corrections.taken(),
+                levels_left_out: corrections.is_left_out(),
+            },
         }
     }
 }
 
-/// The result of [`drive`].
-pub(crate) struct End {
-    pub(crate) history: History,
-    pub(crate) positions: Vec<DVec2>,
+/// The counts of a run for its report.
+#[derive(Clone, Copy)]
+pub(crate) struct Counts {
     /// Number of sweeps in which the metrics of the scheme took turns.
     pub(crate) alternated: u32,
     pub(crate) corrections: u32,
     pub(crate) levels_left_out: bool,
-    pub(crate) stop: Stop,
-}
-
-/// The work for an engine, and the state to start from.
-pub(crate) struct Course<'a> {
-    pub(crate) plan: &'a Plan,
-    /// Whether a lack of room for the coarser levels is an error.
-    pub(crate) must: bool,
-    pub(crate) phase: Phase,
-    /// Number of sweeps before this run, to be added in reports to the observer.
-    pub(crate) done: u32,
-    /// The saved state that the run continues from, if it does not begin at its start.
-    pub(crate) from: Option<Saved>,
-}
-
-/// Sweeps on an engine until the run ends.
-pub(crate) async fn drive<K: Keeper + ?Sized>(
-    mut engine: impl Engine,
-    course: Course<'_>,
-    mut strategy: Strategy<'_>,
-    keeping: &mut Keeping<'_, K>,
-    observe: &mut (impl Observer + ?Sized),
-) -> Result<End, DriveError> {
-    let Course { plan, must, phase, done, from } = course;
-    let mut history = match from {
-        Some(saved) => strategy.restored(&mut engine, plan, saved)?,
-        None => History::new(plan),
-    };
-    // Begins with one sweep, as its duration is not known yet, and drivers stop submissions that take seconds.
-    let mut batch = 1;
-    let stop = loop {
-        let (start, known) = (Instant::now(), history.f().len());
-        strategy.advance(&mut engine, plan, &mut history, batch).await?;
-        batch = next_batch(batch, start.elapsed());
-        if let Some(sweep) = history.first_not_finite(known) {
-            return Err(DriveError::NotFinite { sweep: done + sweep });
-        }
-        if let (true, Strategy::Corrected(corrections)) = (must, &strategy)
-            && let Some(error) = corrections.left_out()
-        {
-            return Err(DriveError::LeftOut(error.clone()));
-        }
-        if let Some(stop) = history.stop() {
-            break stop;
-        }
-        let sweep = done + history.sweeps();
-        let is_ending = observe(&Progress { phase, sweep, f: history.last() }).is_break();
-        let corrections = || strategy.saved();
-        keeping.after_sweeps(&mut engine, &history, corrections, is_ending).await?;
-        if is_ending {
-            break Stop::Canceled;
-        }
-    };
-    let positions = engine.best_positions().await?;
-    let (corrections, levels_left_out) = match &strategy {
-        Strategy::Sweeps => (0, false),
-        Strategy::Corrected(corrections) => (corrections.taken(), corrections.is_left_out()),
-    };
-    let alternated = match &strategy {
-        Strategy::Sweeps => None,
-        Strategy::Corrected(corrections) => corrections.alternated(),
-    };
-    let alternated = alternated.unwrap_or(history.sweeps());
-    Ok(End { history, positions, alternated, corrections, levels_left_out, stop })
 }
 
 /// The reason why a run could not be completed.

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::future::Future;
 
 use crate::error::GpuError;
+use crate::layout::Problem;
 use crate::metric::Smoothing;
 use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
@@ -32,6 +33,16 @@ pub(crate) trait Engine: Send {
         steps: &[Step],
         history: &mut History,
     ) -> impl Future<Output = Result<(), GpuError>> + Send;
+
+    /// Moves the vertices to `positions`, those of all vertices, between two sweeps. Forgets what later corrections would
+    /// be accelerated from.
+    fn set_positions(&mut self, positions: &[DVec2]) -> Result<(), GpuError>;
+
+    /// Holds free vertices: from then on sweeps and corrections move exactly those for which `held` is false.
+    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError>;
+
+    /// Takes the targets of a problem that has the same layout, and other targets than before.
+    fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError>;
 
     /// Returns the current positions of all vertices.
     fn positions(&mut self) -> impl Future<Output = Result<Cow<'_, [DVec2]>, GpuError>> + Send;

@@ -65,6 +65,19 @@ impl History {
         is_best
     }
 
+    /// Replaces the objectives after the last sweep by `now`, and those after earlier sweeps than that, down to sweep `from` + 1,
+    /// if they are lower.
+    pub(crate) fn replace_after(&mut self, from: u32, now: Objectives) {
+        let (last, f) = (self.sweeps() as usize, now.of(self.base).unwrap_or(f64::NAN));
+        for k in from as usize + 1..=last {
+            if k == last || self.f[k] < f {
+                (self.log[k], self.f[k]) = (now, f);
+            }
+        }
+        self.best =
+            (0..self.f.len()).fold(0, |best, k| if self.f[k] < self.f[best] { k } else { best });
+    }
+
     /// Adds objectives as [`add`](Self::add) does, and applies the stop rule.
     pub(crate) fn record(&mut self, objectives: Objectives) -> bool {
         let is_best = self.add(objectives);

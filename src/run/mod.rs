@@ -26,7 +26,7 @@ mod yielding;
 
 pub(crate) use checkpoint::About;
 pub use checkpoint::Checkpoint;
-pub(crate) use drive::{Course, DriveError, End, Strategy, drive};
+pub(crate) use drive::{Counts, DriveError, Report, Session, steps};
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{Engine, LEFT_OUT, Proposal};
 pub(crate) use history::History;

@@ -1,10 +1,14 @@
 //! The desired objective of a goal.
 
+use glam::DVec2;
+
 use crate::error::SmoothError;
 use crate::metric::{Metric, Scheme};
 use crate::outcome::GoalOutcome;
-use crate::run::{Desired, Goal, Keeper, Keeping, NOISE, Observer, Options, Phase, ROUNDING, Stop};
-use crate::whole::{Attempt, Device};
+use crate::run::{
+    Desired, Goal, Keeper, Keeping, NOISE, Observer, Options, Phase, ROUNDING, Stop, set_guards,
+};
+use crate::whole::{Device, Ended, Live, Spec, drive};
 
 use super::prepared::Smoother;
 
@@ -32,13 +36,11 @@ impl Smoother<'_> {
             guard: options.guard,
             ..Options::default()
         };
-        let run = Attempt { problem: &self.problem, device, phase: Phase::Reference, done: 0 };
         let start = self.problem.positions();
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
-            let mut keeping = Keeping::new(&mut *keeper);
-            let after_imr = run.sweep(&imr, None, start, None, &mut keeping, observe).await?;
+            let after_imr = self.refer(&imr, start, device, keeper, observe).await?;
             if after_imr.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -47,8 +49,7 @@ impl Smoother<'_> {
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
-            let (options, mut keeping) = (full(base), Keeping::new(&mut *keeper));
-            let end = run.sweep(&options, None, &start, None, &mut keeping, observe).await?;
+            let end = self.refer(&full(base), &start, device, keeper, observe).await?;
             if end.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -64,5 +65,23 @@ impl Smoother<'_> {
         }
         let origin = format!("runs to convergence; {}", describe.join("; "));
         Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }))
+    }
+
+    /// Runs to convergence, from some positions.
+    async fn refer<K: Keeper + ?Sized>(
+        &self,
+        options: &Options,
+        start: &[DVec2],
+        device: Option<Device<'_>>,
+        keeper: &mut K,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<Ended, SmoothError> {
+        let problem = &self.problem;
+        let mut plan = options.plan_to(None);
+        set_guards(&mut plan, options.guard, problem, start);
+        let spec = Spec { problem, device, options, phase: Phase::Reference, is_staged: false };
+        let mut keeping = Keeping::new(keeper);
+        let live = Live::new(spec, plan, start, None, &mut keeping).await?;
+        drive(live, &mut [], &mut keeping, observe).await
     }
 }

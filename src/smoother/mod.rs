@@ -7,7 +7,7 @@ mod goal;
 mod on_device;
 mod prepared;
 mod running;
-mod ways;
+mod stages;
 
 pub use backend::Backend;
 pub use calls::smooth;

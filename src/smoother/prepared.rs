@@ -15,7 +15,7 @@ use crate::quality::Quality;
 use crate::slide::{Slide, Sliding};
 use crate::targets::{Outside, TargetField, Targets};
 use crate::topology::{Topology, certify};
-use crate::whole::Places;
+use crate::whole::set_targets_of;
 
 /// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
@@ -147,9 +147,9 @@ impl<'a> Smoother<'a> {
         self.topology.check_count(points)?;
         let positions = self.problem.normalized(points, Vec::new());
         let Some(field) = &self.field else { return Ok(self.objective(metric, &positions)) };
-        let mut places = Places::new(&self.mesh, field, &self.problem);
-        places.follow(&positions)?;
-        Ok(metric.ideal_squared() + mean_excess(metric, &places.problem, &positions))
+        let mut problem = self.problem.clone();
+        set_targets_of(field, &self.mesh, &mut problem, &positions)?;
+        Ok(metric.ideal_squared() + mean_excess(metric, &problem, &positions))
     }
 
     /// Returns the mesh's topology: windings, boundary and free vertices.

@@ -11,13 +11,13 @@ use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::resume;
 use crate::run::{
     Checkpoint, Goal, JITTER, Keeper, Keeping, LEAST_SCALE, NOISE, Objectives, Observer, Options,
-    Phase, ROUNDING, Stop,
+    Phase, ROUNDING, Stop, set_guards,
 };
 use crate::slide::Sliding;
-use crate::whole::{Attempt, Device, Ended, Improving, altitude};
+use crate::whole::{Device, Ended, Improving, Live, Spec, altitude, drive};
 
 use super::prepared::Smoother;
-use super::ways::Ways;
+use super::stages::Stages;
 
 impl Smoother<'_> {
     pub(super) async fn run_at<K: Keeper + ?Sized>(
@@ -28,12 +28,12 @@ impl Smoother<'_> {
         keeper: &mut K,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
-        let start = Instant::now();
+        let began = Instant::now();
         options.check_for(&self.problem)?;
         self.check_movable()?;
         // Vertices slide on the CPU, whatever the engine of the sweeps.
         let device = device.filter(|_| self.problem.free_count() > 0);
-        Ways::check(self, options, from.is_some())?;
+        Stages::check(self, options, from.is_some())?;
         let (device, fault) = self.checked(device, keeper).await?;
         let mut about = resume::about(&self.mesh, self.problem.targets(), options);
         let resumed = from
@@ -53,7 +53,7 @@ impl Smoother<'_> {
             }
             (Some(goal), None) => match self.aim(goal, options, device, keeper, observe).await? {
                 Some(aimed) => Some(aimed),
-                None => return Ok(self.unchanged(base, initial, start)),
+                None => return Ok(self.unchanged(base, initial, began)),
             },
             (None, _) => None,
         };
@@ -65,13 +65,20 @@ impl Smoother<'_> {
 
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
         let mut keeping = Keeping::new(keeper);
-        keeping.about = Some(about);
-        let run = Attempt { problem: &self.problem, device, phase: Phase::Smoothing, done: 0 };
-        let mut ways = Ways::new(self, options);
-        let ended = ways.sweep(run, options, target, resumed, &mut keeping, observe).await?;
-        let outcome = self.judged(options, initial, goal, ended, ways, observe)?;
+        let mut plan = options.plan_to(target);
+        let start = self.problem.positions();
+        set_guards(&mut plan, options.guard, &self.problem, start);
+        let mut stages = Stages::new(self, options, &plan);
+        let mut in_order = stages.in_order();
+        // A checkpoint does not hold the state of stages, so none is taken of a run that has any.
+        keeping.about = in_order.is_empty().then_some(about);
+        let (problem, phase, is_staged) = (&self.problem, Phase::Smoothing, !in_order.is_empty());
+        let spec = Spec { problem, device, options, phase, is_staged };
+        let live = Live::new(spec, plan, start, resumed, &mut keeping).await?;
+        let ended = drive(live, &mut in_order, &mut keeping, observe).await?;
+        let outcome = self.judged(options, initial, goal, ended, stages, observe)?;
         let device_fault = fault.or(outcome.device_fault);
-        Ok(Outcome { device_fault, smooth: start.elapsed(), ..outcome })
+        Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
     }
 
     /// Whether a triangle is so flat, or so small beside the others, that double precision cannot judge it as the metric does,
@@ -117,7 +124,7 @@ impl Smoother<'_> {
         initial: f64,
         goal: Option<GoalOutcome>,
         mut ended: Ended,
-        mut ways: Ways<'_>,
+        stages: Stages<'_>,
         observe: &mut (impl Observer + ?Sized),
     ) -> Result<Outcome, SmoothError> {
         let base = options.scheme.base();
@@ -128,11 +135,12 @@ impl Smoother<'_> {
             false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
         };
         let swept = f(best_sweep);
-        let improving =
-            Improving::after(&mut ended, options, ways.problem(), ways.bounds(), observe);
+        let mut problem = self.problem.clone();
+        stages.set_targets_at(&mut problem, &ended.positions)?;
+        let improving = Improving::after(&mut ended, options, &problem, stages.bounds(), observe);
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
         let mut points = self.problem.denormalize(&self.mesh, &ended.positions);
-        ways.slide_into(&mut points);
+        stages.slide_into(&mut points);
         for x in points.as_flattened_mut() {
             *x = options.stored.rounded(*x);
         }
@@ -144,8 +152,8 @@ impl Smoother<'_> {
             returned += low + self.certify(&mut points)?;
         }
         let judged = self.problem.normalized(&points, ended.positions);
-        ways.follow(&judged)?;
-        let problem = ways.problem();
+        stages.set_targets_at(&mut problem, &judged)?;
+        let problem = &problem;
         let written = base.ideal_squared() + mean_excess(base, problem, &judged);
         let gains = initial - written > NOISE * initial + ROUNDING
             || improving.as_ref().is_some_and(|improving| improving.is_better(problem, &judged));
@@ -158,7 +166,7 @@ impl Smoother<'_> {
             points.clone_from(&self.mesh.points);
             returned = 0;
         }
-        let slid = ways.slid(gains, &points);
+        let slid = stages.slid(gains, &points);
         let best = if gains { written } else { initial };
         let possible = (best - base.ideal_squared()).max(0.0) / best.max(LEAST_SCALE);
         let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
@@ -175,10 +183,10 @@ impl Smoother<'_> {
             points,
             stop: ended.stop,
             sweeps: evaluations as u32 - 1,
-            alternated: ended.alternated,
-            corrections: ended.corrections,
+            alternated: ended.counts.alternated,
+            corrections: ended.counts.corrections,
             opening_sweeps: ended.opening_sweeps,
-            levels_left_out: ended.levels_left_out,
+            levels_left_out: ended.counts.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
             // A decay that has only begun may promise more than there is between f and its ideal.
             remaining: ended.remaining.map(|left| left.min(possible)),

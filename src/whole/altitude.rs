@@ -1,24 +1,22 @@
-//! Runs in which no triangle's altitude falls below the least altitude of the given mesh. Vertices that would violate
-//! this go back until they do not, and are then held, while the others continue.
+//! The stage that keeps the altitude of every triangle from falling below the least altitude of the given mesh. Vertices that
+//! would violate this go back until they do not, and are then held, while the others continue.
 
 use std::cmp::Ordering;
 
 use glam::DVec2;
 
-use crate::error::SmoothError;
+use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::altitude;
-use crate::mesh::Mesh;
-use crate::run::{Keeper, Keeping, Observer, Options, Stop};
+use crate::run::Stop;
 use crate::topology::Topology;
-use crate::whole::attempt::{Attempt, Ended, Round};
-use crate::whole::holding::Holding;
-use crate::whole::in_rounds::{self, objectives};
+use crate::whole::host::Host;
+use crate::whole::stage::{Judged, Period, Stage, Worked};
 
-/// Number of sweeps in a round, until a round after which no vertex goes back.
+/// Number of sweeps in a period, until a period after which no vertex goes back.
 const SWEEPS: u32 = 2;
-/// The most rounds of sweeps.
-const ROUNDS: u32 = 60;
+/// The most periods.
+const PERIODS: u32 = 60;
 /// Number of times that the way of vertices is halved before they go back completely.
 const HALVED: u32 = 3;
 
@@ -84,115 +82,64 @@ pub(crate) fn restore(
     returned.len()
 }
 
-/// Checks that altitudes can be kept in a run with these options.
-pub(crate) fn check(options: &Options, is_continued: bool) -> Result<(), SmoothError> {
-    let option = "keep altitude";
-    if options.max_move.is_some() {
-        let (value, remedy) = ("with a bound on moves".to_owned(), "leave out one of the two");
-        return Err(SmoothError::Option { option, value, remedy });
-    }
-    in_rounds::check(option, options, is_continued)
-}
-
-/// The least altitude that a run keeps, and the vertices that are held for it.
-pub(crate) struct Floor<'s> {
+/// The stage that keeps the least altitude of the start.
+pub(crate) struct AltitudeStage<'s> {
     problem: &'s Problem,
-    holding: Holding<'s>,
     /// The least altitude, normalized.
-    pub(crate) least: f64,
+    least: f64,
+    /// Whether no vertex went back after the last period.
+    is_clean: bool,
+    /// Whether the last sweeps were unlimited, because no vertex had gone back before.
+    was_clean: bool,
+    /// Number of periods done.
+    count: u32,
 }
 
-impl<'s> Floor<'s> {
+impl<'s> AltitudeStage<'s> {
     /// Takes the least altitude of a triangle with the vertices at the problem's positions.
-    pub(crate) fn new(mesh: &'s Mesh, problem: &'s Problem) -> Self {
-        Self { problem, holding: Holding::new(mesh, problem), least: least_of(problem) }
+    pub(crate) fn new(problem: &'s Problem) -> Self {
+        Self { problem, least: least_of(problem), is_clean: false, was_clean: false, count: 0 }
+    }
+}
+
+impl Stage for AltitudeStage<'_> {
+    fn period(&self) -> u32 {
+        if self.is_clean { u32::MAX } else { SWEEPS }
     }
 
-    /// Does a round, which moves the vertices from `positions`: sweeps on the engine, after which the vertices of
-    /// triangles that have become too low go back, and are held from then on. Returns the end of the round without
-    /// positions, and the number of vertices that are held anew. Gains that were undone do not count in its history.
-    pub(crate) async fn round<K: Keeper + ?Sized>(
+    /// The vertices of triangles that have become too low go back, and are held from then on.
+    fn work(
         &mut self,
-        attempt: Attempt<'_>,
-        round: Round<'_>,
-        positions: &mut Vec<DVec2>,
-        keeping: &mut Keeping<'_, K>,
-        observe: &mut (impl Observer + ?Sized),
-    ) -> Result<(Ended, usize), SmoothError> {
-        let Round { options: part, plan, target } = round;
-        let Self { problem, holding, least } = self;
-        let (problem, base) = (*problem, plan.scheme.base());
-        let smaller = holding.smaller()?;
-        let now = smaller.as_ref().unwrap_or(problem);
-        let from = holding.renumbered(positions, now);
-        let attempt = Attempt { problem: now, ..attempt };
-        let mut next = attempt.sweep(part, target, &from, None, keeping, observe).await?;
-        let mut to = holding.numbered_back(&std::mem::take(&mut next.positions), now);
-        let returned = bring_back(problem.triangles(), positions, &mut to, *least, HALVED);
-        *positions = to;
-        // The gain of moves that were undone does not count.
-        let here = objectives(problem, plan, positions);
-        let count = next.history.len() - 1;
-        for (k, entry) in next.history.iter_mut().enumerate().skip(1) {
-            if k == count || entry.of(base) < here.of(base) {
-                *entry = here;
+        host: &mut Host<'_>,
+        _: &dyn Fn(&[DVec2]) -> bool,
+    ) -> Result<Worked, MeshError> {
+        self.count += 1;
+        let Host { problem, before, positions, held, .. } = host;
+        let returned = bring_back(problem.triangles(), before, positions, self.least, HALVED);
+        let mut is_settled = true;
+        for v in returned {
+            if let Some(held) = held.get_mut(v as usize) {
+                is_settled &= std::mem::replace(held, true);
             }
         }
-        let free = holding.held.len();
-        let mut new = 0;
-        for v in returned.into_iter().map(|v| v as usize).filter(|&v| v < free) {
-            new += usize::from(!std::mem::replace(&mut holding.held[v], true));
-        }
-        Ok((next, new))
+        (self.was_clean, self.is_clean) = (self.is_clean, is_settled);
+        Ok(Worked { is_settled, has_moved_free: false })
     }
 
-    /// Whether no altitude is below the least.
-    pub(crate) fn holds_at(&self, positions: &[DVec2]) -> bool {
+    fn allows(&self, positions: &[DVec2]) -> bool {
         least(self.problem.triangles(), |v| positions[v as usize]) >= self.least
     }
-}
 
-/// Sweeps from the positions of the problem until the run ends, with no altitude below the least one at the start.
-pub(crate) async fn run<K: Keeper + ?Sized>(
-    mesh: &Mesh,
-    problem: &Problem,
-    attempt: Attempt<'_>,
-    options: &Options,
-    target: Option<f64>,
-    keeping: &mut Keeping<'_, K>,
-    observe: &mut (impl Observer + ?Sized),
-) -> Result<Ended, SmoothError> {
-    let plan = options.plan_to(target);
-    let mut floor = Floor::new(mesh, problem);
-    let mut positions = problem.positions().to_vec();
-    let mut whole: Option<Ended> = None;
-    let (mut round, mut is_clean) = (0, false);
-    loop {
-        round += 1;
-        let done = whole.as_ref().map_or(0, |ended| ended.history.len() as u32 - 1);
-        let left = options.max_sweeps.saturating_sub(done);
-        let most = if is_clean { left } else { left.min(SWEEPS) };
-        let part = Options { max_sweeps: most, ..options.clone() };
-        let Attempt { device, phase, .. } = attempt;
-        let attempt = Attempt { problem, device, phase, done };
-        let next = Round { options: &part, plan: &plan, target };
-        let (next, new) = floor.round(attempt, next, &mut positions, keeping, observe).await?;
-        let is_all = floor.holding.held.iter().all(|held| *held);
-        let ended = match whole.take() {
-            None => next,
-            Some(before) => before.followed_by(next),
+    fn judge(&mut self, period: &Period) -> Judged {
+        let has_rounds_left = self.count < PERIODS;
+        let stop = match period.swept {
+            _ if period.all_held => Some(Stop::Converged),
+            _ if !has_rounds_left && !period.is_settled => Some(Stop::Stalled),
+            swept if self.was_clean && period.is_settled || !has_rounds_left => {
+                swept.or(Some(Stop::MaxSweeps))
+            }
+            _ => period.is_last.then_some(Stop::MaxSweeps),
         };
-        let is_over = matches!(ended.stop, Stop::Canceled | Stop::NotFinite) || left <= most;
-        let is_done = is_clean && new == 0 || is_all || round == ROUNDS;
-        if is_over || is_done {
-            let stop = match ended.stop {
-                Stop::MaxSweeps if is_all => Stop::Converged,
-                Stop::MaxSweeps | Stop::Converged if round == ROUNDS && new > 0 => Stop::Stalled,
-                stop => stop,
-            };
-            return Ok(Ended { positions, stop, ..ended });
-        }
-        is_clean = new == 0;
-        whole = Some(ended);
+        Judged { stop, remaining: period.remaining }
     }
 }

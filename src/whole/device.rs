@@ -8,6 +8,9 @@ use crate::layout::Problem;
 use crate::mesh::MeshSize;
 use crate::run::{Plan, Step};
 
+/// The engine on a device.
+pub(crate) type DeviceEngine<'s> = Box<GpuEngine<'s>>;
+
 /// A device, and how a run waits for it.
 #[derive(Clone, Copy)]
 pub(crate) struct Device<'s> {
@@ -39,11 +42,11 @@ impl<'s> Device<'s> {
     /// Returns an engine for a run by a plan that may take `steps`; see [`GpuEngine::new`].
     pub(crate) fn engine(
         self,
-        problem: &'s Problem,
-        from: &'s [DVec2],
+        problem: &Problem,
+        from: &[DVec2],
         plan: Plan,
         steps: Vec<Step>,
-    ) -> Result<GpuEngine<'s>, GpuError> {
-        GpuEngine::new(self.gpu, problem, from, plan, steps, self.waiting)
+    ) -> Result<DeviceEngine<'s>, GpuError> {
+        GpuEngine::new(self.gpu, problem, from, plan, steps, self.waiting).map(Box::new)
     }
 }

@@ -7,7 +7,7 @@ use crate::layout::Problem;
 use crate::outcome::Improved;
 use crate::run::{NOISE, Observer, Options, Phase, Progress, Stop, WorstBy};
 use crate::whole::altitude;
-use crate::whole::attempt::Ended;
+use crate::whole::live::Ended;
 use crate::worst::{Badness, Rules, improve, stuck, worst_movable};
 
 /// The share that rounding may add to the worst inverse mean ratio.

@@ -1,20 +1,25 @@
-//! Whole runs: sweeps on the engines that they need, then the improvement of the worst triangles. A run consists of
-//! rounds if vertices slide, have a bound or an altitude to keep, or if targets belong to points of the plane.
+//! Whole runs: sweeps on the engines that they need, the stages between them, and the improvement of the worst triangles
+//! after them.
 
 pub(crate) mod altitude;
-mod attempt;
+mod any_engine;
 #[cfg_attr(not(feature = "gpu"), path = "no_device.rs")]
 mod device;
-mod holding;
+mod driver;
+mod host;
 mod improving;
-pub(crate) mod in_rounds;
-mod limit;
-mod places;
-mod rounds;
+mod live;
+mod move_limit;
+mod slide;
+mod stage;
+mod target_field;
 
-pub(crate) use attempt::{Attempt, Ended};
+pub(crate) use altitude::AltitudeStage;
 pub(crate) use device::Device;
+pub(crate) use driver::drive;
 pub(crate) use improving::Improving;
-pub(crate) use limit::Limit;
-pub(crate) use places::Places;
-pub(crate) use rounds::{Bound, Rounds};
+pub(crate) use live::{Ended, Live, Spec};
+pub(crate) use move_limit::MoveLimitStage;
+pub(crate) use slide::SlideStage;
+pub(crate) use stage::Stage;
+pub(crate) use target_field::{TargetFieldStage, set_targets_of};

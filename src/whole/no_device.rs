@@ -2,7 +2,6 @@
 
 use glam::DVec2;
 
-use crate::cpu::CpuEngine;
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
@@ -10,6 +9,9 @@ use crate::run::{Plan, Step};
 
 /// A device, of which there is none.
 pub(crate) type Device<'s> = &'s NoDevice;
+
+/// The engine on a device.
+pub(crate) type DeviceEngine<'s> = &'s NoDevice;
 
 /// A type without values.
 pub(crate) enum NoDevice {}
@@ -25,11 +27,11 @@ impl NoDevice {
 
     pub(crate) fn engine<'s>(
         &self,
-        _: &'s Problem,
-        _: &'s [DVec2],
+        _: &Problem,
+        _: &[DVec2],
         _: Plan,
         _: Vec<Step>,
-    ) -> Result<CpuEngine<'s>, GpuError> {
+    ) -> Result<DeviceEngine<'s>, GpuError> {
         match *self {}
     }
 }

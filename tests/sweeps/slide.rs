@@ -84,9 +84,8 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     for metric in [Metric::Imr, Metric::Rms] {
         let options = Options { scheme: metric.into(), ..Options::default() };
         let outcome = run(&smoother, &options, &Backend::Cpu);
-        // By RMS the shape guard holds some vertices back in the end.
-        let stop = if metric == Metric::Rms { Stop::HeldBack } else { Stop::Converged };
-        assert_eq!(outcome.stop, stop, "{metric}");
+        // The guard of RMS is the worst triangle before the run. Taken anew after some sweeps, it would hold vertices back.
+        assert_eq!((outcome.stop, outcome.held_back), (Stop::Converged, 0), "{metric}");
         let slid = outcome.slid.unwrap();
         assert!(count > 50 && slid.vertices == count && slid.moved > count / 2, "{slid:?}");
         assert!(slid.off > 0.0 && slid.off < 0.02 && slid.area.abs() < 1e-2, "{slid:?}");

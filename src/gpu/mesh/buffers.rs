@@ -8,7 +8,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{bytes, filled, rows, write_by_pieces};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
-use crate::gpu::kernels::uniforms::split;
+use crate::gpu::kernels::uniforms::{HELD, split};
 use crate::gpu::mesh::{Changes, Parts, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
@@ -118,6 +118,36 @@ impl MeshBuffers {
                 write_by_pieces(gpu, &self.positions, 0, bytemuck::cast_slice(&highs));
                 write_by_pieces(gpu, &self.positions, low, bytemuck::cast_slice(&lows));
             }
+        })
+    }
+
+    /// Writes the target maps of a problem, over those of a problem that had targets too.
+    pub(crate) fn write_targets(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
+        let Some(maps) = problem.targets() else { return Ok(()) };
+        let first = problem.positions().len() as u64;
+        scoped(&gpu.device, || match self.parts.low_positions {
+            None => {
+                let maps: Vec<_> = maps.iter().map(|&[xx, xy, yy]| [xx, xy, yy, 0.0]).collect();
+                let bytes = bytemuck::cast_slice(&maps);
+                write_by_pieces(gpu, &self.positions, first * POSITION, bytes);
+            }
+            Some(low) => {
+                let highs: Vec<_> = maps.iter().map(|&[xx, xy, _]| [xx, xy]).collect();
+                let lows: Vec<_> = maps.iter().map(|&[_, _, yy]| [yy, 0.0]).collect();
+                let at = first * PART;
+                write_by_pieces(gpu, &self.positions, at, bytemuck::cast_slice(&highs));
+                write_by_pieces(gpu, &self.positions, low + at, bytemuck::cast_slice(&lows));
+            }
+        })
+    }
+
+    /// Holds free vertices: sweeps and corrections move exactly those for which `held` is false.
+    pub(crate) fn hold(&self, gpu: &Gpu, problem: &Problem, held: &[bool]) -> Result<(), GpuError> {
+        let starts = problem.ring_start().iter().zip(held);
+        let starts: Vec<u32> =
+            starts.map(|(&start, &held)| start | if held { HELD } else { 0 }).collect();
+        scoped(&gpu.device, || {
+            write_by_pieces(gpu, &self.ring_start, 0, bytemuck::cast_slice(&starts));
         })
     }
 

@@ -148,7 +148,7 @@ impl Dispatches {
         let params = params(problem, &plan, partials);
 
         let (control, best, params, bind_groups) = scoped(&gpu.device, || {
-            let params = filled(gpu, "params", &[params], Usage::UNIFORM);
+            let params = filled(gpu, "params", &[params], Usage::UNIFORM | Usage::COPY_DST);
             let parts = filled(gpu, "parts", &uniforms.bytes(), Usage::UNIFORM);
             let partial_sums = zeroed(gpu, "partial sums", partial_bytes, Usage::STORAGE);
             // Zeros mean: not done, nothing evaluated.
@@ -195,6 +195,15 @@ impl Dispatches {
             keep_best,
             objective_groups: partials / WORKGROUP,
             uniforms,
+        })
+    }
+
+    /// Writes the uniform of the run again, for a problem with other targets.
+    pub(crate) fn write_params(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
+        let partials = objective_invocations(problem.triangles().len());
+        let params = params(problem, &self.plan, partials);
+        scoped(&gpu.device, || {
+            gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
         })
     }
 

@@ -36,8 +36,9 @@ const CONTROL: &str = "control";
 /// The state of a run on a device.
 pub(crate) struct GpuEngine<'a> {
     gpu: &'a Gpu,
-    problem: &'a Problem,
-    start: &'a [DVec2],
+    problem: Problem,
+    /// The positions that the host gave last.
+    start: Vec<DVec2>,
     mesh: MeshBuffers,
     dispatches: Dispatches,
     levels: Option<Levels>,
@@ -58,8 +59,8 @@ impl<'a> GpuEngine<'a> {
     /// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
     pub(crate) fn new(
         gpu: &'a Gpu,
-        problem: &'a Problem,
-        start: &'a [DVec2],
+        problem: &Problem,
+        start: &[DVec2],
         plan: Plan,
         steps: Vec<Step>,
         waiting: Waiting,
@@ -72,8 +73,8 @@ impl<'a> GpuEngine<'a> {
         let evaluated = 0;
         Ok(Self {
             gpu,
-            problem,
-            start,
+            problem: problem.clone(),
+            start: start.to_vec(),
             mesh,
             dispatches,
             levels,
@@ -154,7 +155,7 @@ impl<'a> GpuEngine<'a> {
     /// Returns all positions, given those of the free vertices on the device. A vertex that has not moved keeps the
     /// bits of its start, of which the device's pairs of floats do not hold all.
     fn moved(&self, free: Vec<[f32; 4]>) -> Vec<DVec2> {
-        let mut positions = self.start.to_vec();
+        let mut positions = self.start.clone();
         for (position, now) in positions.iter_mut().zip(free) {
             if now != split(*position) {
                 *position = join(now);
@@ -200,6 +201,28 @@ impl Engine for GpuEngine<'_> {
             self.batch(steps, history).await?;
         }
         Ok(())
+    }
+
+    fn set_positions(&mut self, positions: &[DVec2]) -> Result<(), GpuError> {
+        let free = self.problem.free_count();
+        // A vertex that the host has not moved keeps the bits that it has on the device.
+        let is_fixed = self.start[free..] == positions[free..];
+        let count = if is_fixed { free } else { positions.len() };
+        let written: Vec<[f32; 4]> = positions[..count].iter().map(|&p| split(p)).collect();
+        self.mesh.write_positions(self.gpu, &written)?;
+        self.start.copy_from_slice(positions);
+        self.secants = None;
+        Ok(())
+    }
+
+    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError> {
+        self.mesh.hold(self.gpu, &self.problem, held)
+    }
+
+    fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
+        self.problem = problem.clone();
+        self.mesh.write_targets(self.gpu, problem)?;
+        self.dispatches.write_params(self.gpu, problem)
     }
 
     async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
@@ -363,7 +386,7 @@ impl Engine for GpuEngine<'_> {
         if state.roots.is_empty() {
             return Ok(true);
         }
-        let Some(hierarchy) = Hierarchy::of_recipe(self.problem, &state.roots) else {
+        let Some(hierarchy) = Hierarchy::of_recipe(&self.problem, &state.roots) else {
             return Ok(false);
         };
         self.set_hierarchy(hierarchy)?;

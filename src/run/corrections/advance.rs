@@ -41,7 +41,7 @@ const SWEPT: f64 = 0.1;
 /// most meshes it falls to a sixth or less each time, and there is nothing to gain.
 const ACCELERATED_FROM: f64 = 0.3;
 
-impl Corrections<'_> {
+impl Corrections {
     /// Lists all distinct steps that a run can take.
     pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
         let base = plan.scheme.base();

@@ -11,7 +11,7 @@ const RAISED_BELOW: f64 = 3e-3;
 /// The p-norm with the last exponent is lowered to within this part of what that leaves of f.
 const PART: f64 = 0.3;
 
-impl Corrections<'_> {
+impl Corrections {
     /// The present exponent of EDGE's p-norm.
     pub(super) fn exponent(&self) -> f64 {
         f64::from(1u32 << self.sharpness)
@@ -19,7 +19,7 @@ impl Corrections<'_> {
 
     /// The share of f by which the exponent keeps it above a minimum of its own. None is told of an exponent that the caller has chosen.
     pub(super) fn above(&self) -> f64 {
-        let exponents = exponents(self.plan);
+        let exponents = exponents(&self.plan);
         if exponents.start() < exponents.end() { Sharpness::ABOVE / self.exponent() } else { 0.0 }
     }
 
@@ -40,7 +40,7 @@ impl Corrections<'_> {
 
     /// Whether the exponent is not going to double any more.
     pub(super) fn is_sharpest(&self) -> bool {
-        self.sharpness == *exponents(self.plan).end()
+        self.sharpness == *exponents(&self.plan).end()
     }
 
     /// Whether the last sweep, with its correction if it has one, has lowered the objective by little.

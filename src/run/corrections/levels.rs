@@ -30,7 +30,7 @@ pub(super) enum Change {
     Fit,
 }
 
-impl Corrections<'_> {
+impl Corrections {
     /// Decides how the levels change before the next correction. `proposed` is the number of corrections tried in this
     /// stage, `now` the index of the last evaluation.
     pub(super) fn change_of_levels(
@@ -81,8 +81,8 @@ impl Corrections<'_> {
         }
         let roots = engine.stiffness_roots(self.step(OMEGA_BETWEEN).smoothing()).await?;
         let hierarchy = match before {
-            Some(before) => before.fitted_to(self.problem, roots),
-            None => Hierarchy::new(self.problem, roots),
+            Some(before) => before.fitted_to(&self.problem, roots),
+            None => Hierarchy::new(&self.problem, roots),
         };
         yield_now().await;
         match engine.set_hierarchy(hierarchy) {

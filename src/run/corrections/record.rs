@@ -16,7 +16,7 @@ const STEADY: f64 = 0.3;
 /// too little, by up to a third.
 const CAUTION: f64 = 1.5;
 
-impl Corrections<'_> {
+impl Corrections {
     /// Records objectives and applies the stop rule to the present stage.
     pub(super) fn record(&mut self, objectives: Objectives, history: &mut History) {
         history.add(objectives);

@@ -22,7 +22,7 @@ const MOST_SWEEPS: u32 = 32;
 /// Sweeps end in vain if one lowers the largest inverse mean ratio by less than this share.
 const OPENS: f64 = 0.02;
 
-impl Corrections<'_> {
+impl Corrections {
     /// Reopens flat triangles if there are any after the exponent `has_doubled` or was to do so, and goes back to the first exponent.
     /// Once because it was due, once because it has doubled. If sweeps do not open all of them, as the mesh may leave no room, the
     /// state before is restored, and the run goes on from there.
@@ -32,15 +32,15 @@ impl Corrections<'_> {
         history: &mut History,
         has_doubled: bool,
     ) -> Result<(), GpuError> {
-        let Some((metric, omega)) = reopening_sweep(self.plan) else { return Ok(()) };
-        let first = *exponents(self.plan).start();
+        let Some((metric, omega)) = reopening_sweep(&self.plan) else { return Ok(()) };
+        let first = *exponents(&self.plan).start();
         let is_late = history.sweeps() == LATEST && self.sharpness == first;
         let is_due = self.sharpness <= LAST && (has_doubled || is_late);
         let is_left = history.sweeps().saturating_add(MOST_SWEEPS) < history.rule().max_sweeps;
         if self.was_reopened || !is_due || !is_left || history.stop().is_some() {
             return Ok(());
         }
-        let mut worst = worst_movable(self.problem, &engine.positions().await?);
+        let mut worst = worst_movable(&self.problem, &engine.positions().await?);
         if worst <= FLAT {
             return Ok(());
         }
@@ -55,7 +55,7 @@ impl Corrections<'_> {
                 continue;
             }
             let last = worst;
-            worst = worst_movable(self.problem, &engine.positions().await?);
+            worst = worst_movable(&self.problem, &engine.positions().await?);
             if worst <= FLAT {
                 break;
             }

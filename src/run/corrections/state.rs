@@ -13,9 +13,9 @@ use crate::run::step::Step;
 pub(super) const ESTIMATES: usize = 4;
 
 /// The state of a run with corrections from coarser levels.
-pub(crate) struct Corrections<'a> {
-    pub(super) problem: &'a Problem,
-    pub(super) plan: &'a Plan,
+pub(crate) struct Corrections {
+    pub(super) problem: Problem,
+    pub(super) plan: Plan,
     pub(super) stage: Stage,
     /// Number of times that corrections have begun.
     pub(super) attempts: u32,
@@ -77,12 +77,12 @@ pub(super) enum Stage {
     Without { since: usize },
 }
 
-impl<'a> Corrections<'a> {
+impl Corrections {
     /// Makes the state at the start of a run.
-    pub(crate) fn new(problem: &'a Problem, plan: &'a Plan) -> Self {
+    pub(crate) fn new(problem: &Problem, plan: &Plan) -> Self {
         Self {
-            problem,
-            plan,
+            problem: problem.clone(),
+            plan: plan.clone(),
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
@@ -140,6 +140,23 @@ impl<'a> Corrections<'a> {
         self.estimates = [f64::INFINITY; ESTIMATES];
         self.lowered.clear();
         self.stage = Stage::Correcting(Correcting { since: done, length, proposed: 0, refused: 0 });
+    }
+
+    /// Takes note that the host has moved vertices, or has changed targets: what sweeps gained before tells nothing about later
+    /// ones, and secant pairs are of other positions. `f` is the objective now.
+    pub(crate) fn disturbed(&mut self, f: f64) {
+        (self.slope, self.settled) = (None, false);
+        self.estimates = [f64::INFINITY; ESTIMATES];
+        if let Stage::Correcting(state) = &mut self.stage {
+            state.refused = 0;
+            self.lowered.clear();
+            self.lowered.extend(self.metric().is_smooth().then_some(f));
+        }
+    }
+
+    /// Takes the targets of a problem with the same layout.
+    pub(crate) fn set_targets(&mut self, problem: &Problem) {
+        self.problem = problem.clone();
     }
 
     /// Returns the excess of the base objective over its ideal value, at an index of the history.

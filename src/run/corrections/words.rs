@@ -3,7 +3,7 @@
 use super::plan_steps::exponents;
 use super::state::{Correcting, Corrections, ESTIMATES, Stage};
 
-impl Corrections<'_> {
+impl Corrections {
     /// Returns the state that decides how the run continues, as numbers for [`restore`](Self::restore).
     pub(crate) fn save(&self) -> Vec<u64> {
         let (stage, at, length, proposed, refused) = match self.stage {
@@ -55,7 +55,7 @@ impl Corrections<'_> {
             return false;
         };
         let sharpness = u32::try_from(sharpness).ok();
-        let Some(sharpness) = sharpness.filter(|k| exponents(self.plan).contains(k)) else {
+        let Some(sharpness) = sharpness.filter(|k| exponents(&self.plan).contains(k)) else {
             return false;
         };
         let estimates: [u64; ESTIMATES] = *estimates;

@@ -1,0 +1,162 @@
+//! The stages of a run: what it does on the host between sweeps.
+
+use glam::DVec2;
+
+use crate::error::{MeshError, SmoothError};
+use crate::layout::Problem;
+use crate::mesh::Mesh;
+use crate::outcome::Slid;
+use crate::run::{Derivatives, Desired, Goal, Options, Plan};
+use crate::targets::TargetField;
+use crate::topology::Topology;
+use crate::whole::altitude::least_of;
+use crate::whole::{
+    AltitudeStage, MoveLimitStage, SlideStage, Stage, TargetFieldStage, set_targets_of,
+};
+
+use super::prepared::Smoother;
+
+/// The stages of a run, and their state.
+pub(super) struct Stages<'s> {
+    mesh: &'s Mesh,
+    topology: &'s Topology<'s>,
+    field: Option<&'s TargetField>,
+    move_limit: Option<MoveLimitStage<'s>>,
+    altitude: Option<AltitudeStage<'s>>,
+    slide: Option<SlideStage<'s>>,
+    target_field: Option<TargetFieldStage<'s>>,
+}
+
+impl<'s> Stages<'s> {
+    /// Checks that the requested stages are possible with these options.
+    pub(super) fn check(
+        smoother: &Smoother<'_>,
+        options: &Options,
+        is_continued: bool,
+    ) -> Result<(), SmoothError> {
+        let refuse = |option, value: &str, remedy| {
+            Err(SmoothError::Option { option, value: value.to_owned(), remedy })
+        };
+        let (slides, has_field) = (smoother.sliding.is_some(), smoother.field.is_some());
+        if slides {
+            check_for("slide", options, is_continued)?;
+        }
+        if options.max_move.is_some() {
+            check_for("max move", options, is_continued)?;
+        }
+        if has_field && options.goal.is_some() {
+            let remedy = "as targets change, there is no desired f: leave out one of the two";
+            return refuse("target field", "with a goal", remedy);
+        }
+        if has_field && options.max_move.is_some() {
+            let remedy = "leave out one of the two, or set targets of vertices";
+            return refuse("target field", "with a bound", remedy);
+        }
+        if has_field {
+            check_for("target field", options, is_continued)?;
+        }
+        if options.keep_altitude && options.max_move.is_some() {
+            let remedy = "leave out one of the two";
+            return refuse("keep altitude", "with a bound on moves", remedy);
+        }
+        if options.keep_altitude {
+            check_for("keep altitude", options, is_continued)?;
+        }
+        if has_field && slides {
+            let remedy = "leave out one of the two, or set targets of vertices";
+            return refuse("target field", "with sliding vertices", remedy);
+        }
+        if has_field && options.keep_altitude {
+            let remedy = "it cannot be combined with a target field: leave out one of the two";
+            return refuse("keep altitude", "on", remedy);
+        }
+        Ok(())
+    }
+
+    /// Makes the stages of a run by `plan`.
+    pub(super) fn new(smoother: &'s Smoother<'_>, options: &Options, plan: &Plan) -> Self {
+        let Smoother { mesh, topology, problem, sliding, field, .. } = smoother;
+        let limit =
+            |most| MoveLimitStage::new(mesh, topology, problem, most, options.stored, plan.stop);
+        let move_limit = options.max_move.map(limit);
+        let floor = if options.keep_altitude { least_of(problem) } else { 0.0 };
+        let slide = |sliding| {
+            let reach = move_limit.as_ref().map(|limit: &MoveLimitStage<'_>| limit.reach(sliding));
+            SlideStage::new(sliding, reach, floor, plan.stop)
+        };
+        let slide = sliding.as_ref().map(slide);
+        let field = field.as_ref();
+        Self {
+            mesh,
+            topology,
+            field,
+            move_limit,
+            altitude: options.keep_altitude.then(|| AltitudeStage::new(problem)),
+            slide,
+            target_field: field.map(|field| TargetFieldStage::new(mesh, field, options.tolerance)),
+        }
+    }
+
+    /// Returns the stages in the order in which they work.
+    pub(super) fn in_order(&mut self) -> Vec<&mut dyn Stage> {
+        let Self { move_limit, altitude, slide, target_field, .. } = self;
+        let mut stages: Vec<&mut dyn Stage> = Vec::new();
+        stages.extend(move_limit.as_mut().map(|stage| stage as &mut dyn Stage));
+        stages.extend(altitude.as_mut().map(|stage| stage as &mut dyn Stage));
+        stages.extend(slide.as_mut().map(|stage| stage as &mut dyn Stage));
+        stages.extend(target_field.as_mut().map(|stage| stage as &mut dyn Stage));
+        stages
+    }
+
+    /// Returns how far each free vertex may be from its start, normalized, if there is a bound.
+    pub(super) fn bounds(&self) -> Option<&[f64]> {
+        self.move_limit.as_ref().map(MoveLimitStage::bounds)
+    }
+
+    /// Writes the positions of vertices that slid. The normalized positions do not hold all of their digits.
+    pub(super) fn slide_into(&self, points: &mut [[f64; 2]]) {
+        for (v, point) in self.slide.iter().flat_map(SlideStage::moved) {
+            points[v as usize] = point;
+        }
+    }
+
+    /// Evaluates a field of targets, if there is one, with the vertices at these normalized positions.
+    pub(super) fn set_targets_at(
+        &self,
+        problem: &mut Problem,
+        positions: &[DVec2],
+    ) -> Result<(), MeshError> {
+        let set = |field| set_targets_of(field, self.mesh, problem, positions);
+        self.field.map_or(Ok(()), set)
+    }
+
+    /// Returns the result of sliding with the vertices at `points`. Nothing slid if the run gained nothing.
+    pub(super) fn slid(&self, gains: bool, points: &[[f64; 2]]) -> Option<Slid> {
+        let slide = self.slide.as_ref()?;
+        Some(slide.slid(self.mesh, self.topology, gains, points))
+    }
+}
+
+/// Checks that a run with these options can have a stage, which `option` requires.
+fn check_for(
+    option: &'static str,
+    options: &Options,
+    is_continued: bool,
+) -> Result<(), SmoothError> {
+    let refuse = |remedy| Err(SmoothError::Option { option, value: "on".to_owned(), remedy });
+    if options.scheme.period() > 1 || !options.scheme.is_monotone() {
+        return refuse("it needs one metric other than edge, such as imr");
+    }
+    if options.derivatives != Derivatives::Analytic {
+        return refuse("it needs analytic derivatives");
+    }
+    if matches!(options.goal, Some(Goal { desired: Desired::Auto, .. })) {
+        return refuse(
+            "such a run cannot search for the desired f: give its value as Desired::Value",
+        );
+    }
+    match is_continued {
+        true => refuse("such a run cannot continue from a checkpoint: start it without one"),
+        false => Ok(()),
+    }
+}

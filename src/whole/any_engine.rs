@@ -1,0 +1,111 @@
+//! The engine of a run, which may change from a device to the CPU.
+
+use std::borrow::Cow;
+
+use glam::DVec2;
+
+use crate::cpu::CpuEngine;
+use crate::error::GpuError;
+use crate::layout::Problem;
+use crate::metric::Smoothing;
+use crate::run::multilevel::Hierarchy;
+use crate::run::{Engine, EngineState, History, Objectives, Proposal, Step};
+use crate::whole::device::DeviceEngine;
+
+/// An engine on the CPU or on a device.
+pub(crate) enum AnyEngine<'g> {
+    Cpu(Box<CpuEngine>),
+    Device(DeviceEngine<'g>),
+}
+
+/// Calls a method of the engine.
+macro_rules! on {
+    ($self:ident, $engine:ident => $call:expr) => {
+        match $self {
+            AnyEngine::Cpu($engine) => $call,
+            #[cfg(feature = "gpu")]
+            AnyEngine::Device($engine) => $call,
+            #[cfg(not(feature = "gpu"))]
+            AnyEngine::Device(none) => match **none {},
+        }
+    };
+}
+
+impl Engine for AnyEngine<'_> {
+    async fn sweep(&mut self, step: &Step) -> Result<(), GpuError> {
+        on!(self, engine => engine.sweep(step).await)
+    }
+
+    async fn objectives(&mut self) -> Result<Objectives, GpuError> {
+        on!(self, engine => engine.objectives().await)
+    }
+
+    async fn sweeps(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
+        on!(self, engine => engine.sweeps(steps, history).await)
+    }
+
+    fn set_positions(&mut self, positions: &[DVec2]) -> Result<(), GpuError> {
+        on!(self, engine => engine.set_positions(positions))
+    }
+
+    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError> {
+        on!(self, engine => engine.hold(held))
+    }
+
+    fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
+        on!(self, engine => engine.set_targets(problem))
+    }
+
+    async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
+        on!(self, engine => engine.positions().await)
+    }
+
+    async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
+        on!(self, engine => engine.best_positions().await)
+    }
+
+    fn take_hierarchy(&mut self) -> Option<Hierarchy> {
+        on!(self, engine => engine.take_hierarchy())
+    }
+
+    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+        on!(self, engine => engine.set_hierarchy(hierarchy))
+    }
+
+    async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
+        on!(self, engine => engine.stiffness_roots(smoothing).await)
+    }
+
+    async fn propose(
+        &mut self,
+        step: &Step,
+        length: f64,
+        accelerated: bool,
+    ) -> Result<Proposal, GpuError> {
+        on!(self, engine => engine.propose(step, length, accelerated).await)
+    }
+
+    fn forget(&mut self) {
+        on!(self, engine => engine.forget());
+    }
+
+    async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
+        on!(self, engine => engine.leave_out(length, anew).await)
+    }
+
+    async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
+        on!(self, engine => engine.excess_along(length).await)
+    }
+
+    async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
+        on!(self, engine => engine.move_along(length).await)
+    }
+
+    async fn save(&mut self, whole: bool) -> Result<EngineState, GpuError> {
+        on!(self, engine => engine.save(whole).await)
+    }
+
+    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
+        on!(self, engine => engine.restore(state))
+    }
+}

@@ -1,0 +1,73 @@
+//! The loop of a whole run: sweeps on the engine, and the work of stages on the host between them.
+
+use crate::error::SmoothError;
+use crate::run::{Keeper, Keeping, Observer, Stop};
+use crate::whole::host::{Host, objectives};
+use crate::whole::live::{Ended, Live, Moved};
+use crate::whole::stage::{Judged, Period, Stage};
+
+/// Sweeps until the run ends, and lets the stages work after each period, in their order. The last of them decides when
+/// the run ends.
+pub(crate) async fn drive<K: Keeper + ?Sized>(
+    mut live: Live<'_>,
+    stages: &mut [&mut dyn Stage],
+    keeping: &mut Keeping<'_, K>,
+    observe: &mut (impl Observer + ?Sized),
+) -> Result<Ended, SmoothError> {
+    let max_sweeps = live.plan.stop.max_sweeps;
+    if stages.is_empty() || max_sweeps == 0 {
+        let (positions, stop) = live.sweep(u32::MAX, keeping, observe).await?;
+        return Ok(live.end(positions, stop.unwrap_or(Stop::MaxSweeps)));
+    }
+    let plan = live.plan.clone();
+    let mut host = Host::new(live.problem.clone(), &plan, live.start());
+    let mut f = host.f(&host.before);
+    loop {
+        let began = live.sweeps();
+        let period = stages.iter().map(|stage| stage.period()).min().unwrap_or(u32::MAX);
+        let until = began.saturating_add(period).min(max_sweeps);
+        let (swept_to, swept) = live.sweep(until, keeping, observe).await?;
+        if swept == Some(Stop::NotFinite) {
+            return Ok(live.end(swept_to, Stop::NotFinite));
+        }
+        host.positions.clone_from(&swept_to);
+        let mut is_settled = true;
+        for k in 0..stages.len() {
+            let (earlier, rest) = stages.split_at_mut(k);
+            let Some(stage) = rest.first_mut() else { break };
+            let allows = |to: &[_]| earlier.iter().all(|stage| stage.allows(to));
+            let worked = stage.work(&mut host, &allows)?;
+            is_settled &= worked.is_settled;
+            if worked.has_moved_free {
+                earlier.iter_mut().for_each(|stage| stage.follow(&mut host));
+            }
+        }
+        let now = objectives(&host.problem, &plan, &host.positions);
+        let last = std::mem::replace(&mut f, now.of(plan.scheme.base()).unwrap_or(f64::NAN));
+        let moved = Moved {
+            positions: &host.positions,
+            swept_to: &swept_to,
+            held: &host.held,
+            targets: std::mem::take(&mut host.has_new_targets).then_some(&host.problem),
+            now,
+        };
+        live.write_back(began, moved, keeping).await?;
+        let period = Period {
+            f: [last, f],
+            swept,
+            remaining: live.remaining(),
+            is_settled,
+            all_held: host.held.iter().all(|held| *held),
+            is_last: live.sweeps() >= max_sweeps,
+        };
+        let judged = stages.last_mut().map(|stage| stage.judge(&period));
+        let Judged { stop, remaining } = judged.unwrap_or(Judged { stop: None, remaining: None });
+        let stop = if swept == Some(Stop::Canceled) { swept } else { stop };
+        // Opening triangles for a device may have moved vertices further.
+        host.before.clone_from_slice(live.start());
+        if let Some(stop) = stop {
+            let ended = live.end(host.before, stop);
+            return Ok(Ended { remaining, ..ended });
+        }
+    }
+}

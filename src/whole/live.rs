@@ -1,0 +1,406 @@
+//! The sweeps of a whole run, on the engines that they need: on a device, after sweeps in double precision if triangles are
+//! too flat for it, and on the CPU once the device has failed.
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
+
+use crate::cpu::{CpuEngine, held_back, mean_excess};
+use crate::error::{GpuError, SmoothError};
+use crate::layout::Problem;
+use crate::metric::Metric;
+use crate::outcome::DeviceFault;
+use crate::resume;
+use crate::run::opening::{self, Obstacle, Opened};
+use crate::run::{
+    CPU, Checkpoint, Counts, DriveError, Engine, Guard, Keeper, Keeping, Method, Objectives,
+    Observer, Options, Phase, Plan, Report, Saved, Session, Stop, steps,
+};
+use crate::whole::any_engine::AnyEngine;
+use crate::whole::device::Device;
+use crate::whole::host::objectives;
+
+/// The largest sum of q² - ideal² that a device is given. It is far below the largest single, 3e38, as formulas of
+/// metrics of size multiply powers of their arguments.
+const MOST_ON_DEVICE: f64 = 1e15;
+
+/// What a run is to do.
+#[derive(Clone, Copy)]
+pub(crate) struct Spec<'s> {
+    pub(crate) problem: &'s Problem,
+    pub(crate) device: Option<Device<'s>>,
+    pub(crate) options: &'s Options,
+    pub(crate) phase: Phase,
+    /// Whether the host moves vertices between sweeps.
+    pub(crate) is_staged: bool,
+}
+
+/// A state that the run can return to: the objectives so far, and the positions after the last sweep.
+struct Point {
+    log: Vec<Objectives>,
+    positions: Vec<DVec2>,
+}
+
+/// A run in progress, on one engine as long as nothing fails.
+pub(crate) struct Live<'s> {
+    /// The layout, with the present targets.
+    pub(crate) problem: Problem,
+    pub(crate) plan: Plan,
+    spec: Spec<'s>,
+    /// The device that sweeps; `None` for the CPU.
+    device: Option<Device<'s>>,
+    /// `None` before the first sweep, and after the device has failed.
+    session: Option<Session<AnyEngine<'s>>>,
+    /// Where the run begins, or stood when the host moved vertices last.
+    last: Point,
+    held: Vec<bool>,
+    opened: Option<Opened>,
+    /// Number of sweeps on the CPU because triangles were too flat for the device, and the sweep from which on all are,
+    /// because they stayed so.
+    opening_sweeps: u32,
+    on_cpu_from: Option<u32>,
+    is_resumed: bool,
+    fault: Option<DeviceFault>,
+}
+
+/// The end of the sweeps of a run.
+pub(crate) struct Ended {
+    pub(crate) history: Vec<Objectives>,
+    pub(crate) positions: Vec<DVec2>,
+    pub(crate) counts: Counts,
+    pub(crate) opening_sweeps: u32,
+    pub(crate) remaining: Option<f64>,
+    pub(crate) held_back: usize,
+    pub(crate) stop: Stop,
+    pub(crate) fault: Option<DeviceFault>,
+}
+
+impl<'s> Live<'s> {
+    /// Prepares a run by `plan` from some positions, or from a checkpoint of a run that began there.
+    pub(crate) async fn new<K: Keeper + ?Sized>(
+        spec: Spec<'s>,
+        mut plan: Plan,
+        from: &[DVec2],
+        resumed: Option<&Checkpoint>,
+        keeping: &mut Keeping<'_, K>,
+    ) -> Result<Self, SmoothError> {
+        let (device, opened) = match resumed {
+            Some(Checkpoint { about, saved }) => {
+                (spec.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
+            }
+            None => opened(&spec, &plan, from).await?,
+        };
+        if let Some(about) = &mut keeping.about {
+            about.opened.clone_from(&opened);
+        }
+        keeping.last = resumed.map(|resumed| resumed.saved.clone());
+        let opening_sweeps = opened.as_ref().map_or(0, Opened::sweeps);
+        plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
+        let positions = opened.as_ref().map_or(from, |opened| &opened.positions).to_vec();
+        let is_resumed = resumed.is_some();
+        Ok(Self {
+            problem: spec.problem.clone(),
+            plan,
+            spec,
+            device,
+            session: None,
+            last: Point { log: Vec::new(), positions },
+            held: Vec::new(),
+            opened,
+            opening_sweeps,
+            on_cpu_from: (spec.device.is_some() && device.is_none() && !is_resumed).then_some(0),
+            is_resumed,
+            fault: None,
+        })
+    }
+
+    /// Whether sweeps are corrected from coarser levels.
+    fn is_corrected(&self) -> bool {
+        self.spec.options.is_multilevel() && self.problem.free_count() > 0
+    }
+
+    /// Returns the number of sweeps done, without those that opened triangles before the first.
+    pub(crate) fn sweeps(&self) -> u32 {
+        let log =
+            self.session.as_ref().map_or(&self.last.log[..], |session| session.history().log());
+        (log.len() as u32).saturating_sub(1)
+    }
+
+    /// Returns the positions where the run begins, or stood when the host moved vertices last.
+    pub(crate) fn start(&self) -> &[DVec2] {
+        &self.last.positions
+    }
+
+    /// Returns the share of f that is estimated to be left to gain, from the sweeps alone.
+    pub(crate) fn remaining(&self) -> Option<f64> {
+        self.session.as_ref().and_then(|session| session.history().remaining())
+    }
+
+    /// Sweeps until `until` sweeps are done, or the run ends. Returns the best positions, and the reason if it ends.
+    pub(crate) async fn sweep<K: Keeper + ?Sized>(
+        &mut self,
+        until: u32,
+        keeping: &mut Keeping<'_, K>,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<(Vec<DVec2>, Option<Stop>), SmoothError> {
+        loop {
+            match self.try_to_sweep(until, keeping, observe).await {
+                Ok(done) => return Ok(done),
+                Err(DriveError::Device(error)) => self.fall_back(error, keeping)?,
+                Err(DriveError::NotFinite { sweep }) => {
+                    let error = GpuError::NotFinite { sweep };
+                    if self.device.is_none() || self.fall_back(error, keeping).is_err() {
+                        // Sweeps after the last work of the stages may have gone beyond their bounds.
+                        let saved = keeping.last.take().filter(|_| !self.spec.is_staged);
+                        return Ok((self.undone(saved), Some(Stop::NotFinite)));
+                    }
+                }
+                Err(DriveError::LeftOut(error)) => return Err(error.into()),
+                Err(DriveError::Foreign) => return Err(resume::foreign()),
+            }
+        }
+    }
+
+    async fn try_to_sweep<K: Keeper + ?Sized>(
+        &mut self,
+        until: u32,
+        keeping: &mut Keeping<'_, K>,
+        observe: &mut (impl Observer + ?Sized),
+    ) -> Result<(Vec<DVec2>, Option<Stop>), DriveError> {
+        let mut session = match self.session.take() {
+            Some(session) => session,
+            None => self.begun(keeping.last.clone())?,
+        };
+        let done = self.opened.as_ref().map_or(0, Opened::sweeps);
+        let report = Report { phase: self.spec.phase, done };
+        let requires_levels = self.spec.options.method == Method::Multilevel;
+        let stop = session.advance(until, requires_levels, report, keeping, observe).await?;
+        let positions = session.engine.best_positions().await?;
+        self.session = Some(session);
+        Ok((positions, stop))
+    }
+
+    /// Makes an engine in a saved state, or where the run stood when the host moved vertices last.
+    fn begun(&self, saved: Option<Saved>) -> Result<Session<AnyEngine<'s>>, DriveError> {
+        let Self { problem, plan, last: Point { log, positions }, held, .. } = self;
+        let corrected = self.is_corrected();
+        let mut engine = match self.device {
+            None => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, positions.clone(), plan))),
+            Some(device) => {
+                // The host judges a run with corrections or with stages, so the device must not end it.
+                let is_judged_by_host = corrected || self.spec.is_staged;
+                let judged = if is_judged_by_host { plan.clone().endless() } else { plan.clone() };
+                let steps = steps(plan, corrected);
+                AnyEngine::Device(device.engine(problem, positions, judged, steps)?)
+            }
+        };
+        if !held.is_empty() {
+            engine.hold(held)?;
+        }
+        let mut session = Session::new(engine, problem, plan, corrected, log);
+        if let Some(saved) = saved {
+            session.restore(saved)?;
+        }
+        Ok(session)
+    }
+
+    /// Leaves the device, if there is one and the keeper wants the run to go on without it.
+    fn fall_back<K: Keeper + ?Sized>(
+        &mut self,
+        error: GpuError,
+        keeping: &mut Keeping<'_, K>,
+    ) -> Result<(), SmoothError> {
+        let last = (self.last.log.len() as u32).saturating_sub(1);
+        let done = self.opened.as_ref().map_or(0, Opened::sweeps);
+        let sweep = keeping.last.as_ref().map_or(last, Saved::sweeps) + done;
+        if self.device.is_none() || !keeping.keeper.goes_on_without(&error, sweep) {
+            return Err(error.into());
+        }
+        (self.device, self.session) = (None, None);
+        self.fault = Some(DeviceFault { sweep, error });
+        Ok(())
+    }
+
+    /// Returns to the state that was last saved, or to where the host moved vertices last, because a later sweep made f
+    /// infinite or NaN. Returns the positions there.
+    fn undone(&mut self, saved: Option<Saved>) -> Vec<DVec2> {
+        if let Some(Saved { log, engine, .. }) = saved {
+            self.last = Point { log, positions: engine.best.unwrap_or(engine.positions) };
+        }
+        if self.last.log.is_empty() {
+            self.last.log = vec![objectives(&self.problem, &self.plan, &self.last.positions)];
+        }
+        self.session = None;
+        self.last.positions.clone()
+    }
+
+    /// Takes the vertices where the host has moved them after the sweeps from `from` on, those that it holds, and the
+    /// targets of `problem`. The objectives there are `now`.
+    pub(crate) async fn write_back<K: Keeper + ?Sized>(
+        &mut self,
+        from: u32,
+        moved: Moved<'_>,
+        keeping: &mut Keeping<'_, K>,
+    ) -> Result<(), SmoothError> {
+        let Moved { positions, swept_to, held, targets, now } = moved;
+        let Some(mut session) = self.session.take() else { return Ok(()) };
+        session.disturbed(from, now);
+        // A state that was saved before is not that of the stages any more.
+        keeping.last = None;
+        self.last = Point { log: session.history().log().to_vec(), positions: positions.to_vec() };
+        let is_held_anew = self.held != held;
+        if is_held_anew {
+            self.held.clear();
+            self.held.extend_from_slice(held);
+        }
+        let mut changed = || -> Result<(), GpuError> {
+            if let Some(problem) = targets {
+                session.set_targets(problem)?;
+            }
+            if is_held_anew {
+                session.engine.hold(held)?;
+            }
+            if positions != swept_to {
+                session.engine.set_positions(positions)?;
+            }
+            Ok(())
+        };
+        let written = changed();
+        if let Some(problem) = targets {
+            self.problem = problem.clone();
+        }
+        match written {
+            Ok(()) => self.session = Some(session),
+            Err(error) => self.fall_back(error, keeping)?,
+        }
+        if positions != swept_to {
+            self.open_again().await?;
+        }
+        Ok(())
+    }
+
+    /// Opens triangles that the host has made too flat for the device, by sweeps on the CPU. If they stay so, the run goes
+    /// on there.
+    async fn open_again(&mut self) -> Result<(), SmoothError> {
+        let Self { problem, plan, last, held, .. } = self;
+        if self.device.is_none() {
+            return Ok(());
+        }
+        let opened = match opening::obstacle(problem, &last.positions) {
+            Obstacle::None => return Ok(()),
+            Obstacle::Small => None,
+            Obstacle::Flat => {
+                let mut engine = CpuEngine::new(problem, last.positions.clone(), plan);
+                engine.hold(held)?;
+                opening::open(problem, engine, plan).await?
+            }
+        };
+        match (opened, &mut self.session) {
+            (Some(opened), Some(session)) => {
+                session.add(&opened.log[1..], &opened.positions)?;
+                self.opening_sweeps += opened.sweeps();
+                let log = session.history().log().to_vec();
+                self.last = Point { log, positions: opened.positions };
+            }
+            _ => {
+                (self.device, self.session) = (None, None);
+                self.on_cpu_from = Some(self.sweeps());
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the run with its vertices at `positions`.
+    pub(crate) fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> Ended {
+        let Self { plan, problem, last, session, .. } = self;
+        let none = Counts { alternated: 0, corrections: 0, levels_left_out: false };
+        let (counts, remaining, history) = match session {
+            Some(session) => {
+                let history = session.history();
+                (session.counts(), history.remaining(), history.clone())
+            }
+            None => {
+                let history = crate::run::History::resumed(&plan, &last.log, None);
+                (Counts { alternated: history.sweeps(), ..none }, None, history)
+            }
+        };
+        let mut held = 0;
+        let step = plan.base_step(1.0);
+        let can_be_held = matches!(stop, Stop::Converged | Stop::MaxSweeps);
+        if can_be_held && step.shape_guard.is_finite() && problem.free_count() > 0 {
+            held = held_back(&problem, &positions, &self.held, &step);
+            if held > 0 && self.spec.options.guard == Guard::ByMetric && stop == Stop::Converged {
+                stop = Stop::HeldBack;
+            }
+        }
+        let opened = self.opened.as_ref().map_or(0, Opened::sweeps);
+        let (history, positions) = match self.opened {
+            Some(opened) => opened.followed_by(history, positions),
+            None => (history.into_log(), positions),
+        };
+        let opening_sweeps = match self.on_cpu_from {
+            Some(from) if !self.is_resumed && self.fault.is_none() => {
+                self.opening_sweeps + (history.len() as u32 - 1 - opened).saturating_sub(from)
+            }
+            _ => self.opening_sweeps,
+        };
+        Ended {
+            history,
+            positions,
+            counts: Counts { alternated: opened + counts.alternated, ..counts },
+            opening_sweeps,
+            remaining,
+            held_back: held,
+            stop,
+            fault: self.fault,
+        }
+    }
+}
+
+/// The changes that the host makes between sweeps.
+pub(crate) struct Moved<'h> {
+    pub(crate) positions: &'h [DVec2],
+    /// The positions after the sweeps.
+    pub(crate) swept_to: &'h [DVec2],
+    /// Which free vertices are held from now on; empty for none.
+    pub(crate) held: &'h [bool],
+    /// The problem with other targets than before, if they have changed.
+    pub(crate) targets: Option<&'h Problem>,
+    /// The objectives at the positions, by the targets.
+    pub(crate) now: Objectives,
+}
+
+/// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that continues, and these
+/// sweeps, if there were any. If they do not open every triangle, or triangles are too small for a device, no device is
+/// returned, and the whole run is done on the CPU.
+async fn opened<'s>(
+    spec: &Spec<'s>,
+    plan: &Plan,
+    from: &[DVec2],
+) -> Result<(Option<Device<'s>>, Option<Opened>), SmoothError> {
+    let &Spec { problem, device, .. } = spec;
+    if device.is_none() {
+        return Ok((None, None));
+    }
+    // If sizes differ very much, the sums of some metrics exceed the range of single precision.
+    let sum =
+        |metric: &Metric| mean_excess(*metric, problem, from) * problem.triangles().len() as f64;
+    let is_huge = |metric: &Metric| {
+        let is_ratio = metric.properties().is_inverse_mean_ratio;
+        // A sum that is NaN counts as too large.
+        !is_ratio && sum(metric).partial_cmp(&MOST_ON_DEVICE) != Some(Ordering::Less)
+    };
+    if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {
+        return Ok((None, None));
+    }
+    match opening::obstacle(problem, from) {
+        Obstacle::None => return Ok((device, None)),
+        Obstacle::Flat => {}
+        Obstacle::Small => return Ok((None, None)),
+    }
+    let engine = CpuEngine::new(problem, from.to_vec(), plan);
+    Ok(match opening::open(problem, engine, plan).await? {
+        Some(opened) => (device, Some(opened)),
+        None => (None, None),
+    })
+}

@@ -1,0 +1,189 @@
+//! The stage that keeps vertices within a distance of their start: after some sweeps, vertices beyond their bound are brought
+//! back to it.
+
+use glam::DVec2;
+
+use crate::error::MeshError;
+use crate::layout::Problem;
+use crate::measure::mean_edges;
+use crate::mesh::Mesh;
+use crate::precision::Precision;
+use crate::run::{Step, StopRule, line_search};
+use crate::slide::{Fan, Params, Patch, Sliding};
+use crate::topology::Topology;
+use crate::whole::host::Host;
+use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
+
+/// Number of sweeps in a period.
+const SWEEPS: u32 = 3;
+/// Number of times that a period visits the vertices at their bound.
+const VISITS: u32 = 3;
+/// Number of times that the move of a period is halved if it cannot be taken.
+const HALVED: u32 = 5;
+/// A vertex that has moved by more than this share of its bound is at its bound.
+const AT_BOUND: f64 = 1.0 - 1e-6;
+
+/// How far each vertex may move.
+pub(crate) struct MoveLimitStage<'s> {
+    problem: &'s Problem,
+    /// The largest distance of each vertex of the mesh from its start, in the unit of the mesh.
+    all: Vec<f64>,
+    /// The largest distance of each free vertex from its start, normalized.
+    bounds: Vec<f64>,
+    fans: Vec<Fan>,
+    rule: PeriodRule,
+}
+
+impl<'s> MoveLimitStage<'s> {
+    /// Makes bounds so that no vertex moves by more than `most` times the mean edge length there, given the precision
+    /// in which positions are stored.
+    pub(crate) fn new(
+        mesh: &Mesh,
+        topology: &Topology<'_>,
+        problem: &'s Problem,
+        most: f64,
+        stored: Precision,
+        rule: StopRule,
+    ) -> Self {
+        let edges = mean_edges(topology, &mesh.points);
+        let bound = |([x, y], edge): (&[f64; 2], &f64)| {
+            let rounding = 2.0 * stored.error(x.abs().max(y.abs()));
+            (most * edge * (1.0 - 1e-9) - rounding).max(0.0)
+        };
+        let all: Vec<f64> = mesh.points.iter().zip(&edges).map(bound).collect();
+        let (_, scale) = problem.normalization();
+        let number = problem.numbers(mesh.points.len());
+        let free = &problem.vertices()[..problem.free_count()];
+        let fan = |&v: &u32| {
+            let mut fan = Fan::new(topology, v);
+            fan.renumber(&number);
+            fan
+        };
+        Self {
+            problem,
+            bounds: free.iter().map(|&v| all[v as usize] * scale).collect(),
+            all,
+            fans: free.iter().map(fan).collect(),
+            rule: PeriodRule::new(rule),
+        }
+    }
+
+    /// Returns how far each free vertex may be from its start, normalized.
+    pub(crate) fn bounds(&self) -> &[f64] {
+        &self.bounds
+    }
+
+    /// Returns how far each vertex that slides may be from its given position, in the unit of the mesh.
+    pub(crate) fn reach(&self, sliding: &Sliding) -> Params {
+        sliding.for_each_vertex(|v| self.all[v as usize])
+    }
+
+    /// Returns the position of a free vertex, brought back to its bound if it is beyond.
+    fn within(&self, v: usize, to: DVec2) -> DVec2 {
+        let (start, bound) = (self.problem.positions()[v], self.bounds[v]);
+        let distance = to.distance(start);
+        if distance <= bound { to } else { start + (to - start) * (bound / distance) }
+    }
+
+    /// Moves the vertices to where the sweeps have moved them, as far as bounds allow, or a part of the way, if that lowers
+    /// the objective and is sound. If not, vertices that would go beyond their bounds are held. Returns whether the vertices
+    /// were moved.
+    fn take(&self, host: &mut Host<'_>) -> bool {
+        let here = host.f(&host.before);
+        let mut share = 1.0;
+        for _ in 0..=HALVED {
+            let mut there = host.before.clone();
+            let moved = there[..self.bounds.len()].iter_mut().zip(&host.positions);
+            for (v, (place, to)) in moved.enumerate() {
+                // With a share of 1, the position is exactly that of `to`.
+                let wanted = if share == 1.0 { *to } else { *place + (*to - *place) * share };
+                *place = self.within(v, wanted);
+            }
+            if host.is_sound(&host.before, &there) && host.f(&there) < here {
+                host.positions = there;
+                return true;
+            }
+            share *= 0.5;
+        }
+        for (v, held) in host.held.iter_mut().enumerate() {
+            *held |= self.within(v, host.positions[v]) != host.positions[v];
+        }
+        host.positions.clone_from(&host.before);
+        false
+    }
+
+    /// Visits the vertices at their bound: a step along the negative gradient, brought back within the bound.
+    fn visit_held(&self, host: &mut Host<'_>, step: &Step) {
+        for v in (0..host.held.len()).filter(|&v| host.held[v]) {
+            let here = host.positions[v];
+            let (problem, fan) = (&host.problem, &self.fans[v]);
+            let patch = Patch { problem, positions: &host.positions, fan, step, floor: 0.0 };
+            let sum = patch.derivatives(here);
+            let gradient = DVec2::from(sum.gradient);
+            let [xx, xy, yy] = sum.hessian;
+            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+            let most = mean.abs() + (half * half + xy * xy).sqrt();
+            // The step is the gradient divided by the largest curvature. It moves a vertex along its bound as well as
+            // inward.
+            let way = -gradient / most;
+            if !way.is_finite() {
+                continue;
+            }
+            let limit = match step.shape_guard.is_finite() {
+                true => step.shape_guard.max(patch.worst_shape(here)),
+                false => f64::INFINITY,
+            };
+            let mut length = 1.0;
+            for _ in 0..line_search::TRIALS {
+                let to = self.within(v, here + way * length);
+                if patch.objective(to, limit).is_some_and(|value| value < sum.value) {
+                    host.positions[v] = to;
+                    break;
+                }
+                length *= line_search::SHORTEN;
+            }
+        }
+    }
+}
+
+impl Stage for MoveLimitStage<'_> {
+    fn period(&self) -> u32 {
+        SWEEPS
+    }
+
+    fn work(
+        &mut self,
+        host: &mut Host<'_>,
+        _: &dyn Fn(&[DVec2]) -> bool,
+    ) -> Result<Worked, MeshError> {
+        let before = host.held.clone();
+        let has_moved = self.take(host);
+        let step = host.plan.base_step(1.0);
+        for _ in 0..VISITS {
+            self.visit_held(host, &step);
+        }
+        if has_moved {
+            self.follow(host);
+        }
+        let is_settled = has_moved || before == host.held;
+        Ok(Worked { is_settled, has_moved_free: false })
+    }
+
+    /// Whether all free vertices are within their bounds.
+    fn allows(&self, positions: &[DVec2]) -> bool {
+        let start = self.problem.positions().iter().zip(positions);
+        start.zip(&self.bounds).all(|((start, now), bound)| now.distance(*start) <= *bound)
+    }
+
+    /// Holds the vertices that are at their bound, and releases the others.
+    fn follow(&mut self, host: &mut Host<'_>) {
+        for (v, held) in host.held.iter_mut().enumerate() {
+            let distance = host.positions[v].distance(self.problem.positions()[v]);
+            *held = distance >= AT_BOUND * self.bounds[v];
+        }
+    }
+
+    fn judge(&mut self, period: &Period) -> Judged {
+        self.rule.judge(period)
+    }
+}

@@ -1,0 +1,129 @@
+//! The stage in which vertices slide: sweeps along the curves, after some sweeps over the free vertices.
+
+use glam::DVec2;
+
+use crate::error::MeshError;
+use crate::mesh::Mesh;
+use crate::outcome::Slid;
+use crate::run::StopRule;
+use crate::slide::{Acceleration, Params, Rule, Sliding};
+use crate::topology::Topology;
+use crate::topology::predicates::orientation;
+use crate::whole::host::Host;
+use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
+
+/// Number of sweeps in a period. With two, a run takes as many sweeps and more periods; with four, it takes more sweeps.
+const SWEEPS: u32 = 3;
+/// Number of times that a period sweeps along the curves, forward and back. Curves have so few vertices that it costs
+/// little.
+const SLIDES: u32 = 3;
+
+/// The share of an altitude that rounding may take.
+const ROUNDING: f64 = 1e-9;
+
+/// The vertices that slide, and where the run has moved them.
+pub(crate) struct SlideStage<'s> {
+    sliding: &'s Sliding,
+    params: Params,
+    /// How far each vertex may be from its given position, in the unit of the mesh.
+    reach: Params,
+    /// The least altitude that sliding may leave, normalized; 0 for no bound.
+    floor: f64,
+    /// Number of periods done.
+    count: u32,
+    memory: Acceleration,
+    rule: PeriodRule,
+}
+
+impl<'s> SlideStage<'s> {
+    /// Begins at the given positions. Vertices go no farther than `reach`, if there is one, and leave no altitude below
+    /// `floor`, which is 0 for no bound.
+    pub(crate) fn new(
+        sliding: &'s Sliding,
+        reach: Option<Params>,
+        floor: f64,
+        rule: StopRule,
+    ) -> Self {
+        Self {
+            sliding,
+            params: sliding.start(),
+            reach: reach.unwrap_or_else(|| sliding.for_each_vertex(|_| f64::INFINITY)),
+            floor: floor * (1.0 + ROUNDING),
+            count: 0,
+            memory: Acceleration::default(),
+            rule: PeriodRule::new(rule),
+        }
+    }
+
+    /// Returns the positions of the vertices that have slid, with their numbers in the mesh. The normalized positions do not
+    /// hold all of their digits.
+    pub(crate) fn moved(&self) -> Vec<(u32, [f64; 2])> {
+        self.sliding.moved(&self.params)
+    }
+
+    /// Returns the result of sliding in a run that ended at `points`. If nothing was gained, it is that of the
+    /// unchanged mesh.
+    pub(crate) fn slid(
+        &self,
+        mesh: &Mesh,
+        topology: &Topology<'_>,
+        gains: bool,
+        points: &[[f64; 2]],
+    ) -> Slid {
+        let (before, free) = (&mesh.points, topology.free());
+        let moved = (0..free.len()).filter(|&v| !free[v] && points[v] != before[v]).count();
+        let area = |points: &[[f64; 2]]| {
+            let of = |t: &[u32; 3]| orientation(points, t);
+            topology.triangles().iter().map(of).sum::<f64>()
+        };
+        Slid {
+            vertices: self.sliding.count(),
+            moved,
+            pairs: self.sliding.pairs()[0],
+            rounds: self.count,
+            off: if gains { self.sliding.off(&self.params) } else { 0.0 },
+            area: area(points) / area(before) - 1.0,
+        }
+    }
+}
+
+impl Stage for SlideStage<'_> {
+    fn period(&self) -> u32 {
+        SWEEPS
+    }
+
+    /// Sweeps along the curves. Then takes the accelerated step from the last periods, if that lowers the objective.
+    fn work(
+        &mut self,
+        host: &mut Host<'_>,
+        allows: &dyn Fn(&[DVec2]) -> bool,
+    ) -> Result<Worked, MeshError> {
+        self.count += 1;
+        let step = host.plan.base_step(1.0);
+        let began = self.params.clone();
+        for _ in 0..SLIDES {
+            let rule = Rule { step: &step, floor: self.floor };
+            let Host { problem, positions, .. } = host;
+            self.sliding.sweep(problem, &mut self.params, &self.reach, positions, rule);
+        }
+        let mut worked = Worked { is_settled: true, has_moved_free: false };
+        let change = self.sliding.change(&began, &self.params);
+        let next = self.memory.next(change, &self.params, &host.positions);
+        let Some((mut params, mut there)) = next else { return Ok(worked) };
+        let (safe, reach) = (&self.params, &self.reach);
+        if self.sliding.place(&host.problem, &mut params, safe, reach, &mut there)
+            && allows(&there)
+            && host.is_sound(&host.positions, &there)
+            && host.f(&there) < host.f(&host.positions)
+        {
+            (self.params, host.positions, worked.has_moved_free) = (params, there, true);
+        } else {
+            self.memory.forget();
+        }
+        Ok(worked)
+    }
+
+    fn judge(&mut self, period: &Period) -> Judged {
+        self.rule.judge(period)
+    }
+}

@@ -1,0 +1,121 @@
+//! The stage for targets that belong to points of the plane: after some sweeps, targets are evaluated at the new positions of
+//! the vertices.
+
+use glam::DVec2;
+
+use crate::error::MeshError;
+use crate::layout::Problem;
+use crate::mesh::Mesh;
+use crate::run::{NOISE, Stop};
+use crate::targets::TargetField;
+use crate::whole::host::Host;
+use crate::whole::stage::{Judged, Period, Stage, Worked};
+
+/// Number of sweeps in a period.
+const SWEEPS: u32 = 5;
+/// Number of times that the move of a period is halved if f does not fall along it.
+const HALVED: u32 = 4;
+/// Number of periods in a row with gains of at most the tolerance, after which a run ends.
+const SETTLED: u32 = 2;
+/// When the remaining gain is estimated from the gains of two periods, the second counts as at most this share of the
+/// first.
+const SLOWEST: f64 = 0.95;
+
+/// Sets the targets of a problem to those of a field at the positions of its vertices.
+///
+/// # Errors
+/// [`MeshError::NotFinite`] if a position is not finite.
+pub(crate) fn set_targets_of(
+    field: &TargetField,
+    mesh: &Mesh,
+    problem: &mut Problem,
+    positions: &[DVec2],
+) -> Result<(), MeshError> {
+    let points = problem.denormalize(mesh, positions);
+    let (targets, _) = field.at(&points)?;
+    problem.set_targets_at(targets.maps(), positions);
+    Ok(())
+}
+
+/// A field of targets that follow the vertices.
+pub(crate) struct TargetFieldStage<'s> {
+    mesh: &'s Mesh,
+    field: &'s TargetField,
+    tolerance: f64,
+    /// The gain of the last period.
+    gained: Option<f64>,
+    /// Number of periods in a row with gains of at most the tolerance.
+    settled: u32,
+    /// Whether the last period has moved the vertices.
+    has_moved: bool,
+}
+
+impl<'s> TargetFieldStage<'s> {
+    /// Begins a run that ends at this tolerance.
+    pub(crate) fn new(mesh: &'s Mesh, field: &'s TargetField, tolerance: f64) -> Self {
+        let tolerance = tolerance.max(NOISE);
+        Self { mesh, field, tolerance, gained: None, settled: 0, has_moved: true }
+    }
+
+    fn follow_to(&self, host: &mut Host<'_>, positions: &[DVec2]) -> Result<(), MeshError> {
+        host.has_new_targets = true;
+        set_targets_of(self.field, self.mesh, &mut host.problem, positions)
+    }
+}
+
+impl Stage for TargetFieldStage<'_> {
+    fn period(&self) -> u32 {
+        SWEEPS
+    }
+
+    /// Moves the vertices to where the sweeps have moved them, or a part of the way, if that lowers f with the targets there and
+    /// inverts nothing.
+    fn work(
+        &mut self,
+        host: &mut Host<'_>,
+        _: &dyn Fn(&[DVec2]) -> bool,
+    ) -> Result<Worked, MeshError> {
+        let to = std::mem::take(&mut host.positions);
+        let here = host.f(&host.before);
+        let mut share = 1.0;
+        self.has_moved = false;
+        for _ in 0..=HALVED {
+            let way = host.before.iter().zip(&to);
+            // With a share of 1, the positions are exactly the given ones.
+            let there: Vec<DVec2> = match share == 1.0 {
+                true => to.clone(),
+                false => way.map(|(from, to)| *from + (*to - *from) * share).collect(),
+            };
+            if host.is_sound(&host.before, &there) {
+                self.follow_to(host, &there)?;
+                if host.f(&there) < here {
+                    (host.positions, self.has_moved) = (there, true);
+                    return Ok(Worked { is_settled: true, has_moved_free: false });
+                }
+            }
+            share *= 0.5;
+        }
+        host.positions.clone_from(&host.before);
+        let before = host.before.clone();
+        self.follow_to(host, &before)?;
+        Ok(Worked { is_settled: true, has_moved_free: false })
+    }
+
+    fn judge(&mut self, period: &Period) -> Judged {
+        let [before, last] = period.f;
+        let gain = before - last;
+        let share = match self.gained {
+            Some(before) if before > 0.0 => (gain / before).clamp(0.0, SLOWEST),
+            Some(_) => 0.0,
+            None => SLOWEST,
+        };
+        let to_come = gain * (share / (1.0 - share)).max(1.0) / last;
+        self.gained = Some(gain);
+        self.settled = if to_come <= self.tolerance { self.settled + 1 } else { 0 };
+        let stop = match self.settled >= SETTLED || !self.has_moved {
+            true => Some(Stop::Converged),
+            false => period.is_last.then_some(Stop::MaxSweeps),
+        };
+        Judged { stop, remaining: Some(to_come).filter(|left| left.is_finite()) }
+    }
+}
