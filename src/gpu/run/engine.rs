@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use bytemuck::Pod;
+use bytemuck::Zeroable;
 use glam::DVec2;
 
 use crate::error::GpuError;
@@ -236,7 +237,7 @@ impl Engine for GpuEngine<'_> {
 
     async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
         let free = self.problem.free_count() as u32;
-        let op = LevelOp { free, ..LevelOp::default() }.smoothed(smoothing);
+        let op = LevelOp { free, ..LevelOp::zeroed() }.smoothed(smoothing);
         stiffness::roots(self.gpu, &self.mesh, &self.dispatches, op, self.waiting).await
     }
 

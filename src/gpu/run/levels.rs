@@ -1,5 +1,6 @@
 //! The levels of a hierarchy on the device, and the dispatches of a correction.
 
+use bytemuck::Zeroable;
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
@@ -8,8 +9,10 @@ use crate::gpu::device::buffers::{filled, uniform, zeroed};
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::form::MeshForm;
+use crate::gpu::kernels::layouts::{BindLayout, CoarseBindings, FineBindings, TransferBindings};
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel, MeshForm};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{LevelOp, NO_GUARD, SEARCH_STATE, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
@@ -105,7 +108,7 @@ impl Listing<'_> {
             self.structure.place([matrix.starts(), matrix.columns()])?;
         let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal])?;
         let rows = matrix.rows() as u32;
-        let op = LevelOp { rows, starts, columns, entries, diagonal, ..LevelOp::default() };
+        let op = LevelOp { rows, starts, columns, entries, diagonal, ..LevelOp::zeroed() };
         Ok((Bound::Coarse { structure, values }, op))
     }
 
@@ -140,7 +143,7 @@ impl Listing<'_> {
         let x = self.vector(rows);
         if let Coarser::Direct(inverse) = &level.coarser {
             let (values, [entries]) = self.values.place([&inverse[..]])?;
-            let op = LevelOp { rows: rows as u32, entries, right, out: x, ..LevelOp::default() };
+            let op = LevelOp { rows: rows as u32, entries, right, out: x, ..LevelOp::zeroed() };
             let bound = Bound::Coarse { structure: 0, values };
             list.push(self.step(Kernel::CoarsestSolve, bound, Groups::ForRows, op)?);
             return Ok(x);
@@ -198,32 +201,48 @@ impl Listing<'_> {
         let [gradient, direction] =
             ["gradient", "correction"].map(|label| pairs(label, free.into()));
         let bind_groups = self.bound.iter().map(|&bound| {
-            let mut resources = vec![params.as_entire_binding(), uniform::<LevelOp>(&ops)];
-            let fine = [&gradient, &direction].map(wgpu::Buffer::as_entire_binding);
-            let (interface, beyond) = match bound {
+            let (params, op) = (params.as_entire_binding(), uniform::<LevelOp>(&ops));
+            let vectors = vectors.as_entire_binding();
+            match bound {
                 Bound::Fine { part } => {
-                    let (positions, beyond) = mesh.bind_positions();
-                    resources.extend([positions, mesh.ring_start.as_entire_binding()]);
-                    resources.extend([mesh.bind_ring(part), mesh.bind_triangles(part)]);
-                    resources.extend(fine);
-                    (Interface::Fine, beyond)
+                    let bindings = FineBindings {
+                        params,
+                        op,
+                        positions: mesh.bind_positions(),
+                        ring_start: mesh.ring_start.as_entire_binding(),
+                        ring: mesh.bind_ring(part),
+                        triangles: mesh.bind_triangles(part),
+                        gradient: gradient.as_entire_binding(),
+                        direction: direction.as_entire_binding(),
+                        vectors,
+                    };
+                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
                 }
                 Bound::Transfer { part, structure: page, values: of_values } => {
-                    resources.extend([mesh.ring_start.as_entire_binding(), mesh.bind_ring(part)]);
-                    resources.push(structure[page].as_entire_binding());
-                    resources.push(values[of_values].as_entire_binding());
-                    resources.extend(fine);
-                    (Interface::Transfer, None)
+                    let bindings = TransferBindings {
+                        params,
+                        op,
+                        ring_start: mesh.ring_start.as_entire_binding(),
+                        ring: mesh.bind_ring(part),
+                        structure: structure[page].as_entire_binding(),
+                        values: values[of_values].as_entire_binding(),
+                        gradient: gradient.as_entire_binding(),
+                        direction: direction.as_entire_binding(),
+                        vectors,
+                    };
+                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
                 }
                 Bound::Coarse { structure: page, values: of_values } => {
-                    resources.push(structure[page].as_entire_binding());
-                    resources.push(values[of_values].as_entire_binding());
-                    (Interface::Coarse, None)
+                    let bindings = CoarseBindings {
+                        params,
+                        op,
+                        structure: structure[page].as_entire_binding(),
+                        values: values[of_values].as_entire_binding(),
+                        vectors,
+                    };
+                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
                 }
-            };
-            resources.push(vectors.as_entire_binding());
-            resources.extend(beyond);
-            gpu.pipelines.bind(&gpu.device, interface, self.form, &resources)
+            }
         });
         let bind_groups = bind_groups.collect();
         Uploaded { bind_groups, ops, vectors, gradient, direction }
@@ -277,7 +296,7 @@ impl Levels {
             Fitting::ByHost => NONE,
             Fitting::EachTime => listing.vector(problem.free_count()),
         };
-        let fine = LevelOp { rows: free, free, entries, diagonal, step, ..LevelOp::default() };
+        let fine = LevelOp { rows: free, free, entries, diagonal, step, ..LevelOp::zeroed() };
         // Lists an operation on the free vertices, with one dispatch for each part of the one-rings.
         let by_rings =
             |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
@@ -285,8 +304,8 @@ impl Levels {
                     let rows = vertices.end - vertices.start;
                     let op =
                         LevelOp { rows, first: vertices.start, ring_base: entries.start, ..op };
-                    let bound = match kernel.interface() {
-                        Interface::Fine => Bound::Fine { part },
+                    let bound = match kernel.layout() {
+                        BindLayout::Fine => Bound::Fine { part },
                         _ => Bound::Transfer { part, structure: of_page, values },
                     };
                     list.push(listing.step(kernel.clone(), bound, Groups::ForRows, op)?);
@@ -329,7 +348,7 @@ impl Levels {
                 op,
             )?);
         }
-        let op = LevelOp { rows: partials, x: sums, out: TOTALS, ..LevelOp::default() };
+        let op = LevelOp { rows: partials, x: sums, out: TOTALS, ..LevelOp::zeroed() };
         let bound = Bound::Coarse { structure: 0, values: 0 };
         let sum = listing.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
         let movement = listing.step(

@@ -8,7 +8,8 @@ use crate::gpu::device::buffers::{filled, uniform, zeroed};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::encode::sealed::Target;
 use crate::gpu::kernels::dispatch::dispatch;
-use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::layouts::FineBindings;
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::LevelOp;
 use crate::gpu::mesh::{MeshBuffers, RingPart};
 use crate::gpu::run::dispatches::Dispatches;
@@ -41,7 +42,7 @@ pub(crate) async fn roots(
         let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
         let size = u64::from(op.free) * size_of::<[f32; 2]>() as u64;
         let found = zeroed(gpu, "stiffness", size, Usage::STORAGE | Usage::COPY_SRC);
-        // The kernel does not use these two bindings of its interface.
+        // The kernel does not use these two bindings of its layout.
         let [direction, vectors] = ["no correction", "no vectors"]
             .map(|label| zeroed(gpu, label, size_of::<[f32; 2]>() as u64, Usage::STORAGE));
         let label = "gpu-smooth stiffness";
@@ -49,19 +50,18 @@ pub(crate) async fn roots(
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let mut passes = encoder.passes(label);
         for (part, RingPart { vertices, .. }) in mesh.parts.rings.iter().enumerate() {
-            let (high, low) = mesh.bind_positions();
-            let mut resources = vec![
-                dispatches.params.as_entire_binding(),
-                uniform::<LevelOp>(&ops),
-                high,
-                mesh.ring_start.as_entire_binding(),
-                mesh.bind_ring(part),
-                mesh.bind_triangles(0),
-            ];
-            let vectors = [&found, &direction, &vectors];
-            resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
-            resources.extend(low);
-            let bound = gpu.pipelines.bind(&gpu.device, Interface::Fine, form, &resources);
+            let bindings = FineBindings {
+                params: dispatches.params.as_entire_binding(),
+                op: uniform::<LevelOp>(&ops),
+                positions: mesh.bind_positions(),
+                ring_start: mesh.ring_start.as_entire_binding(),
+                ring: mesh.bind_ring(part),
+                triangles: mesh.bind_triangles(0),
+                gradient: found.as_entire_binding(),
+                direction: direction.as_entire_binding(),
+                vectors: vectors.as_entire_binding(),
+            };
+            let bound = gpu.pipelines.bind(&gpu.device, form, bindings);
             passes.run(&pipeline, None, |pass| {
                 pass.set_bind_group(0, &bound, &[part as u32 * stride]);
                 dispatch(pass, vertices.end - vertices.start);
