@@ -4,16 +4,16 @@
 
 // The square root of a free vertex's weight: the stiffness of the metric over the size of the vertex's elements.
 fn root(v: u32) -> f32 {
-    return values[op.entries + v];
+    return values[op.roots + v];
 }
 
 // The factor that fits the levels to a vertex whose stiffness has changed. The matrix of the free vertices is R M R,
 // with R the diagonal matrix of the roots, so its inverse is fitted to other roots by a factor on either side. 1 where
 // the levels need no fit.
 fn fit(v: u32) -> f32 {
-    if op.step == NONE {
+    if op.present_roots == NONE {
         return 1.0;
     }
-    let factor = root(v) / vectors[op.step + v].x;
+    let factor = root(v) / vectors[op.present_roots + v].x;
     return select(1.0, factor, is_positive(factor));
 }

@@ -1,8 +1,6 @@
 //! Corrections from coarser levels, for sweeps that an application encodes. The line search along them runs on the
 //! device.
 
-use bytemuck::Zeroable;
-
 use crate::error::GpuError;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::embed::DeviceMesh;
@@ -11,9 +9,10 @@ use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::layouts::SearchBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::kernels::uniforms::{LevelOp, SEARCH_TRIALS};
+use crate::gpu::kernels::uniforms::SEARCH_TRIALS;
 use crate::gpu::run::{Dispatches, Fitting, Levels, stiffness};
 use crate::gpu::scope::scoped;
+use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 
 /// Coarser levels of a mesh on the device, and a line search along their corrections that reads nothing back. It
@@ -36,8 +35,8 @@ impl EncodedCorrections {
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
-        let op = LevelOp { free: problem.free_count() as u32, ..LevelOp::zeroed() };
-        let roots = stiffness::roots(gpu, buffers, dispatches, op, waiting).await?;
+        let (free, smoothing) = (problem.free_count() as u32, Smoothing::of(0));
+        let roots = stiffness::roots(gpu, buffers, dispatches, free, smoothing, waiting).await?;
         let hierarchy = Hierarchy::new(problem, roots);
         let levels = Levels::new(gpu, problem, buffers, dispatches, &hierarchy, Fitting::EachTime)?;
         let whole = Positions::Whole;

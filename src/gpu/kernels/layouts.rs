@@ -253,10 +253,10 @@ bind_layouts! {
 
     /// A mesh, and two vectors on its free vertices: the gradient and the correction.
     Fine, FineBindings, [
-        "params.wgsl", "levels/common.wgsl", "search/places.wgsl", "pairs.wgsl", "patch.wgsl"
+        "params.wgsl", "levels/rings.wgsl", "search/places.wgsl", "pairs.wgsl", "patch.wgsl"
     ] {
         params: Uniform Params,
-        op: DynamicUniform LevelOp,
+        op: DynamicUniform FineOp,
         positions: Positions,
         /// HELD is set where the vertex must stay.
         ring_start: Read array<u32>,
@@ -269,11 +269,11 @@ bind_layouts! {
 
     /// The free vertices of a mesh, and the first coarse level.
     Transfer, TransferBindings, [
-        "params.wgsl", "levels/common.wgsl", "search/places.wgsl", "levels/transfer.wgsl",
+        "params.wgsl", "levels/rings.wgsl", "search/places.wgsl", "levels/transfer.wgsl",
         "pairs.wgsl"
     ] {
         params: Uniform Params,
-        op: DynamicUniform LevelOp,
+        op: DynamicUniform TransferOp,
         /// HELD is set where the vertex must stay.
         ring_start: Read array<u32>,
         ring: Read array<u32>,
@@ -286,11 +286,10 @@ bind_layouts! {
 
     /// Matrices and vectors of the coarse levels.
     Coarse, CoarseBindings, [
-        "params.wgsl", "levels/common.wgsl", "search/places.wgsl", "levels/coarse.wgsl",
-        "pairs.wgsl"
+        "params.wgsl", "search/places.wgsl", "levels/coarse.wgsl", "pairs.wgsl"
     ] {
         params: Uniform Params,
-        op: DynamicUniform LevelOp,
+        op: DynamicUniform CoarseOp,
         structure: Read array<u32>,
         values: Read array<f32>,
         vectors: ReadWrite array<vec2f>,

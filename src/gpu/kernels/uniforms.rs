@@ -147,16 +147,68 @@ shared_structs! {
         over_guard: f32,
     }
 
-    /// One operation on vectors of the levels. All places count from the start of the binding.
-    LevelOp {
-        /// Number of rows or triangles of this dispatch. More invocations than these may be started.
+    /// An operation on the mesh itself, for a correction from coarser levels. Places count from the start of the
+    /// binding.
+    FineOp {
+        /// Number of free vertices or triangles of this dispatch. More invocations than these may be started.
         rows: u32,
-        /// The row or triangle of the first invocation.
+        /// The free vertex or triangle of the first invocation.
         first: u32,
         /// Number of free vertices.
         free: u32,
         /// Number of entries of `ring` before the start of the binding.
         ring_base: u32,
+        /// Where in `vectors` find_gradient leaves the square roots of the present stiffness, to which the levels are
+        /// fitted; NONE if they are not.
+        present_roots: u32,
+        /// Where in `vectors` find_broken leaves the correction without the vertices of broken triangles.
+        unbroken: u32,
+        /// Where in `vectors` objective_along_correction leaves its partial sums.
+        partial_sums: u32,
+        /// The step length along the correction; 0 if the line search on the device finds it.
+        length: f32,
+        /// Up to this inverse mean ratio a correction may flatten a triangle. NO_GUARD allows any ratio.
+        shape_guard: f32,
+        /// log2 of the exponent of EDGE's p-norm.
+        sharpness: u32,
+        /// One over the shape guard that a penalty keeps EDGE off, 0 for none.
+        over_guard: f32,
+        padding: u32,
+    }
+
+    /// An operation between the free vertices and the first coarse level. Places count from the start of the binding.
+    TransferOp {
+        /// Number of free vertices or aggregates of this dispatch. More invocations than these may be started.
+        rows: u32,
+        /// The free vertex of the first invocation.
+        first: u32,
+        /// Number of free vertices.
+        free: u32,
+        /// Number of entries of `ring` before the start of the binding.
+        ring_base: u32,
+        /// Where in `structure` the number of each free vertex's aggregate begins.
+        aggregate_of: u32,
+        /// Where in `structure` the starts of the aggregates' members begin. They count from `members`.
+        member_starts: u32,
+        /// Where in `structure` the members of the aggregates begin.
+        members: u32,
+        /// Where in `values` the square roots of the free vertices' weights begin.
+        roots: u32,
+        /// Where in `values` the reciprocal diagonal begins.
+        diagonal: u32,
+        /// Where in `vectors` the square roots of the present stiffness begin, to which the levels are fitted; NONE if
+        /// they are not.
+        present_roots: u32,
+        /// Where in `vectors` the right-hand side of the first coarse level begins.
+        right: u32,
+        /// Where in `vectors` the solution of the first coarse level begins.
+        solution: u32,
+    }
+
+    /// An operation on the vectors of a coarse level. Places count from the start of the binding.
+    CoarseOp {
+        /// Number of rows, or of partial sums. More invocations than these may be started.
+        rows: u32,
         /// Where in `structure` the row starts begin. Row starts count from `columns` and `entries`.
         starts: u32,
         /// Where in `structure` the column numbers begin.
@@ -167,21 +219,25 @@ shared_structs! {
         diagonal: u32,
         /// Where in `vectors` the vector to be multiplied begins; NONE for a vector of zeros.
         x: u32,
-        /// Where in `vectors` the right-hand side begins.
+        /// Where in `vectors` the right-hand side, or the vector to be added, begins; NONE for a vector of zeros.
         right: u32,
-        /// Where in `vectors` the last step begins. For kernels on the free vertices: where the square roots of the
-        /// present stiffness begin, to which the levels are fitted, or NONE if they are not.
-        step: u32,
+        /// Where in `vectors` the last step of Chebyshev's iteration begins.
+        last_step: u32,
         /// Where in `vectors` the result begins.
         out: u32,
-        a: f32,
-        /// A factor too; of kernels that see a metric, one over the shape guard that a penalty keeps EDGE off, 0 for
-        /// none.
-        b: f32,
-        /// Up to this inverse mean ratio a correction may flatten a triangle. NO_GUARD allows any ratio.
-        shape_guard: f32,
-        /// log2 of the exponent of EDGE's p-norm.
-        sharpness: u32,
+        /// The factor of the last step in Chebyshev's iteration.
+        last_step_factor: f32,
+        /// The factor of the residual in Chebyshev's iteration.
+        residual_factor: f32,
+        /// The factor of the vector that is added to a product.
+        right_factor: f32,
+        /// The factor of a product.
+        product_factor: f32,
+        /// Where in `vectors` the partial sums begin.
+        partial_sums: u32,
+        /// Where in `vectors` the totals begin.
+        totals: u32,
+        padding: u32,
     }
 
     /// One operation on the secant pairs of the free vertices.
@@ -370,11 +426,11 @@ impl Params {
     }
 }
 
-impl LevelOp {
-    /// The same by a metric that is made smooth so.
+impl FineOp {
+    /// Returns the same operation with another smoothing of EDGE.
     pub(crate) fn smoothed(self, smoothing: Smoothing) -> Self {
         let Smoothing { sharpness, penalized } = smoothing;
-        Self { sharpness, b: penalized.recip() as f32, ..self }
+        Self { sharpness, over_guard: penalized.recip() as f32, ..self }
     }
 }
 
