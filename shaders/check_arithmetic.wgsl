@@ -1,26 +1,6 @@
 // Runs the arithmetic of pairs on inputs whose low parts are lost where a compiler reorders sums, and `is_positive` on
 // areas that are NaN or infinite. The host compares the results with exact ones; see src/gpu/device/arithmetic.rs.
 
-// Two positions as pairs of floats, xy + zw.
-struct ArithmeticInput {
-    a: vec4<f32>,
-    b: vec4<f32>,
-}
-
-struct ArithmeticResult {
-    two_sum: vec2<f32>,
-    pair_add: vec2<f32>,
-    edge: vec2<f32>,
-    // The result of pair_difference for the x coordinates of a and b.
-    difference: f32,
-    // 1 if the triangle of the origin, a and b has a positive area, else 0.
-    is_positive: f32,
-    advanced: vec4<f32>,
-}
-
-@group(0) @binding(1) var<storage, read> inputs: array<ArithmeticInput>;
-@group(0) @binding(2) var<storage, read_write> results: array<ArithmeticResult>;
-
 @compute @workgroup_size(WORKGROUP)
 fn check_arithmetic(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= arrayLength(&inputs) {

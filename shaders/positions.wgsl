@@ -1,7 +1,5 @@
 // Position of each vertex as a pair of floats: xy + zw, |zw| at most half a unit in the last place of xy.
 
-@group(0) @binding(POSITIONS) var<storage, read_write> positions: array<vec4<f32>>;
-
 fn position(vertex: u32) -> vec4<f32> {
     return positions[vertex];
 }

@@ -2,9 +2,6 @@
 // another one the low parts. Half of the vertices in each binding would take twice the loads on adapters that execute
 // both branches.
 
-@group(0) @binding(POSITIONS) var<storage, read_write> high_positions: array<vec2<f32>>;
-@group(0) @binding(LOW_POSITIONS) var<storage, read_write> low_positions: array<vec2<f32>>;
-
 fn position(vertex: u32) -> vec4<f32> {
     return vec4(high_positions[vertex], low_positions[vertex]);
 }

@@ -1,25 +1,6 @@
 // Writes the objectives of the last evaluation into a buffer of the application, laid out as the Rust struct
 // ObjectiveValues.
 
-struct Publish {
-    // Where the values begin, in words from the start of the binding.
-    offset: u32,
-    triangles: u32,
-    // Not zero if the sweeps are judged by the stop rule, and so have a reason to stop and a count of sweeps.
-    judged: u32,
-    padding: u32,
-    // ideal² of each metric, which the sums leave out for each triangle; 0 for a metric that is not tracked.
-    ideal_squared: array<vec4<f32>, SLOT_VECTORS>,
-}
-
-@group(0) @binding(0) var<uniform> publish_to: Publish;
-@group(0) @binding(1) var<storage, read> control: Control;
-// The control of the sweeps; `control` is that of the evaluation.
-@group(0) @binding(2) var<storage, read> sweeps: Control;
-// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
-@group(0) @binding(3) var<storage, read> changes: array<u32, 2>;
-@group(0) @binding(4) var<storage, read_write> destination: array<u32>;
-
 const INFINITY: u32 = 0x7f800000u;
 
 @compute @workgroup_size(SLOTS)

@@ -1,8 +1,8 @@
 // The step length along the correction: as given by the host, or, where that is 0, as found by the line search on the
 // device.
 fn length_along() -> f32 {
-    if op.a != 0.0 {
-        return op.a;
+    if op.length != 0.0 {
+        return op.length;
     }
     return vectors[LENGTHS].x;
 }

@@ -1,4 +1,5 @@
-// A step of Chebyshev's iteration on a level: step = a step + b D⁻¹ (right - A x), out = x + step.
+// A step of Chebyshev's iteration on a level: step = last_step_factor step + residual_factor D⁻¹ (right - A x),
+// out = x + step.
 
 @compute @workgroup_size(WORKGROUP)
 fn chebyshev(
@@ -13,11 +14,11 @@ fn chebyshev(
     if op.x != NONE {
         residual -= row_times_x(row);
     }
-    var step = op.b * values[op.diagonal + row] * residual;
-    if op.a != 0.0 {
-        step += op.a * vectors[op.step + row];
+    var step = op.residual_factor * values[op.diagonal + row] * residual;
+    if op.last_step_factor != 0.0 {
+        step += op.last_step_factor * vectors[op.last_step + row];
     }
-    vectors[op.step + row] = step;
+    vectors[op.last_step + row] = step;
     if op.x != NONE {
         step += vectors[op.x + row];
     }

@@ -1,8 +1,4 @@
-// Matrices and vectors of the coarse levels.
-
-@group(0) @binding(2) var<storage, read> structure: array<u32>;
-@group(0) @binding(3) var<storage, read> values: array<f32>;
-@group(0) @binding(4) var<storage, read_write> vectors: array<vec2<f32>>;
+// For kernels on a coarse level; their bindings are `Coarse` in src/gpu/kernels/layouts.rs.
 
 // The product of a row of the matrix with x.
 fn row_times_x(row: u32) -> vec2<f32> {

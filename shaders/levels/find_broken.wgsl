@@ -1,4 +1,4 @@
-// Computes the correction without the free vertices of triangles that it would break. The result goes to `out`, because
+// Computes the correction without the free vertices of triangles that it would break. The result goes to `vectors`, because
 // invocations for neighbors still read the old correction; leave_out_broken.wgsl then copies it.
 
 @compute @workgroup_size(WORKGROUP)
@@ -28,5 +28,5 @@ fn find_broken(
         a = b;
         moved_a = moved_b;
     }
-    vectors[op.out + vertex] = select(vec2(0.0), direction[vertex], kept);
+    vectors[op.unbroken + vertex] = select(vec2(0.0), direction[vertex], kept);
 }

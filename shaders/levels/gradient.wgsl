@@ -14,20 +14,20 @@ fn find_gradient(
     let vertex = op.first + index;
     if (ring_start[vertex] & HELD) != 0u {
         gradient[vertex] = vec2(0.0);
-        if op.step != NONE {
-            vectors[op.step + vertex] = vec2(0.0);
+        if op.present_roots != NONE {
+            vectors[op.present_roots + vertex] = vec2(0.0);
         }
         return;
     }
     sharpness = op.sharpness;
-    over_guard = op.b;
+    over_guard = op.over_guard;
     let p = patch_of(vertex);
     var sum = derivatives_around(p);
     if MAPPED {
         sum = pulled_back(sum, inverse_of(shape_of(vertex)));
     }
     gradient[vertex] = sum.gradient * p.unit;
-    if op.step != NONE {
-        vectors[op.step + vertex] = vec2(root_of_stiffness(p, sum.hessian), 0.0);
+    if op.present_roots != NONE {
+        vectors[op.present_roots + vertex] = vec2(root_of_stiffness(p, sum.hessian), 0.0);
     }
 }

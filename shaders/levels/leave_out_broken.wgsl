@@ -10,7 +10,7 @@ fn leave_out_broken(
     if vertex >= op.rows || rests() {
         return;
     }
-    let kept = vectors[op.x + vertex];
+    let kept = vectors[op.unbroken + vertex];
     if any(direction[vertex] != kept) {
         gradient[vertex] = vec2(0.0);
         direction[vertex] = kept;

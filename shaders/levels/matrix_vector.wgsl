@@ -1,4 +1,4 @@
-// out = a right + b M x: a residual, or the transfer between two coarse levels.
+// out = right_factor right + product_factor M x: a residual, or the transfer between two coarse levels.
 
 @compute @workgroup_size(WORKGROUP)
 fn matrix_vector(
@@ -9,9 +9,9 @@ fn matrix_vector(
     if row >= op.rows || rests() {
         return;
     }
-    var sum = op.b * row_times_x(row);
+    var sum = op.product_factor * row_times_x(row);
     if op.right != NONE {
-        sum += op.a * vectors[op.right + row];
+        sum += op.right_factor * vectors[op.right + row];
     }
     vectors[op.out + row] = sum;
 }

@@ -14,11 +14,11 @@ fn objective_along_correction(
     }
     let stride = groups.x * WORKGROUP;
     sharpness = op.sharpness;
-    over_guard = op.b;
+    over_guard = op.over_guard;
     var sums: array<vec2<f32>, 4>;
     if op.first != 0u {
         for (var i = 0u; i < 4u; i++) {
-            sums[i] = vectors[op.out + i * stride + id.x];
+            sums[i] = vectors[op.partial_sums + i * stride + id.x];
         }
     } else {
         for (var v = id.x; v < op.free; v += stride) {
@@ -47,6 +47,6 @@ fn objective_along_correction(
         }
     }
     for (var i = 0u; i < 4u; i++) {
-        vectors[op.out + i * stride + id.x] = sums[i];
+        vectors[op.partial_sums + i * stride + id.x] = sums[i];
     }
 }

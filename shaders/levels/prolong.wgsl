@@ -2,11 +2,11 @@
 // the one-rings.
 
 fn value_at(v: u32) -> vec2<f32> {
-    let aggregate = structure[op.starts + v];
+    let aggregate = structure[op.aggregate_of + v];
     if aggregate == NONE {
         return vec2(0.0);
     }
-    return vectors[op.x + aggregate];
+    return vectors[op.solution + aggregate];
 }
 
 fn carried(k: u32) -> vec2<f32> {

@@ -10,9 +10,9 @@ fn restrict_gradient(
         return;
     }
     var sum = vec2(0.0);
-    let end = structure[op.starts + row + 1u];
-    for (var i = structure[op.starts + row]; i < end; i++) {
-        sum -= direction[structure[op.columns + i]];
+    let end = structure[op.member_starts + row + 1u];
+    for (var i = structure[op.member_starts + row]; i < end; i++) {
+        sum -= direction[structure[op.members + i]];
     }
-    vectors[op.out + row] = sum;
+    vectors[op.right + row] = sum;
 }

@@ -8,7 +8,7 @@ fn sum_along_correction(@builtin(local_invocation_index) local: u32) {
     for (var i = 0u; i < 4u; i++) {
         var sum = vec2(0.0);
         for (var k = local; k < rows; k += FINISH_WORKGROUP) {
-            sum = pair_add(sum, vectors[op.x + i * op.rows + k]);
+            sum = pair_add(sum, vectors[op.partial_sums + i * op.rows + k]);
         }
         totals[local] = sum;
         for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
@@ -18,7 +18,7 @@ fn sum_along_correction(@builtin(local_invocation_index) local: u32) {
             }
         }
         if local == 0u {
-            vectors[op.out + i] = totals[0];
+            vectors[op.totals + i] = totals[0];
         }
         workgroupBarrier();
     }

@@ -21,7 +21,7 @@ pub use embed::{
     ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer,
 };
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
-pub use kernels::{Interface, Kernel};
+pub use kernels::{BindLayout, Kernel};
 pub(crate) use run::GpuEngine;
 
 pub use crate::adapter::AdapterSummary;

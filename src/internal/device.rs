@@ -6,7 +6,7 @@ use crate::gpu::{Gpu, GpuEngine, GpuError, Waiting};
 use crate::layout::Problem;
 use crate::run::{Plan, Stepwise, StepwiseRun};
 
-pub use crate::gpu::{Interface, Kernel};
+pub use crate::gpu::{BindLayout, Kernel};
 
 /// Starts a run of sweeps on a device from `positions`, which are normalized and in the problem's order.
 ///

@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 
 /// WGSL to append to a module of the library. An entry point reads a row of numbers in each invocation and writes another,
-/// by bindings beside those of shaders/common.wgsl. `body` has its row in `x` and leaves its results in `y`.
+/// by bindings beside those of a run. `body` has its row in `x` and leaves its results in `y`.
 pub(crate) fn probe(inputs: usize, outputs: usize, body: &str) -> String {
     format!(
         "

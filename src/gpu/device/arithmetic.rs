@@ -1,6 +1,5 @@
 //! Checks the arithmetic of kernels as the adapter's compiler translates it.
 
-use bytemuck::Zeroable;
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
@@ -8,7 +7,9 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::{filled, zeroed};
 use crate::gpu::device::readback::{self, Waiting};
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::layouts::ArithmeticBindings;
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     ArithmeticInput, ArithmeticResult, Params, WORKGROUP, pair, unpair,
 };
@@ -67,16 +68,20 @@ async fn fault(
     let (kernel, positions) = (Kernel::CheckArithmetic, Positions::Whole);
     let label = Some("gpu-smooth check_arithmetic");
     let results = scoped(&gpu.device, || {
-        // All members are zero, including `Params::zero`.
-        let params = filled(gpu, "params of check_arithmetic", &[Params::zeroed()], Usage::UNIFORM);
+        let params = [Params::outside_runs(0)];
+        let params = filled(gpu, "params of check_arithmetic", &params, Usage::UNIFORM);
         let inputs = filled(gpu, "inputs of check_arithmetic", &inputs, Usage::STORAGE);
         let bytes = (cases.len() * size_of::<ArithmeticResult>()) as u64;
         let usage = Usage::STORAGE | Usage::COPY_SRC;
         let results = zeroed(gpu, "results of check_arithmetic", bytes, usage);
         // Needed only once, so it is not kept with the pipelines of runs.
         let pipeline = gpu.pipelines.compile(&gpu.device, &kernel, positions, wgsl);
-        let resources = [&params, &inputs, &results].map(wgpu::Buffer::as_entire_binding);
-        let bound = gpu.pipelines.bind(&gpu.device, Interface::Arithmetic, positions, &resources);
+        let bindings = ArithmeticBindings {
+            params: params.as_entire_binding(),
+            inputs: inputs.as_entire_binding(),
+            results: results.as_entire_binding(),
+        };
+        let bound = gpu.pipelines.bind(&gpu.device, positions, bindings);
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
         {

@@ -7,8 +7,9 @@ use std::time::Duration;
 use crate::adapter::AdapterSummary;
 use crate::error::{GpuError, SmoothError};
 use crate::gpu::device::limits;
+use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::pipelines::Pipelines;
-use crate::gpu::kernels::table::{Kernel, Positions};
+use crate::gpu::kernels::table::{Kernel, User};
 use crate::gpu::scope::poll;
 use crate::mesh::MeshSize;
 use crate::run::Options;
@@ -98,9 +99,10 @@ impl Gpu {
     /// [`SmoothError::Option`] for an option out of its range, or [`SmoothError::Gpu`] if the device fails.
     pub fn prepare(&self, options: &Options) -> Result<(), SmoothError> {
         options.check()?;
-        let mut kernels = Kernel::needed_by(&options.plan());
+        let plan = options.plan();
+        let mut kernels = Kernel::needed_by(&plan, User::Sweeps);
         if options.is_multilevel() {
-            kernels.extend(Kernel::of_levels(options.scheme.base()));
+            kernels.extend(Kernel::needed_by(&plan, User::Corrections));
         }
         for kernel in kernels {
             self.pipelines.get(&self.device, &kernel, Positions::Whole)?;

@@ -2,8 +2,8 @@
 
 use crate::error::GpuError;
 use crate::gpu::kernels::dispatch::FOLD;
-use crate::gpu::kernels::pipelines::storage_bindings;
-use crate::gpu::kernels::table::Positions;
+use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::layouts::storage_bindings;
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, WORKGROUP};
 use crate::mesh::MeshSize;
 

@@ -1,8 +1,8 @@
 //! Computes the memory that a mesh takes on a device, before anything is allocated.
 
 use crate::error::GpuError;
-use crate::gpu::kernels::pipelines::storage_bindings;
-use crate::gpu::kernels::table::Positions;
+use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::layouts::storage_bindings;
 use crate::gpu::kernels::uniforms::{Control, HELD, SLOTS, WORKGROUP};
 use crate::mesh::MeshSize;
 

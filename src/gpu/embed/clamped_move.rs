@@ -10,8 +10,9 @@ use crate::gpu::embed::vertex_buffer::{Coordinates, VertexBuffer};
 use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::layouts::MoveBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Movement, pair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped_to_buffer;
@@ -126,18 +127,16 @@ impl BoundMove {
             let movement = filled(gpu, "movement", &[movement], Usage::UNIFORM);
             let corners = filled(gpu, "corners of moved vertices", &corners, Usage::STORAGE);
             let ways = filled(gpu, "ways of moved vertices", &moves.ways, Usage::STORAGE);
-            let (whole, beyond) = mesh.bind_positions();
-            let mut resources = vec![
-                movement.as_entire_binding(),
-                whole,
-                corners.as_entire_binding(),
-                ways.as_entire_binding(),
-                window.binding(),
-                share.binding(),
-                mesh.changes.buffer.as_entire_binding(),
-            ];
-            resources.extend(beyond);
-            gpu.pipelines.bind(&gpu.device, Interface::Move, form, &resources)
+            let bindings = MoveBindings {
+                movement: movement.as_entire_binding(),
+                positions: mesh.bind_positions(),
+                corners: corners.as_entire_binding(),
+                ways: ways.as_entire_binding(),
+                targets: window.binding(),
+                shares: share.binding(),
+                changes: mesh.changes.buffer.as_entire_binding(),
+            };
+            gpu.pipelines.bind(&gpu.device, form, bindings)
         })?;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
         let find_share = pipeline(Kernel::FindShare)?;

@@ -5,11 +5,14 @@ use crate::error::GpuError;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::embed::DeviceMesh;
 use crate::gpu::encode::Passes;
+use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::layouts::SearchBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
-use crate::gpu::kernels::uniforms::{LevelOp, SEARCH_TRIALS};
+use crate::gpu::kernels::table::Kernel;
+use crate::gpu::kernels::uniforms::SEARCH_TRIALS;
 use crate::gpu::run::{Dispatches, Fitting, Levels, stiffness};
 use crate::gpu::scope::scoped;
+use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 
 /// Coarser levels of a mesh on the device, and a line search along their corrections that reads nothing back. It
@@ -32,17 +35,20 @@ impl EncodedCorrections {
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
-        let op = LevelOp { free: problem.free_count() as u32, ..LevelOp::default() };
-        let roots = stiffness::roots(gpu, buffers, dispatches, op, waiting).await?;
+        let (free, smoothing) = (problem.free_count() as u32, Smoothing::of(0));
+        let roots = stiffness::roots(gpu, buffers, dispatches, free, smoothing, waiting).await?;
         let hierarchy = Hierarchy::new(problem, roots);
         let levels = Levels::new(gpu, problem, buffers, dispatches, &hierarchy, Fitting::EachTime)?;
         let whole = Positions::Whole;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, whole);
         let (begin, judge) = (pipeline(Kernel::BeginSearch)?, pipeline(Kernel::JudgeTrial)?);
-        let resources = [&dispatches.params, &dispatches.control, &levels.vectors];
-        let resources = resources.map(wgpu::Buffer::as_entire_binding);
         let bind_group = scoped(&gpu.device, || {
-            gpu.pipelines.bind(&gpu.device, Interface::Search, whole, &resources)
+            let bindings = SearchBindings {
+                params: dispatches.params.as_entire_binding(),
+                control: dispatches.control.as_entire_binding(),
+                vectors: levels.vectors.as_entire_binding(),
+            };
+            gpu.pipelines.bind(&gpu.device, whole, bindings)
         })?;
         Ok(Self { levels, begin, judge, bind_group })
     }

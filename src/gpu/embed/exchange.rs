@@ -8,8 +8,9 @@ use crate::gpu::device::buffers::filled;
 use crate::gpu::embed::vertex_buffer::{Coordinates, VertexBuffer};
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::layouts::ExchangeBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Exchange, pair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped_to_buffer;
@@ -51,14 +52,14 @@ impl BoundVertices {
         };
         let bind_group = scoped_to_buffer(&gpu.device, || {
             let uniform = filled(gpu, "exchange", &[exchange], Usage::UNIFORM);
-            let (positions, beyond) = mesh.bind_positions();
-            let uniform = uniform.as_entire_binding();
-            let numbers = numbers.as_entire_binding();
-            let changes = mesh.changes.buffer.as_entire_binding();
-            let mut resources = vec![uniform, positions, numbers, window.binding(), changes];
-            resources.extend(beyond);
-            let positions = mesh.parts.form();
-            gpu.pipelines.bind(&gpu.device, Interface::Exchange, positions, &resources)
+            let bindings = ExchangeBindings {
+                exchange: uniform.as_entire_binding(),
+                positions: mesh.bind_positions(),
+                numbers: numbers.as_entire_binding(),
+                vertex_buffer: window.binding(),
+                changes: mesh.changes.buffer.as_entire_binding(),
+            };
+            gpu.pipelines.bind(&gpu.device, mesh.parts.form(), bindings)
         })?;
         let [import, export] = [Kernel::Import, Kernel::Export]
             .map(|kernel| gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form()));

@@ -8,8 +8,9 @@ use crate::gpu::device::buffers::{filled, rows};
 use crate::gpu::device::size::POSITION;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::layouts::RestoreBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Restore, split};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::Dispatches;
@@ -39,18 +40,14 @@ impl LastValid {
                 let (first, count) = (part.start, part.end - part.start);
                 let uniform = Restore { zero: 0, first, count, padding: 0 };
                 let uniform = filled(gpu, "restore", &[uniform], Usage::UNIFORM);
-                let (whole, beyond) = mesh.bind_positions();
-                let mut resources = vec![
-                    uniform.as_entire_binding(),
-                    whole,
-                    rows(&valid, part, POSITION),
-                    evaluation.control.as_entire_binding(),
-                    mesh.changes.buffer.as_entire_binding(),
-                ];
-                resources.extend(beyond);
-                let interface = Interface::Restore;
-                let bound = gpu.pipelines.bind(&gpu.device, interface, form, &resources);
-                (bound, count)
+                let bindings = RestoreBindings {
+                    restore: uniform.as_entire_binding(),
+                    positions: mesh.bind_positions(),
+                    valid_positions: rows(&valid, part, POSITION),
+                    control: evaluation.control.as_entire_binding(),
+                    changes: mesh.changes.buffer.as_entire_binding(),
+                };
+                (gpu.pipelines.bind(&gpu.device, form, bindings), count)
             };
             mesh.parts.vertices.iter().map(bind).collect()
         })?;

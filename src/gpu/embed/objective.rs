@@ -11,8 +11,10 @@ use crate::gpu::device::buffers::filled;
 use crate::gpu::embed::BoundVertices;
 use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
+use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::layouts::PublishBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Publish, SLOTS};
 use crate::gpu::mesh::{Changes, MeshBuffers};
 use crate::gpu::run::Dispatches;
@@ -143,14 +145,14 @@ impl BoundObjective {
         };
         let bind_group = scoped_to_buffer(&gpu.device, || {
             let uniform = filled(gpu, "publish", &[uniform], Usage::UNIFORM);
-            let resources = [
-                uniform.as_entire_binding(),
-                evaluation.control.as_entire_binding(),
-                dispatches.control.as_entire_binding(),
-                changes.buffer.as_entire_binding(),
-                window.binding(),
-            ];
-            gpu.pipelines.bind(&gpu.device, Interface::Publish, Positions::Whole, &resources)
+            let bindings = PublishBindings {
+                publish_to: uniform.as_entire_binding(),
+                control: evaluation.control.as_entire_binding(),
+                sweeps: dispatches.control.as_entire_binding(),
+                changes: changes.buffer.as_entire_binding(),
+                destination: window.binding(),
+            };
+            gpu.pipelines.bind(&gpu.device, Positions::Whole, bindings)
         })?;
         let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish, Positions::Whole)?;
         Ok(Self { evaluation: Arc::clone(evaluation), publish, bind_group, drawn })

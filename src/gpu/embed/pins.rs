@@ -10,8 +10,10 @@ use crate::gpu::device::buffers::{filled, zeroed};
 use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::layouts::MaskBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{HELD, Mask};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::{scoped, scoped_to_buffer};
@@ -175,15 +177,15 @@ impl BoundMask {
         let mask = Mask { vertices: count, offset: window.offset, padding: [0; 2] };
         let bind_group = scoped_to_buffer(&gpu.device, || {
             let uniform = filled(gpu, "mask", &[mask], Usage::UNIFORM);
-            let resources = [
-                uniform.as_entire_binding(),
-                mesh.ring_start.as_entire_binding(),
-                numbers.as_entire_binding(),
-                pins.bits.as_entire_binding(),
-                window.binding(),
-                mesh.changes.buffer.as_entire_binding(),
-            ];
-            gpu.pipelines.bind(&gpu.device, Interface::Mask, Positions::Whole, &resources)
+            let bindings = MaskBindings {
+                to_hold: uniform.as_entire_binding(),
+                ring_start: mesh.ring_start.as_entire_binding(),
+                numbers: numbers.as_entire_binding(),
+                pins: pins.bits.as_entire_binding(),
+                mask: window.binding(),
+                changes: mesh.changes.buffer.as_entire_binding(),
+            };
+            gpu.pipelines.bind(&gpu.device, Positions::Whole, bindings)
         })?;
         let pipeline = gpu.pipelines.get(&gpu.device, &Kernel::HoldByMask, Positions::Whole)?;
         Ok(Self { pipeline, bind_group, count })

@@ -10,8 +10,10 @@ use crate::gpu::embed::corrections::EncodedCorrections;
 use crate::gpu::embed::objective::Run;
 use crate::gpu::embed::{BoundObjective, Budget, DeviceMesh};
 use crate::gpu::encode::{Encoder, Passes};
+use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::layouts::ReopenBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel, Positions};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Scheme;
@@ -263,11 +265,14 @@ enum Ending {
 
 impl Judged {
     fn new(gpu: &Gpu, run: &Run) -> Result<Self, GpuError> {
-        let (whole, interface) = (Positions::Whole, Interface::Reopen);
-        let resources = [&run.dispatches.control, &run.changes.buffer];
-        let resources = resources.map(wgpu::Buffer::as_entire_binding);
-        let bind_group =
-            scoped(&gpu.device, || gpu.pipelines.bind(&gpu.device, interface, whole, &resources))?;
+        let whole = Positions::Whole;
+        let bind_group = scoped(&gpu.device, || {
+            let bindings = ReopenBindings {
+                control: run.dispatches.control.as_entire_binding(),
+                changes: run.changes.buffer.as_entire_binding(),
+            };
+            gpu.pipelines.bind(&gpu.device, whole, bindings)
+        })?;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, whole);
         let (reopen, resume) = (pipeline(Kernel::Reopen)?, pipeline(Kernel::Resume)?);
         Ok(Self { reopen, resume, bind_group })

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use bytemuck::Zeroable;
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
@@ -10,8 +9,9 @@ use crate::gpu::device::buffers::{filled, uniform};
 use crate::gpu::embed::DeviceMesh;
 use crate::gpu::encode::{Encoder, Passes};
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::layouts::UntangleBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Params, Tangle, TangledVertex, UntanglePart};
 use crate::gpu::mesh::Parts;
 use crate::gpu::scope::scoped;
@@ -71,23 +71,27 @@ impl Dispatches {
     fn new(problem: &Problem, parts: &Parts, alignment: u32) -> (Self, Vec<u8>) {
         let stride = alignment.max(size_of::<UntanglePart>() as u32);
         let free = problem.free_count() as u32;
+        let part = |vertices_or_triangles: Range<u32>, ring_base, begins| UntanglePart {
+            first: vertices_or_triangles.start,
+            count: vertices_or_triangles.end - vertices_or_triangles.start,
+            ring_base,
+            free,
+            begins,
+            padding: 0,
+            more_padding: [0; 2],
+        };
         let mut uniforms = Vec::new();
         for begins in [1, 0] {
-            uniforms.extend(parts.triangles.iter().map(|range| {
-                let (first, count) = (range.start, range.end - range.start);
-                UntanglePart { first, count, free, begins, ..UntanglePart::default() }
-            }));
+            uniforms.extend(parts.triangles.iter().map(|range| part(range.clone(), 0, begins)));
         }
         let mut vertices = Vec::new();
         for (color, of_color) in (0..).zip(problem.colors()) {
-            for (part, ring) in parts.rings.iter().enumerate() {
+            for (number, ring) in parts.rings.iter().enumerate() {
                 let first = of_color.start.max(ring.vertices.start);
                 let end = of_color.end.min(ring.vertices.end);
                 if first < end {
-                    let (count, ring_base, begins) = (end - first, ring.entries.start, 0);
-                    let padding = [0; 3];
-                    uniforms.push(UntanglePart { first, count, ring_base, free, begins, padding });
-                    vertices.push((color, part, first..end));
+                    uniforms.push(part(first..end, ring.entries.start, 0));
+                    vertices.push((color, number, first..end));
                 }
             }
         }
@@ -120,29 +124,27 @@ impl UntanglingSweeps {
         let vertices = areas.iter().map(|&area| TangledVertex { area: area as f32, reached: 0 });
         let vertices: Vec<TangledVertex> = vertices.collect();
         let targets = problem.positions().len() as u32;
-        let params = Params { targets, ..Params::zeroed() };
+        let params = Params::outside_runs(targets);
         // Vertices are marked by numbers of sweeps, from 1 on. None is marked yet.
-        let tangle = Tangle { sweep: 1, since: 1, ..Tangle::zeroed() };
+        let tangle = Tangle { valid: 0, inverted: 0, depth: 0, epsilon: 0.0, sweep: 1, since: 1 };
         let bind_groups = scoped(&gpu.device, || {
             let params = filled(gpu, "untangling params", &[params], Usage::UNIFORM);
             let parts = filled(gpu, "untangling parts", &parts, Usage::UNIFORM);
             let tangle = filled(gpu, "tangle", &[tangle], Usage::STORAGE);
             let vertices = filled(gpu, "tangled vertices", &vertices, Usage::STORAGE);
             let bind = |part| {
-                let (positions, beyond) = buffers.bind_positions();
-                let mut resources = vec![
-                    params.as_entire_binding(),
-                    uniform::<UntanglePart>(&parts),
-                    positions,
-                    buffers.ring_start.as_entire_binding(),
-                    buffers.bind_ring(part),
-                    buffers.bind_triangles(part),
-                    tangle.as_entire_binding(),
-                    vertices.as_entire_binding(),
-                    buffers.changes.buffer.as_entire_binding(),
-                ];
-                resources.extend(beyond);
-                gpu.pipelines.bind(&gpu.device, Interface::Untangle, form, &resources)
+                let bindings = UntangleBindings {
+                    params: params.as_entire_binding(),
+                    part: uniform::<UntanglePart>(&parts),
+                    positions: buffers.bind_positions(),
+                    ring_start: buffers.ring_start.as_entire_binding(),
+                    ring: buffers.bind_ring(part),
+                    triangles: buffers.bind_triangles(part),
+                    tangle: tangle.as_entire_binding(),
+                    vertices: vertices.as_entire_binding(),
+                    changes: buffers.changes.buffer.as_entire_binding(),
+                };
+                gpu.pipelines.bind(&gpu.device, form, bindings)
             };
             (0..buffers.parts.count()).map(bind).collect()
         })?;

@@ -1,10 +1,13 @@
-//! The kernels: a table of them, their WGSL, the uniforms they read, and their pipelines.
+//! The kernels: a table of them, what they bind, the structs they share with Rust, their WGSL, and their pipelines.
 
 mod codes;
 pub(crate) mod dispatch;
+pub(crate) mod form;
+pub(crate) mod layouts;
 pub(crate) mod pipelines;
 pub(crate) mod source;
 pub(crate) mod table;
 pub(crate) mod uniforms;
 
-pub use table::{Interface, Kernel};
+pub use layouts::BindLayout;
+pub use table::Kernel;

@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::gpu::kernels::table::{Interface, Kernel, MeshForm, Positions};
+use crate::gpu::kernels::form::{MeshForm, Positions};
+use crate::gpu::kernels::table::{Composition, Kernel, Source};
 use crate::gpu::kernels::uniforms::{
-    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SEARCH_TRIALS, SLOTS,
-    WORKGROUP, WORST,
+    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SEARCH_TRIALS,
+    SHARED_STRUCTS, SLOT_VECTORS, SLOTS, WORKGROUP, WORST,
 };
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
@@ -15,80 +16,14 @@ use crate::run::secant::LEAST_CURVATURE;
 use crate::run::{Derivatives, Stop};
 use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search, regularization};
 
-const COMMON: &str = include_str!("../../../shaders/common.wgsl");
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
 const POSITIONS_IN_TWO: &str = include_str!("../../../shaders/positions_in_two.wgsl");
-const PAIRS: &str = include_str!("../../../shaders/pairs.wgsl");
-const PARAMS: &str = include_str!("../../../shaders/params.wgsl");
-const CONTROL: &str = include_str!("../../../shaders/control.wgsl");
-const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
-const PATCH: &str = include_str!("../../../shaders/patch.wgsl");
-const ONE_RING: &str = include_str!("../../../shaders/one_ring.wgsl");
-const DESCENT: &str = include_str!("../../../shaders/descent.wgsl");
-const NEWTON: &str = include_str!("../../../shaders/newton.wgsl");
-const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
-const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
-const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
 const TARGETS: &str = include_str!("../../../shaders/targets.wgsl");
 const NO_TARGETS: &str = include_str!("../../../shaders/no_targets.wgsl");
-const OBJECTIVE: &str = include_str!("../../../shaders/objective.wgsl");
-const FINISH: &str = include_str!("../../../shaders/finish.wgsl");
-const KEEP_BEST: &str = include_str!("../../../shaders/keep_best.wgsl");
-const EXCHANGE: &str = include_str!("../../../shaders/exchange.wgsl");
-const IMPORT: &str = include_str!("../../../shaders/import.wgsl");
-const EXPORT: &str = include_str!("../../../shaders/export.wgsl");
-const PUBLISH: &str = include_str!("../../../shaders/publish.wgsl");
-const JUDGED: &str = include_str!("../../../shaders/judged/common.wgsl");
-const REOPEN: &str = include_str!("../../../shaders/judged/reopen.wgsl");
-const RESUME: &str = include_str!("../../../shaders/judged/resume.wgsl");
-const RESTORE: &str = include_str!("../../../shaders/restore.wgsl");
-const MASK: &str = include_str!("../../../shaders/mask.wgsl");
-const MOVEMENT: &str = include_str!("../../../shaders/clamp/common.wgsl");
-const FIND_SHARE: &str = include_str!("../../../shaders/clamp/find_share.wgsl");
-const MOVE_VERTICES: &str = include_str!("../../../shaders/clamp/move_vertices.wgsl");
-const TANGLE: &str = include_str!("../../../shaders/untangle/common.wgsl");
-const FIND_INVERTED: &str = include_str!("../../../shaders/untangle/find_inverted.wgsl");
-const REGULARIZE: &str = include_str!("../../../shaders/untangle/regularize.wgsl");
-const ENERGY: &str = include_str!("../../../shaders/untangle/energy.wgsl");
-const UNTANGLE: &str = include_str!("../../../shaders/untangle/untangle.wgsl");
-const CHECK_ARITHMETIC: &str = include_str!("../../../shaders/check_arithmetic.wgsl");
-
-const LEVELS: &str = include_str!("../../../shaders/levels/common.wgsl");
-const FINE: &str = include_str!("../../../shaders/levels/fine.wgsl");
-const TRANSFER: &str = include_str!("../../../shaders/levels/transfer.wgsl");
-const COARSE: &str = include_str!("../../../shaders/levels/coarse.wgsl");
-const GRADIENT: &str = include_str!("../../../shaders/levels/gradient.wgsl");
-const SMOOTH_GRADIENT: &str = include_str!("../../../shaders/levels/smooth_gradient.wgsl");
-const RESTRICT: &str = include_str!("../../../shaders/levels/restrict.wgsl");
-const NEIGHBORS: &str = include_str!("../../../shaders/levels/neighbors.wgsl");
-const PROLONG: &str = include_str!("../../../shaders/levels/prolong.wgsl");
-const MATRIX_VECTOR: &str = include_str!("../../../shaders/levels/matrix_vector.wgsl");
-const CHEBYSHEV: &str = include_str!("../../../shaders/levels/chebyshev.wgsl");
-const COARSEST_SOLVE: &str = include_str!("../../../shaders/levels/coarsest_solve.wgsl");
-const OBJECTIVE_ALONG_CORRECTION: &str =
-    include_str!("../../../shaders/levels/objective_along_correction.wgsl");
-const SUM_ALONG_CORRECTION: &str =
-    include_str!("../../../shaders/levels/sum_along_correction.wgsl");
-const MOVE_ALONG_CORRECTION: &str =
-    include_str!("../../../shaders/levels/move_along_correction.wgsl");
-const MOVED: &str = include_str!("../../../shaders/levels/moved.wgsl");
-const FIND_BROKEN: &str = include_str!("../../../shaders/levels/find_broken.wgsl");
-const LEAVE_OUT_BROKEN: &str = include_str!("../../../shaders/levels/leave_out_broken.wgsl");
-const AROUND: &str = include_str!("../../../shaders/levels/around.wgsl");
-const ALONG: &str = include_str!("../../../shaders/levels/along.wgsl");
-const STIFFNESS: &str = include_str!("../../../shaders/levels/stiffness.wgsl");
-
-const SEARCH_PLACES: &str = include_str!("../../../shaders/search/places.wgsl");
-const SEARCH: &str = include_str!("../../../shaders/search/common.wgsl");
-const BEGIN_SEARCH: &str = include_str!("../../../shaders/search/begin_search.wgsl");
-const JUDGE_TRIAL: &str = include_str!("../../../shaders/search/judge_trial.wgsl");
-
-const SECANTS: &str = include_str!("../../../shaders/secants/common.wgsl");
-const CLOSE_SECANT: &str = include_str!("../../../shaders/secants/close.wgsl");
-const SUM_SECANTS: &str = include_str!("../../../shaders/secants/sum_secants.wgsl");
-const BEND_GRADIENT: &str = include_str!("../../../shaders/secants/bend_gradient.wgsl");
-const MULTIPLY_CORRECTION: &str = include_str!("../../../shaders/secants/multiply_correction.wgsl");
-const OPEN_SECANT: &str = include_str!("../../../shaders/secants/open.wgsl");
+const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
+const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
+const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
+const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
 
 impl Kernel {
     /// Returns the complete WGSL module.
@@ -107,111 +42,34 @@ impl Kernel {
         self.composed(MeshForm { positions: Positions::Whole, has_targets: true })
     }
 
+    /// Composes the WGSL module: first the declarations that are made of Rust's, then the files of the bind layout, then
+    /// those of the kernel.
     pub(crate) fn composed(&self, form: MeshForm) -> String {
         let mut source = constants();
-        let (parts, bindings): (&[&str], _) = match self.interface() {
-            Interface::Run => (&[PARAMS, COMMON, CONTROL, PAIRS], Some((2, 9))),
-            Interface::Exchange => (&[PAIRS, EXCHANGE], Some((1, 5))),
-            Interface::Publish => (&[CONTROL], None),
-            Interface::Reopen => (&[CONTROL, JUDGED], None),
-            Interface::Mask => (&[], None),
-            Interface::Restore => (&[CONTROL, PAIRS], Some((1, 5))),
-            Interface::Move => (&[PAIRS, PATCH, MOVEMENT], Some((1, 7))),
-            Interface::Untangle => (&[PARAMS, TANGLE, PAIRS, PATCH], Some((2, 9))),
-            Interface::Fine => (&[PARAMS, LEVELS, SEARCH_PLACES, FINE, PAIRS, PATCH], Some((2, 9))),
-            Interface::Transfer => (&[PARAMS, LEVELS, SEARCH_PLACES, TRANSFER, PAIRS], None),
-            Interface::Coarse => (&[PARAMS, LEVELS, SEARCH_PLACES, COARSE, PAIRS], None),
-            Interface::Search => (&[PARAMS, CONTROL, SEARCH_PLACES, SEARCH, PAIRS], None),
-            Interface::Secants => (&[PARAMS, PAIRS, PATCH, SECANTS], Some((2, 9))),
-            Interface::Arithmetic => (&[PARAMS, PAIRS, PATCH], None),
-        };
-        parts.iter().for_each(|part| source.push_str(part));
-        if let Some((first, second)) = bindings {
-            let _ = writeln!(source, "const POSITIONS: u32 = {first}u;");
-            let _ = writeln!(source, "const LOW_POSITIONS: u32 = {second}u;");
+        let layout = self.layout();
+        let structs = SHARED_STRUCTS.iter().filter(|shared| layout.has_type(shared.name));
+        source.extend(structs.map(|shared| shared.wgsl));
+        source.push_str(&layout.declarations(form.positions));
+        source.extend(layout.files().iter().copied());
+        if layout.has_positions() {
             source.push_str(match form.positions {
                 Positions::Whole => POSITIONS,
                 Positions::InTwo => POSITIONS_IN_TWO,
             });
         }
-        if self.sees_targets() {
+        if self.row().sees_targets {
             source.push_str(if form.has_targets { TARGETS } else { NO_TARGETS });
             source.push_str(MAPS);
         }
-        match self {
-            Kernel::Sweep(metric, derivatives) => {
-                source.push_str(PATCH);
-                source.push_str(ONE_RING);
-                source.push_str(&active_metric(*metric, *derivatives));
-                source.push_str(DESCENT);
-                source.push_str(NEWTON);
+        let composition = self.composition();
+        for part in self.row().source {
+            match part {
+                Source::File(text) => source.push_str(text),
+                Source::ActiveMetric => source.push_str(&active_metric(&composition)),
+                Source::TrackedMetrics => source.push_str(&tracked_metrics(&composition.metrics)),
+                Source::TrackedSlots => source.push_str(&tracked_slots(&composition.metrics)),
+                Source::UntanglingEnergy => source.push_str(&untangling_energy()),
             }
-            Kernel::Objective(metrics) => {
-                source.push_str(PATCH);
-                source.push_str(&tracked_metrics(metrics));
-                source.push_str(OBJECTIVE);
-            }
-            Kernel::Finish(metrics) => {
-                source.push_str(&tracked_slots(metrics));
-                source.push_str(FINISH);
-            }
-            Kernel::KeepBest => source.push_str(KEEP_BEST),
-            Kernel::Import => source.push_str(IMPORT),
-            Kernel::Export => source.push_str(EXPORT),
-            Kernel::Publish => source.push_str(PUBLISH),
-            Kernel::Reopen => source.push_str(REOPEN),
-            Kernel::Resume => source.push_str(RESUME),
-            Kernel::RestoreLastValid => source.push_str(RESTORE),
-            Kernel::HoldByMask => source.push_str(MASK),
-            Kernel::FindShare => source.push_str(FIND_SHARE),
-            Kernel::MoveVertices => source.push_str(MOVE_VERTICES),
-            Kernel::FindInverted => source.push_str(FIND_INVERTED),
-            Kernel::Regularize => source.push_str(REGULARIZE),
-            Kernel::Untangle => {
-                // The energy is a variant of the inverse mean ratio.
-                let floor = Metric::Imr.properties().eigenvalue_floor;
-                let _ = writeln!(source, "const EIGENVALUE_FLOOR: f32 = {floor:?}f;");
-                let parts = [ONE_RING, DESCENT, ENERGY, UNTANGLE];
-                parts.iter().for_each(|part| source.push_str(part));
-            }
-            Kernel::Gradient(metric)
-            | Kernel::Stiffness(metric)
-            | Kernel::ObjectiveAlongCorrection(metric) => {
-                source.push_str(ONE_RING);
-                source.push_str(&active_metric(*metric, Derivatives::Analytic));
-                let parts: &[&str] = match self {
-                    Kernel::ObjectiveAlongCorrection(_) => {
-                        &[ALONG, MOVED, OBJECTIVE_ALONG_CORRECTION]
-                    }
-                    Kernel::Stiffness(_) => &[AROUND, STIFFNESS],
-                    _ => &[AROUND, GRADIENT],
-                };
-                parts.iter().for_each(|part| source.push_str(part));
-            }
-            Kernel::BeginSearch => source.push_str(BEGIN_SEARCH),
-            Kernel::JudgeTrial => source.push_str(JUDGE_TRIAL),
-            Kernel::CloseSecant => source.push_str(CLOSE_SECANT),
-            Kernel::SumSecants => source.push_str(SUM_SECANTS),
-            Kernel::BendGradient => source.push_str(BEND_GRADIENT),
-            Kernel::MultiplyCorrection => source.push_str(MULTIPLY_CORRECTION),
-            Kernel::OpenSecant => source.push_str(OPEN_SECANT),
-            Kernel::SmoothGradient => {
-                [NEIGHBORS, SMOOTH_GRADIENT].iter().for_each(|part| source.push_str(part))
-            }
-            Kernel::Restrict => source.push_str(RESTRICT),
-            Kernel::Prolong => [NEIGHBORS, PROLONG].iter().for_each(|part| source.push_str(part)),
-            Kernel::MatrixVector => source.push_str(MATRIX_VECTOR),
-            Kernel::Chebyshev => source.push_str(CHEBYSHEV),
-            Kernel::CoarsestSolve => source.push_str(COARSEST_SOLVE),
-            Kernel::SumAlongCorrection => source.push_str(SUM_ALONG_CORRECTION),
-            Kernel::MoveAlongCorrection => {
-                [ALONG, MOVE_ALONG_CORRECTION].iter().for_each(|part| source.push_str(part))
-            }
-            Kernel::FindBroken => {
-                [ONE_RING, ALONG, MOVED, FIND_BROKEN].iter().for_each(|part| source.push_str(part))
-            }
-            Kernel::LeaveOutBroken => source.push_str(LEAVE_OUT_BROKEN),
-            Kernel::CheckArithmetic => source.push_str(CHECK_ARITHMETIC),
         }
         source
     }
@@ -225,18 +83,18 @@ fn constants() -> String {
         ("FINISH_WORKGROUP", FINISH_WORKGROUP),
         ("HISTORY", HISTORY),
         ("SLOTS", SLOTS as u32),
-        ("SLOT_VECTORS", SLOTS.div_ceil(4) as u32),
+        ("SLOT_VECTORS", SLOT_VECTORS as u32),
         ("INVERTED", INVERTED),
         ("WORST", WORST),
         ("LEAST_NORMAL", LEAST_NORMAL),
         ("HELD", HELD),
         ("NONE", NONE),
-        ("HISTORY_LENGTH", HISTORY * SLOTS as u32),
         ("TRIALS", line_search::TRIALS),
         ("SEARCH_TRIALS", SEARCH_TRIALS),
     ] {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
     }
+    let _ = writeln!(text, "alias History = array<vec2f, {}>;", HISTORY * SLOTS as u32);
     for (stop, code) in Stop::CODES {
         let name = stop.name().to_uppercase().replace('-', "_");
         let _ = writeln!(text, "const STOP_{name}: u32 = {code}u;");
@@ -269,7 +127,9 @@ fn constants() -> String {
 }
 
 /// Returns the functions of the metric that a sweep minimizes, under the names that newton.wgsl calls.
-fn active_metric(metric: Metric, derivatives: Derivatives) -> String {
+fn active_metric(composition: &Composition) -> String {
+    let Composition { metrics, derivatives } = composition;
+    let Some(&metric) = metrics.first() else { return String::new() };
     let properties = metric.properties();
     let name = wgsl_name(metric);
     let mut text = INVARIANTS.to_owned() + properties.wgsl;
@@ -328,6 +188,12 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
         }
     }
     text
+}
+
+/// Returns the constant of the energy that untangles, which is a variant of the inverse mean ratio.
+fn untangling_energy() -> String {
+    let floor = Metric::Imr.properties().eigenvalue_floor;
+    format!("const EIGENVALUE_FLOOR: f32 = {floor:?}f;\n")
 }
 
 /// Returns two functions of a triangle: `tracked_values`, which gives q² - ideal² of each metric and then 1 if the area

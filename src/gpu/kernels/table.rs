@@ -1,337 +1,609 @@
-//! The kernels: their entry points, labels and bindings.
+//! The table of kernels.
+//!
+//! A kernel is a row of the table below and its WGSL file; everything else (source, pipelines, labels, preparation,
+//! tests) loops over the table or asks the row.
 
+use crate::gpu::kernels::form::MeshForm;
+use crate::gpu::kernels::layouts::BindLayout;
+use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, SLOTS, WORKGROUP};
 use crate::metric::Metric;
 use crate::run::{Derivatives, Plan};
 
-/// A compute kernel: one WGSL module in core WebGPU, with the bindings of its [`Interface`].
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Kernel {
-    /// Newton steps on the free vertices of one color.
-    Sweep(Metric, Derivatives),
-    /// Partial sums of the objectives of these metrics over the triangles.
-    Objective(Vec<Metric>),
-    /// Completes the sums of [`Objective`](Self::Objective) and decides whether the run ends.
-    Finish(Vec<Metric>),
-    /// Keeps a copy of the positions if they are the best so far.
-    KeepBest,
-    /// Reads positions from an application's vertex buffer.
-    Import,
-    /// Writes positions to an application's vertex buffer.
-    Export,
-    /// Writes objectives to an application's buffer.
-    Publish,
-    /// Makes judged sweeps begin again if an application has changed the mesh.
-    Reopen,
-    /// Lets judged sweeps continue after [`Reopen`](Self::Reopen) and the evaluation that follows it.
-    Resume,
-    /// Saves the positions of a valid mesh, and restores the saved ones if the mesh is not valid.
-    RestoreLastValid,
-    /// Holds vertices by a mask of the application.
-    HoldByMask,
-    /// Finds the share of its way that an application's move can go before a triangle gets inverted or too flat.
-    FindShare,
-    /// Moves vertices by the share that [`FindShare`](Self::FindShare) has found.
-    MoveVertices,
-    /// Finds the triangles that are inverted, and the most inverted one.
-    FindInverted,
-    /// Begins an untangling sweep if [`FindInverted`](Self::FindInverted) has found inverted triangles.
-    Regularize,
-    /// Newton steps that untangle, on the free vertices of one color.
-    Untangle,
-    /// The gradient of Σ q² at the free vertices.
-    Gradient(Metric),
-    /// Smooths the result of [`Gradient`](Self::Gradient) over the one-rings, before [`Restrict`](Self::Restrict).
-    SmoothGradient,
-    /// Sums the smoothed gradient over each aggregate: from the free vertices to the first coarse level.
-    Restrict,
-    /// Interpolates the coarse solution: from the first coarse level to a correction of the free vertices.
-    Prolong,
-    /// A matrix times a vector, plus a vector, on a coarse level.
-    MatrixVector,
-    /// One step of Chebyshev's iteration on a coarse level.
-    Chebyshev,
-    /// Solves on the coarsest level, by the inverse matrix times the right-hand side.
-    CoarsestSolve,
-    /// Partial sums of the objective before and after a step along the correction, and of its slope along it.
-    ObjectiveAlongCorrection(Metric),
-    /// Completes the sums of [`ObjectiveAlongCorrection`](Self::ObjectiveAlongCorrection).
-    SumAlongCorrection,
-    /// Moves the free vertices along the correction.
-    MoveAlongCorrection,
-    /// Finds the vertices of triangles that the correction would invert or make break the shape guard.
-    FindBroken,
-    /// Leaves the vertices found by [`FindBroken`](Self::FindBroken) out of the correction.
-    LeaveOutBroken,
-    /// Begins the line search of a correction that an application encodes.
-    BeginSearch,
-    /// Judges a trial of the line search that [`BeginSearch`](Self::BeginSearch) began, and chooses the next length.
-    JudgeTrial,
-    /// The square root of the stiffness at the free vertices, from which the coarser levels are built.
-    Stiffness(Metric),
-    /// Completes the open secant pair, with partial sums of its products.
-    CloseSecant,
-    /// Completes the sums of products of secant pairs.
-    SumSecants,
-    /// Subtracts what the secant pairs account for from the gradient, before the levels are applied.
-    BendGradient,
-    /// Partial sums of products of secant pairs with the correction.
-    MultiplyCorrection,
-    /// Completes a correction by the secant pairs, and opens the next pair.
-    OpenSecant,
-    /// Checks the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.
-    CheckArithmetic,
+/// What the table says of a kernel.
+pub(crate) struct Row {
+    /// The name of the function in WGSL.
+    pub(crate) entry_point: &'static str,
+    pub(crate) layout: BindLayout,
+    /// Number of invocations in a workgroup.
+    pub(crate) width: u32,
+    /// Whether the kernel uses target maps if there are any.
+    pub(crate) sees_targets: bool,
+    pub(crate) user: User,
+    /// The source, beside that of the layout.
+    pub(crate) source: &'static [Source],
 }
 
-/// The bindings of a kernel, all in group 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Interface {
-    /// A run on a mesh: `shaders/common.wgsl`.
-    Run,
-    /// A mesh and a vertex buffer: `shaders/exchange.wgsl`.
-    Exchange,
-    /// A run's history and a buffer: `shaders/publish.wgsl`.
-    Publish,
-    /// The control of judged sweeps, and the changes of a mesh: `shaders/judged/common.wgsl`.
-    Reopen,
-    /// A mesh, and its positions when it was valid: `shaders/restore.wgsl`.
-    Restore,
-    /// Which vertices are held, and a mask of the application: `shaders/mask.wgsl`.
-    Mask,
-    /// A mesh and vertices of it that an application moves: `shaders/clamp/common.wgsl`.
-    Move,
-    /// A mesh and its inverted triangles: `shaders/untangle/common.wgsl`.
-    Untangle,
-    /// A mesh, its gradient and its correction: `shaders/levels/fine.wgsl`.
-    Fine,
-    /// A mesh and the first coarse level: `shaders/levels/transfer.wgsl`.
-    Transfer,
-    /// The coarse levels: `shaders/levels/coarse.wgsl`.
-    Coarse,
-    /// The control of an application's sweeps, and the state of a line search: `shaders/search/common.wgsl`.
-    Search,
-    /// Secant pairs of a mesh: `shaders/secants/common.wgsl`.
-    Secants,
-    /// Inputs and results of [`Kernel::CheckArithmetic`]: `shaders/check_arithmetic.wgsl`.
-    Arithmetic,
+/// The work that needs a kernel, for which the kernel is compiled beforehand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum User {
+    /// Sweeps, and whatever else an application's frame may encode, without corrections.
+    Sweeps,
+    /// Corrections from coarser levels.
+    Corrections,
+    /// The check of the arithmetic, which is made once.
+    Check,
 }
 
-impl Interface {
-    pub(crate) const ALL: [Self; 14] = [
-        Interface::Run,
-        Interface::Exchange,
-        Interface::Publish,
-        Interface::Reopen,
-        Interface::Restore,
-        Interface::Mask,
-        Interface::Move,
-        Interface::Untangle,
-        Interface::Fine,
-        Interface::Transfer,
-        Interface::Coarse,
-        Interface::Search,
-        Interface::Secants,
-        Interface::Arithmetic,
-    ];
+/// A part of a kernel's source.
+pub(crate) enum Source {
+    /// A file of `shaders/`.
+    File(&'static str),
+    /// The formulas of the metric that the kernel is for.
+    ActiveMetric,
+    /// The objectives of the metrics that the kernel is for.
+    TrackedMetrics,
+    /// The places of the metrics that the kernel is for, in an evaluation.
+    TrackedSlots,
+    /// The constants of the energy that untangles.
+    UntanglingEnergy,
+}
 
-    /// How the kernels of this interface bind the positions, given the form `positions` that the mesh needs. Interfaces
-    /// without positions have one form only.
-    pub(crate) fn sees(self, positions: Positions) -> Positions {
-        match self {
-            Interface::Run
-            | Interface::Exchange
-            | Interface::Move
-            | Interface::Restore
-            | Interface::Untangle
-            | Interface::Fine
-            | Interface::Secants => positions,
-            Interface::Publish
-            | Interface::Reopen
-            | Interface::Mask
-            | Interface::Transfer
-            | Interface::Coarse
-            | Interface::Search
-            | Interface::Arithmetic => Positions::Whole,
+/// Values of the arguments of a kernel, such as the metric of a sweep.
+trait Arguments: Sized {
+    /// Lists the values that a run by this plan needs or, without a plan, those that tests try.
+    fn list(plan: Option<&Plan>) -> Vec<Self>;
+}
+
+impl Arguments for () {
+    fn list(_: Option<&Plan>) -> Vec<Self> {
+        vec![()]
+    }
+}
+
+impl Arguments for Metric {
+    fn list(plan: Option<&Plan>) -> Vec<Self> {
+        plan.map_or(Metric::ALL.to_vec(), |plan| vec![plan.scheme.base()])
+    }
+}
+
+impl Arguments for (Metric, Derivatives) {
+    fn list(plan: Option<&Plan>) -> Vec<Self> {
+        match plan {
+            Some(plan) => {
+                let metrics = plan.scheme.metrics().iter();
+                metrics.map(|&metric| (metric, plan.derivatives[metric as usize])).collect()
+            }
+            None => {
+                let both = [Derivatives::Analytic, Derivatives::FiniteDifference];
+                let of_metric = |&metric| both.map(|derivatives| (metric, derivatives));
+                Metric::ALL.iter().flat_map(of_metric).collect()
+            }
         }
     }
 }
 
-/// How kernels bind the positions of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Positions {
-    /// As one binding.
-    Whole,
-    /// As two bindings, one of high parts and one of low parts, for a buffer larger than the device binds at once.
-    InTwo,
-}
-
-impl Positions {
-    pub(crate) const ALL: [Self; 2] = [Positions::Whole, Positions::InTwo];
-
-    /// Returns the form that this number of positions takes.
-    pub(crate) fn of(vertices: usize, limits: &wgpu::Limits) -> Self {
-        let bytes = (vertices as u64).saturating_mul(size_of::<[f32; 4]>() as u64);
-        let fits = bytes <= limits.max_storage_buffer_binding_size;
-        if fits { Positions::Whole } else { Positions::InTwo }
+impl Arguments for Vec<Metric> {
+    fn list(plan: Option<&Plan>) -> Vec<Self> {
+        match plan {
+            Some(plan) => vec![plan.tracked()],
+            None => Metric::ALL.chunks(1).chain([Metric::ALL]).map(<[_]>::to_vec).collect(),
+        }
     }
 }
 
-/// The form of a mesh on a device, for which kernels are composed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MeshForm {
-    pub(crate) positions: Positions,
-    /// Whether target maps follow the positions.
-    pub(crate) has_targets: bool,
+/// The arguments of a kernel, in one form for all kernels.
+pub(crate) struct Composition {
+    /// None, one, or those whose objectives are summed.
+    pub(crate) metrics: Vec<Metric>,
+    /// Analytic if the kernel has no choice.
+    pub(crate) derivatives: Derivatives,
 }
 
-impl From<Positions> for MeshForm {
-    /// The form of a mesh without targets.
-    fn from(positions: Positions) -> Self {
-        Self { positions, has_targets: false }
+impl From<()> for Composition {
+    fn from(_: ()) -> Self {
+        Vec::new().into()
+    }
+}
+
+impl From<Metric> for Composition {
+    fn from(metric: Metric) -> Self {
+        vec![metric].into()
+    }
+}
+
+impl From<(Metric, Derivatives)> for Composition {
+    fn from(of: (Metric, Derivatives)) -> Self {
+        Self { metrics: vec![of.0], derivatives: of.1 }
+    }
+}
+
+impl From<Vec<Metric>> for Composition {
+    fn from(metrics: Vec<Metric>) -> Self {
+        Self { metrics, derivatives: Derivatives::Analytic }
+    }
+}
+
+/// A part of a kernel's source: the name of a file, or a variant of [`Source`].
+macro_rules! source {
+    ($file:literal) => {
+        Source::File(include_str!(concat!("../../../shaders/", $file)))
+    };
+    ($made:ident) => {
+        Source::$made
+    };
+}
+
+/// Generates the enum of kernels and what tells their rows apart. A row has the kernel's arguments and the members of
+/// [`Row`].
+macro_rules! kernels {
+    ($(
+        $(#[doc = $doc:literal])*
+        $kernel:ident $(($($argument:ident: $ty:ty),+))? {
+            entry_point: $entry_point:literal,
+            layout: $layout:ident,
+            width: $width:expr,
+            sees_targets: $sees_targets:literal,
+            user: $user:ident,
+            source: [$($source:tt),*],
+        }
+    )*) => {
+        /// A compute kernel: one WGSL module in core WebGPU, with the bindings of its [`BindLayout`].
+        #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+        pub enum Kernel { $($(#[doc = $doc])* $kernel $(($($ty),+))?,)* }
+
+        impl Kernel {
+            /// Returns the row of the table.
+            pub(crate) fn row(&self) -> &'static Row {
+                match self {
+                    $(Kernel::$kernel { .. } => const { &Row {
+                        entry_point: $entry_point,
+                        layout: BindLayout::$layout,
+                        width: $width,
+                        sees_targets: $sees_targets,
+                        user: User::$user,
+                        source: &[$(source!($source)),*],
+                    } },)*
+                }
+            }
+
+            /// Returns the arguments that the source depends on.
+            pub(crate) fn composition(&self) -> Composition {
+                match self {
+                    $(Kernel::$kernel $(($($argument),+))? => {
+                        Composition::from(($($($argument.to_owned()),+)?))
+                    })*
+                }
+            }
+
+            /// Lists the kernels of a plan or, without a plan, all kernels with the arguments that tests try.
+            #[allow(unused_parens)]
+            fn list(plan: Option<&Plan>) -> Vec<Kernel> {
+                let mut kernels = Vec::new();
+                $(
+                    let arguments = <($($($ty),+)?) as Arguments>::list(plan);
+                    kernels.extend(arguments.into_iter().map(|($($($argument),+)?)| {
+                        Kernel::$kernel $(($($argument),+))?
+                    }));
+                )*
+                kernels
+            }
+        }
+    };
+}
+
+kernels! {
+    /// Newton steps on the free vertices of one color.
+    Sweep(metric: Metric, derivatives: Derivatives) {
+        entry_point: "sweep",
+        layout: Run,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Sweeps,
+        source: ["patch.wgsl", "one_ring.wgsl", ActiveMetric, "descent.wgsl", "newton.wgsl"],
+    }
+
+    /// Partial sums of the objectives of these metrics over the triangles.
+    Objective(metrics: Vec<Metric>) {
+        entry_point: "objective",
+        layout: Run,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Sweeps,
+        source: ["patch.wgsl", TrackedMetrics, "objective.wgsl"],
+    }
+
+    /// Completes the sums of [`Objective`](Self::Objective) and decides whether the run ends.
+    Finish(metrics: Vec<Metric>) {
+        entry_point: "finish",
+        layout: Run,
+        width: FINISH_WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: [TrackedSlots, "finish.wgsl"],
+    }
+
+    /// Keeps a copy of the positions if they are the best so far.
+    KeepBest {
+        entry_point: "keep_best",
+        layout: Run,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["keep_best.wgsl"],
+    }
+
+    /// Reads positions from an application's vertex buffer.
+    Import {
+        entry_point: "import_positions",
+        layout: Exchange,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["import.wgsl"],
+    }
+
+    /// Writes positions to an application's vertex buffer.
+    Export {
+        entry_point: "export_positions",
+        layout: Exchange,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["export.wgsl"],
+    }
+
+    /// Writes objectives to an application's buffer.
+    Publish {
+        entry_point: "publish",
+        layout: Publish,
+        width: SLOTS as u32,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["publish.wgsl"],
+    }
+
+    /// Makes judged sweeps begin again if an application has changed the mesh.
+    Reopen {
+        entry_point: "reopen",
+        layout: Reopen,
+        width: 1,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["judged/reopen.wgsl"],
+    }
+
+    /// Lets judged sweeps continue after [`Reopen`](Self::Reopen) and the evaluation that follows it.
+    Resume {
+        entry_point: "resume",
+        layout: Reopen,
+        width: 1,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["judged/resume.wgsl"],
+    }
+
+    /// Saves the positions of a valid mesh, and restores the saved ones if the mesh is not valid.
+    RestoreLastValid {
+        entry_point: "restore_last_valid",
+        layout: Restore,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["restore.wgsl"],
+    }
+
+    /// Holds vertices by a mask of the application.
+    HoldByMask {
+        entry_point: "hold_by_mask",
+        layout: Mask,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["mask.wgsl"],
+    }
+
+    /// Finds the share of its way that an application's move can go before a triangle gets inverted or too flat.
+    FindShare {
+        entry_point: "find_share",
+        layout: Move,
+        width: FINISH_WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["clamp/find_share.wgsl"],
+    }
+
+    /// Moves vertices by the share that [`FindShare`](Self::FindShare) has found.
+    MoveVertices {
+        entry_point: "move_vertices",
+        layout: Move,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Sweeps,
+        source: ["clamp/move_vertices.wgsl"],
+    }
+
+    /// Finds the triangles that are inverted, and the most inverted one.
+    FindInverted {
+        entry_point: "find_inverted",
+        layout: Untangle,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Sweeps,
+        source: ["untangle/find_inverted.wgsl"],
+    }
+
+    /// Begins an untangling sweep if [`FindInverted`](Self::FindInverted) has found inverted triangles.
+    Regularize {
+        entry_point: "regularize",
+        layout: Untangle,
+        width: 1,
+        sees_targets: true,
+        user: Sweeps,
+        source: ["untangle/regularize.wgsl"],
+    }
+
+    /// Newton steps that untangle, on the free vertices of one color.
+    Untangle {
+        entry_point: "untangle",
+        layout: Untangle,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Sweeps,
+        source: [
+            UntanglingEnergy, "one_ring.wgsl", "descent.wgsl", "untangle/energy.wgsl",
+            "untangle/untangle.wgsl"
+        ],
+    }
+
+    /// The gradient of Σ q² at the free vertices.
+    Gradient(metric: Metric) {
+        entry_point: "find_gradient",
+        layout: Fine,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Corrections,
+        source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/gradient.wgsl"],
+    }
+
+    /// Smooths the result of [`Gradient`](Self::Gradient) over the one-rings, before [`Restrict`](Self::Restrict).
+    SmoothGradient {
+        entry_point: "smooth_gradient",
+        layout: Transfer,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/neighbors.wgsl", "levels/smooth_gradient.wgsl"],
+    }
+
+    /// Sums the smoothed gradient over each aggregate: from the free vertices to the first coarse level.
+    Restrict {
+        entry_point: "restrict_gradient",
+        layout: Transfer,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/restrict.wgsl"],
+    }
+
+    /// Interpolates the coarse solution: from the first coarse level to a correction of the free vertices.
+    Prolong {
+        entry_point: "prolong_solution",
+        layout: Transfer,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/neighbors.wgsl", "levels/prolong.wgsl"],
+    }
+
+    /// A matrix times a vector, plus a vector, on a coarse level.
+    MatrixVector {
+        entry_point: "matrix_vector",
+        layout: Coarse,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/matrix_vector.wgsl"],
+    }
+
+    /// One step of Chebyshev's iteration on a coarse level.
+    Chebyshev {
+        entry_point: "chebyshev",
+        layout: Coarse,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/chebyshev.wgsl"],
+    }
+
+    /// Solves on the coarsest level, by the inverse matrix times the right-hand side.
+    CoarsestSolve {
+        entry_point: "coarsest_solve",
+        layout: Coarse,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/coarsest_solve.wgsl"],
+    }
+
+    /// Partial sums of the objective before and after a step along the correction, and of its slope along it.
+    ObjectiveAlongCorrection(metric: Metric) {
+        entry_point: "objective_along_correction",
+        layout: Fine,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Corrections,
+        source: [
+            "one_ring.wgsl", ActiveMetric, "levels/along.wgsl", "levels/moved.wgsl",
+            "levels/objective_along_correction.wgsl"
+        ],
+    }
+
+    /// Completes the sums of [`ObjectiveAlongCorrection`](Self::ObjectiveAlongCorrection).
+    SumAlongCorrection {
+        entry_point: "sum_along_correction",
+        layout: Coarse,
+        width: FINISH_WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/sum_along_correction.wgsl"],
+    }
+
+    /// Moves the free vertices along the correction.
+    MoveAlongCorrection {
+        entry_point: "move_along_correction",
+        layout: Fine,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Corrections,
+        source: ["levels/along.wgsl", "levels/move_along_correction.wgsl"],
+    }
+
+    /// Finds the vertices of triangles that the correction would invert or make break the shape guard.
+    FindBroken {
+        entry_point: "find_broken",
+        layout: Fine,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Corrections,
+        source: [
+            "one_ring.wgsl", "levels/along.wgsl", "levels/moved.wgsl", "levels/find_broken.wgsl"
+        ],
+    }
+
+    /// Leaves the vertices found by [`FindBroken`](Self::FindBroken) out of the correction.
+    LeaveOutBroken {
+        entry_point: "leave_out_broken",
+        layout: Fine,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["levels/leave_out_broken.wgsl"],
+    }
+
+    /// Begins the line search of a correction that an application encodes.
+    BeginSearch {
+        entry_point: "begin_search",
+        layout: Search,
+        width: 1,
+        sees_targets: false,
+        user: Corrections,
+        source: ["search/begin_search.wgsl"],
+    }
+
+    /// Judges a trial of the line search that [`BeginSearch`](Self::BeginSearch) began, and chooses the next length.
+    JudgeTrial {
+        entry_point: "judge_trial",
+        layout: Search,
+        width: 1,
+        sees_targets: false,
+        user: Corrections,
+        source: ["search/judge_trial.wgsl"],
+    }
+
+    /// The square root of the stiffness at the free vertices, from which the coarser levels are built.
+    Stiffness(metric: Metric) {
+        entry_point: "find_stiffness",
+        layout: Fine,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Corrections,
+        source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/stiffness.wgsl"],
+    }
+
+    /// Completes the open secant pair, with partial sums of its products.
+    CloseSecant {
+        entry_point: "close_secant",
+        layout: Secants,
+        width: WORKGROUP,
+        sees_targets: true,
+        user: Corrections,
+        source: ["secants/close.wgsl"],
+    }
+
+    /// Completes the sums of products of secant pairs.
+    SumSecants {
+        entry_point: "sum_secants",
+        layout: Secants,
+        width: FINISH_WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["secants/sum_secants.wgsl"],
+    }
+
+    /// Subtracts what the secant pairs account for from the gradient, before the levels are applied.
+    BendGradient {
+        entry_point: "bend_gradient",
+        layout: Secants,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["secants/bend_gradient.wgsl"],
+    }
+
+    /// Partial sums of products of secant pairs with the correction.
+    MultiplyCorrection {
+        entry_point: "multiply_correction",
+        layout: Secants,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["secants/multiply_correction.wgsl"],
+    }
+
+    /// Completes a correction by the secant pairs, and opens the next pair.
+    OpenSecant {
+        entry_point: "open_secant",
+        layout: Secants,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Corrections,
+        source: ["secants/open.wgsl"],
+    }
+
+    /// Checks the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.
+    CheckArithmetic {
+        entry_point: "check_arithmetic",
+        layout: Arithmetic,
+        width: WORKGROUP,
+        sees_targets: false,
+        user: Check,
+        source: ["check_arithmetic.wgsl"],
     }
 }
 
 impl Kernel {
-    /// Returns the form of the mesh as far as the kernel depends on it.
-    pub(crate) fn sees(&self, form: MeshForm) -> MeshForm {
-        let positions = self.interface().sees(form.positions);
-        MeshForm { positions, has_targets: form.has_targets && self.sees_targets() }
+    /// Returns all kernels: for each metric where a kernel is for one metric, and for each metric and for all metrics
+    /// where a kernel sums objectives.
+    pub fn all() -> Vec<Kernel> {
+        Self::list(None)
     }
 
-    /// Whether the kernel uses target maps if there are any.
-    pub(crate) fn sees_targets(&self) -> bool {
-        matches!(
-            self,
-            Kernel::Sweep(..)
-                | Kernel::Objective(_)
-                | Kernel::Gradient(_)
-                | Kernel::Stiffness(_)
-                | Kernel::ObjectiveAlongCorrection(_)
-                | Kernel::MoveAlongCorrection
-                | Kernel::FindBroken
-                | Kernel::CloseSecant
-                | Kernel::FindInverted
-                | Kernel::Regularize
-                | Kernel::Untangle
-        )
-    }
-
-    /// Lists the kernels that a run by this plan, or an application's frame, may need, without those of corrections.
-    pub(crate) fn needed_by(plan: &Plan) -> Vec<Kernel> {
-        let sweeps =
-            plan.scheme.metrics().iter().map(|&m| Kernel::Sweep(m, plan.derivatives[m as usize]));
-        let mut kernels: Vec<_> = sweeps.collect();
-        kernels.extend([Kernel::Objective(plan.tracked()), Kernel::Finish(plan.tracked())]);
-        kernels.extend([Kernel::KeepBest, Kernel::Import, Kernel::Export, Kernel::Publish]);
-        kernels.extend([Kernel::Reopen, Kernel::Resume, Kernel::FindShare, Kernel::MoveVertices]);
-        kernels.extend([Kernel::HoldByMask, Kernel::RestoreLastValid]);
-        kernels.extend([Kernel::FindInverted, Kernel::Regularize, Kernel::Untangle]);
+    /// Lists the kernels that a user may need, with the metrics of this plan.
+    pub(crate) fn needed_by(plan: &Plan, user: User) -> Vec<Kernel> {
+        let mut kernels = Self::list(Some(plan));
+        kernels.retain(|kernel| kernel.row().user == user);
         kernels
     }
 
-    /// Lists the kernels that corrections from coarser levels need.
-    pub(crate) fn of_levels(metric: Metric) -> Vec<Kernel> {
-        let of_metric = [
-            Kernel::Stiffness(metric),
-            Kernel::Gradient(metric),
-            Kernel::ObjectiveAlongCorrection(metric),
-        ];
-        let others = [
-            Kernel::SmoothGradient,
-            Kernel::Restrict,
-            Kernel::Prolong,
-            Kernel::MatrixVector,
-            Kernel::Chebyshev,
-            Kernel::CoarsestSolve,
-            Kernel::SumAlongCorrection,
-            Kernel::MoveAlongCorrection,
-            Kernel::FindBroken,
-            Kernel::LeaveOutBroken,
-            Kernel::BeginSearch,
-            Kernel::JudgeTrial,
-            Kernel::CloseSecant,
-            Kernel::SumSecants,
-            Kernel::BendGradient,
-            Kernel::MultiplyCorrection,
-            Kernel::OpenSecant,
-        ];
-        of_metric.into_iter().chain(others).collect()
+    /// Returns the form of the mesh as far as the kernel depends on it.
+    pub(crate) fn sees(&self, form: MeshForm) -> MeshForm {
+        let positions = self.layout().sees(form.positions);
+        MeshForm { positions, has_targets: form.has_targets && self.row().sees_targets }
     }
 
     /// Returns the name of the entry point.
     pub fn entry_point(&self) -> &'static str {
-        match self {
-            Kernel::Sweep(..) => "sweep",
-            Kernel::Objective(_) => "objective",
-            Kernel::Finish(_) => "finish",
-            Kernel::KeepBest => "keep_best",
-            Kernel::Import => "import_positions",
-            Kernel::Export => "export_positions",
-            Kernel::Publish => "publish",
-            Kernel::Reopen => "reopen",
-            Kernel::Resume => "resume",
-            Kernel::RestoreLastValid => "restore_last_valid",
-            Kernel::HoldByMask => "hold_by_mask",
-            Kernel::FindShare => "find_share",
-            Kernel::MoveVertices => "move_vertices",
-            Kernel::FindInverted => "find_inverted",
-            Kernel::Regularize => "regularize",
-            Kernel::Untangle => "untangle",
-            Kernel::Gradient(_) => "find_gradient",
-            Kernel::SmoothGradient => "smooth_gradient",
-            Kernel::Restrict => "restrict_gradient",
-            Kernel::Prolong => "prolong_solution",
-            Kernel::MatrixVector => "matrix_vector",
-            Kernel::Chebyshev => "chebyshev",
-            Kernel::CoarsestSolve => "coarsest_solve",
-            Kernel::ObjectiveAlongCorrection(_) => "objective_along_correction",
-            Kernel::SumAlongCorrection => "sum_along_correction",
-            Kernel::MoveAlongCorrection => "move_along_correction",
-            Kernel::FindBroken => "find_broken",
-            Kernel::LeaveOutBroken => "leave_out_broken",
-            Kernel::BeginSearch => "begin_search",
-            Kernel::JudgeTrial => "judge_trial",
-            Kernel::Stiffness(_) => "find_stiffness",
-            Kernel::CloseSecant => "close_secant",
-            Kernel::SumSecants => "sum_secants",
-            Kernel::BendGradient => "bend_gradient",
-            Kernel::MultiplyCorrection => "multiply_correction",
-            Kernel::OpenSecant => "open_secant",
-            Kernel::CheckArithmetic => "check_arithmetic",
-        }
+        self.row().entry_point
     }
 
     /// Returns the bindings of the kernel.
-    pub fn interface(&self) -> Interface {
-        match self {
-            Kernel::Import | Kernel::Export => Interface::Exchange,
-            Kernel::Publish => Interface::Publish,
-            Kernel::HoldByMask => Interface::Mask,
-            Kernel::RestoreLastValid => Interface::Restore,
-            Kernel::Reopen | Kernel::Resume => Interface::Reopen,
-            Kernel::FindShare | Kernel::MoveVertices => Interface::Move,
-            Kernel::FindInverted | Kernel::Regularize | Kernel::Untangle => Interface::Untangle,
-            Kernel::CheckArithmetic => Interface::Arithmetic,
-            Kernel::Sweep(..) | Kernel::Objective(_) | Kernel::Finish(_) | Kernel::KeepBest => {
-                Interface::Run
-            }
-            Kernel::BeginSearch | Kernel::JudgeTrial => Interface::Search,
-            Kernel::CloseSecant
-            | Kernel::SumSecants
-            | Kernel::BendGradient
-            | Kernel::MultiplyCorrection
-            | Kernel::OpenSecant => Interface::Secants,
-            Kernel::Gradient(_)
-            | Kernel::Stiffness(_)
-            | Kernel::ObjectiveAlongCorrection(_)
-            | Kernel::MoveAlongCorrection
-            | Kernel::FindBroken
-            | Kernel::LeaveOutBroken => Interface::Fine,
-            Kernel::SmoothGradient | Kernel::Restrict | Kernel::Prolong => Interface::Transfer,
-            Kernel::MatrixVector
-            | Kernel::Chebyshev
-            | Kernel::CoarsestSolve
-            | Kernel::SumAlongCorrection => Interface::Coarse,
-        }
+    pub fn layout(&self) -> BindLayout {
+        self.row().layout
+    }
+
+    /// Returns the number of invocations in a workgroup.
+    pub fn workgroup_size(&self) -> u32 {
+        self.row().width
     }
 
     /// Returns a label for tools such as RenderDoc.

@@ -1,4 +1,4 @@
-//! Rust mirrors of the WGSL structs. Tests compare their offsets with naga's.
+//! The structs that Rust and the kernels share: uniforms, and the structs in storage buffers. Each is declared once.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
@@ -7,16 +7,16 @@ use crate::metric::{Metric, Smoothing};
 
 /// Number of evaluations that the device stores. The host reads them before they are overwritten.
 pub(crate) const HISTORY: u32 = 256;
-/// Number of invocations in a workgroup of most kernels. Exceptions are `finish`, `find_share`, `sum_along_correction`,
-/// `sum_secants`, `publish`, and those that need only one invocation: `reopen`, `resume`, `regularize`, `begin_search`
-/// and `judge_trial`.
+/// Number of invocations in a workgroup of most kernels.
 pub(crate) const WORKGROUP: u32 = 64;
-/// Number of invocations in a workgroup of `finish`, `find_share`, `sum_along_correction` and `sum_secants`.
+/// Number of invocations in a workgroup of the kernels that run in one workgroup, whose invocations share sums.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
 /// Number of values stored for an evaluation: the sum of q² - ideal² for every metric, the number of inverted
 /// triangles, and the largest imr² - 1.
 pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
+/// Number of vectors of four that hold a value for each slot.
+pub(crate) const SLOT_VECTORS: usize = SLOTS.div_ceil(4);
 /// The slot of the number of inverted triangles.
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
 /// The slot of the largest imr² - 1.
@@ -35,206 +35,403 @@ pub(crate) const SEARCH_TRIALS: u32 = 3;
 /// search on the device, as in shaders/search/places.wgsl.
 pub(crate) const SEARCH_STATE: u32 = 7;
 
-/// `Params` in shaders/params.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Params {
-    pub(crate) zero: u32,
-    pub(crate) triangles: u32,
-    pub(crate) partials: u32,
-    pub(crate) inner: u32,
-    pub(crate) base: u32,
-    pub(crate) window: u32,
-    pub(crate) max_sweeps: u32,
-    pub(crate) has_target: u32,
-    pub(crate) target_sum: [f32; 2],
-    pub(crate) ideal_sum: f32,
-    pub(crate) tolerance: f32,
-    pub(crate) mean_area: [f32; 2],
-    pub(crate) targets: u32,
-    pub(crate) padding: u32,
+// Names of WGSL's types, for members of the structs below.
+#[allow(non_camel_case_types)]
+type vec2f = [f32; 2];
+#[allow(non_camel_case_types)]
+type vec2u = [u32; 2];
+#[allow(non_camel_case_types)]
+type vec4f = [f32; 4];
+#[allow(non_camel_case_types)]
+type array<T, const LENGTH: usize> = [T; LENGTH];
+#[allow(non_camel_case_types)]
+type atomic<T> = T;
+/// The values of each evaluation (modulo [`HISTORY`]) and slot. WGSL has them in one array, without rows.
+type History = [[vec2f; SLOTS]; HISTORY as usize];
+
+/// A struct that Rust and the kernels share.
+pub(crate) struct SharedStruct {
+    pub(crate) name: &'static str,
+    /// The declaration in WGSL.
+    pub(crate) wgsl: &'static str,
+    #[cfg(test)]
+    size: usize,
+    /// The name and the byte offset of each member.
+    #[cfg(test)]
+    offsets: &'static [(&'static str, usize)],
 }
 
-/// `Part` in shaders/common.wgsl.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Part {
-    pub(crate) first: u32,
-    pub(crate) count: u32,
-    pub(crate) omega: f32,
-    pub(crate) sharpness: u32,
-    pub(crate) shape_guard: f32,
-    pub(crate) ring_base: u32,
-    pub(crate) longest: f32,
-    pub(crate) over_guard: f32,
+/// Declares structs in Rust and in WGSL from one list of members. The types of members have the same names in both
+/// languages. The lists name padding, as bytes between members are not allowed in structs that are copied to a device.
+/// There is no `Default`: a literal must name every member.
+macro_rules! shared_structs {
+    ($(
+        $(#[doc = $doc:literal])*
+        $name:ident {
+            $($(#[doc = $member_doc:literal])* $member:ident: $ty:ty,)*
+        }
+    )*) => {
+        $(
+            $(#[doc = $doc])*
+            #[derive(Clone, Copy, Debug, Pod, Zeroable)]
+            #[repr(C)]
+            pub(crate) struct $name {
+                $($(#[doc = $member_doc])* pub(crate) $member: $ty,)*
+            }
+        )*
+
+        /// All structs that Rust and the kernels share.
+        pub(crate) const SHARED_STRUCTS: &[SharedStruct] = &[$(SharedStruct {
+            name: stringify!($name),
+            wgsl: concat!(
+                $("//", $doc, "\n",)*
+                "struct ", stringify!($name), " {\n",
+                $(
+                    $("    //", $member_doc, "\n",)*
+                    "    ", stringify!($member), ": ", stringify!($ty), ",\n",
+                )*
+                "}\n",
+            ),
+            #[cfg(test)]
+            size: size_of::<$name>(),
+            #[cfg(test)]
+            offsets: &[$((stringify!($member), std::mem::offset_of!($name, $member))),*],
+        }),*];
+    };
 }
 
-/// `LevelOp` in shaders/levels/common.wgsl.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct LevelOp {
-    pub(crate) rows: u32,
-    pub(crate) first: u32,
-    pub(crate) free: u32,
-    pub(crate) ring_base: u32,
-    pub(crate) starts: u32,
-    pub(crate) columns: u32,
-    pub(crate) entries: u32,
-    pub(crate) diagonal: u32,
-    pub(crate) x: u32,
-    pub(crate) right: u32,
-    pub(crate) step: u32,
-    pub(crate) out: u32,
-    pub(crate) a: f32,
-    pub(crate) b: f32,
-    pub(crate) shape_guard: f32,
-    pub(crate) sharpness: u32,
-}
+shared_structs! {
+    /// The constants of a run.
+    Params {
+        /// Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
+        zero: u32,
+        triangles: u32,
+        /// Number of invocations of the objective kernel.
+        partials: u32,
+        /// The most Newton steps per visit of a vertex.
+        inner: u32,
+        /// The number of the base metric. This member and those up to `tolerance` are for the stop rule in finish.wgsl.
+        base: u32,
+        window: u32,
+        max_sweeps: u32,
+        has_target: u32,
+        /// A pair of floats: the sum of q² - ideal² over all triangles at which the run ends.
+        target_sum: vec2f,
+        /// The sum of ideal² over all triangles.
+        ideal_sum: f32,
+        tolerance: f32,
+        /// A pair of floats: the mean area rounded to single precision, and the rounding error.
+        mean_area: vec2f,
+        /// Index of the first target map in the positions.
+        targets: u32,
+        padding: u32,
+    }
 
-impl LevelOp {
-    /// The same by a metric that is made smooth so.
-    pub(crate) fn smoothed(self, smoothing: Smoothing) -> Self {
-        let Smoothing { sharpness, penalized } = smoothing;
-        Self { sharpness, b: penalized.recip() as f32, ..self }
+    /// The range of one dispatch: free vertices of one color, with the parameters of the sweep; or triangles; or free
+    /// vertices of any color. `ring`, `triangles` and `best_positions` are bound from the first entry that the range
+    /// needs.
+    Part {
+        first: u32,
+        count: u32,
+        omega: f32,
+        /// log2 of the exponent of EDGE's p-norm.
+        sharpness: u32,
+        /// Up to this inverse mean ratio any step may flatten a triangle. NO_GUARD allows any ratio.
+        shape_guard: f32,
+        /// Number of entries of `ring` before the start of the binding.
+        ring_base: u32,
+        /// How many times as long as Newton's a step may be tried where nearly flat triangles make up most of a patch's
+        /// objective; 1 for never.
+        longest: f32,
+        /// One over the shape guard that a penalty keeps EDGE off, 0 for none.
+        over_guard: f32,
+    }
+
+    /// An operation on the mesh itself, for a correction from coarser levels. Places count from the start of the
+    /// binding.
+    FineOp {
+        /// Number of free vertices or triangles of this dispatch. More invocations than these may be started.
+        rows: u32,
+        /// The free vertex or triangle of the first invocation.
+        first: u32,
+        /// Number of free vertices.
+        free: u32,
+        /// Number of entries of `ring` before the start of the binding.
+        ring_base: u32,
+        /// Where in `vectors` find_gradient leaves the square roots of the present stiffness, to which the levels are
+        /// fitted; NONE if they are not.
+        present_roots: u32,
+        /// Where in `vectors` find_broken leaves the correction without the vertices of broken triangles.
+        unbroken: u32,
+        /// Where in `vectors` objective_along_correction leaves its partial sums.
+        partial_sums: u32,
+        /// The step length along the correction; 0 if the line search on the device finds it.
+        length: f32,
+        /// Up to this inverse mean ratio a correction may flatten a triangle. NO_GUARD allows any ratio.
+        shape_guard: f32,
+        /// log2 of the exponent of EDGE's p-norm.
+        sharpness: u32,
+        /// One over the shape guard that a penalty keeps EDGE off, 0 for none.
+        over_guard: f32,
+        padding: u32,
+    }
+
+    /// An operation between the free vertices and the first coarse level. Places count from the start of the binding.
+    TransferOp {
+        /// Number of free vertices or aggregates of this dispatch. More invocations than these may be started.
+        rows: u32,
+        /// The free vertex of the first invocation.
+        first: u32,
+        /// Number of free vertices.
+        free: u32,
+        /// Number of entries of `ring` before the start of the binding.
+        ring_base: u32,
+        /// Where in `structure` the number of each free vertex's aggregate begins.
+        aggregate_of: u32,
+        /// Where in `structure` the starts of the aggregates' members begin. They count from `members`.
+        member_starts: u32,
+        /// Where in `structure` the members of the aggregates begin.
+        members: u32,
+        /// Where in `values` the square roots of the free vertices' weights begin.
+        roots: u32,
+        /// Where in `values` the reciprocal diagonal begins.
+        diagonal: u32,
+        /// Where in `vectors` the square roots of the present stiffness begin, to which the levels are fitted; NONE if
+        /// they are not.
+        present_roots: u32,
+        /// Where in `vectors` the right-hand side of the first coarse level begins.
+        right: u32,
+        /// Where in `vectors` the solution of the first coarse level begins.
+        solution: u32,
+    }
+
+    /// An operation on the vectors of a coarse level. Places count from the start of the binding.
+    CoarseOp {
+        /// Number of rows, or of partial sums. More invocations than these may be started.
+        rows: u32,
+        /// Where in `structure` the row starts begin. Row starts count from `columns` and `entries`.
+        starts: u32,
+        /// Where in `structure` the column numbers begin.
+        columns: u32,
+        /// Where in `values` the matrix entries begin, one for each column number.
+        entries: u32,
+        /// Where in `values` the reciprocal diagonal begins.
+        diagonal: u32,
+        /// Where in `vectors` the vector to be multiplied begins; NONE for a vector of zeros.
+        x: u32,
+        /// Where in `vectors` the right-hand side, or the vector to be added, begins; NONE for a vector of zeros.
+        right: u32,
+        /// Where in `vectors` the last step of Chebyshev's iteration begins.
+        last_step: u32,
+        /// Where in `vectors` the result begins.
+        out: u32,
+        /// The factor of the last step in Chebyshev's iteration.
+        last_step_factor: f32,
+        /// The factor of the residual in Chebyshev's iteration.
+        residual_factor: f32,
+        /// The factor of the vector that is added to a product.
+        right_factor: f32,
+        /// The factor of a product.
+        product_factor: f32,
+        /// Where in `vectors` the partial sums begin.
+        partial_sums: u32,
+        /// Where in `vectors` the totals begin.
+        totals: u32,
+        padding: u32,
+    }
+
+    /// One operation on the secant pairs of the free vertices.
+    SecantOp {
+        /// Number of free vertices.
+        free: u32,
+        /// Where the newer pair begins in `steps` and `changes`.
+        newer: u32,
+        /// Where the older pair begins in `steps` and `changes`.
+        older: u32,
+        /// Number of pairs, 0 to 2. If it is 1, only the newer one exists.
+        pairs: u32,
+        /// Number of invocations that leave partial sums.
+        partials: u32,
+        /// Not zero if sum_secants.wgsl is to sum products with the correction, zero for products with the gradient.
+        is_after: u32,
+        padding: vec2u,
+    }
+
+    /// The state of a run. Written by finish.wgsl, and by judged/reopen.wgsl where an application encodes the sweeps.
+    Control {
+        /// Not zero when the run has ended: every kernel then leaves everything as it is.
+        done: u32,
+        /// Number of evaluations of the objective: one before the first sweep and one after each.
+        evaluated: u32,
+        /// Whether the last evaluation was the best so far.
+        improved: u32,
+        best_sweep: u32,
+        best_sum: vec2f,
+        /// Number of changes that the application had made to the mesh when this run began.
+        changes: u32,
+        padding: u32,
+        /// One entry for each evaluation (modulo HISTORY) and slot. The slot of a metric holds its sum as a pair of
+        /// floats. The slot INVERTED holds the number of triangles that are inverted or flat in single precision, also
+        /// as a pair. The slot WORST holds the largest imr² - 1 in x, and in y, as bits, the number of that triangle
+        /// plus LEAST_NORMAL.
+        history: History,
+    }
+
+    /// An application's vertex buffer, and the coordinates in it.
+    Exchange {
+        /// Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
+        zero: u32,
+        vertices: u32,
+        /// Floats before the first vertex, from the start of the binding.
+        offset: u32,
+        /// Floats from one vertex to the next.
+        stride: u32,
+        /// The normalized position is (x - center) * scale. The center is held in pairs of floats, xy + zw.
+        center: vec4f,
+        scale: f32,
+        inverse_scale: f32,
+        padding: vec2u,
+    }
+
+    /// The vertices of a dispatch that saves or restores positions.
+    Restore {
+        /// Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
+        zero: u32,
+        /// The first vertex of this dispatch; `valid_positions` is bound from that vertex on.
+        first: u32,
+        /// Number of vertices of this dispatch.
+        count: u32,
+        padding: u32,
+    }
+
+    /// An application's mask of held vertices.
+    Mask {
+        /// Number of vertices that are free or held. Those behind them are on the boundary.
+        vertices: u32,
+        /// Words before the first vertex, from the start of the binding.
+        offset: u32,
+        padding: vec2u,
+    }
+
+    /// Vertices that an application moves, and the coordinates of their targets.
+    Movement {
+        /// Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
+        zero: u32,
+        /// Number of vertices to be moved.
+        vertices: u32,
+        /// Number of triangles that have at least one of the vertices to be moved.
+        triangles: u32,
+        /// The bound on the inverse mean ratio of triangles.
+        worst_imr: f32,
+        /// Floats before the first target, from the start of the binding.
+        offset: u32,
+        /// Floats from one target to the next.
+        stride: u32,
+        /// Index of the word in `shares` that receives the share.
+        share: u32,
+        /// The normalized target is (x - center) * scale. The center is held in pairs of floats, xy + zw.
+        scale: f32,
+        center: vec4f,
+    }
+
+    /// The range of one dispatch of untangling: free vertices of one color, or triangles.
+    UntanglePart {
+        first: u32,
+        count: u32,
+        /// Number of entries of `ring` before the start of the binding.
+        ring_base: u32,
+        /// Number of vertices that are free or held. Those behind them are on the boundary.
+        free: u32,
+        /// Not zero for the first of the sweeps that are encoded together, which examines the mesh even if it was valid
+        /// before.
+        begins: u32,
+        padding: u32,
+        more_padding: vec2u,
+    }
+
+    /// The inverted triangles of a mesh.
+    Tangle {
+        /// Not zero if no triangle was found inverted. The kernels then do nothing until the mesh is examined again.
+        valid: u32,
+        /// Number of triangles that are inverted or flat and have a vertex that may move.
+        inverted: atomic<u32>,
+        /// The bits of the largest negative area of these triangles, without its sign, relative to the area that the
+        /// triangle should have. The bits of non-negative floats compare as the floats do.
+        depth: atomic<u32>,
+        epsilon: f32,
+        /// The number of the last sweep.
+        sweep: u32,
+        /// The number of the last sweep before the present tangle.
+        since: u32,
+    }
+
+    /// A vertex of a mesh that is untangled.
+    TangledVertex {
+        /// The area that triangles around the vertex should have.
+        area: f32,
+        /// The number of the sweep in which the vertex began to move.
+        reached: atomic<u32>,
+    }
+
+    /// The part of an application's buffer that receives objectives.
+    Publish {
+        /// Where the values begin, in words from the start of the binding.
+        offset: u32,
+        triangles: u32,
+        /// Not zero if the sweeps are judged by the stop rule, and so have a reason to stop and a count of sweeps.
+        judged: u32,
+        padding: u32,
+        /// ideal² of each metric, which the sums leave out for each triangle; 0 for a metric that is not tracked.
+        ideal_squared: array<vec4f, SLOT_VECTORS>,
+    }
+
+    /// Two positions as pairs of floats, xy + zw.
+    ArithmeticInput {
+        a: vec4f,
+        b: vec4f,
+    }
+
+    /// What check_arithmetic.wgsl computes from two positions.
+    ArithmeticResult {
+        two_sum: vec2f,
+        pair_add: vec2f,
+        edge: vec2f,
+        /// The result of pair_difference for the x coordinates of a and b.
+        difference: f32,
+        /// 1 if the triangle of the origin, a and b has a positive area, else 0.
+        is_positive: f32,
+        advanced: vec4f,
     }
 }
 
-/// `SecantOp` in shaders/secants/common.wgsl.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct SecantOp {
-    pub(crate) free: u32,
-    pub(crate) newer: u32,
-    pub(crate) older: u32,
-    pub(crate) pairs: u32,
-    pub(crate) partials: u32,
-    pub(crate) is_after: u32,
-    pub(crate) padding: [u32; 2],
+impl Params {
+    /// Returns the constants for kernels outside of a run, which use no other members than `zero` and `targets`.
+    pub(crate) fn outside_runs(targets: u32) -> Self {
+        Self {
+            zero: 0,
+            triangles: 0,
+            partials: 0,
+            inner: 0,
+            base: 0,
+            window: 0,
+            max_sweeps: 0,
+            has_target: 0,
+            target_sum: [0.0; 2],
+            ideal_sum: 0.0,
+            tolerance: 0.0,
+            mean_area: [0.0; 2],
+            targets,
+            padding: 0,
+        }
+    }
 }
 
-/// `Control` in shaders/control.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Control {
-    pub(crate) done: u32,
-    pub(crate) evaluated: u32,
-    pub(crate) improved: u32,
-    pub(crate) best_sweep: u32,
-    pub(crate) best_sum: [f32; 2],
-    pub(crate) changes: u32,
-    pub(crate) padding: u32,
-    pub(crate) history: [[[f32; 2]; SLOTS]; HISTORY as usize],
-}
-
-/// `Exchange` in shaders/exchange.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Exchange {
-    pub(crate) zero: u32,
-    pub(crate) vertices: u32,
-    pub(crate) offset: u32,
-    pub(crate) stride: u32,
-    pub(crate) center: [f32; 4],
-    pub(crate) scale: f32,
-    pub(crate) inverse_scale: f32,
-    pub(crate) padding: [u32; 2],
-}
-
-/// `Restore` in shaders/restore.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Restore {
-    pub(crate) zero: u32,
-    pub(crate) first: u32,
-    pub(crate) count: u32,
-    pub(crate) padding: u32,
-}
-
-/// `Mask` in shaders/mask.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Mask {
-    pub(crate) vertices: u32,
-    pub(crate) offset: u32,
-    pub(crate) padding: [u32; 2],
-}
-
-/// `Movement` in shaders/clamp/common.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Movement {
-    pub(crate) zero: u32,
-    pub(crate) vertices: u32,
-    pub(crate) triangles: u32,
-    pub(crate) worst_imr: f32,
-    pub(crate) offset: u32,
-    pub(crate) stride: u32,
-    pub(crate) share: u32,
-    pub(crate) scale: f32,
-    pub(crate) center: [f32; 4],
-}
-
-/// `UntanglePart` in shaders/untangle/common.wgsl.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct UntanglePart {
-    pub(crate) first: u32,
-    pub(crate) count: u32,
-    pub(crate) ring_base: u32,
-    pub(crate) free: u32,
-    pub(crate) begins: u32,
-    pub(crate) padding: [u32; 3],
-}
-
-/// `Tangle` in shaders/untangle/common.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Tangle {
-    pub(crate) valid: u32,
-    pub(crate) inverted: u32,
-    pub(crate) depth: u32,
-    pub(crate) epsilon: f32,
-    pub(crate) sweep: u32,
-    pub(crate) since: u32,
-}
-
-/// `TangledVertex` in shaders/untangle/common.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct TangledVertex {
-    pub(crate) area: f32,
-    pub(crate) reached: u32,
-}
-
-/// `Publish` in shaders/publish.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Publish {
-    pub(crate) offset: u32,
-    pub(crate) triangles: u32,
-    pub(crate) judged: u32,
-    pub(crate) padding: u32,
-    pub(crate) ideal_squared: [[f32; 4]; SLOTS.div_ceil(4)],
-}
-
-/// `ArithmeticInput` in shaders/check_arithmetic.wgsl: two positions as pairs of floats.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct ArithmeticInput {
-    pub(crate) a: [f32; 4],
-    pub(crate) b: [f32; 4],
-}
-
-/// `ArithmeticResult` in shaders/check_arithmetic.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct ArithmeticResult {
-    pub(crate) two_sum: [f32; 2],
-    pub(crate) pair_add: [f32; 2],
-    pub(crate) edge: [f32; 2],
-    pub(crate) difference: f32,
-    pub(crate) is_positive: f32,
-    pub(crate) advanced: [f32; 4],
+impl FineOp {
+    /// Returns the same operation with another smoothing of EDGE.
+    pub(crate) fn smoothed(self, smoothing: Smoothing) -> Self {
+        let Smoothing { sharpness, penalized } = smoothing;
+        Self { sharpness, over_guard: penalized.recip() as f32, ..self }
+    }
 }
 
 /// A double as the sum of two floats.
@@ -266,100 +463,28 @@ mod tests {
     use super::*;
     use crate::gpu::Kernel;
 
-    /// Returns the size of a struct as naga lays it out, and the name and offset of each member except padding.
-    fn reflected(kernel: &Kernel, name: &str) -> (usize, Vec<(String, usize)>) {
-        let module = naga::front::wgsl::parse_str(&kernel.wgsl()).unwrap();
-        let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+    /// Returns the size of a struct as naga lays it out, and the name and offset of each member; `None` if the module
+    /// does not declare it.
+    fn reflected(module: &naga::Module, name: &str) -> Option<(usize, Vec<(String, usize)>)> {
+        let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
         let naga::TypeInner::Struct { members, span } = &ty.inner else {
             panic!("{name} is no struct");
         };
         let named = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize));
-        (*span as usize, named.filter(|(name, _)| name != "padding").collect())
-    }
-
-    macro_rules! mirrors {
-        ($kernel:expr, $mirror:ident { $($field:ident),* $(,)? }) => {
-            let offsets = vec![$((stringify!($field).to_owned(), offset_of!($mirror, $field))),*];
-            let expected = (size_of::<$mirror>(), offsets);
-            assert_eq!(reflected($kernel, stringify!($mirror)), expected);
-        };
+        Some((*span as usize, named.collect()))
     }
 
     #[test]
     fn structs_are_laid_out_as_in_wgsl() {
-        let run = &Kernel::KeepBest;
-        mirrors!(
-            run,
-            Params {
-                zero,
-                triangles,
-                partials,
-                inner,
-                base,
-                window,
-                max_sweeps,
-                has_target,
-                target_sum,
-                ideal_sum,
-                tolerance,
-                mean_area,
-                targets,
-            }
-        );
-        mirrors!(
-            run,
-            Part { first, count, omega, sharpness, shape_guard, ring_base, longest, over_guard }
-        );
-        mirrors!(
-            &Kernel::MatrixVector,
-            LevelOp {
-                rows,
-                first,
-                free,
-                ring_base,
-                starts,
-                columns,
-                entries,
-                diagonal,
-                x,
-                right,
-                step,
-                out,
-                a,
-                b,
-                shape_guard,
-                sharpness
-            }
-        );
-        let secants = &Kernel::OpenSecant;
-        mirrors!(secants, SecantOp { free, newer, older, pairs, partials, is_after });
-        for kernel in [run, &Kernel::Publish, &Kernel::Reopen] {
-            mirrors!(
-                kernel,
-                Control { done, evaluated, improved, best_sweep, best_sum, changes, history }
-            );
+        let parsed = |kernel: Kernel| naga::front::wgsl::parse_str(&kernel.wgsl()).unwrap();
+        let modules: Vec<naga::Module> = Kernel::all().into_iter().map(parsed).collect();
+        for SharedStruct { name, size, offsets, .. } in SHARED_STRUCTS {
+            let named = offsets.iter().map(|&(name, offset)| (name.to_owned(), offset));
+            let expected = (*size, named.collect());
+            let found: Vec<_> = modules.iter().filter_map(|m| reflected(m, name)).collect();
+            assert!(!found.is_empty(), "no kernel declares {name}");
+            assert!(found.iter().all(|found| *found == expected), "{name}: {:?}", found[0]);
         }
-        mirrors!(
-            &Kernel::Import,
-            Exchange { zero, vertices, offset, stride, center, scale, inverse_scale }
-        );
-        mirrors!(&Kernel::RestoreLastValid, Restore { zero, first, count });
-        mirrors!(&Kernel::HoldByMask, Mask { vertices, offset });
-        mirrors!(
-            &Kernel::FindShare,
-            Movement { zero, vertices, triangles, worst_imr, offset, stride, share, scale, center }
-        );
-        let check = &Kernel::CheckArithmetic;
-        mirrors!(check, ArithmeticInput { a, b });
-        mirrors!(
-            check,
-            ArithmeticResult { two_sum, pair_add, edge, difference, is_positive, advanced }
-        );
-        let untangle = &Kernel::Untangle;
-        mirrors!(untangle, UntanglePart { first, count, ring_base, free, begins });
-        mirrors!(untangle, Tangle { valid, inverted, depth, epsilon, sweep, since });
-        mirrors!(untangle, TangledVertex { area, reached });
-        mirrors!(&Kernel::Publish, Publish { offset, triangles, judged, ideal_squared });
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{bytes, filled, rows, write_by_pieces};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
+use crate::gpu::kernels::layouts::BoundPositions;
 use crate::gpu::kernels::uniforms::{HELD, split};
 use crate::gpu::mesh::{Changes, Parts, of_part};
 use crate::gpu::scope::scoped;
@@ -72,17 +73,15 @@ impl MeshBuffers {
         })
     }
 
-    /// Returns the binding of the positions. If they take two bindings, returns that of the high parts and that of the
-    /// low parts.
-    pub(crate) fn bind_positions(
-        &self,
-    ) -> (wgpu::BindingResource<'_>, Option<wgpu::BindingResource<'_>>) {
+    /// Returns the binding of the positions or, if they take two bindings, both.
+    pub(crate) fn bind_positions(&self) -> BoundPositions<'_> {
+        let whole = &self.positions;
         match self.parts.low_positions {
-            None => (self.positions.as_entire_binding(), None),
-            Some(low) => (
-                bytes(&self.positions, 0..low),
-                Some(bytes(&self.positions, low..self.positions.size())),
-            ),
+            None => BoundPositions { whole_or_high: whole.as_entire_binding(), low: None },
+            Some(low) => BoundPositions {
+                whole_or_high: bytes(whole, 0..low),
+                low: Some(bytes(whole, low..whole.size())),
+            },
         }
     }
 

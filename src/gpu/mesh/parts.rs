@@ -11,7 +11,7 @@ use crate::error::GpuError;
 use crate::gpu::device::size::{
     NUMBER, POSITION, TRIANGLE, check_limit, check_rows, objective_invocations,
 };
-use crate::gpu::kernels::table::{MeshForm, Positions};
+use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::uniforms::WORKGROUP;
 use crate::layout::Problem;
 use crate::mesh::MeshSize;

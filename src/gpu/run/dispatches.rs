@@ -10,8 +10,9 @@ use crate::gpu::device::buffers::{filled, rows, uniform, zeroed};
 use crate::gpu::device::size::{POSITION, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::layouts::RunBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Control, NO_GUARD, Params, Part, WORKGROUP, pair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::{Parts, of_part};
@@ -78,23 +79,31 @@ impl Uniforms {
 
     fn bytes(&self) -> Vec<u8> {
         let mut parts = Vec::new();
-        let part = |range: &Range<u32>| {
-            let (first, count) = (range.start, range.end - range.start);
-            Part { first, count, ..Part::default() }
-        };
         for step in &self.steps {
             let of_color = |d: &ColorPart| Part {
+                first: d.vertices.start,
+                count: d.vertices.end - d.vertices.start,
                 omega: step.omega as f32,
                 sharpness: step.sharpness,
                 shape_guard: step.shape_guard.min(NO_GUARD) as f32,
                 ring_base: d.ring_base,
                 longest: step.longest as f32,
                 over_guard: step.penalized.recip() as f32,
-                ..part(&d.vertices)
             };
             parts.extend(self.sweep.iter().map(of_color));
         }
-        parts.extend(self.triangles.iter().chain(&self.free).map(part));
+        // The kernels of triangles and of free vertices use no parameters of sweeps.
+        let of_range = |range: &Range<u32>| Part {
+            first: range.start,
+            count: range.end - range.start,
+            omega: 0.0,
+            sharpness: 0,
+            shape_guard: 0.0,
+            ring_base: 0,
+            longest: 0.0,
+            over_guard: 0.0,
+        };
+        parts.extend(self.triangles.iter().chain(&self.free).map(of_range));
         let mut bytes = vec![0; parts.len() * self.stride as usize];
         for (part, chunk) in parts.iter().zip(bytes.chunks_exact_mut(self.stride as usize)) {
             chunk[..size_of::<Part>()].copy_from_slice(bytemuck::bytes_of(part));
@@ -161,24 +170,22 @@ impl Dispatches {
             let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
             let best = zeroed(gpu, "best positions", kept * POSITION, usage);
             let bind_groups = (0..mesh.parts.count()).map(|part| {
-                let (positions, beyond) = mesh.bind_positions();
                 let kept = match keep_best {
                     Some(_) => rows(&best, of_part(&uniforms.free, part), POSITION),
                     None => best.as_entire_binding(),
                 };
-                let mut resources = vec![
-                    params.as_entire_binding(),
-                    uniform::<Part>(&parts),
-                    positions,
-                    mesh.ring_start.as_entire_binding(),
-                    mesh.bind_ring(part),
-                    mesh.bind_triangles(part),
-                    partial_sums.as_entire_binding(),
-                    control.as_entire_binding(),
-                    kept,
-                ];
-                resources.extend(beyond);
-                gpu.pipelines.bind(&gpu.device, Interface::Run, mesh.parts.form(), &resources)
+                let bindings = RunBindings {
+                    params: params.as_entire_binding(),
+                    part: uniform::<Part>(&parts),
+                    positions: mesh.bind_positions(),
+                    ring_start: mesh.ring_start.as_entire_binding(),
+                    ring: mesh.bind_ring(part),
+                    triangles: mesh.bind_triangles(part),
+                    partial_sums: partial_sums.as_entire_binding(),
+                    control: control.as_entire_binding(),
+                    best_positions: kept,
+                };
+                gpu.pipelines.bind(&gpu.device, form, bindings)
             });
             let bind_groups = bind_groups.collect();
             (control, best, params, bind_groups)

@@ -10,7 +10,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::write_by_pieces;
 use crate::gpu::device::readback::{self, Copied, Waiting};
 use crate::gpu::encode::{Passes, sealed::Target};
-use crate::gpu::kernels::uniforms::{Control, HISTORY, LevelOp, SLOTS, join, split, unpair};
+use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::levels::{Fitting, Levels};
@@ -259,8 +259,8 @@ impl Engine for GpuEngine<'_> {
 
     async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
         let free = self.problem.free_count() as u32;
-        let op = LevelOp { free, ..LevelOp::default() }.smoothed(smoothing);
-        stiffness::roots(self.gpu, &self.mesh, &self.dispatches, op, self.waiting).await
+        stiffness::roots(self.gpu, &self.mesh, &self.dispatches, free, smoothing, self.waiting)
+            .await
     }
 
     async fn propose(

@@ -8,9 +8,13 @@ use crate::gpu::device::buffers::{filled, uniform, zeroed};
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::form::MeshForm;
+use crate::gpu::kernels::layouts::{CoarseBindings, FineBindings, TransferBindings};
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel, MeshForm};
-use crate::gpu::kernels::uniforms::{LevelOp, NO_GUARD, SEARCH_STATE, WORKGROUP};
+use crate::gpu::kernels::table::Kernel;
+use crate::gpu::kernels::uniforms::{
+    CoarseOp, FineOp, NO_GUARD, SEARCH_STATE, TransferOp, WORKGROUP,
+};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
 use crate::gpu::run::dispatches::Dispatches;
@@ -55,12 +59,60 @@ pub(crate) enum Fitting {
 
 struct Dispatch {
     pipeline: Pipeline,
-    op: LevelOp,
+    op: Op,
     /// The number of its uniform.
     number: u32,
     /// The number of its bind group.
     bind_group: usize,
     groups: Groups,
+}
+
+/// An operation of a kernel: its uniform.
+#[derive(Clone, Copy)]
+enum Op {
+    Fine(FineOp),
+    Transfer(TransferOp),
+    Coarse(CoarseOp),
+}
+
+impl Op {
+    fn rows(&self) -> u32 {
+        match self {
+            Op::Fine(op) => op.rows,
+            Op::Transfer(op) => op.rows,
+            Op::Coarse(op) => op.rows,
+        }
+    }
+
+    fn bytes(&self) -> &[u8] {
+        match self {
+            Op::Fine(op) => bytemuck::bytes_of(op),
+            Op::Transfer(op) => bytemuck::bytes_of(op),
+            Op::Coarse(op) => bytemuck::bytes_of(op),
+        }
+    }
+}
+
+/// Returns an operation on a coarse level, without its vectors and factors.
+fn coarse_op(rows: u32) -> CoarseOp {
+    CoarseOp {
+        rows,
+        starts: 0,
+        columns: 0,
+        entries: 0,
+        diagonal: 0,
+        x: NONE,
+        right: NONE,
+        last_step: NONE,
+        out: NONE,
+        last_step_factor: 0.0,
+        residual_factor: 0.0,
+        right_factor: 0.0,
+        product_factor: 0.0,
+        partial_sums: NONE,
+        totals: NONE,
+        padding: 0,
+    }
 }
 
 enum Groups {
@@ -100,12 +152,12 @@ impl Listing<'_> {
     }
 
     /// Stores a matrix and the reciprocals of its diagonal, which may be empty.
-    fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, LevelOp), GpuError> {
+    fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, CoarseOp), GpuError> {
         let (structure, [starts, columns]) =
             self.structure.place([matrix.starts(), matrix.columns()])?;
         let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal])?;
-        let rows = matrix.rows() as u32;
-        let op = LevelOp { rows, starts, columns, entries, diagonal, ..LevelOp::default() };
+        let op = coarse_op(matrix.rows() as u32);
+        let op = CoarseOp { starts, columns, entries, diagonal, ..op };
         Ok((Bound::Coarse { structure, values }, op))
     }
 
@@ -114,7 +166,7 @@ impl Listing<'_> {
         kernel: Kernel,
         bound: Bound,
         groups: Groups,
-        op: LevelOp,
+        op: Op,
     ) -> Result<Dispatch, GpuError> {
         let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.form)?;
         let known = self.bound.iter().position(|&known| known == bound);
@@ -140,27 +192,36 @@ impl Listing<'_> {
         let x = self.vector(rows);
         if let Coarser::Direct(inverse) = &level.coarser {
             let (values, [entries]) = self.values.place([&inverse[..]])?;
-            let op = LevelOp { rows: rows as u32, entries, right, out: x, ..LevelOp::default() };
+            let op = CoarseOp { entries, right, out: x, ..coarse_op(rows as u32) };
             let bound = Bound::Coarse { structure: 0, values };
-            list.push(self.step(Kernel::CoarsestSolve, bound, Groups::ForRows, op)?);
+            list.push(self.step(Kernel::CoarsestSolve, bound, Groups::ForRows, Op::Coarse(op))?);
             return Ok(x);
         }
-        let (other, step) = (self.vector(rows), self.vector(rows));
+        let (other, last_step) = (self.vector(rows), self.vector(rows));
         let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
-        let smoother = LevelOp { right, step, ..operator };
+        let smoother = CoarseOp { right, last_step, ..operator };
         // Lists two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, and one on to
         // `to`.
         let smooth = |listing: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
             let [first, again, now] = CHEBYSHEV;
-            let one = LevelOp { x: from, out: over, b: first, ..smoother };
-            let two = LevelOp { x: over, out: to, a: again, b: now, ..smoother };
-            list.push(listing.step(Kernel::Chebyshev, bound, Groups::ForRows, one)?);
-            list.push(listing.step(Kernel::Chebyshev, bound, Groups::ForRows, two)?);
+            let one = CoarseOp { x: from, out: over, residual_factor: first, ..smoother };
+            let two = CoarseOp {
+                x: over,
+                out: to,
+                last_step_factor: again,
+                residual_factor: now,
+                ..smoother
+            };
+            for op in [one, two].map(Op::Coarse) {
+                list.push(listing.step(Kernel::Chebyshev, bound, Groups::ForRows, op)?);
+            }
             Ok::<(), GpuError>(())
         };
         smooth(self, list, [NONE, other, x])?;
         let Coarser::Level { prolongation, restriction } = &level.coarser else { return Ok(x) };
-        let residual = LevelOp { x, out: other, a: 1.0, b: -1.0, ..smoother };
+        let residual =
+            CoarseOp { x, out: other, right_factor: 1.0, product_factor: -1.0, ..smoother };
+        let residual = Op::Coarse(residual);
         list.push(self.step(Kernel::MatrixVector, bound, Groups::ForRows, residual)?);
         let below_right = self.vector(restriction.rows());
         list.push(self.matrix_vector(restriction, other, NONE, below_right)?);
@@ -180,8 +241,8 @@ impl Listing<'_> {
         out: u32,
     ) -> Result<Dispatch, GpuError> {
         let (bound, op) = self.matrix(matrix, &[])?;
-        let op = LevelOp { x, right, out, a: 1.0, b: 1.0, ..op };
-        self.step(Kernel::MatrixVector, bound, Groups::ForRows, op)
+        let op = CoarseOp { x, right, out, right_factor: 1.0, product_factor: 1.0, ..op };
+        self.step(Kernel::MatrixVector, bound, Groups::ForRows, Op::Coarse(op))
     }
 
     /// Creates the buffers, and the bind groups of the listed dispatches. `params` are those of the run on `mesh`.
@@ -198,32 +259,48 @@ impl Listing<'_> {
         let [gradient, direction] =
             ["gradient", "correction"].map(|label| pairs(label, free.into()));
         let bind_groups = self.bound.iter().map(|&bound| {
-            let mut resources = vec![params.as_entire_binding(), uniform::<LevelOp>(&ops)];
-            let fine = [&gradient, &direction].map(wgpu::Buffer::as_entire_binding);
-            let (interface, beyond) = match bound {
+            let params = params.as_entire_binding();
+            let vectors = vectors.as_entire_binding();
+            match bound {
                 Bound::Fine { part } => {
-                    let (positions, beyond) = mesh.bind_positions();
-                    resources.extend([positions, mesh.ring_start.as_entire_binding()]);
-                    resources.extend([mesh.bind_ring(part), mesh.bind_triangles(part)]);
-                    resources.extend(fine);
-                    (Interface::Fine, beyond)
+                    let bindings = FineBindings {
+                        params,
+                        op: uniform::<FineOp>(&ops),
+                        positions: mesh.bind_positions(),
+                        ring_start: mesh.ring_start.as_entire_binding(),
+                        ring: mesh.bind_ring(part),
+                        triangles: mesh.bind_triangles(part),
+                        gradient: gradient.as_entire_binding(),
+                        direction: direction.as_entire_binding(),
+                        vectors,
+                    };
+                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
                 }
                 Bound::Transfer { part, structure: page, values: of_values } => {
-                    resources.extend([mesh.ring_start.as_entire_binding(), mesh.bind_ring(part)]);
-                    resources.push(structure[page].as_entire_binding());
-                    resources.push(values[of_values].as_entire_binding());
-                    resources.extend(fine);
-                    (Interface::Transfer, None)
+                    let bindings = TransferBindings {
+                        params,
+                        op: uniform::<TransferOp>(&ops),
+                        ring_start: mesh.ring_start.as_entire_binding(),
+                        ring: mesh.bind_ring(part),
+                        structure: structure[page].as_entire_binding(),
+                        values: values[of_values].as_entire_binding(),
+                        gradient: gradient.as_entire_binding(),
+                        direction: direction.as_entire_binding(),
+                        vectors,
+                    };
+                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
                 }
                 Bound::Coarse { structure: page, values: of_values } => {
-                    resources.push(structure[page].as_entire_binding());
-                    resources.push(values[of_values].as_entire_binding());
-                    (Interface::Coarse, None)
+                    let bindings = CoarseBindings {
+                        params,
+                        op: uniform::<CoarseOp>(&ops),
+                        structure: structure[page].as_entire_binding(),
+                        values: values[of_values].as_entire_binding(),
+                        vectors,
+                    };
+                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
                 }
-            };
-            resources.push(vectors.as_entire_binding());
-            resources.extend(beyond);
-            gpu.pipelines.bind(&gpu.device, interface, self.form, &resources)
+            }
         });
         let bind_groups = bind_groups.collect();
         Uploaded { bind_groups, ops, vectors, gradient, direction }
@@ -263,81 +340,108 @@ impl Levels {
             listed: 0,
         };
         let partials = objective_invocations(problem.triangles().len());
-        let sums = listing.vector(4 * partials as usize);
+        let partial_sums = listing.vector(4 * partials as usize);
 
-        let (values, [entries, diagonal]) =
+        let (values, [roots, diagonal]) =
             listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
-        let (of_page, [of]) = listing.structure.place([hierarchy.aggregate_of()])?;
-        let (members, [starts, columns]) =
+        let (of_page, [aggregate_of]) = listing.structure.place([hierarchy.aggregate_of()])?;
+        let (members_page, [member_starts, members]) =
             listing.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
         let right = listing.vector(aggregates as usize);
         let free = problem.free_count() as u32;
-        let step = match fitting {
+        let present_roots = match fitting {
             Fitting::ByHost => NONE,
             Fitting::EachTime => listing.vector(problem.free_count()),
         };
-        let fine = LevelOp { rows: free, free, entries, diagonal, step, ..LevelOp::default() };
-        // Lists an operation on the free vertices, with one dispatch for each part of the one-rings.
-        let by_rings =
-            |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: LevelOp| {
-                for (part, RingPart { vertices, entries }) in mesh.parts.rings.iter().enumerate() {
-                    let rows = vertices.end - vertices.start;
-                    let op =
-                        LevelOp { rows, first: vertices.start, ring_base: entries.start, ..op };
-                    let bound = match kernel.interface() {
-                        Interface::Fine => Bound::Fine { part },
-                        _ => Bound::Transfer { part, structure: of_page, values },
-                    };
+        let fine = FineOp {
+            rows: free,
+            first: 0,
+            free,
+            ring_base: 0,
+            present_roots,
+            unbroken: SUMS,
+            partial_sums,
+            length: 0.0,
+            shape_guard: guard,
+            sharpness: 0,
+            over_guard: 0.0,
+            padding: 0,
+        };
+        let transfer = TransferOp {
+            rows: free,
+            first: 0,
+            free,
+            ring_base: 0,
+            aggregate_of,
+            member_starts,
+            members,
+            roots,
+            diagonal,
+            present_roots,
+            right,
+            solution: NONE,
+        };
+        // List an operation on the free vertices, with one dispatch for each part of the one-rings.
+        let rings = || mesh.parts.rings.iter().enumerate();
+        let fine_by_rings = |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel| {
+            for (part, RingPart { vertices, entries }) in rings() {
+                let (rows, first) = (vertices.end - vertices.start, vertices.start);
+                let op = Op::Fine(FineOp { rows, first, ring_base: entries.start, ..fine });
+                let bound = Bound::Fine { part };
+                list.push(listing.step(kernel.clone(), bound, Groups::ForRows, op)?);
+            }
+            Ok::<(), GpuError>(())
+        };
+        let transfer_by_rings =
+            |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: TransferOp| {
+                for (part, RingPart { vertices, entries }) in rings() {
+                    let (rows, first) = (vertices.end - vertices.start, vertices.start);
+                    let op = TransferOp { rows, first, ring_base: entries.start, ..op };
+                    let bound = Bound::Transfer { part, structure: of_page, values };
+                    let op = Op::Transfer(op);
                     list.push(listing.step(kernel.clone(), bound, Groups::ForRows, op)?);
                 }
                 Ok::<(), GpuError>(())
             };
 
         let mut find_gradient = Vec::new();
-        by_rings(&mut listing, &mut find_gradient, Kernel::Gradient(metric), fine)?;
+        fine_by_rings(&mut listing, &mut find_gradient, Kernel::Gradient(metric))?;
         let mut correction = Vec::new();
-        by_rings(&mut listing, &mut correction, Kernel::SmoothGradient, fine)?;
-        let op = LevelOp { rows: aggregates, starts, columns, out: right, ..fine };
-        let bound = Bound::Transfer { part: 0, structure: members, values };
+        transfer_by_rings(&mut listing, &mut correction, Kernel::SmoothGradient, transfer)?;
+        let op = Op::Transfer(TransferOp { rows: aggregates, ..transfer });
+        let bound = Bound::Transfer { part: 0, structure: members_page, values };
         correction.push(listing.step(Kernel::Restrict, bound, Groups::ForRows, op)?);
         let solution = listing.solve(hierarchy.levels(), right, &mut correction)?;
-        let op = LevelOp { starts: of, x: solution, ..fine };
-        by_rings(&mut listing, &mut correction, Kernel::Prolong, op)?;
+        let op = TransferOp { solution, ..transfer };
+        transfer_by_rings(&mut listing, &mut correction, Kernel::Prolong, op)?;
 
         let mut left_out = Vec::new();
+        let (whole, everywhere) = (Bound::Fine { part: 0 }, Op::Fine(fine));
         if guard < NO_GUARD as f32 {
             // Between cycles these vectors hold nothing that is still needed.
             listing.vectors = listing.vectors.max(SUMS + free);
-            let find = LevelOp { out: SUMS, shape_guard: guard, ..fine };
-            let leave = LevelOp { x: SUMS, ..fine };
-            let bound = Bound::Fine { part: 0 };
-            by_rings(&mut listing, &mut left_out, Kernel::FindBroken, find)?;
+            fine_by_rings(&mut listing, &mut left_out, Kernel::FindBroken)?;
             let kernel = Kernel::LeaveOutBroken;
-            left_out.push(listing.step(kernel, bound, Groups::ForRows, leave)?);
+            left_out.push(listing.step(kernel, whole, Groups::ForRows, everywhere)?);
         }
 
         let mut objective = Vec::new();
         for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
             let (rows, first) = (triangles.end - triangles.start, triangles.start);
-            let op = LevelOp { rows, first, out: sums, shape_guard: guard, ..fine };
             let groups = Groups::Just(partials / WORKGROUP);
             objective.push(listing.step(
                 Kernel::ObjectiveAlongCorrection(metric),
                 Bound::Fine { part },
                 groups,
-                op,
+                Op::Fine(FineOp { rows, first, ..fine }),
             )?);
         }
-        let op = LevelOp { rows: partials, x: sums, out: TOTALS, ..LevelOp::default() };
+        let op = Op::Coarse(CoarseOp { partial_sums, totals: TOTALS, ..coarse_op(partials) });
         let bound = Bound::Coarse { structure: 0, values: 0 };
         let sum = listing.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
-        let movement = listing.step(
-            Kernel::MoveAlongCorrection,
-            Bound::Fine { part: 0 },
-            Groups::ForRows,
-            fine,
-        )?;
+        let kernel = Kernel::MoveAlongCorrection;
+        let movement = listing.step(kernel, whole, Groups::ForRows, everywhere)?;
 
         let limits = gpu.device.limits();
         let what = || "the vectors of the coarse levels".to_owned();
@@ -346,12 +450,14 @@ impl Levels {
         check_limit("max_storage_buffer_binding_size", bound, &what, bytes)?;
 
         let alignment = limits.min_uniform_buffer_offset_alignment;
-        let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
+        let largest = size_of::<FineOp>().max(size_of::<TransferOp>()).max(size_of::<CoarseOp>());
+        let stride = (largest as u32).next_multiple_of(alignment);
         let mut ops = vec![0u8; (stride * listing.listed) as usize];
         let listed = find_gradient.iter().chain(&correction).chain(&left_out).chain(&objective);
         for step in listed.chain([&sum, &movement]) {
             let at = (step.number * stride) as usize;
-            ops[at..at + size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&step.op));
+            let op = step.op.bytes();
+            ops[at..at + op.len()].copy_from_slice(op);
         }
         let Uploaded { bind_groups, ops, vectors, gradient, direction } =
             scoped(&gpu.device, || listing.upload(mesh, free, &dispatches.params, &ops))?;
@@ -431,9 +537,13 @@ impl Levels {
     }
 
     fn write(&self, gpu: &Gpu, step: &Dispatch, length: f32) {
-        let op = LevelOp { a: length, ..step.op }.smoothed(self.smoothing);
+        let op = match step.op {
+            Op::Fine(op) => Op::Fine(FineOp { length, ..op }.smoothed(self.smoothing)),
+            // These have neither a length nor a metric.
+            Op::Transfer(_) | Op::Coarse(_) => step.op,
+        };
         let at = u64::from(step.number * self.stride);
-        gpu.queue.write_buffer(&self.ops, at, bytemuck::bytes_of(&op));
+        gpu.queue.write_buffer(&self.ops, at, op.bytes());
     }
 
     fn encode(&self, passes: &mut Passes<'_>, step: &Dispatch) {
@@ -441,7 +551,7 @@ impl Levels {
             let uniform = step.number * self.stride;
             pass.set_bind_group(0, &self.bind_groups[step.bind_group], &[uniform]);
             match step.groups {
-                Groups::ForRows => dispatch(pass, step.op.rows),
+                Groups::ForRows => dispatch(pass, step.op.rows()),
                 Groups::Just(groups) => pass.dispatch_workgroups(groups, 1, 1),
             }
         });

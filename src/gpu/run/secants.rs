@@ -9,8 +9,9 @@ use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::objective_invocations;
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::layouts::SecantsBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
-use crate::gpu::kernels::table::{Interface, Kernel};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{SecantOp, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::levels::Levels;
@@ -63,7 +64,15 @@ impl Secants {
         let open = pipeline(Kernel::OpenSecant)?;
         let partials = objective_invocations(free as usize);
         // The first pair opens in the slot of the older one.
-        let op = SecantOp { free, newer: free, partials, ..SecantOp::default() };
+        let op = SecantOp {
+            free,
+            newer: free,
+            older: 0,
+            pairs: 0,
+            partials,
+            is_after: 0,
+            padding: [0; 2],
+        };
         let alignment = limits.min_uniform_buffer_offset_alignment;
         let stride = (size_of::<SecantOp>() as u32).next_multiple_of(alignment);
         let (bind_group, ops, buffers) = scoped(&gpu.device, || {
@@ -204,12 +213,16 @@ fn bound(
     buffers: &[wgpu::Buffer; 4],
 ) -> wgpu::BindGroup {
     let [steps, changes, low_starts, sums] = buffers;
-    let (positions, beyond) = mesh.bind_positions();
-    let mut resources = vec![params.as_entire_binding(), uniform::<SecantOp>(ops), positions];
-    let vectors = [&levels.gradient, &levels.direction, steps, changes, low_starts];
-    resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
-    resources.push(sums.as_entire_binding());
-    resources.extend(beyond);
-    let form = mesh.parts.form();
-    gpu.pipelines.bind(&gpu.device, Interface::Secants, form, &resources)
+    let bindings = SecantsBindings {
+        params: params.as_entire_binding(),
+        op: uniform::<SecantOp>(ops),
+        positions: mesh.bind_positions(),
+        gradient: levels.gradient.as_entire_binding(),
+        direction: levels.direction.as_entire_binding(),
+        steps: steps.as_entire_binding(),
+        changes: changes.as_entire_binding(),
+        low_starts: low_starts.as_entire_binding(),
+        sums: sums.as_entire_binding(),
+    };
+    gpu.pipelines.bind(&gpu.device, mesh.parts.form(), bindings)
 }

@@ -8,40 +8,56 @@ use crate::gpu::device::buffers::{filled, uniform, zeroed};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::encode::sealed::Target;
 use crate::gpu::kernels::dispatch::dispatch;
-use crate::gpu::kernels::table::{Interface, Kernel};
-use crate::gpu::kernels::uniforms::LevelOp;
+use crate::gpu::kernels::layouts::FineBindings;
+use crate::gpu::kernels::table::Kernel;
+use crate::gpu::kernels::uniforms::{FineOp, NO_GUARD};
 use crate::gpu::mesh::{MeshBuffers, RingPart};
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::scope::scoped;
+use crate::metric::Smoothing;
+use crate::run::multilevel::NONE;
 
-/// The root of the stiffness at each free vertex, of which `op` has the number and how EDGE is made smooth; see
+/// Computes the square root of the stiffness at each of `free` vertices, with EDGE made smooth by `smoothing`; see
 /// [`Engine::stiffness_roots`](crate::run::Engine::stiffness_roots).
 pub(crate) async fn roots(
     gpu: &Gpu,
     mesh: &MeshBuffers,
     dispatches: &Dispatches,
-    op: LevelOp,
+    free: u32,
+    smoothing: Smoothing,
     waiting: Waiting,
 ) -> Result<Vec<f32>, GpuError> {
     let form = mesh.parts.form();
     let kernel = Kernel::Stiffness(dispatches.plan.scheme.base());
     let pipeline = gpu.pipelines.get(&gpu.device, &kernel, form)?;
     let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
-    let stride = (size_of::<LevelOp>() as u32).next_multiple_of(alignment);
+    let stride = (size_of::<FineOp>() as u32).next_multiple_of(alignment);
     let mut bytes = vec![0_u8; stride as usize * mesh.parts.rings.len()];
     for (RingPart { vertices, entries }, to) in
         mesh.parts.rings.iter().zip(bytes.chunks_exact_mut(stride as usize))
     {
-        let rows = vertices.end - vertices.start;
-        let (first, ring_base) = (vertices.start, entries.start);
-        let op = LevelOp { rows, first, ring_base, ..op };
-        to[..size_of::<LevelOp>()].copy_from_slice(bytemuck::bytes_of(&op));
+        let op = FineOp {
+            rows: vertices.end - vertices.start,
+            first: vertices.start,
+            free,
+            ring_base: entries.start,
+            present_roots: NONE,
+            unbroken: 0,
+            partial_sums: 0,
+            length: 0.0,
+            shape_guard: NO_GUARD as f32,
+            sharpness: 0,
+            over_guard: 0.0,
+            padding: 0,
+        };
+        let op = op.smoothed(smoothing);
+        to[..size_of::<FineOp>()].copy_from_slice(bytemuck::bytes_of(&op));
     }
     let found = scoped(&gpu.device, || {
         let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
-        let size = u64::from(op.free) * size_of::<[f32; 2]>() as u64;
+        let size = u64::from(free) * size_of::<[f32; 2]>() as u64;
         let found = zeroed(gpu, "stiffness", size, Usage::STORAGE | Usage::COPY_SRC);
-        // The kernel does not use these two bindings of its interface.
+        // The kernel does not use these two bindings of its layout.
         let [direction, vectors] = ["no correction", "no vectors"]
             .map(|label| zeroed(gpu, label, size_of::<[f32; 2]>() as u64, Usage::STORAGE));
         let label = "gpu-smooth stiffness";
@@ -49,19 +65,18 @@ pub(crate) async fn roots(
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let mut passes = encoder.passes(label);
         for (part, RingPart { vertices, .. }) in mesh.parts.rings.iter().enumerate() {
-            let (high, low) = mesh.bind_positions();
-            let mut resources = vec![
-                dispatches.params.as_entire_binding(),
-                uniform::<LevelOp>(&ops),
-                high,
-                mesh.ring_start.as_entire_binding(),
-                mesh.bind_ring(part),
-                mesh.bind_triangles(0),
-            ];
-            let vectors = [&found, &direction, &vectors];
-            resources.extend(vectors.map(wgpu::Buffer::as_entire_binding));
-            resources.extend(low);
-            let bound = gpu.pipelines.bind(&gpu.device, Interface::Fine, form, &resources);
+            let bindings = FineBindings {
+                params: dispatches.params.as_entire_binding(),
+                op: uniform::<FineOp>(&ops),
+                positions: mesh.bind_positions(),
+                ring_start: mesh.ring_start.as_entire_binding(),
+                ring: mesh.bind_ring(part),
+                triangles: mesh.bind_triangles(0),
+                gradient: found.as_entire_binding(),
+                direction: direction.as_entire_binding(),
+                vectors: vectors.as_entire_binding(),
+            };
+            let bound = gpu.pipelines.bind(&gpu.device, form, bindings);
             passes.run(&pipeline, None, |pass| {
                 pass.set_bind_group(0, &bound, &[part as u32 * stride]);
                 dispatch(pass, vertices.end - vertices.start);
@@ -71,6 +86,6 @@ pub(crate) async fn roots(
         gpu.queue.submit([encoder.finish()]);
         found
     })?;
-    let roots: Vec<[f32; 2]> = readback::read(gpu, &found, op.free as usize, waiting).await?;
+    let roots: Vec<[f32; 2]> = readback::read(gpu, &found, free as usize, waiting).await?;
     Ok(roots.into_iter().map(|[root, _]| root).collect())
 }
