@@ -1,7 +1,13 @@
 //! Quality measures compared with independent formulas, known triangles, and plain loops.
 
+#[allow(dead_code)]
+#[path = "metrics/oracles.rs"]
+mod oracles;
 #[path = "support/mod.rs"]
 mod support;
+#[allow(dead_code)]
+#[path = "metrics/triangles.rs"]
+mod triangles;
 
 use gpu_smooth::{
     Better, Definition, Measure, Measured, Mesh, Metric, QUANTILES, Statistics, Topology,
@@ -67,17 +73,8 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
         Measure::Shape => 1.0 / condition,
         Measure::Skewness => ((most - third) / (2.0 * third)).max((third - least) / third),
         Measure::SizeRatio => 1.0,
-        Measure::Metric(Metric::Edge) => longest / a.min(b).min(c),
-        Measure::Metric(Metric::Imr | Metric::Ar) => {
-            (a * a + b * b + c * c) / (4.0 * 3f64.sqrt() * area)
-        }
-        // The mesh is this triangle alone, so its area is the mean area. With det T = 1, |T|² is twice the inverse mean ratio.
-        Measure::Metric(Metric::Area) => 0.0,
-        Measure::Metric(Metric::Rms) => condition.sqrt(),
-        Measure::Metric(Metric::ShapeSize) => (4.0 * condition - 4.0).max(0.0).sqrt(),
-        // Only the shape differs from the ideal, as the area is the mean area.
-        Measure::Metric(Metric::Tmop80) => (0.5 * (condition - 1.0)).max(0.0).sqrt(),
-        Measure::Metric(Metric::Tmop94 | Metric::SoftSize) => (condition - 1.0).max(0.0).sqrt(),
+        // The mesh is this triangle alone, so its area is the mean area.
+        Measure::Metric(metric) => oracles::quality(metric, [a, b, c], area, area),
     }
 }
 
@@ -364,26 +361,126 @@ fn histograms_worst_triangles_and_counts_are_those_of_the_values() {
     assert!(measured.value(Measure::Shape, mesh.triangles.len()).is_nan());
 }
 
+/// Returns the text of a document of the repository, without carriage returns.
+fn document(name: &str) -> String {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    std::fs::read_to_string(path).unwrap().replace("\r\n", "\n")
+}
+
+/// Returns the rows of the table whose first row begins with `head`.
+fn table<'d>(document: &'d str, head: &str) -> Vec<&'d str> {
+    let (_, rest) =
+        document.split_once(&format!("\n{head}")).unwrap_or_else(|| panic!("no {head}"));
+    rest.lines().skip(2).take_while(|line| line.starts_with('|')).collect()
+}
+
+/// Returns a number as documents have it, without the digits that only rounding has made.
+fn shown(number: f64) -> String {
+    if number.is_infinite() { "∞".to_owned() } else { format!("{}", number as f32) }
+}
+
 /// The table of docs/quality.md has one row for each measure, with the text of its definition, and no other row.
 #[test]
 fn the_document_has_the_definitions() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/quality.md");
-    let document = std::fs::read_to_string(path).unwrap();
-    let (_, rest) = document.split_once("\n| measure | ").unwrap();
-    let told: Vec<&str> = rest.lines().skip(2).take_while(|line| line.starts_with('|')).collect();
+    let document = document("docs/quality.md");
+    let found = table(&document, "| measure | ");
     let row = |measure: &Measure| {
-        let Definition { name, formula, range: [least, most], ideal, better, source, .. } =
-            measure.definition();
+        let Definition { name, formula, range, ideal, better, source, .. } = measure.definition();
         let formula = formula.replace('|', "\\|");
-        let most = if most.is_finite() { most.to_string() } else { "∞".into() };
         let better = if better == Better::Higher { "higher" } else { "lower" };
         let source = if source.contains("SAND2007-1751") { "Verdict" } else { source };
+        let ([least, most], ideal) = (range.map(shown), shown(ideal));
         format!(
             "| `{name}` | {formula} | {least} to {most} | {ideal}, {better} is better | {source} |"
         )
     };
     let expected: Vec<String> = Measure::ALL.iter().map(row).collect();
-    assert_eq!(told, expected);
+    for (i, expected) in expected.iter().enumerate() {
+        let line = i + 1;
+        let is_there = found.get(i).is_some_and(|found| found == expected);
+        assert!(
+            is_there,
+            "row {line} of the table of measures in docs/quality.md must be:\n{expected}"
+        );
+    }
+    assert_eq!(found[expected.len()..], [""; 0], "docs/quality.md has rows that no measure has");
+}
+
+/// Returns the names in code quotes of a text, in order.
+fn quoted(text: &str) -> Vec<&str> {
+    text.split('`').skip(1).step_by(2).collect()
+}
+
+fn sorted_names<'n>(names: impl IntoIterator<Item = &'n str>) -> Vec<&'n str> {
+    let mut names: Vec<_> = names.into_iter().collect();
+    names.sort_unstable();
+    names
+}
+
+/// The names of the metrics that are as wanted, sorted.
+fn names_of(is_wanted: impl Fn(&Metric) -> bool) -> Vec<&'static str> {
+    let wanted = Metric::ALL.iter().copied().filter(|metric| is_wanted(metric));
+    sorted_names(wanted.map(|metric| metric.name()))
+}
+
+#[test]
+fn the_guide_has_a_row_for_each_metric() {
+    let document = document("docs/guide.md");
+    let rows = table(&document, "| name | q | good for |");
+    let first = |row: &'_ str| row.split('|').nth(1).unwrap().to_owned();
+    let cells: Vec<String> = rows.iter().map(|row| first(row)).collect();
+    let found = sorted_names(cells.iter().flat_map(|cell| quoted(cell)));
+    for metric in Metric::ALL {
+        let row = metric.properties();
+        let line =
+            format!("| `{}` | {} | {} |", row.name, row.formula.replace('|', "\\|"), row.purpose);
+        assert!(
+            found.contains(&row.name),
+            "the table of metrics in docs/guide.md needs a row such as\n{line}"
+        );
+    }
+    assert_eq!(found, names_of(|_| true), "docs/guide.md has rows that no metric has");
+}
+
+#[test]
+fn the_guide_names_the_metrics_without_a_barrier() {
+    let document = document("docs/guide.md");
+    let (_, rest) = document.split_once("**Barriers.** All metrics but ").unwrap();
+    let (sentence, _) = rest.split_once(" grow without bound").unwrap();
+    let expected = names_of(|metric| !metric.properties().barrier);
+    let told =
+        "the paragraph **Barriers.** of docs/guide.md must name the metrics without a barrier";
+    assert_eq!(sorted_names(quoted(sentence)), expected, "{told}");
+}
+
+#[test]
+fn the_page_of_targets_has_a_row_for_each_metric_of_sizes_with_a_barrier() {
+    let document = document("docs/targets.md");
+    let rows = table(&document, "| name | q² | sizes weigh |");
+    let found = sorted_names(rows.iter().map(|row| quoted(row)[0]));
+    let sees_sizes =
+        |metric: &Metric| !metric.properties().scale_invariant && metric.properties().barrier;
+    let told =
+        "the table of metrics that see sizes in docs/targets.md needs a row for each of these";
+    assert_eq!(found, names_of(sees_sizes), "{told}");
+}
+
+/// No number of metrics or measures stands in these documents, as it would be forgotten.
+#[test]
+fn documents_do_not_count_metrics() {
+    const NUMBERS: [&str; 8] = ["five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
+    for name in
+        ["README.md", "ARCHITECTURE.md", "docs/guide.md", "docs/quality.md", "docs/targets.md"]
+    {
+        let text = document(name).to_lowercase();
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let counts = words.windows(2).filter(|pair| {
+            let is_number = NUMBERS.contains(&pair[0]) || pair[0].parse::<u32>().is_ok();
+            is_number && pair[1].starts_with("metrics")
+        });
+        let found: Vec<_> = counts.collect();
+        assert!(found.is_empty(), "{name} counts metrics, which are more with each row: {found:?}");
+    }
 }
 
 #[test]

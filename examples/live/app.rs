@@ -220,7 +220,10 @@ impl App {
         ];
         let help = vec![
             line("drag", "a vertex, or the edge of a hole"),
-            line("1 2 3 4 5", "edge, area, rms, imr, ar"),
+            (
+                "1 2 3 4 5",
+                Metric::ALL[..5].iter().map(|metric| metric.name()).collect::<Vec<_>>().join(", "),
+            ),
             line("A", "alternate with imr"),
             ("F", format!("hand: {hand}")),
             ("+ -", format!("sweeps for {} ms in a frame", BUDGETS[self.budget] as f64 / 1e3)),

@@ -112,6 +112,16 @@ pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
 }
 
 impl Format {
+    /// Returns the endings of the names of files in this format, the usual one first. Some endings are whole names, such as `fort.14`.
+    pub fn endings(self) -> &'static [&'static str] {
+        Family::of(self).endings
+    }
+
+    /// Returns a name of the formats that are read alike: `gmsh` for all of its versions, as text and in binary.
+    pub fn family(self) -> &'static str {
+        Family::of(self).name
+    }
+
     /// Returns the name of a format whose files end as `path` does, compressed or not, in capital or small letters. The format
     /// need not be one that is read. `None` if the ending is that of no mesh.
     pub fn name_of_ending(path: &Path) -> Option<&'static str> {

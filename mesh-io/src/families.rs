@@ -16,8 +16,7 @@ const fn reader<W: Walk>() -> Reader {
     Reader::of::<W>()
 }
 
-/// A row of the table: formats that one reader reads, or a format that only messages name. To add a format, add a row,
-/// a variant of [`Format`], and a file with its [`Walk`].
+/// A row of the table: formats that one reader reads, or a format that only messages name.
 pub(crate) struct Family {
     pub(crate) name: &'static str,
     /// Endings of file names that belong to this format, the usual one first.
@@ -32,44 +31,6 @@ pub(crate) struct Family {
 }
 
 impl Family {
-    /// Returns the row of a format.
-    pub(crate) fn of(format: Format) -> &'static Family {
-        match format {
-            Format::Triangle => &TRIANGLE,
-            Format::Gmsh22
-            | Format::Gmsh22Binary
-            | Format::Gmsh40
-            | Format::Gmsh40Binary
-            | Format::Gmsh41
-            | Format::Gmsh41Binary => &GMSH,
-            Format::Vtk | Format::VtkBinary => &VTK,
-            Format::Vtu => &VTK_XML,
-            Format::Vtp => &VTK_XML_POLYGONS,
-            Format::Su2 => &SU2,
-            Format::Medit => &MEDIT,
-            Format::MeditBinary => &MEDIT_BINARY,
-            Format::Obj => &OBJ,
-            Format::Off => &OFF,
-            Format::Ply | Format::PlyBinary => &PLY,
-            Format::Adcirc => &ADCIRC,
-            Format::Sms2dm => &SMS,
-            Format::Mike => &MIKE,
-            Format::Fvcom => &FVCOM,
-            Format::Mfem => &MFEM,
-            Format::Jigsaw => &JIGSAW,
-            Format::FreeFem => &FREEFEM,
-            Format::Selafin => &SELAFIN,
-            Format::Stl | Format::StlBinary => &STL,
-            Format::Exodus => &EXODUS,
-            Format::Ugrid => &UGRID,
-            Format::Med => &MED,
-            Format::Cgns => &CGNS,
-            Format::Xdmf => &XDMF,
-            Format::Abaqus => &ABAQUS,
-            Format::Nastran => &NASTRAN,
-        }
-    }
-
     /// Whether meshes of this format are read.
     pub(crate) fn is_read(&self) -> bool {
         self.reader.is_some()
@@ -101,191 +62,217 @@ const fn unread(
     Family { name, endings, opens, reader: None, instead }
 }
 
-pub(crate) static TRIANGLE: Family =
-    family("Triangle .node/.ele", &[".node", ".ele"], &[], reader::<triangle::Triangle>());
-static GMSH: Family =
-    family("gmsh", &[".msh"], &[b"$MeshFormat", b"$Comments"], reader::<gmsh::Gmsh>());
-static VTK: Family = family(
-    "legacy VTK",
-    &[".vtk"],
-    &[b"# vtk DataFile", b"# VTK DataFile"],
-    reader::<legacy::Vtk>(),
-);
-static SU2: Family =
-    family("SU2", &[".su2"], &[b"NDIME", b"NZONE", b"IZONE", b"NELEM"], reader::<su2::read::Su2>());
-static MEDIT: Family =
-    family("Medit", &[".mesh"], &[b"MeshVersionFormatted"], reader::<medit::text::Medit>());
-static MEDIT_BINARY: Family = family(
-    "binary Medit",
-    &[".meshb"],
-    &[&[1, 0, 0, 0], &[0, 0, 0, 1]],
-    reader::<medit::binary::MeditBinary>(),
-);
-static OBJ: Family = family(
-    "Wavefront OBJ",
-    &[".obj"],
-    &[b"v ", b"v\t", b"mtllib ", b"o ", b"g ", b"vn ", b"vt "],
-    reader::<obj::Obj>(),
-);
-static OFF: Family =
-    family("OFF", &[".off"], &[b"OFF", b"COFF", b"NOFF", b"CNOFF"], reader::<off::Off>());
-pub(crate) static ADCIRC: Family = family(
-    "ADCIRC or SCHISM grid",
-    &["fort.14", ".14", ".gr3", ".grd"],
-    &[],
-    reader::<adcirc::Adcirc>(),
-);
-static SMS: Family =
-    family("SMS 2dm", &[".2dm"], &[b"MESH2D", b"mesh2d", b"Mesh2D"], reader::<sms::Sms>());
-pub(crate) static MIKE: Family =
-    family("MIKE (DHI)", &[".mesh"], &[b"100079 ", b"100079\t"], reader::<mike::Mike>());
-static MFEM: Family = family("MFEM", &[".mesh"], &[b"MFEM mesh"], reader::<mfem::Mfem>());
-static FVCOM: Family = family("FVCOM", &["_grd.dat"], &[b"Node Number"], reader::<fvcom::Fvcom>());
-static JIGSAW: Family =
-    family("JIGSAW", &[".msh"], &[b"MSHID", b"mshid"], reader::<jigsaw::Jigsaw>());
-pub(crate) static FREEFEM: Family =
-    family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
-static SELAFIN: Family = family(
-    "SELAFIN",
-    &[".slf", ".sel", ".selafin"],
-    &[&[0, 0, 0, 80], &[80, 0, 0, 0]],
-    reader::<selafin::Selafin>(),
-);
-static VTK_XML: Family =
-    family("VTK XML", &[".vtu", ".pvtu", ".pvd"], &[b"<VTKFile"], reader::<xml::Vtu>());
-static VTK_XML_POLYGONS: Family =
-    family("VTK XML polygons", &[".vtp"], &[b"<VTKFile"], reader::<xml::Vtu>());
-pub(crate) static STL: Family =
-    family("STL", &[".stl"], &[b"solid ", b"solid\n", b"solid\r"], reader::<stl::Stl>());
-static PLY: Family = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
-static EXODUS: Family = family(
-    "Exodus II",
-    &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc", ".nc4", ".h5", ".hdf5"],
-    &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
-    reader::<exodus::Exodus>(),
-);
-static UGRID: Family = family(
-    "UGRID",
-    &[".nc", ".nc4", ".h5", ".hdf5"],
-    &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
-    reader::<ugrid::Ugrid>(),
-);
-static MED: Family = family("MED", &[".med", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<med::Med>());
-/// Any of those in HDF5 or netCDF, where the ending does not tell which.
-static CONTAINER: Family = family(
-    "HDF5 or netCDF",
-    &[".h5", ".hdf5", ".nc", ".nc4"],
-    &[b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05"],
-    reader::<container::Container>(),
-);
-static CGNS: Family =
-    family("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
-pub(crate) static XDMF: Family =
-    family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
-static ABAQUS: Family = family(
-    "Abaqus",
-    &[".inp"],
-    &[
-        b"**",
-        b"*HEADING",
-        b"*Heading",
-        b"*heading",
-        b"*NODE",
-        b"*Node",
-        b"*node",
-        b"*PART",
-        b"*Part",
-        b"*INCLUDE",
-        b"*Include",
-    ],
-    reader::<abaqus::Abaqus>(),
-);
-pub(crate) static NASTRAN: Family =
-    family("Nastran", &[".bdf", ".nas"], &[b"BEGIN BULK"], reader::<nastran::Nastran>());
-static GMSH_1: Family =
-    unread("gmsh 1", &[], &[b"$NOD\n", b"$NOD\r"], "Open it in gmsh, and save it as version 4.1");
-
-static UNV: Family =
-    unread("I-DEAS universal", &[".unv"], &[], "Open it in gmsh, and save it as .msh");
-static LS_DYNA: Family =
-    unread("LS-DYNA", &[".k", ".key"], &[b"*KEYWORD", b"$# LS-DYNA"], BY_OTHERS);
-static FLUENT: Family =
-    unread("Fluent", &[".cas"], &[b"(0 \"", b"(1 \"", b"(2 2)", b"(2 3)"], BY_MESHIO);
-static MFEM_OTHER: Family = unread(
-    "nonconforming, NURBS or inline MFEM",
-    &[],
-    &[b"MFEM NC mesh", b"MFEM NURBS", b"MFEM INLINE"],
-    "Save it as VTK: Mesh::PrintVTK of MFEM",
-);
-static DOLFIN: Family = unread("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
-static COMSOL: Family =
-    unread("COMSOL", &[".mphtxt", ".mphbin"], &[b"# Created by COMSOL"], "Export the mesh as VTK");
-static TECPLOT: Family =
-    unread("Tecplot", &[".plt"], &[b"TITLE =", b"TITLE=", b"VARIABLES", b"#!TD"], BY_MESHIO);
-static AVS: Family = unread("AVS-UCD", &[".avs", ".ucd"], &[], BY_MESHIO);
-static NETGEN: Family = unread("Netgen", &[".vol"], &[b"mesh3d"], BY_MESHIO);
-static FLAC: Family = unread("FLAC3D", &[".f3grid"], &[b"* FLAC3D", b"* GRIDPOINTS"], BY_MESHIO);
-static PERMAS: Family = unread("PERMAS", &[".post"], &[b"!PERMAS"], BY_MESHIO);
-static AFLR3: Family = unread("AFLR3 UGRID", &[".ugrid"], &[], BY_MESHIO);
-static RADIOSS: Family =
-    unread("Radioss", &[".rad"], &[b"#RADIOSS"], "Save the mesh as gmsh, VTK or SU2");
-static X3D: Family = unread("X3D", &[".x3d"], &[b"<X3D"], "Save the mesh as PLY, OBJ or OFF");
-static GEOMETRY: Family = unread(
-    "a geometry without a mesh (CAD or .geo)",
-    &[".step", ".stp", ".iges", ".igs", ".brep", ".geo"],
-    &[b"ISO-10303-21"],
-    "Mesh it first, with gmsh for example",
-);
-
 /// The remedy for a format that meshio reads.
 const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for example";
 /// The remedy for a format that no common converter reads.
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
-/// Every family, in the order in which contents are compared with them.
-pub(crate) static FAMILIES: [&Family; 44] = [
-    &TRIANGLE,
-    &GMSH,
-    &VTK,
-    &SU2,
-    &MEDIT,
-    &MEDIT_BINARY,
-    &OBJ,
-    &OFF,
-    &ADCIRC,
-    &SMS,
-    &MIKE,
-    &FVCOM,
-    &MFEM,
-    &JIGSAW,
-    &FREEFEM,
-    &SELAFIN,
-    &VTK_XML,
-    &VTK_XML_POLYGONS,
-    &STL,
-    &PLY,
-    &CONTAINER,
-    &EXODUS,
-    &UGRID,
-    &MED,
-    &CGNS,
-    &XDMF,
-    &ABAQUS,
-    &NASTRAN,
-    &GMSH_1,
-    &UNV,
-    &LS_DYNA,
-    &FLUENT,
-    &MFEM_OTHER,
-    &DOLFIN,
-    &COMSOL,
-    &TECPLOT,
-    &AVS,
-    &NETGEN,
-    &FLAC,
-    &PERMAS,
-    &AFLR3,
-    &RADIOSS,
-    &X3D,
-    &GEOMETRY,
-];
+/// Makes a static for each row, their list [`FAMILIES`], and [`Family::of`], which does not compile if a format is in no row.
+macro_rules! families {
+    ($($(#[$doc:meta])* $row:ident [$($format:ident),*] = $family:expr;)*) => {
+        $($(#[$doc])* pub(crate) static $row: Family = $family;)*
+
+        /// Every family, in the order in which contents are compared with them.
+        pub(crate) static FAMILIES: &[&Family] = &[$(&$row),*];
+
+        impl Family {
+            /// Returns the row of a format.
+            pub(crate) fn of(format: Format) -> &'static Family {
+                match format {
+                    $($(Format::$format => &$row,)*)*
+                }
+            }
+        }
+    };
+}
+
+// Contents are compared with the rows in this order. In brackets are the formats of a row.
+families! {
+    TRIANGLE [Triangle] = family(
+        "Triangle .node/.ele",
+        &[".node", ".ele"],
+        &[],
+        reader::<triangle::Triangle>(),
+    );
+    GMSH [Gmsh22, Gmsh22Binary, Gmsh40, Gmsh40Binary, Gmsh41, Gmsh41Binary] = family(
+        "gmsh",
+        &[".msh"],
+        &[b"$MeshFormat", b"$Comments"],
+        reader::<gmsh::Gmsh>(),
+    );
+    VTK [Vtk, VtkBinary] = family(
+        "legacy VTK",
+        &[".vtk"],
+        &[b"# vtk DataFile", b"# VTK DataFile"],
+        reader::<legacy::Vtk>(),
+    );
+    SU2 [Su2] = family(
+        "SU2",
+        &[".su2"],
+        &[b"NDIME", b"NZONE", b"IZONE", b"NELEM"],
+        reader::<su2::read::Su2>(),
+    );
+    MEDIT [Medit] = family(
+        "Medit",
+        &[".mesh"],
+        &[b"MeshVersionFormatted"],
+        reader::<medit::text::Medit>(),
+    );
+    MEDIT_BINARY [MeditBinary] = family(
+        "binary Medit",
+        &[".meshb"],
+        &[&[1, 0, 0, 0], &[0, 0, 0, 1]],
+        reader::<medit::binary::MeditBinary>(),
+    );
+    OBJ [Obj] = family(
+        "Wavefront OBJ",
+        &[".obj"],
+        &[b"v ", b"v\t", b"mtllib ", b"o ", b"g ", b"vn ", b"vt "],
+        reader::<obj::Obj>(),
+    );
+    OFF [Off] = family(
+        "OFF",
+        &[".off"],
+        &[b"OFF", b"COFF", b"NOFF", b"CNOFF"],
+        reader::<off::Off>(),
+    );
+    ADCIRC [Adcirc] = family(
+        "ADCIRC or SCHISM grid",
+        &["fort.14", ".14", ".gr3", ".grd"],
+        &[],
+        reader::<adcirc::Adcirc>(),
+    );
+    SMS [Sms2dm] = family(
+        "SMS 2dm",
+        &[".2dm"],
+        &[b"MESH2D", b"mesh2d", b"Mesh2D"],
+        reader::<sms::Sms>(),
+    );
+    MIKE [Mike] = family(
+        "MIKE (DHI)",
+        &[".mesh"],
+        &[b"100079 ", b"100079\t"],
+        reader::<mike::Mike>(),
+    );
+    FVCOM [Fvcom] = family("FVCOM", &["_grd.dat"], &[b"Node Number"], reader::<fvcom::Fvcom>());
+    MFEM [Mfem] = family("MFEM", &[".mesh"], &[b"MFEM mesh"], reader::<mfem::Mfem>());
+    JIGSAW [Jigsaw] = family(
+        "JIGSAW",
+        &[".msh"],
+        &[b"MSHID", b"mshid"],
+        reader::<jigsaw::Jigsaw>(),
+    );
+    FREEFEM [FreeFem] = family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
+    SELAFIN [Selafin] = family(
+        "SELAFIN",
+        &[".slf", ".sel", ".selafin"],
+        &[&[0, 0, 0, 80], &[80, 0, 0, 0]],
+        reader::<selafin::Selafin>(),
+    );
+    VTK_XML [Vtu] = family(
+        "VTK XML",
+        &[".vtu", ".pvtu", ".pvd"],
+        &[b"<VTKFile"],
+        reader::<xml::Vtu>(),
+    );
+    VTK_XML_POLYGONS [Vtp] = family(
+        "VTK XML polygons",
+        &[".vtp"],
+        &[b"<VTKFile"],
+        reader::<xml::Vtu>(),
+    );
+    STL [Stl, StlBinary] = family(
+        "STL",
+        &[".stl"],
+        &[b"solid ", b"solid\n", b"solid\r"],
+        reader::<stl::Stl>(),
+    );
+    PLY [Ply, PlyBinary] = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
+    /// Any of those in HDF5 or netCDF, where the ending does not tell which.
+    CONTAINER [] = family(
+        "HDF5 or netCDF",
+        &[".h5", ".hdf5", ".nc", ".nc4"],
+        &[b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05"],
+        reader::<container::Container>(),
+    );
+    EXODUS [Exodus] = family(
+        "Exodus II",
+        &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc", ".nc4", ".h5", ".hdf5"],
+        &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
+        reader::<exodus::Exodus>(),
+    );
+    UGRID [Ugrid] = family(
+        "UGRID",
+        &[".nc", ".nc4", ".h5", ".hdf5"],
+        &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
+        reader::<ugrid::Ugrid>(),
+    );
+    MED [Med] = family("MED", &[".med", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<med::Med>());
+    CGNS [Cgns] = family("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
+    XDMF [Xdmf] = family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
+    ABAQUS [Abaqus] = family(
+        "Abaqus",
+        &[".inp"],
+        &[
+            b"**",
+            b"*HEADING",
+            b"*Heading",
+            b"*heading",
+            b"*NODE",
+            b"*Node",
+            b"*node",
+            b"*PART",
+            b"*Part",
+            b"*INCLUDE",
+            b"*Include",
+        ],
+        reader::<abaqus::Abaqus>(),
+    );
+    NASTRAN [Nastran] = family(
+        "Nastran",
+        &[".bdf", ".nas"],
+        &[b"BEGIN BULK"],
+        reader::<nastran::Nastran>(),
+    );
+    GMSH_1 [] = unread(
+        "gmsh 1",
+        &[],
+        &[b"$NOD\n", b"$NOD\r"],
+        "Open it in gmsh, and save it as version 4.1",
+    );
+    UNV [] = unread("I-DEAS universal", &[".unv"], &[], "Open it in gmsh, and save it as .msh");
+    LS_DYNA [] = unread("LS-DYNA", &[".k", ".key"], &[b"*KEYWORD", b"$# LS-DYNA"], BY_OTHERS);
+    FLUENT [] = unread("Fluent", &[".cas"], &[b"(0 \"", b"(1 \"", b"(2 2)", b"(2 3)"], BY_MESHIO);
+    MFEM_OTHER [] = unread(
+        "nonconforming, NURBS or inline MFEM",
+        &[],
+        &[b"MFEM NC mesh", b"MFEM NURBS", b"MFEM INLINE"],
+        "Save it as VTK: Mesh::PrintVTK of MFEM",
+    );
+    DOLFIN [] = unread("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
+    COMSOL [] = unread(
+        "COMSOL",
+        &[".mphtxt", ".mphbin"],
+        &[b"# Created by COMSOL"],
+        "Export the mesh as VTK",
+    );
+    TECPLOT [] = unread(
+        "Tecplot",
+        &[".plt"],
+        &[b"TITLE =", b"TITLE=", b"VARIABLES", b"#!TD"],
+        BY_MESHIO,
+    );
+    AVS [] = unread("AVS-UCD", &[".avs", ".ucd"], &[], BY_MESHIO);
+    NETGEN [] = unread("Netgen", &[".vol"], &[b"mesh3d"], BY_MESHIO);
+    FLAC [] = unread("FLAC3D", &[".f3grid"], &[b"* FLAC3D", b"* GRIDPOINTS"], BY_MESHIO);
+    PERMAS [] = unread("PERMAS", &[".post"], &[b"!PERMAS"], BY_MESHIO);
+    AFLR3 [] = unread("AFLR3 UGRID", &[".ugrid"], &[], BY_MESHIO);
+    RADIOSS [] = unread("Radioss", &[".rad"], &[b"#RADIOSS"], "Save the mesh as gmsh, VTK or SU2");
+    X3D [] = unread("X3D", &[".x3d"], &[b"<X3D"], "Save the mesh as PLY, OBJ or OFF");
+    GEOMETRY [] = unread(
+        "a geometry without a mesh (CAD or .geo)",
+        &[".step", ".stp", ".iges", ".igs", ".brep", ".geo"],
+        &[b"ISO-10303-21"],
+        "Mesh it first, with gmsh for example",
+    );
+}

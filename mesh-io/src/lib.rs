@@ -1,4 +1,4 @@
-//! Reads 2D triangle meshes in some 20 file formats, writes them again with nothing changed but moved vertices, and converts
+//! Reads 2D triangle meshes in many file formats, writes them again with nothing changed but moved vertices, and converts
 //! them.
 //!
 //! [`MeshFile::read`] finds the format by the content of a file. A [`MeshFile`] never changes: it reports points, triangles,

@@ -86,11 +86,9 @@ mod tests {
     #[test]
     fn an_unknown_metric_is_named_in_the_error() {
         let error = "edge+foo".parse::<Scheme>().unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "no metric is called 'foo'; there are edge, area, rms, imr, ar, shape-size, \
-             soft-size, tmop-80, tmop-94"
-        );
+        let told = error.to_string();
+        assert!(told.starts_with("no metric is called 'foo'; there are edge, area, "), "{told}");
+        assert!(Metric::ALL.iter().all(|metric| told.contains(metric.name())), "{told}");
         assert!("".parse::<Scheme>().is_err());
         assert!("imr+".parse::<Scheme>().is_err());
     }

@@ -220,8 +220,7 @@ fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
             for &metric in Metric::ALL {
                 let (found, f) = (f64::from(found.of(metric)), exact.f(metric));
                 // Metrics of size depend on the mean area of the mesh as it was uploaded, others on the shape alone.
-                let is_of_shape = matches!(metric, Metric::Edge | Metric::Imr | Metric::Ar);
-                let bound = if is_of_shape { 1e-5 } else { 1e-2 };
+                let bound = if metric.properties().scale_invariant { 1e-5 } else { 1e-2 };
                 assert!((found / f - 1.0).abs() < bound, "{metric}: {found} for {f}");
             }
             assert!((f64::from(found.worst_imr) / exact.worst_imr - 1.0).abs() < 1e-3);

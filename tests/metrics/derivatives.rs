@@ -1,5 +1,6 @@
 //! Compares dual numbers with central differences of the value, and the CPU engine's derivatives with dual numbers.
 
+use crate::oracles::is_linear_in_size;
 use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::internal::Dual;
@@ -94,11 +95,6 @@ fn distance(found: &Dual, exact: &Dual) -> f64 {
     };
     let value = (found.value - exact.value).abs() / (1.0 + exact.value.abs());
     value.max(far(&found.gradient, &exact.gradient)).max(far(&found.hessian, &exact.hessian))
-}
-
-/// Whether the metric grows in proportion to the area where a triangle is large.
-fn is_linear_in_size(metric: Metric) -> bool {
-    matches!(metric, Metric::SoftSize | Metric::Tmop94)
 }
 
 /// Calls `check` with the derivatives of the CPU engine, those of dual numbers, and the rounding to allow for the triangle.

@@ -6,6 +6,7 @@ mod support;
 mod derivatives;
 mod device;
 mod differences;
+mod oracles;
 mod pairs;
 mod properties;
 mod shader;

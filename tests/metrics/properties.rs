@@ -1,5 +1,6 @@
 //! Each metric has the properties that its file states.
 
+use crate::oracles;
 use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::{Corner, Metric};
@@ -37,7 +38,8 @@ fn the_equilateral_triangle_of_mean_area_is_ideal() {
         let mut t = rotated(&equilateral(), 0.3);
         for _ in 0..3 {
             let excess = metric.excess(&t);
-            assert!(excess.abs() < 4e-15, "{metric}: {excess:e}");
+            let rounding = 4e-15 * metric.ideal_squared().max(1.0);
+            assert!(excess.abs() < rounding, "{metric}: {excess:e}");
             assert!(close(metric.quality(&t), metric.properties().ideal, 1e-7), "{metric}");
             t = next_corner(&t);
         }
@@ -59,36 +61,7 @@ fn no_triangle_of_mean_area_is_better_than_ideal() {
 #[test]
 fn quality_is_that_of_the_formula_in_lengths_and_area() {
     all_random(|metric, t| {
-        let [l12, l13, l23] = lengths(t);
-        let area = heron(t);
-        let (most, least) = (l12.max(l13).max(l23), l12.min(l13).min(l23));
-        let squares = l12 * l12 + l13 * l13 + l23 * l23;
-        let wanted = match metric {
-            Metric::Edge => most / least,
-            Metric::Area => (area - t.mean_area).abs() / t.mean_area,
-            Metric::Rms => (squares / 3.0).sqrt() / (4.0 * t.mean_area / 3f64.sqrt()).sqrt(),
-            Metric::Imr => squares / (4.0 * 3f64.sqrt() * area),
-            Metric::Ar => 3f64.sqrt() * squares / (12.0 * area),
-            // |T|² (1 + 1/det² T) - 4.
-            Metric::ShapeSize => {
-                let (norm, det) = (squares / (12f64.sqrt() * t.mean_area), area / t.mean_area);
-                (norm * (1.0 + 1.0 / (det * det)) - 4.0).sqrt()
-            }
-            // μ₂ = |T|² / 2τ - 1, μ₅₆ = (τ + 1/τ) / 2 - 1 and μ₇₇ = (τ - 1/τ)² / 2.
-            Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
-                let det = area / t.mean_area;
-                let shape = squares / (12f64.sqrt() * t.mean_area) / (2.0 * det) - 1.0;
-                let (linear, square) =
-                    (0.5 * (det + 1.0 / det) - 1.0, (det - 1.0 / det).powi(2) / 2.0);
-                match metric {
-                    Metric::Tmop80 => 0.5 * (shape + square),
-                    Metric::Tmop94 => shape + 1.5 * linear,
-                    _ => shape + 0.4 * linear,
-                }
-                .max(0.0)
-                .sqrt()
-            }
-        };
+        let wanted = oracles::quality(metric, lengths(t), heron(t), t.mean_area);
         let got = metric.quality(t);
         // The error of Heron's area: the rounding of the lengths, enlarged by the shape.
         assert!(close(got, wanted, 4.0 * rounding(t)), "{metric}: {got} for {wanted}, {t:?}");

@@ -2,14 +2,12 @@
 //! single-precision input.
 
 use crate::device::{Device, probe};
+use crate::oracles::{SHARPNESS, Scales, mistakes, scales};
 use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::gpu::Kernel;
 use gpu_smooth::internal::Dual;
 use gpu_smooth::{Corner, Derivatives, Metric};
-
-/// log2 of the exponent of EDGE's p-norm.
-const SHARPNESS: u32 = 4;
 
 /// Half a unit in the last place of a float near one.
 const ULP: f64 = 1.0 / 16_777_216.0;
@@ -88,79 +86,6 @@ fn triangle(row: &Row) -> Corner<f64> {
     Corner { a: [ax, ay], b: [bx, by], mean_area }
 }
 
-/// The size of the terms of value, gradient and Hessian of q², and by how much each enlarges an error in the last place of
-/// an edge.
-struct Scales {
-    sizes: [f64; 3],
-    conditions: [f64; 3],
-}
-
-fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
-    let [a, b, c] = lengths(t);
-    let doubled = t.doubled_area();
-    let q = metric.quality(t);
-    match metric {
-        Metric::Edge => {
-            let (k, shortest) = (f64::from(1u32 << SHARPNESS), a.min(b));
-            // The third edge is the difference of the two that move with the vertex. The power k enlarges the error of the shares.
-            let canceled = 1.0 + a.max(b) / c;
-            Scales {
-                sizes: [q * q, q * q / shortest, k * q * q / (shortest * shortest)],
-                conditions: [canceled, k * canceled, k * canceled],
-            }
-        }
-        Metric::Area => {
-            let (q, per_length) = (1.0 + a * b / t.mean_area, c / t.mean_area);
-            let sizes = [q * q, q * per_length, per_length * per_length];
-            Scales { sizes, conditions: [1.0; 3] }
-        }
-        Metric::Rms => {
-            let squares = a * a + b * b + c * c;
-            let sizes = [1.0 + squares / t.mean_area, (a + b) / t.mean_area, 1.0 / t.mean_area];
-            Scales { sizes, conditions: [1.0; 3] }
-        }
-        Metric::Imr | Metric::Ar => {
-            let per_length = c / doubled + (a + b) / (q * doubled);
-            let bend = 6.0 * q * q * per_length * per_length + 2.0 * q / doubled;
-            // The area is a difference of products of the edges.
-            Scales {
-                sizes: [q * q, 2.0 * q * q * per_length, bend],
-                conditions: [1.0 + a * b / doubled; 3],
-            }
-        }
-        Metric::ShapeSize => {
-            let mean = 2.0 * t.mean_area;
-            let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
-            // Derivatives by the squared norm and by the determinant; then second derivatives.
-            let (by_norm, by_det) =
-                (1.0 + 1.0 / (tau * tau), 1.0 + (1.0 + norm / tau) / (tau * tau));
-            let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
-            let mixed = 4.0 / tau.powi(3);
-            let bend = by_norm * 2.0 / mean
-                + mixed * (of_norm * of_det + (1.0 + 3.0 * norm / tau) * of_det * of_det);
-            Scales {
-                sizes: [4.0 + norm * by_norm, by_norm * of_norm + 2.0 * by_det * of_det, bend],
-                conditions: [1.0 + a * b / doubled; 3],
-            }
-        }
-        Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
-            let mean = 2.0 * t.mean_area;
-            let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
-            // Derivatives by the squared norm and by the determinant, of both parts of the metric; then second derivatives.
-            let (by_norm, by_det) = (1.0 / tau, norm / (tau * tau) + tau + 1.0 / tau.powi(3));
-            let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
-            let second = norm / tau.powi(3) + 1.0 + 3.0 / tau.powi(4);
-            let bend =
-                by_norm * 2.0 / mean + of_norm * of_det / (tau * tau) + second * of_det * of_det;
-            let value = norm / tau + tau * tau + 1.0 / (tau * tau);
-            Scales {
-                sizes: [value, by_norm * of_norm + by_det * of_det, bend],
-                conditions: [1.0 + a * b / doubled; 3],
-            }
-        }
-    }
-}
-
 fn parts(d: &Dual) -> [&[f64]; 3] {
     [std::slice::from_ref(&d.value), &d.gradient, &d.hessian]
 }
@@ -219,32 +144,11 @@ fn values_and_derivatives_are_those_of_dual_numbers() {
     }
 }
 
-/// One mistake for the derivatives of each metric, in the gradient or in the Hessian: a test must notice each.
-const MISTAKES: [(Metric, &str, &str); 18] = [
-    (Metric::Edge, "own + k * spread", "own - k * spread"),
-    (Metric::Edge, "q * g, q *", "1.001 * q * g, q *"),
-    (Metric::Area, "0.0, 0.0, 2.0)", "0.0, 0.0, 1.0)"),
-    (Metric::Area, "0.0, 2.0 * q,", "0.0, 2.001 * q,"),
-    (Metric::Rms, "rms_value(t), 1.0, 1.0", "rms_value(t), 1.0, 1.001"),
-    (Metric::Rms, "slopes.excess * (2.0 *", "slopes.excess * (2.002 *"),
-    (Metric::Imr, "m * (3.0 * m + 2.0)", "m * (3.003 * m + 2.0)"),
-    (Metric::Imr, "-m * excess", "m * excess"),
-    (Metric::Ar, "2.0 * (1.0 - q) * q", "2.0 * (1.0 + q) * q"),
-    (Metric::Ar, "2.0 * (1.0 - 2.0 * q)", "2.0 * (1.0 - 2.002 * q)"),
-    (Metric::ShapeSize, "2.0 * e * cube", "2.01 * e * cube"),
-    (Metric::ShapeSize, "3.0 * e * inverse + 1.0", "3.0 * e * inverse + 1.01"),
-    (Metric::Tmop80, "size * (square + 1.0) - e * square", "size * (square + 1.0) + e * square"),
-    (Metric::Tmop80, "3.0 * square * square", "3.01 * square * square"),
-    (Metric::Tmop94, "(weight * off * (t.area", "(1.01 * weight * off * (t.area"),
-    (Metric::Tmop94, "2.0 * (e + weight)", "2.0 * (e + 1.01 * weight)"),
-    (Metric::SoftSize, "scale + 1.0) - e)", "scale + 1.0) + e)"),
-    (Metric::SoftSize, "2.0 * (e + weight)", "2.0 * (1.01 * e + weight)"),
-];
-
 #[test]
 fn a_wrong_derivative_is_detected() {
     let (device, rows) = (Device::open(), rows());
-    for (metric, right, wrong) in MISTAKES {
+    let of = |&metric: &Metric| mistakes(metric).map(|[right, wrong]| (metric, right, wrong));
+    for (metric, right, wrong) in Metric::ALL.iter().flat_map(of) {
         let source = wgsl(metric, Derivatives::Analytic);
         assert_eq!(source.matches(right).count(), 1, "{metric}: {right}");
         let found: Vec<Found> = device.run(&source.replace(right, wrong), &rows);

@@ -7,7 +7,7 @@ use gpu_smooth::Scheme;
 
 use crate::args::EngineChoice;
 use crate::args::ReadArgs;
-use crate::args::parse;
+use crate::args::{names, parse};
 
 #[derive(Args)]
 pub(crate) struct BenchArgs {
@@ -25,7 +25,7 @@ pub(crate) struct BenchArgs {
     )]
     pub(crate) vertices: Vec<usize>,
     /// The metric to sweep by, or several in turn
-    #[arg(long, default_value = "imr", value_name = "A[+B...]", value_parser = parse::scheme)]
+    #[arg(long, default_value = "imr", value_name = "A[+B...]", value_parser = names::schemes(), hide_possible_values = true)]
     pub(crate) scheme: Scheme,
     /// What to measure: the CPU and the best GPU adapter, or one of them
     #[arg(long, value_enum, default_value = "auto")]

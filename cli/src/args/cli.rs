@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use mesh_io::{Conversion, Format};
 
+use crate::args::names;
 use crate::args::{
     BenchArgs, MoveArgs, QualityArgs, ReadArgs, RidingArgs, SlideArgs, SmoothArgs, SurfaceArgs,
 };
@@ -19,18 +20,7 @@ use crate::args::{
     version,
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
-    after_help = "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats: \
-                  Triangle .node/.ele, gmsh .msh, VTK .vtk, .vtu and .vtp, SU2, Medit .mesh and .meshb, OBJ, PLY, OFF, ADCIRC \
-                  fort.14, SCHISM .gr3, SMS .2dm, MIKE .mesh, FVCOM grids, MFEM .mesh, JIGSAW and FreeFem .msh, Abaqus .inp, Nastran .bdf, SELAFIN, UGRID, Exodus II, MED, CGNS, XDMF, STL (--weld), in ASCII or binary. Ctrl-C ends a run at \
-                  the next sweep and writes the best mesh so far; a second one ends it at once.\n\n\
-                  Examples:\n  \
-                  gpu-smooth coast.msh better.msh --picture better.png\n  \
-                  gpu-smooth part.1.node out.node --scheme edge+imr --report run.json\n  \
-                  gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2\n  \
-                  gpu-smooth *.msh --out-dir smoothed --resume\n  \
-                  gpu-smooth part.msh better.msh --html run.html\n  \
-                  gpu-smooth quality better.msh\n  \
-                  gpu-smooth bench"
+    after_help = after_help()
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -40,6 +30,26 @@ pub(crate) struct Cli {
     #[command(flatten)]
     pub(crate) output: OutputArgs,
 }
+
+/// Words what stands below the options in the help of the program.
+fn after_help() -> String {
+    format!(
+        "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats, \
+         as text or in binary: {}. STL needs --weld. Ctrl-C ends a run at the next sweep and writes the best mesh so far; a second \
+         one ends it at once.\n\n{EXAMPLES}",
+        names::formats()
+    )
+}
+
+/// Runs and commands as a user types them.
+const EXAMPLES: &str = "Examples:
+  gpu-smooth coast.msh better.msh --picture better.png
+  gpu-smooth part.1.node out.node --scheme edge+imr --report run.json
+  gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2
+  gpu-smooth *.msh --out-dir smoothed --resume
+  gpu-smooth part.msh better.msh --html run.html
+  gpu-smooth quality better.msh
+  gpu-smooth bench";
 
 /// How much is printed, whatever the command.
 #[derive(Args)]

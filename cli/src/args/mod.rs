@@ -4,6 +4,7 @@ mod bench;
 mod cli;
 mod fields;
 mod movable;
+pub(crate) mod names;
 pub(crate) mod parse;
 mod picture;
 mod quality;

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use gpu_smooth::Measure;
 
+use crate::args::names;
+
 #[derive(Args)]
 pub(crate) struct PictureArgs {
     /// Draw the mesh, colored by its quality, as .png or .svg
@@ -15,6 +17,8 @@ pub(crate) struct PictureArgs {
         long,
         value_name = "NAME",
         default_value = "shape",
+        value_parser = names::measures(),
+        hide_possible_values = true,
         requires = "picture",
         help_heading = "Picture"
     )]

@@ -9,20 +9,22 @@ use gpu_smooth::{Better, Measure};
 use crate::args::PictureArgs;
 use crate::args::ReadArgs;
 use crate::args::SurfaceArgs;
+use crate::args::names;
 
 #[derive(Args)]
 pub(crate) struct QualityArgs {
     /// The meshes; several are shown side by side
     #[arg(required = true, value_name = "MESH")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// Measures to draw histograms of; the first also ranks the worst triangles: min-angle, max-angle, edge-ratio,
-    /// aspect-ratio, radius-ratio, scaled-jacobian, condition, shape, skewness, size-ratio, or a metric
     #[arg(
         short,
         long,
         value_name = "NAME,...",
         value_delimiter = ',',
-        default_value = "shape,min-angle"
+        default_value = "shape,min-angle",
+        value_parser = names::measures(),
+        hide_possible_values = true,
+        help = names::measure_help()
     )]
     pub(crate) measure: Vec<Measure>,
     /// How many of the worst triangles to list

@@ -6,8 +6,8 @@ use std::time::Duration;
 use clap::{ArgGroup, Args, ValueEnum};
 use gpu_smooth::{Desired, Scheme};
 
-use crate::args::parse;
 use crate::args::{MoveArgs, PictureArgs, ReadArgs, RidingArgs, SlideArgs, TargetArgs, WorstArgs};
+use crate::args::{names, parse};
 
 #[derive(Args)]
 #[command(group = ArgGroup::new("kept").args(["checkpoint", "continued"]).multiple(true))]
@@ -24,10 +24,14 @@ pub(crate) struct SmoothArgs {
     #[arg(hide = true, value_name = "MESH")]
     pub(crate) more: Vec<PathBuf>,
 
-    /// The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first judges
-    /// convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94 (see `gpu-smooth metrics`)
-    /// [default: imr; soft-size with --target keep-size or size=SOURCE]
-    #[arg(long, value_name = "A[+B...]", value_parser = parse::scheme, help_heading = "Metric and engine")]
+    #[arg(
+        long,
+        value_name = "A[+B...]",
+        value_parser = names::schemes(),
+        hide_possible_values = true,
+        help_heading = "Metric and engine",
+        help = names::scheme_help()
+    )]
     pub(crate) scheme: Option<Scheme>,
 
     /// Where to compute: on a GPU adapter, even if it is software (gpu), on the CPU (cpu), or where the run is estimated
@@ -84,10 +88,13 @@ pub(crate) struct SmoothArgs {
     )]
     pub(crate) continued: Option<PathBuf>,
 
-    /// Sweeps corrected from coarser levels of the mesh, by all metrics but area (multilevel), over-relaxed sweeps (relaxed),
-    /// the plain sweeps of Park & Shontz, as relaxed with --omega 1 (paper), or the first of these that the other options
-    /// allow (auto)
-    #[arg(long, value_enum, default_value = "auto", help_heading = "Method")]
+    #[arg(
+        long,
+        value_enum,
+        default_value = "auto",
+        help_heading = "Method",
+        help = names::method_help()
+    )]
     pub(crate) method: MethodChoice,
     /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
     /// metrics alternate]

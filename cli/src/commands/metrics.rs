@@ -16,7 +16,11 @@ pub(crate) fn run() -> Result<(), CliError> {
             guard if guard.is_finite() => format!(", shape guard at imr {guard}"),
             _ => String::new(),
         };
-        say(&format!("           best q {}, {barrier}{guard}, omega {}", row.ideal, row.omega));
+        // Single precision has the digits that tell, and none that only rounding has made.
+        say(&format!(
+            "           best q {}, {barrier}{guard}, omega {}",
+            row.ideal as f32, row.omega
+        ));
         say(&format!("           {}\n", row.citation));
     }
     Ok(())

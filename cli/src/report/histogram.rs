@@ -34,6 +34,7 @@ fn edges(measure: Measure) -> Vec<f64> {
     // Ratios go by their distance above the ideal, and the last bin takes all the rest. Size ratios may be below the
     // ideal.
     let below = [0.0, 0.1, 0.25, 0.5, 0.75, 0.9].into_iter().filter(|_| least < definition.ideal);
+    let below = below.map(|share| share * definition.ideal);
     let above =
         [0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 9.0, 99.0, f64::INFINITY];
     below.chain(above.map(|above| definition.ideal + above)).collect()

@@ -90,7 +90,8 @@ impl Report {
         let mut rows = Vec::new();
         let mut row = |name: &str, before, after| rows.push([name.to_owned(), before, after]);
         let mut metrics = vec![base];
-        if !matches!(base, "imr" | "ar") {
+        let is_ratio = |metric: Metric| metric.properties().is_inverse_mean_ratio;
+        if !base.parse().is_ok_and(is_ratio) {
             metrics.push("imr");
         }
         if let Some(TargetReport { f: [before, after], .. }) = self.target {

@@ -81,8 +81,14 @@ fn line(program: &Command, choices: &mut impl Choices) -> Vec<OsString> {
         });
         let has_value = arg.get_action().takes_values();
         if has_value != (choices.below(12) == 0) {
-            let own: Vec<String> =
-                arg.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+            // Values of other options may be right where the help does not list the possible ones, such as edge+imr.
+            let own: Vec<String> = match arg.is_hide_possible_values_set() {
+                true => Vec::new(),
+                false => {
+                    let values = arg.get_possible_values();
+                    values.iter().map(|value| value.get_name().to_owned()).collect()
+                }
+            };
             words.push(match own.len() {
                 0 => VALUES[choices.below(VALUES.len())].to_owned(),
                 count => own[choices.below(count)].clone(),

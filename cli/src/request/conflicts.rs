@@ -3,6 +3,7 @@
 use gpu_smooth::{Desired, Metric, Scheme};
 use mesh_io::Format;
 
+use crate::args::names;
 use crate::args::{
     BenchArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, OnSurface, QualityArgs,
     SmoothArgs, Target,
@@ -183,8 +184,10 @@ fn of_places<A>([_, b]: [&str; 2], _: &A) -> String {
 
 fn sizes_unseen(_: [&str; 2], args: &SmoothArgs) -> String {
     let (scheme, target) = (args.scheme(), TargetRequest::from(&args.target).name());
+    let others =
+        names::either(&names::metrics(|metric| sees_sizes(&metric) && metric.properties().barrier));
     format!(
-        "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take soft-size, shape-size, tmop-94 or tmop-80"
+        "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take {others}"
     )
 }
 

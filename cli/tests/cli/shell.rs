@@ -1,6 +1,7 @@
 //! Completions, manual pages, and colors.
 
 use super::{Folder, assert_holds, finish};
+use gpu_smooth::{Measure, Metric};
 use std::fs;
 
 /// All names of options and commands that a help text mentions.
@@ -27,6 +28,9 @@ fn completions_and_manual_have_every_option() {
         assert_holds(&text, &["quality", "compare"]);
         if ["bash", "zsh", "fish"].contains(&shell) {
             assert_holds(&text, &["multilevel"]);
+            let metrics = Metric::ALL.iter().map(|metric| metric.name());
+            let names: Vec<_> = metrics.chain(Measure::ALL.iter().map(|m| m.name())).collect();
+            assert_holds(&text, &names);
         }
     }
     let page = folder.line("man").clean().out;

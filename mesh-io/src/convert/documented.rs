@@ -3,6 +3,7 @@
 //! After a change, `UPDATE_DOCS=1 cargo test --lib documented` writes them anew.
 
 use super::tables;
+use super::targets::TARGETS;
 use crate::compress::packed::Packing;
 use crate::families::{FAMILIES, Family};
 use crate::format::Format;
@@ -32,7 +33,7 @@ const fn row(
     Row { formats, layouts, fixed, region, named, limits }
 }
 
-const ROWS: [Row; 27] = [
+const ROWS: &[Row] = &[
     row(
         &[Format::Triangle],
         "text, with the `.poly` beside it",
@@ -285,7 +286,7 @@ fn formats() -> String {
     let mut table = "| format | named by | read and written | stays fixed, besides the boundary | a region has the same | \
                      what can be named | limits | `convert` writes it as |\n|---|---|---|---|---|---|---|---|\n"
         .to_owned();
-    for Row { formats, layouts, fixed, region, named, limits } in &ROWS {
+    for Row { formats, layouts, fixed, region, named, limits } in ROWS {
         let names: Vec<String> = formats.iter().map(ToString::to_string).collect();
         let mut endings: Vec<String> = Vec::new();
         for ending in formats.iter().flat_map(|&format| Family::of(format).endings) {
@@ -335,35 +336,80 @@ fn the_document_has_the_tables_of_the_code() {
         std::fs::write(&path, &expected).unwrap();
         return;
     }
-    let differs = document.lines().zip(expected.lines()).find(|(own, wanted)| own != wanted);
-    assert_eq!(differs, None, "UPDATE_DOCS=1 cargo test --lib documented writes it anew");
-    assert_eq!(document.len(), expected.len());
+    let differs =
+        expected.lines().zip(document.lines()).find(|(expected, found)| expected != found);
+    let remedy = "UPDATE_DOCS=1 cargo test -p mesh-io --lib documented writes the tables of docs/formats.md anew";
+    assert_eq!(differs, None, "{remedy}");
+    assert_eq!(document.len(), expected.len(), "{remedy}");
 }
 
 #[test]
 fn every_format_has_one_row() {
     for format in Format::ALL {
         let rows = ROWS.iter().filter(|row| row.formats.contains(&format)).count();
-        assert_eq!(rows, 1, "{format}");
+        assert_eq!(rows, 1, "ROWS of mesh-io/src/convert/documented.rs needs one row for {format}");
     }
 }
 
-/// The README must name every format that is read, by the usual ending of its files.
+/// Returns the text of a document of the repository, without carriage returns.
+fn document(name: &str) -> String {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(name);
+    std::fs::read_to_string(path).unwrap().replace("\r\n", "\n")
+}
+
+/// Returns the part of a document from a mark to an end.
+fn part<'d>(document: &'d str, mark: &str, end: &str) -> &'d str {
+    let start = document.find(mark).unwrap_or_else(|| panic!("no {mark}"));
+    document[start..].split(end).next().unwrap()
+}
+
+/// A list of formats names each by the usual ending of its files or by its own name.
 #[test]
-fn the_readme_names_every_format() {
-    let readme = std::fs::read_to_string(
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("README.md"),
-    );
-    let readme = readme.unwrap();
-    let start = readme.find("**Formats.**").unwrap();
-    let paragraph = readme[start..].split("\n\n").next().unwrap();
-    let families = FAMILIES.iter().filter(|family| family.is_read());
-    // Some formats are named by a whole file name, or by their own name.
-    let told = |family: &Family| {
-        let ending = format!("`{}`", family.endings[0]);
-        paragraph.contains(&ending) || paragraph.contains(family.name)
-    };
-    let missing: Vec<_> = families.filter(|family| !told(family)).map(|f| f.name).collect();
-    assert!(missing.is_empty(), "README says nothing of {missing:?}");
-    assert!(Packing::of(Path::new("m.msh.gz")).is_some() && paragraph.contains("`.gz`"));
+fn the_lists_of_formats_in_both_readme_files_have_every_format() {
+    let readme = document("README.md");
+    let of_library = document("mesh-io/README.md");
+    let families = || FAMILIES.iter().filter(|family| family.is_read());
+    for (name, list) in [
+        ("the paragraph **Formats.** of README.md", part(&readme, "**Formats.**", "\n\n")),
+        ("the table of mesh-io/README.md", part(&of_library, "## Formats", "\n\n[")),
+    ] {
+        for family in families().filter(|family| !HOLDS_OTHERS.contains(&family.name)) {
+            let ending = format!("`{}`", family.endings[0]);
+            let has = list.contains(&ending) || list.contains(family.name);
+            assert!(has, "{name} must name {} by its ending {ending}", family.name);
+        }
+    }
+    assert!(Packing::of(Path::new("m.msh.gz")).is_some() && readme.contains("`.gz`"));
+}
+
+/// Names of rows that stand for several formats, which have rows of their own.
+const HOLDS_OTHERS: [&str; 1] = ["HDF5 or netCDF"];
+
+/// The paragraph names a target by the name that `--to` takes, or by the first word of the format's name.
+#[test]
+fn the_readme_names_every_format_that_meshes_are_converted_to() {
+    let readme = document("README.md");
+    let paragraph = part(&readme, "**Conversion.**", "\n\n").to_lowercase();
+    for target in TARGETS {
+        let format = target.format.to_string().to_lowercase();
+        let has =
+            [target.name, format.split(' ').next().unwrap()].map(|name| paragraph.contains(name));
+        let name = target.name;
+        assert!(has.contains(&true), "the paragraph **Conversion.** of README.md must name {name}");
+    }
+}
+
+/// No number of formats stands in a document or in a comment, as it would be forgotten.
+#[test]
+fn documents_do_not_count_formats() {
+    for name in ["README.md", "mesh-io/README.md", "mesh-io/src/lib.rs", "docs/formats.md"] {
+        let text = document(name);
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let counts = words.windows(2).filter(|pair| {
+            let is_number = pair[0].trim_start_matches('[').parse::<u32>().is_ok();
+            is_number && pair[1].starts_with("format")
+        });
+        let found: Vec<_> = counts.collect();
+        assert!(found.is_empty(), "{name} counts formats, which are more with each row: {found:?}");
+    }
 }

@@ -18,7 +18,7 @@ pub(crate) fn targets() -> String {
                      names of groups of | groups of vertices | data of vertices | data of elements |\n\
                      |---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
-    for target in &TARGETS {
+    for target in TARGETS {
         let holds = &target.holds;
         let ending = Family::of(target.format).endings[0];
         let yes = |held: bool| if held { "yes" } else { "–" };

@@ -67,7 +67,7 @@ const MEDIT: Holds = Holds {
 };
 
 /// All targets. Of formats whose files end the same way, the usual one comes first.
-pub(crate) static TARGETS: [Target; 18] = [
+pub(crate) static TARGETS: &[Target] = &[
     Target {
         format: Format::Gmsh41,
         name: "gmsh41",

@@ -12,19 +12,8 @@ impl MeshFile {
     /// Reads the real numbers that the file gives its vertices under these names, or all real numbers for `None`. The
     /// file's content is searched again for them.
     ///
-    /// | format | what can be named |
-    /// |---|---|
-    /// | ADCIRC, SCHISM | `depth` |
-    /// | gmsh | `z`, and what `$NodeData` is called |
-    /// | SMS 2dm, Medit, OBJ, OFF, Abaqus, Nastran | `z` |
-    /// | VTK | `z`, and point data of the types float and double |
-    /// | PLY | properties of vertices of the types float and double but x and y |
-    /// | SELAFIN | variables, in all time steps |
-    /// | Exodus II | `z`, and variables of nodes, in all time steps |
-    /// | UGRID | variables of nodes, in all time steps and layers |
-    /// | CGNS | `z`, and solutions at vertices |
-    /// | XDMF | `z`, and attributes of nodes of the type Float |
-    /// | Triangle | `attribute` of vertices, `attribute1` and so on if there are several |
+    /// Third coordinates are named `z`, and those of ADCIRC, SCHISM and FVCOM `depth`. Other data have the names that the file
+    /// gives them. The table of data of vertices in `docs/formats.md` of the repository has the names of each format.
     ///
     /// Each array is one field. Several fields may have the same name, such as the time steps of a result.
     ///

@@ -20,25 +20,10 @@ use std::path::Path;
 /// byte for byte.
 ///
 /// # Regions
-/// Triangles are of one region if the file has the same entries for them:
-///
-/// | format | a region has the same |
-/// |---|---|
-/// | Triangle | attributes in the `.ele`, all that its first line announces, compared as numbers |
-/// | gmsh 2.2 | first and second tag: physical group and geometrical entity |
-/// | gmsh 4.0, 4.1 | entity of the model, and so the physical groups of that entity |
-/// | Medit, FreeFem | reference |
-/// | SMS 2dm | material |
-/// | OBJ | material, group and object |
-/// | SU2 | zone |
-/// | VTK, XDMF | cell data of a usual name, such as `gmsh:physical`, `medit:ref`, `MaterialIDs` |
-/// | STL | solid |
-/// | Exodus II | block |
-/// | MED | family |
-/// | CGNS | section |
-/// | Abaqus | set that a list of elements names, and section |
-/// | Nastran | property |
-/// | ADCIRC, SCHISM, SELAFIN, OFF | all triangles are of one |
+/// Triangles are of one region if the file has the same entries for them, such as the material of an SMS 2dm, the reference of
+/// Medit, or the physical group and the entity of gmsh 2.2. Attributes in the `.ele` of Triangle are compared as numbers. If a
+/// format has no such entries, all triangles are of one region. The table of formats in `docs/formats.md` of the repository has the
+/// entries of each format.
 ///
 /// [`interface_vertices`](Self::interface_vertices) lies between triangles of different regions. Two surfaces of a model are two
 /// regions even where they belong to one physical group.

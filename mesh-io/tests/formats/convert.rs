@@ -10,28 +10,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Mutex;
 
-/// The ending of file names in a target format.
-fn ending(format: Format) -> &'static str {
-    match format {
-        Format::Triangle => "node",
-        Format::Gmsh22 | Format::Gmsh41 | Format::FreeFem => "msh",
-        Format::Vtk => "vtk",
-        Format::Vtu => "vtu",
-        Format::Xdmf => "xdmf",
-        Format::Su2 => "su2",
-        Format::Medit => "mesh",
-        Format::MeditBinary => "meshb",
-        Format::Obj => "obj",
-        Format::Off => "off",
-        Format::Ply => "ply",
-        Format::Sms2dm => "2dm",
-        Format::Exodus => "e",
-        Format::Ugrid => "nc",
-        Format::Abaqus => "inp",
-        _ => "gr3",
-    }
-}
-
 /// The content of a group: dimension, name, triangles, and numbers of lines and quadrilaterals.
 fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
     let triangles = group.triangles().to_vec();
@@ -43,7 +21,7 @@ fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
 fn check(file: &MeshFile, folder: &Folder) -> usize {
     let mut clean = 0;
     for (name, format) in Conversion::targets() {
-        let out = format!("{name}.{}", ending(format));
+        let out = format!("{name}{}", format.endings()[0]);
         let conversion = Conversion::new(file, format).unwrap().unwrap();
         conversion.write(&folder.path(&out)).unwrap();
         let back = folder.read(&out);

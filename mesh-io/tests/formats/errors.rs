@@ -1,7 +1,7 @@
 //! Error messages: the file, the line, what stands there, and what to do.
 
 use super::{ELE, Folder, GMSH22, GMSH41, NODE, POLY, triangle};
-use mesh_io::MeshFile;
+use mesh_io::{Format, MeshFile};
 use std::fs;
 use std::path::Path;
 
@@ -154,16 +154,18 @@ fn gmsh_errors_name_line_and_remedy() {
 
 #[test]
 fn files_of_formats_that_are_not_read_are_refused_by_name() {
-    let formats = "Formats read: Triangle .node/.ele, gmsh, legacy VTK, SU2, Medit, binary Medit, \
-                   Wavefront OBJ, OFF, ADCIRC or SCHISM grid, SMS 2dm, MIKE (DHI), FVCOM, \
-                   MFEM, JIGSAW, FreeFem .msh, SELAFIN";
+    let formats = "Formats read: Triangle .node/.ele, gmsh, legacy VTK, ";
     assert_error(
         &[("a.stl", "solid part\n")],
         &["a.stl: an STL lists corners", "ReadOptions::weld"],
     );
     assert_error(&[("a.k", "*KEYWORD\n")], &["LS-DYNA is not read. Export the mesh "]);
     assert_error(&[("a.dat", "hello\n")], &["a.dat: the format is not recognized. ", formats]);
-    let folder = Folder::new(&[]);
+    let folder = Folder::new(&[("a.dat", "hello\n")]);
+    let told = MeshFile::read(&folder.path("a.dat")).unwrap_err().to_string();
+    for format in Format::ALL {
+        assert!(told.contains(format.family()), "{format}: {told}");
+    }
     let of = |path: &Path| MeshFile::read(path).unwrap_err().to_string();
     assert!(of(&folder.path("none.msh")).contains("none.msh: "));
     assert!(of(&folder.path("none.msh")).ends_with("Check the name"));

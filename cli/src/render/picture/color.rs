@@ -72,14 +72,22 @@ pub(crate) fn ticks(measure: Measure) -> Vec<(f64, String)> {
     let Some(bad) = bad_end(measure) else {
         let above = [WORST_ABOVE, 4.0, 2.0, 1.0, 0.5, 0.0];
         let name = |value: f64, above: f64| match above == WORST_ABOVE {
-            true => format!("≥ {value}"),
-            false => value.to_string(),
+            true => format!("≥ {}", short(value)),
+            false => short(value),
         };
         return above.map(|a| (definition.ideal + a, name(definition.ideal + a, a))).to_vec();
     };
     let steps = if (definition.ideal - bad).abs() == 60.0 { 6 } else { 4 };
     let value = |i| bad + (definition.ideal - bad) * f64::from(i) / f64::from(steps);
-    (0..=steps).map(value).map(|value| (value, format!("{value}{}", definition.unit))).collect()
+    (0..=steps)
+        .map(value)
+        .map(|value| (value, format!("{}{}", short(value), definition.unit)))
+        .collect()
+}
+
+/// Writes a number in the digits of single precision, so that rounding in double precision does not show.
+pub(crate) fn short(number: f64) -> String {
+    (number as f32).to_string()
 }
 
 #[cfg(test)]
@@ -92,7 +100,7 @@ mod tests {
             assert_eq!(goodness(measure, measure.definition().ideal), 1.0, "{measure}");
             let ticks = ticks(measure);
             let places: Vec<f32> = ticks.iter().map(|tick| goodness(measure, tick.0)).collect();
-            assert!(places.is_sorted() && places[0] == 0.0 && places[places.len() - 1] == 1.0);
+            assert!(places.is_sorted() && places[0] < 1e-6 && places[places.len() - 1] == 1.0);
         }
         assert_eq!(goodness(Measure::Condition, f64::INFINITY), 0.0);
         assert!((goodness(Measure::MinAngle, 30.0) - 0.5).abs() < 1e-6);

@@ -172,7 +172,7 @@ impl Scene<'_> {
         let definition = self.measure.definition();
         let bar = (0.45 * width).max(20.0 * text).min(width);
         let (high, small) = (text, 0.8 * text);
-        let ideal = format!("{}{}", definition.ideal, definition.unit);
+        let ideal = format!("{}{}", color::short(definition.ideal), definition.unit);
         let name = format!("{}, {ideal} is best", definition.name);
         canvas.text([left, top], small, Anchor::Start, &name);
         let upper = top + 0.4 * text;

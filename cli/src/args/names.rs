@@ -1,0 +1,106 @@
+//! Options whose values are names of metrics and measures: parsers that offer the names to completions, and lists of names for
+//! help texts and messages. All names come from the rows of the tables.
+
+use std::ffi::OsStr;
+
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Command};
+use gpu_smooth::{Measure, Metric, Scheme};
+use mesh_io::Format;
+
+use crate::args::parse;
+
+/// A parser of values that offers names to completions. Values that are no such name may be right too, such as `edge+imr`.
+#[derive(Clone)]
+pub(crate) struct Offering<T> {
+    parse: fn(&str) -> Result<T, String>,
+    names: fn() -> Vec<&'static str>,
+}
+
+impl<T: Clone + Send + Sync + 'static> TypedValueParser for Offering<T> {
+    type Value = T;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<T, clap::Error> {
+        self.parse.parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new((self.names)().into_iter().map(PossibleValue::new)))
+    }
+}
+
+/// Returns the parser of schemes, which offers the names of all metrics.
+pub(crate) fn schemes() -> Offering<Scheme> {
+    Offering { parse: parse::scheme, names: || metrics(|_| true) }
+}
+
+/// Returns the parser of measures, which offers the names of all measures.
+pub(crate) fn measures() -> Offering<Measure> {
+    let parse = |text: &str| text.parse().map_err(|error| format!("{error}"));
+    Offering { parse, names: || Measure::ALL.iter().map(|measure| measure.name()).collect() }
+}
+
+/// Lists the names of the metrics that are as wanted.
+pub(crate) fn metrics(is_wanted: impl Fn(Metric) -> bool) -> Vec<&'static str> {
+    let wanted = Metric::ALL.iter().filter(|&&metric| is_wanted(metric));
+    wanted.map(|metric| metric.name()).collect()
+}
+
+/// Joins names as in `a, b or c`.
+pub(crate) fn either(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => (*only).to_owned(),
+        [before @ .., last] => format!("{} or {last}", before.join(", ")),
+    }
+}
+
+/// Words the help of `--scheme`.
+pub(crate) fn scheme_help() -> String {
+    let names = metrics(|_| true).join(", ");
+    format!(
+        "The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first judges \
+         convergence. Metrics: {names} (see `gpu-smooth metrics`) [default: imr; soft-size with --target keep-size or size=SOURCE]"
+    )
+}
+
+/// Words the help of `--method`.
+pub(crate) fn method_help() -> String {
+    let uncorrected = either(&metrics(|metric| !metric.properties().is_corrected));
+    format!(
+        "Sweeps corrected from coarser levels of the mesh, by all metrics but {uncorrected} (multilevel), over-relaxed sweeps \
+         (relaxed), the plain sweeps of Park & Shontz, as relaxed with --omega 1 (paper), or the first of these that the other \
+         options allow (auto)"
+    )
+}
+
+/// Words the help of `--measure`.
+pub(crate) fn measure_help() -> String {
+    let own = Measure::ALL.iter().filter(|measure| !matches!(measure, Measure::Metric(_)));
+    let names: Vec<_> = own.map(|measure| measure.name()).collect();
+    format!(
+        "Measures to draw histograms of; the first also ranks the worst triangles: {}, or a metric",
+        names.join(", ")
+    )
+}
+
+/// Lists the formats that are read, each with the usual ending of its files.
+pub(crate) fn formats() -> String {
+    let mut names: Vec<String> = Vec::new();
+    for format in Format::ALL {
+        let (family, ending) = (format.family(), format.endings()[0]);
+        let name = match family.contains(ending) {
+            true => family.to_owned(),
+            false => format!("{family} {ending}"),
+        };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(", ")
+}

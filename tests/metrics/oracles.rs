@@ -1,0 +1,159 @@
+//! The independent oracle of each metric: all that the tests need of a metric beside its two files and its row. A metric that is
+//! missing here does not compile.
+
+use crate::triangles::lengths;
+use gpu_smooth::{Corner, Metric};
+
+/// log2 of the exponent of EDGE's p-norm.
+pub(crate) const SHARPNESS: u32 = 4;
+
+/// Returns q by the plainest formula in the lengths and the area of a triangle, and in the mean area of the mesh.
+pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, mean_area: f64) -> f64 {
+    let squares = a * a + b * b + c * c;
+    // For T = A W⁻¹, with W the equilateral triangle of mean area: |T|² and τ = det T.
+    let (norm, det) = (squares / (12f64.sqrt() * mean_area), area / mean_area);
+    // μ₂ = |T|² / 2τ - 1, μ₅₆ = (τ + 1/τ) / 2 - 1 and μ₇₇ = (τ - 1/τ)² / 2.
+    let shape = norm / (2.0 * det) - 1.0;
+    let (linear, square) = (0.5 * (det + 1.0 / det) - 1.0, (det - 1.0 / det).powi(2) / 2.0);
+    let root = |square: f64| square.max(0.0).sqrt();
+    match metric {
+        Metric::Edge => a.max(b).max(c) / a.min(b).min(c),
+        Metric::Area => (area - mean_area).abs() / mean_area,
+        Metric::Rms => (squares / 3.0).sqrt() / (4.0 * mean_area / 3f64.sqrt()).sqrt(),
+        Metric::Imr => squares / (4.0 * 3f64.sqrt() * area),
+        Metric::Ar => 3f64.sqrt() * squares / (12.0 * area),
+        // |T|² (1 + 1/det² T) - 4.
+        Metric::ShapeSize => root(norm * (1.0 + 1.0 / (det * det)) - 4.0),
+        Metric::Tmop80 => root(0.5 * (shape + square)),
+        Metric::Tmop94 => root(shape + 1.5 * linear),
+        Metric::SoftSize => root(shape + 0.4 * linear),
+    }
+}
+
+/// Whether q² of a large triangle is nearly linear in the area, so that second derivatives cancel.
+pub(crate) fn is_linear_in_size(metric: Metric) -> bool {
+    match metric {
+        Metric::SoftSize | Metric::Tmop94 => true,
+        Metric::Edge
+        | Metric::Area
+        | Metric::Rms
+        | Metric::Imr
+        | Metric::Ar
+        | Metric::ShapeSize
+        | Metric::Tmop80 => false,
+    }
+}
+
+/// Returns two mistakes in the WGSL of a metric's derivatives, in the gradient or in the Hessian: a text that the file has once,
+/// and the text that replaces it. A test must notice each.
+pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
+    match metric {
+        Metric::Edge => {
+            [["own + k * spread", "own - k * spread"], ["q * g, q *", "1.001 * q * g, q *"]]
+        }
+        Metric::Area => {
+            [["0.0, 0.0, 2.0)", "0.0, 0.0, 1.0)"], ["0.0, 2.0 * q,", "0.0, 2.001 * q,"]]
+        }
+        Metric::Rms => [
+            ["rms_value(t), 1.0, 1.0", "rms_value(t), 1.0, 1.001"],
+            ["slopes.excess * (2.0 *", "slopes.excess * (2.002 *"],
+        ],
+        Metric::Imr => {
+            [["m * (3.0 * m + 2.0)", "m * (3.003 * m + 2.0)"], ["-m * excess", "m * excess"]]
+        }
+        Metric::Ar => [
+            ["2.0 * (1.0 - q) * q", "2.0 * (1.0 + q) * q"],
+            ["2.0 * (1.0 - 2.0 * q)", "2.0 * (1.0 - 2.002 * q)"],
+        ],
+        Metric::ShapeSize => [
+            ["2.0 * e * cube", "2.01 * e * cube"],
+            ["3.0 * e * inverse + 1.0", "3.0 * e * inverse + 1.01"],
+        ],
+        Metric::Tmop80 => [
+            ["size * (square + 1.0) - e * square", "size * (square + 1.0) + e * square"],
+            ["3.0 * square * square", "3.01 * square * square"],
+        ],
+        Metric::Tmop94 => [
+            ["(weight * off * (t.area", "(1.01 * weight * off * (t.area"],
+            ["2.0 * (e + weight)", "2.0 * (e + 1.01 * weight)"],
+        ],
+        Metric::SoftSize => [
+            ["scale + 1.0) - e)", "scale + 1.0) + e)"],
+            ["2.0 * (e + weight)", "2.0 * (1.01 * e + weight)"],
+        ],
+    }
+}
+
+/// The sizes of the terms of value, gradient and Hessian of q², and the factors by which each enlarges an error in the last
+/// place of an edge.
+pub(crate) struct Scales {
+    pub(crate) sizes: [f64; 3],
+    pub(crate) conditions: [f64; 3],
+}
+
+/// Returns the scales of a metric's errors on a device, for a triangle seen from one vertex.
+pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
+    let [a, b, c] = lengths(t);
+    let doubled = t.doubled_area();
+    let q = metric.quality(t);
+    match metric {
+        Metric::Edge => {
+            let (k, shortest) = (f64::from(1u32 << SHARPNESS), a.min(b));
+            // The third edge is the difference of the two that move with the vertex. The power k enlarges the error of the shares.
+            let canceled = 1.0 + a.max(b) / c;
+            Scales {
+                sizes: [q * q, q * q / shortest, k * q * q / (shortest * shortest)],
+                conditions: [canceled, k * canceled, k * canceled],
+            }
+        }
+        Metric::Area => {
+            let (q, per_length) = (1.0 + a * b / t.mean_area, c / t.mean_area);
+            let sizes = [q * q, q * per_length, per_length * per_length];
+            Scales { sizes, conditions: [1.0; 3] }
+        }
+        Metric::Rms => {
+            let squares = a * a + b * b + c * c;
+            let sizes = [1.0 + squares / t.mean_area, (a + b) / t.mean_area, 1.0 / t.mean_area];
+            Scales { sizes, conditions: [1.0; 3] }
+        }
+        Metric::Imr | Metric::Ar => {
+            let per_length = c / doubled + (a + b) / (q * doubled);
+            let bend = 6.0 * q * q * per_length * per_length + 2.0 * q / doubled;
+            // The area is a difference of products of the edges.
+            Scales {
+                sizes: [q * q, 2.0 * q * q * per_length, bend],
+                conditions: [1.0 + a * b / doubled; 3],
+            }
+        }
+        Metric::ShapeSize => {
+            let mean = 2.0 * t.mean_area;
+            let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
+            // Derivatives by the squared norm and by the determinant; then second derivatives.
+            let (by_norm, by_det) =
+                (1.0 + 1.0 / (tau * tau), 1.0 + (1.0 + norm / tau) / (tau * tau));
+            let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
+            let mixed = 4.0 / tau.powi(3);
+            let bend = by_norm * 2.0 / mean
+                + mixed * (of_norm * of_det + (1.0 + 3.0 * norm / tau) * of_det * of_det);
+            Scales {
+                sizes: [4.0 + norm * by_norm, by_norm * of_norm + 2.0 * by_det * of_det, bend],
+                conditions: [1.0 + a * b / doubled; 3],
+            }
+        }
+        Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
+            let mean = 2.0 * t.mean_area;
+            let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
+            // Derivatives by the squared norm and by the determinant, of both parts of the metric; then second derivatives.
+            let (by_norm, by_det) = (1.0 / tau, norm / (tau * tau) + tau + 1.0 / tau.powi(3));
+            let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
+            let second = norm / tau.powi(3) + 1.0 + 3.0 / tau.powi(4);
+            let bend =
+                by_norm * 2.0 / mean + of_norm * of_det / (tau * tau) + second * of_det * of_det;
+            let value = norm / tau + tau * tau + 1.0 / (tau * tau);
+            Scales {
+                sizes: [value, by_norm * of_norm + by_det * of_det, bend],
+                conditions: [1.0 + a * b / doubled; 3],
+            }
+        }
+    }
+}
