@@ -86,7 +86,7 @@ pub struct Slid {
     pub moved: usize,
     /// Number of pairs among these vertices that move together; see [`Slide::periodic`](crate::Slide::periodic).
     pub pairs: usize,
-    /// Number of rounds, each of sweeps over free vertices and then along the curves.
+    /// Number of periods, each of sweeps over free vertices and then along the curves.
     pub rounds: u32,
     /// The largest distance of the lines between vertices from those in the mesh before the run, in its unit.
     pub off: f64,

@@ -14,7 +14,7 @@ use crate::run::saved::EngineState;
 use crate::run::step::Step;
 
 /// Computes a run, on the CPU or a device: sweeps, objectives, and corrections from coarser levels. Positions are
-/// normalized and in the order of the [`Problem`](crate::layout::Problem).
+/// normalized and in the order of the [`Problem`].
 ///
 /// An engine does not decide which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {

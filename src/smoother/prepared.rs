@@ -97,9 +97,9 @@ impl<'a> Smoother<'a> {
     }
 
     /// Sets the targets of elements at each point of the plane, in place of targets that belong to vertices. A run then
-    /// consists of rounds of sweeps, after each of which targets are evaluated at the new positions of the vertices. f
-    /// is evaluated with these targets at the end of each round, and does not rise. Within a round targets do not
-    /// change, so a run may end above the least possible f, when further rounds do not lower it. Returns which vertices
+    /// consists of periods of sweeps, after each of which targets are evaluated at the new positions of the vertices. f
+    /// is evaluated with these targets at the end of each period, and does not rise. Within a period targets do not
+    /// change, so a run may end above the least possible f, when further periods do not lower it. Returns which vertices
     /// are outside of the field's mesh.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use gpu_smooth::{
     Backend, DeviceMesh, Gpu, GpuError, Keeper, Mesh, Options, Outcome, Progress, Readback, Scheme,
-    Smoother, Stop, Sweeps, VertexBuffer, wgpu,
+    Slide, Smoother, Stop, Sweeps, VertexBuffer, wgpu,
 };
 
 use crate::app::{App, Vertices, bad_plate, gpu_error};
@@ -180,6 +180,36 @@ fn a_run_goes_on_from_what_was_kept() {
             } else {
                 assert!((1..=lost_at.unwrap()).contains(&fault.sweep), "{}", fault.sweep);
             }
+        }
+    });
+}
+
+/// A run with work on the host between its sweeps leaves a lost device once, and does not ask for it again.
+#[test]
+fn a_run_with_stages_leaves_a_lost_device_once() {
+    within_a_minute(|| {
+        let mesh = bad_plate(500);
+        let bounded = Options { max_move: Some(0.3), ..Options::default() };
+        let kept = Options { keep_altitude: true, ..Options::default() };
+        for (options, slides) in [(bounded, false), (kept, false), (Options::default(), true)] {
+            let mut smoother = Smoother::new(&mesh).unwrap();
+            smoother.set_slide(slides.then(Slide::default).as_ref()).unwrap();
+            let app = App::new();
+            let backend = Backend::Gpu(app.another_gpu());
+            let mut keeper = GoesOn { interval: Duration::ZERO, told: Vec::new() };
+            let mut observe = |progress: &Progress| {
+                if progress.sweep == 2 {
+                    app.device().destroy();
+                }
+                ControlFlow::Continue(())
+            };
+            let outcome =
+                smoother.run_kept(&options, &backend, None, &mut keeper, &mut observe).unwrap();
+            assert_eq!(keeper.told.len(), 1, "{:?}", keeper.told);
+            assert!(outcome.device_fault.is_some());
+            assert_eq!(outcome.stop, Stop::Converged);
+            let smoothed = Mesh { points: outcome.points, ..mesh.clone() };
+            assert!(check::is_valid(&smoothed) && f_imr(&smoothed) < f_imr(&mesh));
         }
     });
 }
