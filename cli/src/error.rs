@@ -48,7 +48,7 @@ pub(crate) struct CliError {
     pub(crate) kind: ErrorKind,
     /// What is wrong, with the file, line or option where it is known.
     message: String,
-    /// The remedy: one or more sentences that tell the user how to go on.
+    /// The remedy. Its sentences tell the user how to go on.
     remedy: Option<String>,
     /// A list that belongs to the message, such as the first inverted triangles.
     details: Vec<String>,

@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use glam::DVec2;
 use web_time::Instant;
 
 use crate::error::GpuError;
@@ -60,11 +59,11 @@ pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
     if corrected { Corrections::steps(plan) } else { plan.steps() }
 }
 
-/// A part of a run, as it is reported to the observer.
+/// The part of a run that the observer is told.
 #[derive(Clone, Copy)]
 pub(crate) struct Report {
     pub(crate) phase: Phase,
-    /// Number of sweeps before this part, to be added in reports.
+    /// Number of sweeps before this part. Reports count them too.
     pub(crate) done: u32,
 }
 
@@ -181,14 +180,6 @@ impl<E: Engine> Session<E> {
         if let Strategy::Corrected(corrections) = &mut self.strategy {
             corrections.disturbed(self.history.last());
         }
-    }
-
-    /// Adds sweeps that another engine has done, and takes their positions.
-    pub(crate) fn add(&mut self, log: &[Objectives], positions: &[DVec2]) -> Result<(), GpuError> {
-        for objectives in log {
-            self.history.add(*objectives);
-        }
-        self.engine.set_positions(positions)
     }
 
     /// Takes the targets of a problem with the same layout.

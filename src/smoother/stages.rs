@@ -1,4 +1,4 @@
-//! The stages of a run: what it does on the host between sweeps.
+//! The stages of a run, which work on the host between sweeps.
 
 use glam::DVec2;
 

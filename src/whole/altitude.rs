@@ -1,5 +1,5 @@
-//! The stage that keeps the altitude of every triangle from falling below the least altitude of the given mesh. Vertices that
-//! would violate this go back until they do not, and are then held, while the others continue.
+//! The stage that keeps the altitude of every triangle from falling below the least altitude of the given mesh. The vertices of
+//! triangles that are too low go back, and stay there while the others move on.
 
 use std::cmp::Ordering;
 
@@ -89,7 +89,7 @@ pub(crate) struct AltitudeStage<'s> {
     least: f64,
     /// Whether no vertex went back after the last period.
     is_clean: bool,
-    /// Whether the last sweeps were unlimited, because no vertex had gone back before.
+    /// Whether the number of the last sweeps had no limit. It has none after a period in which no vertex went back.
     was_clean: bool,
     /// Number of periods done.
     count: u32,

@@ -16,12 +16,13 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
 ) -> Result<Ended, SmoothError> {
     let max_sweeps = live.plan.stop.max_sweeps;
     if stages.is_empty() || max_sweeps == 0 {
-        let (positions, stop) = live.sweep(u32::MAX, keeping, observe).await?;
+        // Without stages, the engine ends the run. With stages, the host does.
+        let until = if stages.is_empty() { u32::MAX } else { 0 };
+        let (positions, stop) = live.sweep(until, keeping, observe).await?;
         return Ok(live.end(positions, stop.unwrap_or(Stop::MaxSweeps)));
     }
     let plan = live.plan.clone();
     let mut host = Host::new(live.problem.clone(), &plan, live.start());
-    let mut f = host.f(&host.before);
     loop {
         let began = live.sweeps();
         let period = stages.iter().map(|stage| stage.period()).min().unwrap_or(u32::MAX);
@@ -43,7 +44,7 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
             }
         }
         let now = objectives(&host.problem, &plan, &host.positions);
-        let last = std::mem::replace(&mut f, now.of(plan.scheme.base()).unwrap_or(f64::NAN));
+        let f = now.of(plan.scheme.base()).unwrap_or(f64::NAN);
         let moved = Moved {
             positions: &host.positions,
             swept_to: &swept_to,
@@ -51,9 +52,9 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
             targets: std::mem::take(&mut host.has_new_targets).then_some(&host.problem),
             now,
         };
-        live.write_back(began, moved, keeping).await?;
+        live.write_back(began, moved, keeping)?;
         let period = Period {
-            f: [last, f],
+            f: [host.f_before, f],
             swept,
             remaining: live.remaining(),
             is_settled,
@@ -63,11 +64,10 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
         let judged = stages.last_mut().map(|stage| stage.judge(&period));
         let Judged { stop, remaining } = judged.unwrap_or(Judged { stop: None, remaining: None });
         let stop = if swept == Some(Stop::Canceled) { swept } else { stop };
-        // Opening triangles for a device may have moved vertices further.
-        host.before.clone_from_slice(live.start());
         if let Some(stop) = stop {
-            let ended = live.end(host.before, stop);
+            let ended = live.end(host.positions, stop);
             return Ok(Ended { remaining, ..ended });
         }
+        host.begin_period(f);
     }
 }

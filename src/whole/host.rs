@@ -14,6 +14,8 @@ pub(crate) struct Host<'r> {
     pub(crate) plan: &'r Plan,
     /// The positions before the sweeps, which keep all bounds.
     pub(crate) before: Vec<DVec2>,
+    /// f by the base metric before the sweeps.
+    pub(crate) f_before: f64,
     /// The present positions: those after the sweeps, until a stage changes them.
     pub(crate) positions: Vec<DVec2>,
     /// For each free vertex, whether sweeps are not to move it.
@@ -23,17 +25,23 @@ pub(crate) struct Host<'r> {
 }
 
 impl<'r> Host<'r> {
-    /// Makes the state before the first sweep, in which no vertex is held.
+    /// Makes the state before the first sweep. No vertex is held.
     pub(crate) fn new(problem: Problem, plan: &'r Plan, positions: &[DVec2]) -> Self {
         let held = vec![false; problem.free_count()];
+        let f_before = f(&problem, plan, positions);
         let (before, positions) = (positions.to_vec(), positions.to_vec());
-        Self { problem, plan, before, positions, held, has_new_targets: false }
+        Self { problem, plan, before, f_before, positions, held, has_new_targets: false }
+    }
+
+    /// Begins a period at the present positions, where f by the base metric is `f`.
+    pub(crate) fn begin_period(&mut self, f: f64) {
+        self.before.clone_from(&self.positions);
+        self.f_before = f;
     }
 
     /// Returns f by the base metric at some positions.
     pub(crate) fn f(&self, positions: &[DVec2]) -> f64 {
-        let base = self.plan.scheme.base();
-        base.ideal_squared() + mean_excess(base, &self.problem, positions)
+        f(&self.problem, self.plan, positions)
     }
 
     /// Returns the guard of the run.
@@ -56,6 +64,12 @@ impl<'r> Host<'r> {
             map_parts(problem.triangles().chunks(4096), |_, part| part.iter().all(is_sound));
         parts.into_iter().all(|is_sound| is_sound)
     }
+}
+
+/// Evaluates f by the base metric of a plan.
+fn f(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> f64 {
+    let base = plan.scheme.base();
+    base.ideal_squared() + mean_excess(base, problem, positions)
 }
 
 /// Evaluates the objectives that a plan tracks.

@@ -13,8 +13,8 @@ use crate::outcome::DeviceFault;
 use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    CPU, Checkpoint, Counts, DriveError, Engine, Guard, Keeper, Keeping, Method, Objectives,
-    Observer, Options, Phase, Plan, Report, Saved, Session, Stop, steps,
+    CPU, Checkpoint, Counts, DriveError, Engine, Guard, History, Keeper, Keeping, Method,
+    Objectives, Observer, Options, Phase, Plan, Report, Saved, Session, Stop, steps,
 };
 use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;
@@ -35,9 +35,11 @@ pub(crate) struct Spec<'s> {
     pub(crate) is_staged: bool,
 }
 
-/// A state that the run can return to: the objectives so far, and the positions after the last sweep.
+/// A state to which the run can return.
 struct Point {
+    /// The objectives before the first sweep and after each.
     log: Vec<Objectives>,
+    /// The positions after the last sweep.
     positions: Vec<DVec2>,
 }
 
@@ -55,11 +57,8 @@ pub(crate) struct Live<'s> {
     last: Point,
     held: Vec<bool>,
     opened: Option<Opened>,
-    /// Number of sweeps on the CPU because triangles were too flat for the device, and the sweep from which on all are,
-    /// because they stayed so.
-    opening_sweeps: u32,
+    /// The number of sweeps after which the CPU takes over, because triangles are too flat or too small for the device.
     on_cpu_from: Option<u32>,
-    is_resumed: bool,
     fault: Option<DeviceFault>,
 }
 
@@ -97,7 +96,7 @@ impl<'s> Live<'s> {
         let opening_sweeps = opened.as_ref().map_or(0, Opened::sweeps);
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
         let positions = opened.as_ref().map_or(from, |opened| &opened.positions).to_vec();
-        let is_resumed = resumed.is_some();
+        let is_refused = spec.device.is_some() && device.is_none() && resumed.is_none();
         Ok(Self {
             problem: spec.problem.clone(),
             plan,
@@ -107,9 +106,7 @@ impl<'s> Live<'s> {
             last: Point { log: Vec::new(), positions },
             held: Vec::new(),
             opened,
-            opening_sweeps,
-            on_cpu_from: (spec.device.is_some() && device.is_none() && !is_resumed).then_some(0),
-            is_resumed,
+            on_cpu_from: is_refused.then_some(0),
             fault: None,
         })
     }
@@ -119,7 +116,7 @@ impl<'s> Live<'s> {
         self.spec.options.is_multilevel() && self.problem.free_count() > 0
     }
 
-    /// Returns the number of sweeps done, without those that opened triangles before the first.
+    /// Returns the number of sweeps done. Sweeps that opened triangles for a device do not count.
     pub(crate) fn sweeps(&self) -> u32 {
         let log =
             self.session.as_ref().map_or(&self.last.log[..], |session| session.history().log());
@@ -204,7 +201,7 @@ impl<'s> Live<'s> {
         Ok(session)
     }
 
-    /// Leaves the device, if there is one and the keeper wants the run to go on without it.
+    /// Leaves the device if the keeper lets the run go on on the CPU. Without a device, or if the keeper refuses, returns the error.
     fn fall_back<K: Keeper + ?Sized>(
         &mut self,
         error: GpuError,
@@ -234,9 +231,9 @@ impl<'s> Live<'s> {
         self.last.positions.clone()
     }
 
-    /// Takes the vertices where the host has moved them after the sweeps from `from` on, those that it holds, and the
-    /// targets of `problem`. The objectives there are `now`.
-    pub(crate) async fn write_back<K: Keeper + ?Sized>(
+    /// Takes the positions that the host has given the vertices after the sweeps from `from` on, the vertices that it holds,
+    /// and the targets that it has changed.
+    pub(crate) fn write_back<K: Keeper + ?Sized>(
         &mut self,
         from: u32,
         moved: Moved<'_>,
@@ -273,39 +270,11 @@ impl<'s> Live<'s> {
             Ok(()) => self.session = Some(session),
             Err(error) => self.fall_back(error, keeping)?,
         }
-        if positions != swept_to {
-            self.open_again().await?;
-        }
-        Ok(())
-    }
-
-    /// Opens triangles that the host has made too flat for the device, by sweeps on the CPU. If they stay so, the run goes
-    /// on there.
-    async fn open_again(&mut self) -> Result<(), SmoothError> {
-        let Self { problem, plan, last, held, .. } = self;
-        if self.device.is_none() {
-            return Ok(());
-        }
-        let opened = match opening::obstacle(problem, &last.positions) {
-            Obstacle::None => return Ok(()),
-            Obstacle::Small => None,
-            Obstacle::Flat => {
-                let mut engine = CpuEngine::new(problem, last.positions.clone(), plan);
-                engine.hold(held)?;
-                opening::open(problem, engine, plan).await?
-            }
-        };
-        match (opened, &mut self.session) {
-            (Some(opened), Some(session)) => {
-                session.add(&opened.log[1..], &opened.positions)?;
-                self.opening_sweeps += opened.sweeps();
-                let log = session.history().log().to_vec();
-                self.last = Point { log, positions: opened.positions };
-            }
-            _ => {
-                (self.device, self.session) = (None, None);
-                self.on_cpu_from = Some(self.sweeps());
-            }
+        // A device cannot sweep a mesh in which the host has made triangles too flat for it.
+        let is_flat = || opening::obstacle(&self.problem, positions) != Obstacle::None;
+        if self.device.is_some() && positions != swept_to && is_flat() {
+            self.on_cpu_from = Some(self.sweeps());
+            (self.device, self.session) = (None, None);
         }
         Ok(())
     }
@@ -320,7 +289,7 @@ impl<'s> Live<'s> {
                 (session.counts(), history.remaining(), history.clone())
             }
             None => {
-                let history = crate::run::History::resumed(&plan, &last.log, None);
+                let history = History::resumed(&plan, &last.log, None);
                 (Counts { alternated: history.sweeps(), ..none }, None, history)
             }
         };
@@ -334,21 +303,16 @@ impl<'s> Live<'s> {
             }
         }
         let opened = self.opened.as_ref().map_or(0, Opened::sweeps);
+        let on_cpu = self.on_cpu_from.map_or(0, |from| history.sweeps() - from);
         let (history, positions) = match self.opened {
             Some(opened) => opened.followed_by(history, positions),
             None => (history.into_log(), positions),
-        };
-        let opening_sweeps = match self.on_cpu_from {
-            Some(from) if !self.is_resumed && self.fault.is_none() => {
-                self.opening_sweeps + (history.len() as u32 - 1 - opened).saturating_sub(from)
-            }
-            _ => self.opening_sweeps,
         };
         Ended {
             history,
             positions,
             counts: Counts { alternated: opened + counts.alternated, ..counts },
-            opening_sweeps,
+            opening_sweeps: opened + on_cpu,
             remaining,
             held_back: held,
             stop,
@@ -364,7 +328,7 @@ pub(crate) struct Moved<'h> {
     pub(crate) swept_to: &'h [DVec2],
     /// Which free vertices are held from now on; empty for none.
     pub(crate) held: &'h [bool],
-    /// The problem with other targets than before, if they have changed.
+    /// The problem with the new targets, if targets have changed.
     pub(crate) targets: Option<&'h Problem>,
     /// The objectives at the positions, by the targets.
     pub(crate) now: Objectives,

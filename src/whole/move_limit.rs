@@ -89,7 +89,6 @@ impl<'s> MoveLimitStage<'s> {
     /// the objective and is sound. If not, vertices that would go beyond their bounds are held. Returns whether the vertices
     /// were moved.
     fn take(&self, host: &mut Host<'_>) -> bool {
-        let here = host.f(&host.before);
         let mut share = 1.0;
         for _ in 0..=HALVED {
             let mut there = host.before.clone();
@@ -99,7 +98,7 @@ impl<'s> MoveLimitStage<'s> {
                 let wanted = if share == 1.0 { *to } else { *place + (*to - *place) * share };
                 *place = self.within(v, wanted);
             }
-            if host.is_sound(&host.before, &there) && host.f(&there) < here {
+            if host.is_sound(&host.before, &there) && host.f(&there) < host.f_before {
                 host.positions = there;
                 return true;
             }

@@ -1,4 +1,4 @@
-//! What a run does between sweeps, and how it then ends.
+//! The interface of stages: the work of a run on the host between sweeps, and the decision whether the run ends.
 
 use glam::DVec2;
 
@@ -30,11 +30,11 @@ pub(crate) trait Stage: Send {
     /// Takes note that a later stage has moved free vertices.
     fn follow(&mut self, _host: &mut Host<'_>) {}
 
-    /// Decides whether the run ends. Only asked if this is the last of the run's stages.
+    /// Decides whether the run ends. The driver asks the last stage of the run alone.
     fn judge(&mut self, period: &Period) -> Judged;
 }
 
-/// What the work of a stage has come to.
+/// The result of the work of a stage.
 #[derive(Clone, Copy)]
 pub(crate) struct Worked {
     /// Whether the run may end, as far as the stage knows.
@@ -43,7 +43,7 @@ pub(crate) struct Worked {
     pub(crate) has_moved_free: bool,
 }
 
-/// A period: some sweeps, and the work of the stages after them.
+/// A period consists of sweeps and the work of all stages after the sweeps.
 pub(crate) struct Period {
     /// f by the base metric before and after the period.
     pub(crate) f: [f64; 2],

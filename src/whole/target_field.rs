@@ -76,7 +76,6 @@ impl Stage for TargetFieldStage<'_> {
         _: &dyn Fn(&[DVec2]) -> bool,
     ) -> Result<Worked, MeshError> {
         let to = std::mem::take(&mut host.positions);
-        let here = host.f(&host.before);
         let mut share = 1.0;
         self.has_moved = false;
         for _ in 0..=HALVED {
@@ -88,7 +87,7 @@ impl Stage for TargetFieldStage<'_> {
             };
             if host.is_sound(&host.before, &there) {
                 self.follow_to(host, &there)?;
-                if host.f(&there) < here {
+                if host.f(&there) < host.f_before {
                     (host.positions, self.has_moved) = (there, true);
                     return Ok(Worked { is_settled: true, has_moved_free: false });
                 }

@@ -198,8 +198,8 @@ fn cases() -> Vec<(String, Vec<Change>, Options)> {
     cases
 }
 
-/// Returns the metrics whose values a line of a scheme hashes: those that there were when the files were first written, and those of
-/// the scheme. So a new metric changes no line of the others.
+/// Returns the metrics whose values are hashed in the line of a scheme: the nine metrics of the first recorded files, and the metrics of
+/// the scheme. A new metric thus changes no line of other schemes.
 fn hashed(scheme: &[Metric]) -> Vec<Metric> {
     const FIRST: usize = 9;
     let (first, later) = Metric::ALL.split_at(FIRST);

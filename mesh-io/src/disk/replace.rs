@@ -26,7 +26,7 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 
 /// Writes all of the files, each as [`replace`] does, or none.
 ///
-/// The first file takes its place last, when all others have theirs: so it should be the one without which they are no mesh. Where the
+/// The first file is put in place last. It should be the file without which the others are no mesh. Where the
 /// process is killed between, a file that was not there before is then not there yet, and of a mesh that is replaced by
 /// the same with other coordinates, every moment is the old or the new one. Where other files change as well, the first is
 /// out of its place until they have: no moment is a mixture.

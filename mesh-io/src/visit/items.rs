@@ -44,7 +44,7 @@ impl Kind {
         }
     }
 
-    /// Returns the kind of a polygon with this many corners, if there is one.
+    /// Returns the kind of a polygon by its number of corners.
     pub(crate) fn of_polygon(corners: u64) -> Option<Kind> {
         [Kind::Point, Kind::Line, Kind::Triangle, Kind::Quadrilateral]
             .into_iter()
@@ -59,7 +59,7 @@ pub(crate) struct Element {
     pub(crate) kind: Kind,
     /// Numbers that name the element's region; 0 where the format has none.
     pub(crate) region: [i64; 2],
-    /// The tags of as many nodes as the kind has.
+    /// The tags of the nodes. Elements of fewer than four nodes leave the rest unused.
     pub(crate) nodes: [u64; 4],
 }
 
@@ -89,7 +89,7 @@ impl Column {
 /// A group whose elements stand together in the file.
 #[derive(Clone, Debug)]
 pub(crate) struct Within<'w> {
-    /// The kind of group, as the format calls it.
+    /// The format's word for the kind of group.
     pub(crate) what: &'w str,
     pub(crate) label: Label,
     /// The dimension of the group, if it differs from that of its elements.

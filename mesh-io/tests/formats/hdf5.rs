@@ -170,7 +170,7 @@ fn only_coordinates_change() {
     }
 }
 
-/// Chunks of other lengths at the end of the file take the place of those that are there.
+/// A chunk whose length changes replaces the old chunk at the end of the file.
 #[test]
 fn a_mesh_that_is_written_in_place_many_times_does_not_grow_without_bound() {
     for sample in SAMPLES.iter().filter(|sample| !sample.is_plain) {

@@ -53,7 +53,7 @@ impl Access {
 pub(crate) struct BoundPositions<'a> {
     /// All positions or, if they take two bindings, the high parts.
     pub(crate) whole_or_high: wgpu::BindingResource<'a>,
-    /// The low parts, if they take a binding of their own. It comes after all other bindings.
+    /// The low parts of positions that need two bindings. This binding follows all others.
     pub(crate) low: Option<wgpu::BindingResource<'a>>,
 }
 

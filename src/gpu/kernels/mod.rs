@@ -5,6 +5,7 @@ pub(crate) mod dispatch;
 pub(crate) mod form;
 pub(crate) mod layouts;
 pub(crate) mod pipelines;
+pub(crate) mod row;
 pub(crate) mod source;
 pub(crate) mod table;
 pub(crate) mod uniforms;

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use crate::gpu::kernels::form::{MeshForm, Positions};
-use crate::gpu::kernels::table::{Composition, Kernel, Source};
+use crate::gpu::kernels::row::{Composition, Source};
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SEARCH_TRIALS,
     SHARED_STRUCTS, SLOT_VECTORS, SLOTS, WORKGROUP, WORST,

@@ -261,9 +261,9 @@ shared_structs! {
     Control {
         /// Not zero when the run has ended: every kernel then leaves everything as it is.
         done: u32,
-        /// Number of evaluations of the objective: one before the first sweep and one after each.
+        /// Number of evaluations of the objective. The first evaluation precedes all sweeps.
         evaluated: u32,
-        /// Whether the last evaluation was the best so far.
+        /// Whether the last evaluation found the least objective so far.
         improved: u32,
         best_sweep: u32,
         best_sum: vec2f,
@@ -319,7 +319,7 @@ shared_structs! {
         zero: u32,
         /// Number of vertices to be moved.
         vertices: u32,
-        /// Number of triangles that have at least one of the vertices to be moved.
+        /// Number of triangles with a corner that moves.
         triangles: u32,
         /// The bound on the inverse mean ratio of triangles.
         worst_imr: f32,

@@ -1,0 +1,119 @@
+//! The columns of the table of kernels, and the arguments of kernels.
+
+use crate::gpu::kernels::layouts::BindLayout;
+use crate::metric::Metric;
+use crate::run::{Derivatives, Plan};
+
+/// The columns of the table.
+pub(crate) struct Row {
+    /// The name of the function in WGSL.
+    pub(crate) entry_point: &'static str,
+    pub(crate) layout: BindLayout,
+    /// Number of invocations in a workgroup.
+    pub(crate) width: u32,
+    /// Whether the kernel uses target maps if there are any.
+    pub(crate) sees_targets: bool,
+    pub(crate) user: User,
+    /// The source, beside that of the layout.
+    pub(crate) source: &'static [Source],
+}
+
+/// The work that needs a kernel, for which the kernel is compiled beforehand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum User {
+    /// Sweeps, and whatever else an application's frame may encode, without corrections.
+    Sweeps,
+    /// Corrections from coarser levels.
+    Corrections,
+    /// The check of the arithmetic, which is made once.
+    Check,
+}
+
+/// A part of a kernel's source.
+pub(crate) enum Source {
+    /// A file of `shaders/`.
+    File(&'static str),
+    /// The formulas of the kernel's metric.
+    ActiveMetric,
+    /// The objectives of the kernel's metrics.
+    TrackedMetrics,
+    /// The indices of the kernel's metrics in an evaluation.
+    TrackedSlots,
+    /// The constants of the energy that untangles.
+    UntanglingEnergy,
+}
+
+/// Values of the arguments of a kernel, such as the metric of a sweep.
+pub(super) trait Arguments: Sized {
+    /// Lists the values that a run by this plan needs or, without a plan, those that tests try.
+    fn list(plan: Option<&Plan>) -> Vec<Self>;
+}
+
+impl Arguments for () {
+    fn list(_: Option<&Plan>) -> Vec<Self> {
+        vec![()]
+    }
+}
+
+impl Arguments for Metric {
+    fn list(plan: Option<&Plan>) -> Vec<Self> {
+        plan.map_or(Metric::ALL.to_vec(), |plan| vec![plan.scheme.base()])
+    }
+}
+
+impl Arguments for (Metric, Derivatives) {
+    fn list(plan: Option<&Plan>) -> Vec<Self> {
+        match plan {
+            Some(plan) => {
+                let metrics = plan.scheme.metrics().iter();
+                metrics.map(|&metric| (metric, plan.derivatives[metric as usize])).collect()
+            }
+            None => {
+                let both = [Derivatives::Analytic, Derivatives::FiniteDifference];
+                let of_metric = |&metric| both.map(|derivatives| (metric, derivatives));
+                Metric::ALL.iter().flat_map(of_metric).collect()
+            }
+        }
+    }
+}
+
+impl Arguments for Vec<Metric> {
+    fn list(plan: Option<&Plan>) -> Vec<Self> {
+        match plan {
+            Some(plan) => vec![plan.tracked()],
+            None => Metric::ALL.chunks(1).chain([Metric::ALL]).map(<[_]>::to_vec).collect(),
+        }
+    }
+}
+
+/// The arguments of a kernel, in one form for all kernels.
+pub(crate) struct Composition {
+    /// The metrics of the kernel, which may be none.
+    pub(crate) metrics: Vec<Metric>,
+    /// Analytic if the kernel has no choice.
+    pub(crate) derivatives: Derivatives,
+}
+
+impl From<()> for Composition {
+    fn from(_: ()) -> Self {
+        Vec::new().into()
+    }
+}
+
+impl From<Metric> for Composition {
+    fn from(metric: Metric) -> Self {
+        vec![metric].into()
+    }
+}
+
+impl From<(Metric, Derivatives)> for Composition {
+    fn from(of: (Metric, Derivatives)) -> Self {
+        Self { metrics: vec![of.0], derivatives: of.1 }
+    }
+}
+
+impl From<Vec<Metric>> for Composition {
+    fn from(metrics: Vec<Metric>) -> Self {
+        Self { metrics, derivatives: Derivatives::Analytic }
+    }
+}
