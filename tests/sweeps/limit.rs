@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use crate::support::{self, check};
 use crate::{backends, history, name, plate, run, with_points};
 use gpu_smooth::{
-    Backend, Change, Mesh, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, Targets,
+    Backend, Change, Mesh, Method, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop,
+    Targets,
 };
 
 #[test]
@@ -36,6 +37,22 @@ fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {
     let free =
         *history(&run(&smoother, &Options::default(), &Backend::Cpu), Metric::Imr).last().unwrap();
     assert!((least / free - 1.0).abs() < 1e-5, "{least} {free}");
+}
+
+/// Without a sweep to do, a bounded run ends on both engines. A device does not end a run that the host judges.
+#[test]
+fn a_bounded_run_of_no_sweeps_ends() {
+    let mesh = support::perturb_random(&plate(300), 0.5, 3);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let start = Options { max_sweeps: 0, max_move: Some(0.3), ..Options::default() };
+    for method in [Method::Sweeps, Method::Multilevel] {
+        let options = Options { method, ..start.clone() };
+        for backend in backends() {
+            let outcome = run(&smoother, &options, backend);
+            assert_eq!((outcome.stop, outcome.sweeps), (Stop::MaxSweeps, 0), "{}", name(backend));
+            assert_eq!(outcome.points, mesh.points);
+        }
+    }
 }
 
 /// At the end no single vertex can lower the objective much without leaving its bound.
