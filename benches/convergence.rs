@@ -96,7 +96,7 @@ fn hard_meshes() -> Vec<(String, Mesh)> {
 
 fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> String {
     let smoother = Smoother::new(mesh).unwrap();
-    let run = |options: &Options| -> Outcome { smoother.run(options, backend).unwrap() };
+    let run = |options: &Options| -> Outcome { smoother.run(options).on(backend).block().unwrap() };
     let median = |options: &Options| -> Duration {
         let mut times: Vec<_> = (0..REPEATS).map(|_| run(options).smooth).collect();
         times.sort();

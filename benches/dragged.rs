@@ -46,7 +46,7 @@ fn main() {
 fn optimum(mesh: &Mesh) -> (Mesh, f64) {
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let run = Smoother::new(mesh).unwrap();
-    let run = run.run(&options, &Backend::Cpu).unwrap();
+    let run = run.run(&options).on(&Backend::Cpu).block().unwrap();
     let f = run.history.last().and_then(|f| f.of(Metric::Imr)).unwrap();
     (Mesh { points: run.points, ..mesh.clone() }, f)
 }

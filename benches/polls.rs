@@ -1,4 +1,4 @@
-//! Measures how long [`Smoother::run_async`] blocks the thread that polls it during a run: the longest poll, the sum of all
+//! Measures how long an awaited run blocks the thread that polls it: the longest poll, the sum of all
 //! polls, and the longest poll of the device between them.
 //!
 //! `cargo bench --bench polls -- [VERTICES...]`, 2,000 and 57,000 by default.
@@ -12,13 +12,14 @@ use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
-use gpu_smooth::{Gpu, Method, Options, Smoother};
+use gpu_smooth::{Backend, Gpu, Method, Options, Smoother};
 
 fn main() {
     let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
     let sizes = if sizes.is_empty() { vec![2000, 57_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     let gpu = Gpu::open(None).unwrap();
+    let backend = Backend::Gpu(gpu.clone());
     println!("{}: milliseconds", gpu.adapter().name);
     for vertices in sizes {
         let plate = support::triangulate(&outline, vertices).unwrap();
@@ -27,7 +28,7 @@ fn main() {
         for method in [Method::Multilevel, Method::Sweeps] {
             let options = Options { method, ..Options::default() };
             let start = Instant::now();
-            let mut run = pin!(smoother.run_async(&options, &gpu));
+            let mut run = pin!(smoother.run(&options).on(&backend).into_future());
             let mut context = Context::from_waker(Waker::noop());
             let (mut polls, mut of_device) = (Vec::new(), Vec::new());
             let timed = |times: &mut Vec<Duration>, from: Instant| times.push(from.elapsed());

@@ -63,7 +63,7 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
     smoother.set_targets(&targets).unwrap();
     let slide = (what & 64 != 0).then(Slide::default);
     smoother.set_slide(slide.as_ref()).unwrap();
-    let run = || smoother.run(&options, backend);
+    let run = || smoother.run(&options).on(backend).block();
     let outcome = match run() {
         Ok(outcome) => outcome,
         Err(SmoothError::Option { .. } | SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => {
@@ -195,7 +195,7 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
         Err(MeshError::Infeasible { .. }) => return untangled(mesh, options),
         Err(_) => return Became::Refused,
     };
-    let run = || smoother.run(options, backend);
+    let run = || smoother.run(options).on(backend).block();
     let outcome = match run() {
         Ok(outcome) => outcome,
         Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => return Became::Refused,

@@ -19,7 +19,7 @@
 //! };
 //! let smoother = Smoother::new(&mesh)?;
 //! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None)?), or what Backend::auto chooses
-//! let outcome = smoother.run(&Options::default(), &backend)?;
+//! let outcome = smoother.run(&Options::default()).on(&backend).block()?;
 //! let [x, y] = outcome.points[4];
 //! assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3);
 //! assert!(smoother.quality(&outcome.points)?.f(Metric::Imr) < 1.3334);
@@ -107,11 +107,11 @@ pub use periodic::{Motion, Periodic};
 pub use precision::{Precision, Rounding};
 pub use quality::Quality;
 pub use run::{
-    Checkpoint, Derivatives, Desired, Goal, Guard, Keeper, Method, Objectives, Observer, Options,
-    Phase, Progress, Sharpness, Stop, WorstBy,
+    Checkpoint, CheckpointPolicy, Derivatives, Desired, Goal, Guard, Method, Objectives, Observer,
+    Options, Phase, Progress, Sharpness, Stop, WorstBy,
 };
 pub use slide::Slide;
-pub use smoother::{Backend, Smoother, smooth};
+pub use smoother::{Backend, Run, Smoother, smooth};
 pub use targets::{Outside, Surface, TargetField, Targets};
 pub use topology::{Crossing, HangingNode, Topology, signed_area};
 pub use untangle::{Untangled, Untangling, untangle};

@@ -95,7 +95,7 @@ pub struct Slid {
 }
 
 /// A fault of a device, after which a run continued on the CPU; see
-/// [`Keeper::goes_on_without`](crate::Keeper::goes_on_without).
+/// [`CheckpointPolicy::falls_back_to_cpu`](crate::CheckpointPolicy::falls_back_to_cpu).
 #[derive(Clone, Debug)]
 pub struct DeviceFault {
     /// The last sweep on the device whose result was kept.

@@ -67,7 +67,7 @@ mod tests {
 
     use super::*;
     use crate::run::checksum::crc32;
-    use crate::run::{Keeper, Progress, Stop};
+    use crate::run::{CheckpointPolicy, Progress, Stop};
     use crate::{Backend, GpuError, Outcome, Smoother, validity};
 
     /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
@@ -78,7 +78,7 @@ mod tests {
         told: Vec<GpuError>,
     }
 
-    impl Keeper for First {
+    impl CheckpointPolicy for First {
         fn wants_checkpoint(&mut self, _: bool) -> bool {
             self.checkpoint.is_none()
         }
@@ -87,7 +87,7 @@ mod tests {
             self.checkpoint = Some(checkpoint);
         }
 
-        fn goes_on_without(&mut self, error: &GpuError, _: u32) -> bool {
+        fn falls_back_to_cpu(&mut self, error: &GpuError, _: u32) -> bool {
             self.told.push(error.clone());
             self.goes_on
         }
@@ -133,7 +133,13 @@ mod tests {
         for (backend, scheme) in backends().iter().flat_map(of_each) {
             let options = Options { scheme: scheme.parse().unwrap(), ..Options::default() };
             let mut first = First::default();
-            let whole = smoother.run_kept(&options, backend, None, &mut first, &mut go_on).unwrap();
+            let whole = smoother
+                .run(&options)
+                .on(backend)
+                .checkpoints(&mut first)
+                .observe(&mut go_on)
+                .block()
+                .unwrap();
             let mut spoiled = first.checkpoint.clone().unwrap();
             let engine = &mut spoiled.saved.engine;
             engine.positions[0].x = 1e200;
@@ -149,8 +155,14 @@ mod tests {
                 assert!(f(&outcome.points) <= f(&mesh.points), "{scheme}");
             };
             let from = Some(&spoiled);
-            let outcome =
-                smoother.run_kept(&options, backend, from, &mut first, &mut go_on).unwrap();
+            let outcome = smoother
+                .run(&options)
+                .on(backend)
+                .resume(from)
+                .checkpoints(&mut first)
+                .observe(&mut go_on)
+                .block()
+                .unwrap();
             assert_eq!(outcome.stop, Stop::NotFinite, "{scheme}");
             check(&outcome);
             assert!(outcome.sweeps < whole.sweeps);
@@ -180,7 +192,13 @@ mod tests {
             let options =
                 Options { scheme: scheme.parse().unwrap(), max_sweeps: 30, ..Options::default() };
             let mut kept = Latest::default();
-            smoother.run_kept(&options, backend, None, &mut kept, &mut go_on).unwrap();
+            smoother
+                .run(&options)
+                .on(backend)
+                .checkpoints(&mut kept)
+                .observe(&mut go_on)
+                .block()
+                .unwrap();
             let bytes = kept.0.unwrap().to_bytes();
             for _ in 0..rounds {
                 let mut hostile = bytes[..bytes.len() - 4].to_vec();
@@ -200,7 +218,14 @@ mod tests {
                     continue;
                 };
                 let mut none = Latest::default();
-                match smoother.run_kept(&options, backend, Some(&from), &mut none, &mut go_on) {
+                match smoother
+                    .run(&options)
+                    .on(backend)
+                    .resume(&from)
+                    .checkpoints(&mut none)
+                    .observe(&mut go_on)
+                    .block()
+                {
                     Ok(outcome) => {
                         let bad = validity::infeasible(&outcome.points, &mesh.triangles).unwrap();
                         assert!(bad.is_empty(), "{bad:?}");
@@ -218,7 +243,7 @@ mod tests {
     #[derive(Default)]
     struct Latest(Option<Checkpoint>);
 
-    impl Keeper for Latest {
+    impl CheckpointPolicy for Latest {
         fn wants_checkpoint(&mut self, _: bool) -> bool {
             true
         }

@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = support::perturb_random(&support::lattice(12, 12), 0.8, 1);
     let smoother = Smoother::new(&mesh)?;
     let backend = Backend::Gpu(Gpu::open(None)?);
-    let run = |backend: &Backend| smoother.run(&Options::default(), backend);
+    let run = |backend: &Backend| smoother.run(&Options::default()).on(backend).block();
     let expected = run(&backend)?.points;
     soak("runs", runs, |done| {
         let points = match done % 4 {

@@ -11,7 +11,7 @@ use crate::run::saved::{CPU, EngineState, Saved};
 /// The state of a run between two sweeps, with all data needed to continue it. On the same engine the continued run
 /// gives the same bits as one that was never interrupted.
 ///
-/// A [`Keeper`](crate::Keeper) receives it, and [`Smoother::run_kept`](crate::Smoother::run_kept) continues from it,
+/// A [`CheckpointPolicy`](crate::CheckpointPolicy) receives it, and [`Smoother::run_kept`](crate::Smoother::run_kept) continues from it,
 /// with the same mesh and the same options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {

@@ -7,10 +7,10 @@ use web_time::Instant;
 
 use crate::error::GpuError;
 use crate::layout::Problem;
+use crate::run::checkpoint_policy::Checkpointer;
 use crate::run::corrections::Corrections;
 use crate::run::engine::Engine;
 use crate::run::history::History;
-use crate::run::keeper::{Keeper, Keeping};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::saved::Saved;
@@ -18,9 +18,19 @@ use crate::run::step::Step;
 use crate::run::stop::Stop;
 use crate::run::sweeps;
 
-/// A callback that receives the progress of a run and can end it: any `FnMut(&Progress) -> ControlFlow<()>`.
+/// A callback that receives the progress of a run and can end the run: any `FnMut(&Progress) -> ControlFlow<()>` that is
+/// `Send`. In a browser, which has no threads to send to, `Send` is not required.
+#[cfg(not(target_family = "wasm"))]
+pub trait Observer: FnMut(&Progress) -> ControlFlow<()> + Send {}
+
+#[cfg(not(target_family = "wasm"))]
+impl<F: FnMut(&Progress) -> ControlFlow<()> + Send + ?Sized> Observer for F {}
+
+/// A callback that receives the progress of a run and can end the run: any `FnMut(&Progress) -> ControlFlow<()>`.
+#[cfg(target_family = "wasm")]
 pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
 
+#[cfg(target_family = "wasm")]
 impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
 
 /// The progress of a run.
@@ -119,13 +129,13 @@ impl<E: Engine> Session<E> {
 
     /// Sweeps until `until` sweeps are done, or the run ends. Returns the reason if it ends. If `requires_levels`, a
     /// device that has no room for the coarser levels is an error.
-    pub(crate) async fn advance<K: Keeper + ?Sized>(
+    pub(crate) async fn advance(
         &mut self,
         until: u32,
         requires_levels: bool,
         report: Report,
-        keeping: &mut Keeping<'_, K>,
-        observe: &mut (impl Observer + ?Sized),
+        checkpointer: &mut Checkpointer<'_>,
+        observe: &mut dyn Observer,
     ) -> Result<Option<Stop>, DriveError> {
         let Report { phase, done } = report;
         loop {
@@ -156,7 +166,7 @@ impl<E: Engine> Session<E> {
                 Strategy::Sweeps => None,
                 Strategy::Corrected(corrections) => Some(corrections.save()),
             };
-            keeping.after_sweeps(engine, history, corrections, is_ending).await?;
+            checkpointer.after_sweeps(engine, history, corrections, is_ending).await?;
             if is_ending {
                 return Ok(Some(Stop::Canceled));
             }

@@ -2,12 +2,12 @@
 //! the sweeps, on the CPU or a device.
 
 mod checkpoint;
+mod checkpoint_policy;
 pub(crate) mod checksum;
 pub(crate) mod corrections;
 mod drive;
 mod engine;
 mod history;
-mod keeper;
 pub(crate) mod line_search;
 pub(crate) mod multilevel;
 mod objectives;
@@ -26,12 +26,12 @@ mod yielding;
 
 pub(crate) use checkpoint::About;
 pub use checkpoint::Checkpoint;
+pub use checkpoint_policy::CheckpointPolicy;
+pub(crate) use checkpoint_policy::{Checkpointer, NoCheckpoints};
 pub(crate) use drive::{Counts, DriveError, Report, Session, steps};
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{Engine, LEFT_OUT, Proposal};
 pub(crate) use history::History;
-pub use keeper::Keeper;
-pub(crate) use keeper::{Keeping, NoKeeper};
 pub use objectives::Objectives;
 pub use options::{Desired, Goal, Guard, Method, Options};
 pub use plan::Plan;

@@ -6,7 +6,8 @@ use crate::error::SmoothError;
 use crate::metric::{Metric, Scheme};
 use crate::outcome::GoalOutcome;
 use crate::run::{
-    Desired, Goal, Keeper, Keeping, NOISE, Observer, Options, Phase, ROUNDING, Stop, set_guards,
+    CheckpointPolicy, Checkpointer, Desired, Goal, NOISE, Observer, Options, Phase, ROUNDING, Stop,
+    set_guards,
 };
 use crate::whole::{Device, Ended, Live, Spec, drive};
 
@@ -15,13 +16,13 @@ use super::prepared::Smoother;
 impl Smoother<'_> {
     /// Returns the desired objective of a goal. If it is not given, finds it by runs to convergence; `None` if the
     /// observer ended one of them.
-    pub(super) async fn aim<K: Keeper + ?Sized>(
+    pub(super) async fn aim(
         &self,
         goal: Goal,
         options: &Options,
         device: Option<Device<'_>>,
-        keeper: &mut K,
-        observe: &mut (impl Observer + ?Sized),
+        policy: &mut dyn CheckpointPolicy,
+        observe: &mut dyn Observer,
     ) -> Result<Option<GoalOutcome>, SmoothError> {
         let Goal { fraction, desired } = goal;
         if let Desired::Value(desired) = desired {
@@ -40,7 +41,7 @@ impl Smoother<'_> {
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
-            let after_imr = self.refer(&imr, start, device, keeper, observe).await?;
+            let after_imr = self.refer(&imr, start, device, policy, observe).await?;
             if after_imr.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -49,7 +50,7 @@ impl Smoother<'_> {
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
-            let end = self.refer(&full(base), &start, device, keeper, observe).await?;
+            let end = self.refer(&full(base), &start, device, policy, observe).await?;
             if end.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -68,20 +69,20 @@ impl Smoother<'_> {
     }
 
     /// Runs to convergence, from some positions.
-    async fn refer<K: Keeper + ?Sized>(
+    async fn refer(
         &self,
         options: &Options,
         start: &[DVec2],
         device: Option<Device<'_>>,
-        keeper: &mut K,
-        observe: &mut (impl Observer + ?Sized),
+        policy: &mut dyn CheckpointPolicy,
+        observe: &mut dyn Observer,
     ) -> Result<Ended, SmoothError> {
         let problem = &self.problem;
         let mut plan = options.plan_to(None);
         set_guards(&mut plan, options.guard, problem, start);
         let spec = Spec { problem, device, options, phase: Phase::Reference, is_staged: false };
-        let mut keeping = Keeping::new(keeper);
-        let live = Live::new(spec, plan, start, None, &mut keeping).await?;
-        drive(live, &mut [], &mut keeping, observe).await
+        let mut checkpointer = Checkpointer::new(policy);
+        let live = Live::new(spec, plan, start, None, &mut checkpointer).await?;
+        drive(live, &mut [], &mut checkpointer, observe).await
     }
 }

@@ -10,8 +10,8 @@ use crate::metric::Metric;
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::resume;
 use crate::run::{
-    Checkpoint, Goal, JITTER, Keeper, Keeping, LEAST_SCALE, NOISE, Objectives, Observer, Options,
-    Phase, ROUNDING, Stop, set_guards,
+    Checkpoint, CheckpointPolicy, Checkpointer, Goal, JITTER, LEAST_SCALE, NOISE, Objectives,
+    Observer, Options, Phase, ROUNDING, Stop, set_guards,
 };
 use crate::slide::Sliding;
 use crate::whole::{Device, Ended, Improving, Live, Spec, altitude, drive};
@@ -20,13 +20,13 @@ use super::prepared::Smoother;
 use super::stages::Stages;
 
 impl Smoother<'_> {
-    pub(super) async fn run_at<K: Keeper + ?Sized>(
+    pub(super) async fn run_at(
         &self,
         options: &Options,
         device: Option<Device<'_>>,
         from: Option<&Checkpoint>,
-        keeper: &mut K,
-        observe: &mut (impl Observer + ?Sized),
+        policy: &mut dyn CheckpointPolicy,
+        observe: &mut dyn Observer,
     ) -> Result<Outcome, SmoothError> {
         let began = Instant::now();
         options.check_for(&self.problem)?;
@@ -34,7 +34,7 @@ impl Smoother<'_> {
         // Vertices slide on the CPU, whatever the engine of the sweeps.
         let device = device.filter(|_| self.problem.free_count() > 0);
         Stages::check(self, options, from.is_some())?;
-        let (device, fault) = self.checked(device, keeper).await?;
+        let (device, fault) = self.checked(device, policy).await?;
         let mut about = resume::about(&self.mesh, self.problem.targets(), options);
         let resumed = from
             .map(|from| resume::check(&about, from, self.size().vertices).map(|()| from))
@@ -51,7 +51,7 @@ impl Smoother<'_> {
             (Some(Goal { fraction, .. }), Some((desired, origin))) => {
                 Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
             }
-            (Some(goal), None) => match self.aim(goal, options, device, keeper, observe).await? {
+            (Some(goal), None) => match self.aim(goal, options, device, policy, observe).await? {
                 Some(aimed) => Some(aimed),
                 None => return Ok(self.unchanged(base, initial, began)),
             },
@@ -64,18 +64,18 @@ impl Smoother<'_> {
         });
 
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
-        let mut keeping = Keeping::new(keeper);
+        let mut checkpointer = Checkpointer::new(policy);
         let mut plan = options.plan_to(target);
         let start = self.problem.positions();
         set_guards(&mut plan, options.guard, &self.problem, start);
         let mut stages = Stages::new(self, options, &plan);
         let mut in_order = stages.in_order();
         // A checkpoint does not hold the state of stages, so none is taken of a run that has any.
-        keeping.about = in_order.is_empty().then_some(about);
+        checkpointer.about = in_order.is_empty().then_some(about);
         let (problem, phase, is_staged) = (&self.problem, Phase::Smoothing, !in_order.is_empty());
         let spec = Spec { problem, device, options, phase, is_staged };
-        let live = Live::new(spec, plan, start, resumed, &mut keeping).await?;
-        let ended = drive(live, &mut in_order, &mut keeping, observe).await?;
+        let live = Live::new(spec, plan, start, resumed, &mut checkpointer).await?;
+        let ended = drive(live, &mut in_order, &mut checkpointer, observe).await?;
         let outcome = self.judged(options, initial, goal, ended, stages, observe)?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
@@ -98,17 +98,17 @@ impl Smoother<'_> {
     }
 
     /// Returns the device on which a run begins, after checking that the mesh fits it and that it keeps all digits. If
-    /// it drops digits, `keeper` may let the run begin on the CPU.
-    async fn checked<'g, K: Keeper + ?Sized>(
+    /// it drops digits, `policy` may let the run begin on the CPU.
+    async fn checked<'g>(
         &self,
         device: Option<Device<'g>>,
-        keeper: &mut K,
+        policy: &mut dyn CheckpointPolicy,
     ) -> Result<(Option<Device<'g>>, Option<DeviceFault>), SmoothError> {
         let Some(checked) = device else { return Ok((None, None)) };
         checked.check_size(self.size())?;
         match checked.check_arithmetic().await {
             Ok(()) => Ok((device, None)),
-            Err(error) if keeper.goes_on_without(&error, 0) => {
+            Err(error) if policy.falls_back_to_cpu(&error, 0) => {
                 Ok((None, Some(DeviceFault { sweep: 0, error })))
             }
             Err(error) => Err(error.into()),
@@ -125,7 +125,7 @@ impl Smoother<'_> {
         goal: Option<GoalOutcome>,
         mut ended: Ended,
         stages: Stages<'_>,
-        observe: &mut (impl Observer + ?Sized),
+        observe: &mut dyn Observer,
     ) -> Result<Outcome, SmoothError> {
         let base = options.scheme.base();
         let f = |k: usize| ended.history[k].of(base).unwrap_or(f64::INFINITY);

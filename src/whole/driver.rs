@@ -1,24 +1,24 @@
 //! The loop of a whole run: sweeps on the engine, and the work of stages on the host between them.
 
 use crate::error::SmoothError;
-use crate::run::{Keeper, Keeping, Observer, Stop};
+use crate::run::{Checkpointer, Observer, Stop};
 use crate::whole::host::{Host, objectives};
 use crate::whole::live::{Ended, Live, Moved};
 use crate::whole::stage::{Judged, Period, Stage};
 
 /// Sweeps until the run ends, and lets the stages work after each period, in their order. The last of them decides when
 /// the run ends.
-pub(crate) async fn drive<K: Keeper + ?Sized>(
+pub(crate) async fn drive(
     mut live: Live<'_>,
     stages: &mut [&mut dyn Stage],
-    keeping: &mut Keeping<'_, K>,
-    observe: &mut (impl Observer + ?Sized),
+    checkpointer: &mut Checkpointer<'_>,
+    observe: &mut dyn Observer,
 ) -> Result<Ended, SmoothError> {
     let max_sweeps = live.plan.stop.max_sweeps;
     if stages.is_empty() || max_sweeps == 0 {
         // Without stages, the engine ends the run. With stages, the host does.
         let until = if stages.is_empty() { u32::MAX } else { 0 };
-        let (positions, stop) = live.sweep(until, keeping, observe).await?;
+        let (positions, stop) = live.sweep(until, checkpointer, observe).await?;
         return Ok(live.end(positions, stop.unwrap_or(Stop::MaxSweeps)));
     }
     let plan = live.plan.clone();
@@ -27,7 +27,7 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
         let began = live.sweeps();
         let period = stages.iter().map(|stage| stage.period()).min().unwrap_or(u32::MAX);
         let until = began.saturating_add(period).min(max_sweeps);
-        let (swept_to, swept) = live.sweep(until, keeping, observe).await?;
+        let (swept_to, swept) = live.sweep(until, checkpointer, observe).await?;
         if swept == Some(Stop::NotFinite) {
             return Ok(live.end(swept_to, Stop::NotFinite));
         }
@@ -52,7 +52,7 @@ pub(crate) async fn drive<K: Keeper + ?Sized>(
             targets: std::mem::take(&mut host.has_new_targets).then_some(&host.problem),
             now,
         };
-        live.write_back(began, moved, keeping)?;
+        live.write_back(began, moved, checkpointer)?;
         let period = Period {
             f: [host.f_before, f],
             swept,

@@ -32,7 +32,7 @@ impl Improving {
         options: &Options,
         problem: &Problem,
         bounds: Option<&[f64]>,
-        observe: &mut (impl Observer + ?Sized),
+        observe: &mut dyn Observer,
     ) -> Option<Self> {
         let badness = Badness(options.improve_worst?);
         if matches!(ended.stop, Stop::Canceled | Stop::NotFinite) {

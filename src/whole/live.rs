@@ -13,8 +13,8 @@ use crate::outcome::DeviceFault;
 use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    CPU, Checkpoint, Counts, DriveError, Engine, Guard, History, Keeper, Keeping, Method,
-    Objectives, Observer, Options, Phase, Plan, Report, Saved, Session, Stop, steps,
+    CPU, Checkpoint, Checkpointer, Counts, DriveError, Engine, Guard, History, Method, Objectives,
+    Observer, Options, Phase, Plan, Report, Saved, Session, Stop, steps,
 };
 use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;
@@ -76,12 +76,12 @@ pub(crate) struct Ended {
 
 impl<'s> Live<'s> {
     /// Prepares a run by `plan` from some positions, or from a checkpoint of a run that began there.
-    pub(crate) async fn new<K: Keeper + ?Sized>(
+    pub(crate) async fn new(
         spec: Spec<'s>,
         mut plan: Plan,
         from: &[DVec2],
         resumed: Option<&Checkpoint>,
-        keeping: &mut Keeping<'_, K>,
+        checkpointer: &mut Checkpointer<'_>,
     ) -> Result<Self, SmoothError> {
         let (device, opened) = match resumed {
             Some(Checkpoint { about, saved }) => {
@@ -89,10 +89,10 @@ impl<'s> Live<'s> {
             }
             None => opened(&spec, &plan, from).await?,
         };
-        if let Some(about) = &mut keeping.about {
+        if let Some(about) = &mut checkpointer.about {
             about.opened.clone_from(&opened);
         }
-        keeping.last = resumed.map(|resumed| resumed.saved.clone());
+        checkpointer.last = resumed.map(|resumed| resumed.saved.clone());
         let opening_sweeps = opened.as_ref().map_or(0, Opened::sweeps);
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
         let positions = opened.as_ref().map_or(from, |opened| &opened.positions).to_vec();
@@ -134,21 +134,21 @@ impl<'s> Live<'s> {
     }
 
     /// Sweeps until `until` sweeps are done, or the run ends. Returns the best positions, and the reason if it ends.
-    pub(crate) async fn sweep<K: Keeper + ?Sized>(
+    pub(crate) async fn sweep(
         &mut self,
         until: u32,
-        keeping: &mut Keeping<'_, K>,
-        observe: &mut (impl Observer + ?Sized),
+        checkpointer: &mut Checkpointer<'_>,
+        observe: &mut dyn Observer,
     ) -> Result<(Vec<DVec2>, Option<Stop>), SmoothError> {
         loop {
-            match self.try_to_sweep(until, keeping, observe).await {
+            match self.try_to_sweep(until, checkpointer, observe).await {
                 Ok(done) => return Ok(done),
-                Err(DriveError::Device(error)) => self.fall_back(error, keeping)?,
+                Err(DriveError::Device(error)) => self.fall_back(error, checkpointer)?,
                 Err(DriveError::NotFinite { sweep }) => {
                     let error = GpuError::NotFinite { sweep };
-                    if self.device.is_none() || self.fall_back(error, keeping).is_err() {
+                    if self.device.is_none() || self.fall_back(error, checkpointer).is_err() {
                         // Sweeps after the last work of the stages may have gone beyond their bounds.
-                        let saved = keeping.last.take().filter(|_| !self.spec.is_staged);
+                        let saved = checkpointer.last.take().filter(|_| !self.spec.is_staged);
                         return Ok((self.undone(saved), Some(Stop::NotFinite)));
                     }
                 }
@@ -158,20 +158,20 @@ impl<'s> Live<'s> {
         }
     }
 
-    async fn try_to_sweep<K: Keeper + ?Sized>(
+    async fn try_to_sweep(
         &mut self,
         until: u32,
-        keeping: &mut Keeping<'_, K>,
-        observe: &mut (impl Observer + ?Sized),
+        checkpointer: &mut Checkpointer<'_>,
+        observe: &mut dyn Observer,
     ) -> Result<(Vec<DVec2>, Option<Stop>), DriveError> {
         let mut session = match self.session.take() {
             Some(session) => session,
-            None => self.begun(keeping.last.clone())?,
+            None => self.begun(checkpointer.last.clone())?,
         };
         let done = self.opened.as_ref().map_or(0, Opened::sweeps);
         let report = Report { phase: self.spec.phase, done };
         let requires_levels = self.spec.options.method == Method::Multilevel;
-        let stop = session.advance(until, requires_levels, report, keeping, observe).await?;
+        let stop = session.advance(until, requires_levels, report, checkpointer, observe).await?;
         let positions = session.engine.best_positions().await?;
         self.session = Some(session);
         Ok((positions, stop))
@@ -201,16 +201,16 @@ impl<'s> Live<'s> {
         Ok(session)
     }
 
-    /// Leaves the device if the keeper lets the run go on on the CPU. Without a device, or if the keeper refuses, returns the error.
-    fn fall_back<K: Keeper + ?Sized>(
+    /// Leaves the device if the policy lets the run go on on the CPU. Without a device, or if the policy refuses, returns the error.
+    fn fall_back(
         &mut self,
         error: GpuError,
-        keeping: &mut Keeping<'_, K>,
+        checkpointer: &mut Checkpointer<'_>,
     ) -> Result<(), SmoothError> {
         let last = (self.last.log.len() as u32).saturating_sub(1);
         let done = self.opened.as_ref().map_or(0, Opened::sweeps);
-        let sweep = keeping.last.as_ref().map_or(last, Saved::sweeps) + done;
-        if self.device.is_none() || !keeping.keeper.goes_on_without(&error, sweep) {
+        let sweep = checkpointer.last.as_ref().map_or(last, Saved::sweeps) + done;
+        if self.device.is_none() || !checkpointer.policy.falls_back_to_cpu(&error, sweep) {
             return Err(error.into());
         }
         (self.device, self.session) = (None, None);
@@ -233,17 +233,17 @@ impl<'s> Live<'s> {
 
     /// Takes the positions that the host has given the vertices after the sweeps from `from` on, the vertices that it holds,
     /// and the targets that it has changed.
-    pub(crate) fn write_back<K: Keeper + ?Sized>(
+    pub(crate) fn write_back(
         &mut self,
         from: u32,
         moved: Moved<'_>,
-        keeping: &mut Keeping<'_, K>,
+        checkpointer: &mut Checkpointer<'_>,
     ) -> Result<(), SmoothError> {
         let Moved { positions, swept_to, held, targets, now } = moved;
         let Some(mut session) = self.session.take() else { return Ok(()) };
         session.disturbed(from, now);
         // A state that was saved before is not that of the stages any more.
-        keeping.last = None;
+        checkpointer.last = None;
         self.last = Point { log: session.history().log().to_vec(), positions: positions.to_vec() };
         let is_held_anew = self.held != held;
         if is_held_anew {
@@ -268,7 +268,7 @@ impl<'s> Live<'s> {
         }
         match written {
             Ok(()) => self.session = Some(session),
-            Err(error) => self.fall_back(error, keeping)?,
+            Err(error) => self.fall_back(error, checkpointer)?,
         }
         // A device cannot sweep a mesh in which the host has made triangles too flat for it.
         let is_flat = || opening::obstacle(&self.problem, positions) != Obstacle::None;

@@ -43,7 +43,7 @@ fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 
 fn limit(mesh: &Mesh, metric: Metric) -> f64 {
     let options = Options { scheme: metric.into(), tolerance: 1e-8, ..Options::default() };
     let run = Smoother::new(mesh).unwrap();
-    let run = run.run(&options, &Backend::Cpu).unwrap();
+    let run = run.run(&options).on(&Backend::Cpu).block().unwrap();
     run.history.last().and_then(|f| f.of(metric)).unwrap()
 }
 

@@ -4,8 +4,8 @@
 use std::ops::ControlFlow;
 
 use gpu_smooth::{
-    Backend, Gpu, GpuError, Keeper, Mesh, MeshSize, Method, Options, Outcome, Progress, Smoother,
-    wgpu,
+    Backend, CheckpointPolicy, Gpu, GpuError, Mesh, MeshSize, Method, Options, Outcome, Progress,
+    Smoother, wgpu,
 };
 use pollster::block_on;
 
@@ -57,7 +57,7 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
         let tolerance = 0.0;
         let options = Options { scheme, method, max_sweeps: 8, tolerance, ..Options::default() };
         let [cpu, vulkan, gl] =
-            backends.each_ref().map(|backend| smoother.run(&options, backend).unwrap());
+            backends.each_ref().map(|backend| smoother.run(&options).on(backend).block().unwrap());
         let f = |outcome: &Outcome| smoother.quality(&outcome.points).unwrap().f(base);
         for (name, other) in [("vulkan", &vulkan), ("gl", &gl)] {
             let label = format!("{} {method:?} on {name}", options.scheme);
@@ -72,8 +72,8 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
 /// A keeper that lets the run go on on the CPU when the device fails.
 struct GoesOn;
 
-impl Keeper for GoesOn {
-    fn goes_on_without(&mut self, error: &GpuError, _: u32) -> bool {
+impl CheckpointPolicy for GoesOn {
+    fn falls_back_to_cpu(&mut self, error: &GpuError, _: u32) -> bool {
         assert!(matches!(error, GpuError::Lost(_)), "{error}");
         true
     }
@@ -93,7 +93,13 @@ fn a_run_goes_on_on_the_cpu_when_a_device_of_opengl_is_lost() {
         ControlFlow::Continue(())
     };
     let backend = Backend::Gpu(gpu);
-    let outcome = smoother.run_kept(&options, &backend, None, &mut GoesOn, &mut observe).unwrap();
+    let outcome = smoother
+        .run(&options)
+        .on(&backend)
+        .checkpoints(&mut GoesOn)
+        .observe(&mut observe)
+        .block()
+        .unwrap();
     assert!(outcome.device_fault.is_some());
     assert_eq!(outcome.sweeps, 20);
     let smoothed = Mesh { points: outcome.points, ..mesh.clone() };

@@ -15,8 +15,8 @@ use gpu_smooth::{
 use crate::app::{App, bad_plate};
 
 /// Polls a future as an application does that polls its device once a frame. Returns the result and the number of frames.
-fn drive<F: Future>(device: &wgpu::Device, future: F) -> (F::Output, u32) {
-    let mut future = pin!(future);
+fn drive<F: IntoFuture>(device: &wgpu::Device, future: F) -> (F::Output, u32) {
+    let mut future = pin!(future.into_future());
     let mut context = Context::from_waker(Waker::noop());
     let end = Instant::now() + Duration::from_secs(60);
     let mut frames = 0;
@@ -65,11 +65,12 @@ fn a_run_polled_by_the_application_is_the_blocking_run() {
     let mesh = bad_plate(600);
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
+    let on_app = Backend::Gpu(app.gpu.clone());
     let backend = Backend::Gpu(app.another_gpu());
     for options in cases() {
-        let expected = smoother.run(&options, &backend).unwrap();
+        let expected = smoother.run(&options).on(&backend).block().unwrap();
         let mut observe = go_on;
-        let future = smoother.run_async_observed(&options, &app.gpu, &mut observe);
+        let future = smoother.run(&options).on(&on_app).observe(&mut observe);
         let (found, frames) = drive(app.device(), future);
         assert_same(&expected, &found.unwrap());
         assert!(frames > 0, "the future blocked the thread");
@@ -83,16 +84,14 @@ fn futures_can_move_between_threads() {
     let mesh = bad_plate(200);
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
+    let on_app = Backend::Gpu(app.gpu.clone());
     let (device_mesh, options) = (app.mesh(&mesh), Options::default());
     is_send(
-        &smoother.run_async_observed(
-            &options,
-            &app.gpu,
-            &mut |_: &Progress| ControlFlow::Break(()),
-        ),
+        &smoother.run(&options).on(&on_app).observe(&mut |_: &Progress| ControlFlow::Break(())),
     );
     let observe: &mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send) = &mut go_on;
-    is_send(&smoother.run_async_observed(&options, &app.gpu, observe));
+    is_send(&smoother.run(&options).on(&on_app).observe(observe));
+    is_send(&smoother.run(&options).on(&on_app).into_future());
     is_send(&device_mesh.read_points_async());
 }
 
@@ -105,17 +104,18 @@ fn a_prepared_mesh_that_owns_all_it_needs_is_run_in_another_thread() {
         std::thread::spawn(|| pollster::block_on(task))
     }
     let mesh = bad_plate(400);
-    let expected = Smoother::new(&mesh).unwrap().run(&Options::default(), &Backend::Cpu).unwrap();
+    let expected =
+        Smoother::new(&mesh).unwrap().run(&Options::default()).on(&Backend::Cpu).block().unwrap();
     let owned = Smoother::new(&mesh).unwrap().into_owned();
     drop(mesh);
-    let task = spawn(async move { owned.run(&Options::default(), &Backend::Cpu) });
+    let task = spawn(async move { owned.run(&Options::default()).on(&Backend::Cpu).block() });
     assert_same(&expected, &task.join().unwrap().unwrap());
 
     let owned = Smoother::new(&bad_plate(400)).unwrap().into_owned();
     let app = App::new();
     let gpu = app.another_gpu();
     let device = gpu.device().clone();
-    let task = spawn(async move { owned.run_async(&Options::default(), &gpu).await });
+    let task = spawn(async move { owned.run(&Options::default()).on(&Backend::Gpu(gpu)).await });
     while !task.is_finished() {
         device.poll(wgpu::PollType::Poll).unwrap();
     }
@@ -139,9 +139,10 @@ fn another_thread_may_poll() {
     let mesh = bad_plate(600);
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
+    let on_app = Backend::Gpu(app.gpu.clone());
     let backend = Backend::Gpu(app.another_gpu());
     let [options, ..] = cases();
-    let expected = smoother.run(&options, &backend).unwrap();
+    let expected = smoother.run(&options).on(&backend).block().unwrap();
     let done = AtomicBool::new(false);
     let found = std::thread::scope(|scope| {
         scope.spawn(|| {
@@ -150,7 +151,7 @@ fn another_thread_may_poll() {
                 std::thread::sleep(Duration::from_micros(100));
             }
         });
-        let found = pollster::block_on(smoother.run_async(&options, &app.gpu));
+        let found = pollster::block_on(smoother.run(&options).on(&on_app).into_future());
         done.store(true, Ordering::Relaxed);
         found
     });
@@ -163,12 +164,16 @@ fn two_runs_at_once_on_one_device_do_as_alone() {
     let [first, second] = meshes.each_ref().map(|mesh| Smoother::new(mesh).unwrap());
     let [options, other, _] = cases();
     let app = App::new();
+    let on_app = Backend::Gpu(app.gpu.clone());
     let backend = Backend::Gpu(app.another_gpu());
-    let expected = [first.run(&options, &backend).unwrap(), second.run(&other, &backend).unwrap()];
+    let expected = [
+        first.run(&options).on(&backend).block().unwrap(),
+        second.run(&other).on(&backend).block().unwrap(),
+    ];
     let (mut a, mut b) = (go_on, go_on);
     let mut futures = (
-        pin!(first.run_async_observed(&options, &app.gpu, &mut a)),
-        pin!(second.run_async_observed(&other, &app.gpu, &mut b)),
+        pin!(first.run(&options).on(&on_app).observe(&mut a).into_future()),
+        pin!(second.run(&other).on(&on_app).observe(&mut b).into_future()),
     );
     let mut found = (None, None);
     let both = std::future::poll_fn(|context| {
@@ -194,6 +199,7 @@ fn a_canceled_run_returns_the_best_state_so_far() {
     let mesh = bad_plate(600);
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
+    let on_app = Backend::Gpu(app.gpu.clone());
     for scheme in ["imr", "edge+imr"] {
         let options = Options {
             scheme: scheme.parse().unwrap(),
@@ -208,7 +214,7 @@ fn a_canceled_run_returns_the_best_state_so_far() {
             if heard.len() < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         let (outcome, _) =
-            drive(app.device(), smoother.run_async_observed(&options, &app.gpu, &mut observe));
+            drive(app.device(), smoother.run(&options).on(&on_app).observe(&mut observe));
         let outcome = outcome.unwrap();
         assert_eq!(outcome.stop, Stop::Canceled);
         assert_eq!(heard.len(), 2);
@@ -227,14 +233,16 @@ fn a_dropped_run_leaves_the_device_usable() {
     let mesh = bad_plate(600);
     let smoother = Smoother::new(&mesh).unwrap();
     let app = App::new();
+    let on_app = Backend::Gpu(app.gpu.clone());
     let [options, ..] = cases();
-    let (expected, _) = drive(app.device(), smoother.run_async(&options, &app.gpu));
+    let (expected, _) = drive(app.device(), smoother.run(&options).on(&on_app));
     let expected = expected.unwrap();
     let endless = Options { tolerance: 0.0, max_sweeps: u32::MAX, ..Options::default() };
     // Dropped before the first poll, at its first wait, and later.
     for polls in [0, 1, 2, 7] {
         let mut observe = go_on;
-        let mut future = Box::pin(smoother.run_async_observed(&endless, &app.gpu, &mut observe));
+        let mut future =
+            Box::pin(smoother.run(&endless).on(&on_app).observe(&mut observe).into_future());
         let mut context = Context::from_waker(Waker::noop());
         for _ in 0..polls {
             assert!(future.as_mut().poll(&mut context).is_pending());
@@ -243,6 +251,6 @@ fn a_dropped_run_leaves_the_device_usable() {
         drop(future);
     }
     app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let (found, _) = drive(app.device(), smoother.run_async(&options, &app.gpu));
+    let (found, _) = drive(app.device(), smoother.run(&options).on(&on_app));
     assert_same(&expected, &found.unwrap());
 }

@@ -63,7 +63,7 @@ fn sweeps_end_where_a_run_ends_however_they_are_split() {
         let app = App::new();
         let backend = Backend::Gpu(app.another_gpu());
         let run = Smoother::new(&mesh).unwrap();
-        let run = run.run(&options, &backend).unwrap();
+        let run = run.run(&options).on(&backend).block().unwrap();
         assert_eq!(run.stop, stop);
         for each in [3, run.sweeps, run.sweeps + 3] {
             let mut frames = Frames::new(mesh.clone(), &options);

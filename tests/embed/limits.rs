@@ -152,7 +152,7 @@ fn a_mesh_too_large_for_the_device_is_refused() {
     assert_limit(&gpu_error(error), name, 32 << 10, text);
     let backend = Backend::Gpu(app.another_gpu());
     let smoother = Smoother::new(&mesh).unwrap();
-    let run = smoother.run(&Options::default(), &backend);
+    let run = smoother.run(&Options::default()).on(&backend).block();
     assert_limit(&gpu_error(run.unwrap_err()), name, 32 << 10, text);
 
     // After the refusal, a smaller mesh is accepted.

@@ -1,14 +1,14 @@
 //! A device that is lost during a run, between frames, or before.
 
-use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc;
 use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, DeviceMesh, Gpu, GpuError, Keeper, Mesh, Options, Outcome, Progress, Readback, Scheme,
-    Slide, Smoother, Stop, Sweeps, VertexBuffer, wgpu,
+    Backend, CheckpointPolicy, DeviceMesh, Gpu, GpuError, Mesh, Options, Outcome, Progress,
+    Readback, Scheme, Slide, Smoother, Stop, Sweeps, VertexBuffer, wgpu,
 };
 
 use crate::app::{App, Vertices, bad_plate, gpu_error};
@@ -44,19 +44,20 @@ fn a_run_says_that_the_device_was_lost() {
         let smoother = Smoother::new(&mesh).unwrap();
         let app = App::new();
         let backend = Backend::Gpu(app.another_gpu());
-        let calls = Cell::new(0);
+        let calls = AtomicU32::new(0);
         let mut observe = |_: &Progress| {
-            calls.set(calls.get() + 1);
-            if calls.get() == 2 {
+            if calls.fetch_add(1, Ordering::Relaxed) == 1 {
                 app.device().destroy();
             }
             ControlFlow::Continue(())
         };
-        let error = smoother.run_observed(&endless(), &backend, &mut observe).unwrap_err();
+        let error =
+            smoother.run(&endless()).on(&backend).observe(&mut observe).block().unwrap_err();
         assert_lost(&gpu_error(error));
-        assert_eq!(calls.get(), 2);
+        assert_eq!(calls.load(Ordering::Relaxed), 2);
         // A later run on the same device fails alike.
-        let error = smoother.run_observed(&endless(), &backend, &mut observe).unwrap_err();
+        let error =
+            smoother.run(&endless()).on(&backend).observe(&mut observe).block().unwrap_err();
         assert_lost(&gpu_error(error));
     });
 }
@@ -67,8 +68,8 @@ struct GoesOn {
     told: Vec<(GpuError, u32)>,
 }
 
-impl Keeper for GoesOn {
-    fn goes_on_without(&mut self, error: &GpuError, from: u32) -> bool {
+impl CheckpointPolicy for GoesOn {
+    fn falls_back_to_cpu(&mut self, error: &GpuError, from: u32) -> bool {
         self.told.push((error.clone(), from));
         true
     }
@@ -93,7 +94,11 @@ fn run_with_a_loss(
         device.destroy();
     });
     let outcome = smoother
-        .run_kept(options, &backend, None, &mut keeper, &mut |_| ControlFlow::Continue(()))
+        .run(options)
+        .on(&backend)
+        .checkpoints(&mut keeper)
+        .observe(|_: &Progress| ControlFlow::Continue(()))
+        .block()
         .unwrap();
     killer.join().unwrap();
     (outcome, keeper)
@@ -105,7 +110,11 @@ fn time_of_a_run(smoother: &Smoother<'_>, options: &Options) -> Duration {
     let mut keeper = GoesOn { interval: Duration::ZERO, told: Vec::new() };
     let start = Instant::now();
     smoother
-        .run_kept(options, &backend, None, &mut keeper, &mut |_| ControlFlow::Continue(()))
+        .run(options)
+        .on(&backend)
+        .checkpoints(&mut keeper)
+        .observe(|_: &Progress| ControlFlow::Continue(()))
+        .block()
         .unwrap();
     start.elapsed()
 }
@@ -125,7 +134,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
             let scheme: Scheme = ["imr", "edge+imr", "rms"][round % 3].parse().unwrap();
             let base = scheme.base();
             let options = Options { scheme, ..Options::default() };
-            let on_cpu = smoother.run(&options, &Backend::Cpu).unwrap();
+            let on_cpu = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
             // A share of the time that a run takes on this machine: on a fast one the run would else be done before.
             let after = time_of_a_run(&smoother, &options).mul_f64(0.8 * random.unit());
             let (outcome, keeper) = run_with_a_loss(&smoother, &options, after);
@@ -170,8 +179,13 @@ fn a_run_goes_on_from_what_was_kept() {
                 }
                 ControlFlow::Continue(())
             };
-            let outcome =
-                smoother.run_kept(&options, &backend, None, &mut keeper, &mut observe).unwrap();
+            let outcome = smoother
+                .run(&options)
+                .on(&backend)
+                .checkpoints(&mut keeper)
+                .observe(&mut observe)
+                .block()
+                .unwrap();
             assert_eq!((outcome.stop, outcome.sweeps), (Stop::MaxSweeps, 60));
             let fault = outcome.device_fault.unwrap();
             assert_lost(&fault.error);
@@ -205,8 +219,13 @@ fn a_run_with_stages_leaves_a_lost_device_once() {
                 }
                 ControlFlow::Continue(())
             };
-            let outcome =
-                smoother.run_kept(&options, &backend, None, &mut keeper, &mut observe).unwrap();
+            let outcome = smoother
+                .run(&options)
+                .on(&backend)
+                .checkpoints(&mut keeper)
+                .observe(&mut observe)
+                .block()
+                .unwrap();
             assert_eq!(keeper.told.len(), 1, "{:?}", keeper.told);
             assert!(outcome.device_fault.is_some());
             assert_eq!(outcome.stop, Stop::Converged);
@@ -224,10 +243,11 @@ fn a_future_completes_when_the_device_is_lost() {
         // The device is lost before the first poll, or between later ones.
         for waited in [0, 1, 5] {
             let app = App::new();
+            let backend = Backend::Gpu(app.gpu.clone());
             let options = endless();
             let mut observe = |_: &Progress| ControlFlow::Continue(());
             let mut future =
-                Box::pin(smoother.run_async_observed(&options, &app.gpu, &mut observe));
+                Box::pin(smoother.run(&options).on(&backend).observe(&mut observe).into_future());
             let mut context = Context::from_waker(Waker::noop());
             let mut polls = 0;
             let error = loop {

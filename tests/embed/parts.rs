@@ -37,7 +37,7 @@ fn devices(mesh: &Mesh) -> [App; 2] {
 fn run(app: &App, mesh: &Mesh, options: &Options) -> Outcome {
     let backend = Backend::Gpu(app.another_gpu());
     let observe = &mut |_: &_| ControlFlow::Continue(());
-    Smoother::new(mesh).unwrap().run_observed(options, &backend, observe).unwrap()
+    Smoother::new(mesh).unwrap().run(options).on(&backend).observe(observe).block().unwrap()
 }
 
 /// The base objective before the first sweep and after each.
@@ -161,7 +161,7 @@ fn a_mesh_that_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated(
     let smoother = Smoother::new(&large).unwrap();
     for method in [Method::Sweeps, Method::Auto] {
         let options = Options { method, ..Options::default() };
-        let run = smoother.run(&options, &backend);
+        let run = smoother.run(&options).on(&backend).block();
         assert_eq!(gpu_error(run.unwrap_err()).to_string(), text);
     }
     assert_eq!(made(), before);
@@ -221,7 +221,13 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
     let asked = Options { method: Method::Multilevel, ..auto };
     let backend = Backend::Gpu(small.another_gpu());
     let observe = &mut |_: &_| ControlFlow::Continue(());
-    let error = Smoother::new(&mesh).unwrap().run_observed(&asked, &backend, observe).unwrap_err();
+    let error = Smoother::new(&mesh)
+        .unwrap()
+        .run(&asked)
+        .on(&backend)
+        .observe(observe)
+        .block()
+        .unwrap_err();
     assert!(matches!(gpu_error(error), GpuError::Limit { available: BOUND, .. }));
 }
 

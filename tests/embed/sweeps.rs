@@ -17,7 +17,7 @@ fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
     let options = Options { max_sweeps: sweeps, tolerance: 0.0, ..options.clone() };
-    let outcome = Smoother::new(mesh).unwrap().run(&options, &backend).unwrap();
+    let outcome = Smoother::new(mesh).unwrap().run(&options).on(&backend).block().unwrap();
     assert_eq!((outcome.sweeps, outcome.returned), (sweeps, 0));
     (outcome.points, outcome.best_sweep)
 }

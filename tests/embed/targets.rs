@@ -29,7 +29,7 @@ fn encoded_sweeps_to_targets_are_those_of_a_run() {
     let mut smoother = Smoother::new(&mesh).unwrap();
     smoother.set_targets(&targets).unwrap();
     let backend = Backend::Gpu(app.another_gpu());
-    let run = smoother.run(&options, &backend).unwrap();
+    let run = smoother.run(&options).on(&backend).block().unwrap();
     assert_eq!(run.best_sweep, 9);
 
     let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();

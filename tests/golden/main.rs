@@ -221,7 +221,7 @@ fn run(label: &str, mesh: &Mesh, changes: &[Change], options: &Options, on: &Bac
         if let Some(field) = field {
             smoother.set_target_field(field)?;
         }
-        smoother.run(&options, on)
+        smoother.run(&options).on(on).block()
     };
     match made() {
         // The words of a refusal are not results.

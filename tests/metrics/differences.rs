@@ -63,7 +63,7 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
             let (scheme, method) = (metric.into(), Method::Sweeps);
             let options = Options { scheme, method, derivatives, ..Options::default() };
             let go_on = &mut |_: &_| ControlFlow::Continue(());
-            let outcome = smoother.run_observed(&options, backend, go_on).unwrap();
+            let outcome = smoother.run(&options).on(backend).observe(go_on).block().unwrap();
             smoother.quality(&outcome.points).unwrap().f(metric)
         };
         let exact = f(Derivatives::Analytic, &backends[0]);
@@ -94,7 +94,7 @@ fn the_best_state_is_returned_though_differences_may_raise_f() {
         ..Options::default()
     };
     for backend in [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())] {
-        let outcome = smoother.run(&options, &backend).unwrap();
+        let outcome = smoother.run(&options).on(&backend).block().unwrap();
         let history: Vec<f64> =
             outcome.history.iter().map(|f| f.of(Metric::Rms).unwrap()).collect();
         let best = history.iter().copied().fold(f64::INFINITY, f64::min);

@@ -54,7 +54,7 @@ fn options_that_do_not_go_with_kept_altitudes_are_refused() {
     let mut smoother = Smoother::new(&mesh).unwrap();
     let refused = |smoother: &Smoother, options: Options| {
         let options = Options { keep_altitude: true, ..options };
-        let error = smoother.run(&options, &backends()[0]);
+        let error = smoother.run(&options).on(&backends()[0]).block();
         let option = "keep altitude";
         assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
     };

@@ -82,7 +82,7 @@ fn options_that_do_not_go_with_a_target_field_are_refused() {
     assert!(outside.count > mesh.points.len() / 3, "{outside:?}");
     assert!((outside.most / width - 0.5).abs() < 0.05, "{outside:?}");
     let refused = |smoother: &Smoother, options: &Options| {
-        let error = smoother.run(options, &Backend::Cpu);
+        let error = smoother.run(options).on(&Backend::Cpu).block();
         let option = "target field";
         assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
     };

@@ -133,7 +133,8 @@ fn an_awaited_run_yields_between_the_sweeps_on_the_cpu() {
     let wakes = Arc::new(Wakes::default());
     let waker = Waker::from(Arc::clone(&wakes));
     let go_on = &mut |_: &gpu_smooth::Progress| ControlFlow::Continue(());
-    let mut future = pin!(smoother.run_async_observed(&options, &gpu, go_on));
+    let backend = Backend::Gpu(gpu);
+    let mut future = pin!(smoother.run(&options).on(&backend).observe(go_on).into_future());
     let mut yields = 0;
     loop {
         let before = wakes.0.load(Ordering::SeqCst);

@@ -76,7 +76,7 @@ fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
             for backend in backends() {
                 let options =
                     Options { scheme: metric.into(), max_sweeps: 50, ..Options::default() };
-                let outcome = smoother.run(&options, backend);
+                let outcome = smoother.run(&options).on(backend).block();
                 let label = format!("{metric} on the {}", name(backend));
                 match outcome {
                     Ok(outcome) => {
@@ -104,7 +104,7 @@ fn a_mesh_whose_objective_is_not_a_number_is_refused_with_its_worst_triangle() {
     mesh.points.iter_mut().for_each(|p| p[1] *= 1e-200);
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
-        let run = smoother.run(&Options::default(), backend);
+        let run = smoother.run(&Options::default()).on(backend).block();
         let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, metric })) = run else {
             panic!("{:?} on the {}", run.map(|outcome| outcome.stop), name(backend))
         };
@@ -172,7 +172,7 @@ fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
         // Beside a triangle of size 1, its quality cannot be computed.
-        let run = smoother.run(&Options::default(), backend);
+        let run = smoother.run(&Options::default()).on(backend).block();
         let Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) = run else {
             panic!("{:?} on the {}", run.map(|outcome| outcome.stop), name(backend))
         };

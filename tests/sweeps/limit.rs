@@ -155,7 +155,7 @@ fn bounds_that_make_no_sense_are_refused() {
     for (max_move, scheme) in [(0.0, "imr"), (f64::NAN, "imr"), (1.0, "edge")] {
         let scheme = scheme.parse().unwrap();
         let options = Options { max_move: Some(max_move), scheme, ..Options::default() };
-        let error = smoother.run(&options, &Backend::Cpu);
+        let error = smoother.run(&options).on(&Backend::Cpu).block();
         let error = error.unwrap_err();
         let is_it = matches!(error, SmoothError::Option { option: "max move", .. });
         assert!(is_it, "{error}");

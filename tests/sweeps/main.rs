@@ -93,7 +93,7 @@ fn distorted() -> &'static Mesh {
 }
 
 fn run(smoother: &Smoother, options: &Options, backend: &Backend) -> Outcome {
-    smoother.run(options, backend).unwrap()
+    smoother.run(options).on(backend).block().unwrap()
 }
 
 fn with_points(mesh: &Mesh, points: &[[f64; 2]]) -> Mesh {

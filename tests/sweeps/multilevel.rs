@@ -212,7 +212,7 @@ fn corrections_are_the_default_where_they_are_possible() {
     for options in others {
         assert!(!options.is_multilevel(), "{options:?}");
         let asked = Options { method: Method::Multilevel, ..options.clone() };
-        let done = smoother.run(&asked, &Backend::Cpu);
+        let done = smoother.run(&asked).on(&Backend::Cpu).block();
         match done {
             Err(SmoothError::Option { option: "method", .. }) => assert!(!asked.is_multilevel()),
             Ok(outcome) => assert!(asked.is_multilevel() && outcome.corrections > 0),

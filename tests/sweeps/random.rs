@@ -299,7 +299,7 @@ fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
             let flat = 1e-6 * smoother.quality(&mesh.points).unwrap().worst_imr;
             let near = if matches!(backend, Backend::Cpu) { 1e-9 } else { 1e-3 + flat };
             let label = format!("seed {seed} on the {}, {options:?}", name(backend));
-            let once = || smoother.run(&options, backend);
+            let once = || smoother.run(&options).on(backend).block();
             let outcome = match once() {
                 Ok(outcome) => outcome,
                 Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => continue,

@@ -21,7 +21,7 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
                 seen.push((progress.sweep, progress.f));
                 if seen.len() == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            let outcome = smoother.run_observed(&options, backend, &mut observe).unwrap();
+            let outcome = smoother.run(&options).on(backend).observe(&mut observe).block().unwrap();
             assert_eq!(outcome.stop, Stop::Canceled);
             let [(first, _), (last, f)] = seen[..] else { panic!("asked {} times", seen.len()) };
             assert!(first < last && last == outcome.sweeps && last < options.max_sweeps);
@@ -56,7 +56,7 @@ fn a_run_canceled_while_the_optimum_is_sought_returns_the_start() {
                 assert_eq!(progress.phase, Phase::Reference);
                 ControlFlow::Break(())
             };
-            let outcome = smoother.run_observed(&options, backend, cancel).unwrap();
+            let outcome = smoother.run(&options).on(backend).observe(cancel).block().unwrap();
             assert_eq!((outcome.stop, outcome.sweeps), (Stop::Canceled, 0));
             assert!(outcome.points == mesh.points && outcome.goal.is_none());
         }
@@ -96,7 +96,7 @@ fn options_out_of_range_are_named() {
     ];
     for (named, options) in wrong {
         for backend in backends() {
-            let error = smoother.run(&options, backend);
+            let error = smoother.run(&options).on(backend).block();
             match error {
                 Err(SmoothError::Option { option, .. }) => assert_eq!(option, named),
                 other => panic!("{named}: {:?}", other.map(|outcome| outcome.stop)),

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gpu_smooth::{
-    Backend, Checkpoint, Desired, Goal, Keeper, Mesh, Method, Metric, Options, Outcome, Progress,
-    SmoothError, Smoother, Stop,
+    Backend, Checkpoint, CheckpointPolicy, Desired, Goal, Mesh, Method, Metric, Options, Outcome,
+    Progress, SmoothError, Smoother, Stop,
 };
 
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
@@ -14,7 +14,7 @@ use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_
 #[derive(Default)]
 struct All(Vec<Checkpoint>);
 
-impl Keeper for All {
+impl CheckpointPolicy for All {
     fn wants_checkpoint(&mut self, _: bool) -> bool {
         true
     }
@@ -47,9 +47,15 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
 
 /// Continues a run from every `every`th checkpoint: each time it must end with the same bits.
 fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend, every: usize) {
-    let whole = smoother.run(options, backend).unwrap();
+    let whole = smoother.run(options).on(backend).block().unwrap();
     let mut all = All::default();
-    let kept = smoother.run_kept(options, backend, None, &mut all, &mut go_on).unwrap();
+    let kept = smoother
+        .run(options)
+        .on(backend)
+        .checkpoints(&mut all)
+        .observe(&mut go_on)
+        .block()
+        .unwrap();
     let what = format!("{} on the {}", options.scheme, name(backend));
     assert_same(&whole, &kept, &what);
     assert!(!all.0.is_empty(), "{what}: no checkpoint");
@@ -57,7 +63,14 @@ fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend,
         let what = format!("{what}, from sweep {}", checkpoint.sweeps());
         let mut none = All::default();
         let from = Some(checkpoint);
-        let end = smoother.run_kept(options, backend, from, &mut none, &mut go_on).unwrap();
+        let end = smoother
+            .run(options)
+            .on(backend)
+            .resume(from)
+            .checkpoints(&mut none)
+            .observe(&mut go_on)
+            .block()
+            .unwrap();
         assert_same(&whole, &end, &what);
     }
 }
@@ -94,7 +107,13 @@ fn a_hard_run_goes_on_to_the_same_bits() {
         for backend in backends() {
             let options = Options::default();
             let mut all = All::default();
-            let kept = smoother.run_kept(&options, backend, None, &mut all, &mut go_on).unwrap();
+            let kept = smoother
+                .run(&options)
+                .on(backend)
+                .checkpoints(&mut all)
+                .observe(&mut go_on)
+                .block()
+                .unwrap();
             assert!(kept.corrections > 2, "{} corrections", kept.corrections);
             // Secant pairs make a checkpoint twice as large.
             let sizes: Vec<usize> = all.0.iter().map(|one| one.to_bytes().len()).collect();
@@ -116,7 +135,13 @@ fn a_resumed_run_does_not_seek_its_goal_again() {
     let goal = Some(Goal { fraction: 0.999, desired: Desired::Auto });
     let options = Options { goal, method: Method::Sweeps, ..Options::default() };
     let mut all = All::default();
-    let whole = smoother.run_kept(&options, &Backend::Cpu, None, &mut all, &mut go_on).unwrap();
+    let whole = smoother
+        .run(&options)
+        .on(&Backend::Cpu)
+        .checkpoints(&mut all)
+        .observe(&mut go_on)
+        .block()
+        .unwrap();
     assert_eq!(whole.stop, Stop::Reached);
     let mut references = 0;
     let mut observe = |progress: &Progress| {
@@ -124,7 +149,12 @@ fn a_resumed_run_does_not_seek_its_goal_again() {
         ControlFlow::Continue(())
     };
     let end = smoother
-        .run_kept(&options, &Backend::Cpu, all.0.last(), &mut All::default(), &mut observe)
+        .run(&options)
+        .on(&Backend::Cpu)
+        .resume(all.0.last())
+        .checkpoints(&mut All::default())
+        .observe(&mut observe)
+        .block()
         .unwrap();
     assert_same(&whole, &end, "a goal");
     assert_eq!(references, 0);
@@ -133,7 +163,7 @@ fn a_resumed_run_does_not_seek_its_goal_again() {
 #[test]
 fn a_run_that_was_canceled_goes_on() {
     struct Last(Option<Checkpoint>);
-    impl Keeper for Last {
+    impl CheckpointPolicy for Last {
         fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
             is_ending
         }
@@ -144,18 +174,30 @@ fn a_run_that_was_canceled_goes_on() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let smoother = Smoother::new(&mesh).unwrap();
     let options = Options::default();
-    let whole = smoother.run(&options, &Backend::Cpu).unwrap();
+    let whole = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
     let mut last = Last(None);
     let mut cancel = |progress: &Progress| match progress.sweep {
         0..4 => ControlFlow::Continue(()),
         _ => ControlFlow::Break(()),
     };
-    let left = smoother.run_kept(&options, &Backend::Cpu, None, &mut last, &mut cancel).unwrap();
+    let left = smoother
+        .run(&options)
+        .on(&Backend::Cpu)
+        .checkpoints(&mut last)
+        .observe(&mut cancel)
+        .block()
+        .unwrap();
     assert_eq!(left.stop, Stop::Canceled);
     let from = last.0.take();
     assert_eq!(from.as_ref().map(Checkpoint::sweeps), Some(left.sweeps));
-    let end =
-        smoother.run_kept(&options, &Backend::Cpu, from.as_ref(), &mut last, &mut go_on).unwrap();
+    let end = smoother
+        .run(&options)
+        .on(&Backend::Cpu)
+        .resume(from.as_ref())
+        .checkpoints(&mut last)
+        .observe(&mut go_on)
+        .block()
+        .unwrap();
     assert_same(&whole, &end, "canceled");
 }
 
@@ -167,16 +209,28 @@ fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
     let [cpu, gpu] = backends();
     for scheme in ["imr", "edge+imr"] {
         let options = Options { scheme: super::scheme(scheme), ..Options::default() };
-        let on_cpu = smoother.run(&options, cpu).unwrap();
+        let on_cpu = smoother.run(&options).on(cpu).block().unwrap();
         let f = |o: &Outcome| smoother.quality(&o.points).unwrap().f(options.scheme.base());
         for (left_on, goes_on_on) in [(gpu, cpu), (cpu, gpu)] {
             let mut all = All::default();
-            smoother.run_kept(&options, left_on, None, &mut all, &mut go_on).unwrap();
+            smoother
+                .run(&options)
+                .on(left_on)
+                .checkpoints(&mut all)
+                .observe(&mut go_on)
+                .block()
+                .unwrap();
             let from = &all.0[all.0.len() / 2];
             assert_eq!(from.adapter().is_some(), matches!(left_on, Backend::Gpu(_)));
             let mut all = All::default();
-            let end =
-                smoother.run_kept(&options, goes_on_on, Some(from), &mut all, &mut go_on).unwrap();
+            let end = smoother
+                .run(&options)
+                .on(goes_on_on)
+                .resume(from)
+                .checkpoints(&mut all)
+                .observe(&mut go_on)
+                .block()
+                .unwrap();
             assert!(all.0.iter().all(|checkpoint| checkpoint.adapter().is_none()));
             assert!((f(&end) - f(&on_cpu)).abs() < 1e-3 * f(&on_cpu), "{scheme}");
         }
@@ -189,12 +243,24 @@ fn a_checkpoint_of_another_run_is_refused() {
     let smoother = Smoother::new(&mesh).unwrap();
     let options = Options::default();
     let mut all = All::default();
-    smoother.run_kept(&options, &Backend::Cpu, None, &mut all, &mut go_on).unwrap();
+    smoother
+        .run(&options)
+        .on(&Backend::Cpu)
+        .checkpoints(&mut all)
+        .observe(&mut go_on)
+        .block()
+        .unwrap();
     let from = all.0.first();
     let refused = |smoother: &Smoother<'_>, options: &Options| {
         let mut none = All::default();
-        let error =
-            smoother.run_kept(options, &Backend::Cpu, from, &mut none, &mut go_on).unwrap_err();
+        let error = smoother
+            .run(options)
+            .on(&Backend::Cpu)
+            .resume(from)
+            .checkpoints(&mut none)
+            .observe(&mut go_on)
+            .block()
+            .unwrap_err();
         assert!(matches!(error, SmoothError::Checkpoint(_)), "{error:?}");
         error.to_string()
     };
@@ -213,7 +279,7 @@ fn a_checkpoint_of_another_run_is_refused() {
 #[test]
 fn keeping_positions_changes_no_bit() {
     struct Often;
-    impl Keeper for Often {
+    impl CheckpointPolicy for Often {
         fn interval(&self) -> Duration {
             Duration::ZERO
         }
@@ -224,8 +290,14 @@ fn keeping_positions_changes_no_bit() {
         for scheme in ["imr", "edge+imr"] {
             let options =
                 Options { scheme: super::scheme(scheme), max_sweeps: 40, ..Options::default() };
-            let whole = smoother.run(&options, backend).unwrap();
-            let kept = smoother.run_kept(&options, backend, None, &mut Often, &mut go_on).unwrap();
+            let whole = smoother.run(&options).on(backend).block().unwrap();
+            let kept = smoother
+                .run(&options)
+                .on(backend)
+                .checkpoints(&mut Often)
+                .observe(&mut go_on)
+                .block()
+                .unwrap();
             assert_same(&whole, &kept, scheme);
         }
     }

@@ -183,7 +183,7 @@ fn options_that_cannot_be_combined_with_sliding_are_refused() {
         Options { scheme: Metric::Edge.into(), ..Options::default() },
         Options { goal: auto, ..Options::default() },
     ] {
-        let error = smoother.run(&options, &Backend::Cpu).unwrap_err();
+        let error = smoother.run(&options).on(&Backend::Cpu).block().unwrap_err();
         assert!(matches!(error, SmoothError::Option { option: "slide", .. }), "{error}");
     }
 }
@@ -225,5 +225,5 @@ fn a_strip_slides_without_a_free_vertex() {
     assert!(refused(Smoother::with_slide(&mesh, &held).map(drop)));
     let mut stopped = Smoother::with_slide(&mesh, &slide).unwrap();
     stopped.set_slide(None).unwrap();
-    assert!(refused(stopped.run(&Options::default(), &Backend::Cpu).map(drop)));
+    assert!(refused(stopped.run(&Options::default()).on(&Backend::Cpu).block().map(drop)));
 }

@@ -318,6 +318,6 @@ fn sizes_and_tensors_that_are_no_targets_are_refused() {
     assert_eq!(error, MeshError::ValueCount { expected: count, given: 3 });
     smoother.set_targets(&Targets::equilateral(count)).unwrap();
     let options = Options { derivatives: Derivatives::FiniteDifference, ..Options::default() };
-    let error = smoother.run(&options, &backends()[0]).unwrap_err();
+    let error = smoother.run(&options).on(&backends()[0]).block().unwrap_err();
     assert!(matches!(error, SmoothError::Option { option: "derivatives", .. }), "{error}");
 }

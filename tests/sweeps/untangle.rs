@@ -218,7 +218,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
     for metric in Metric::ALL.iter().filter(refused) {
         for backend in crate::backends() {
             let options = Options { scheme: (*metric).into(), ..Options::default() };
-            let run = smoother.run(&options, backend);
+            let run = smoother.run(&options).on(backend).block();
             let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, .. })) = run else {
                 panic!("a mesh that double precision cannot judge was smoothed by {metric}")
             };
@@ -229,7 +229,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
     // These need no area.
     for metric in [Metric::Area, Metric::Rms] {
         let options = Options { scheme: metric.into(), ..Options::default() };
-        let outcome = smoother.run(&options, &Backend::Cpu).unwrap();
+        let outcome = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
         assert!(support::worst_imr(&with_points(&mesh, &outcome.points)) < 1.01, "{metric}");
     }
 
@@ -238,7 +238,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
     let opened = with_points(&mesh, &result.points);
     let smoother = Smoother::new(&opened).unwrap();
     assert!(smoother.beyond_precision().is_empty());
-    let outcome = smoother.run(&Options::default(), &Backend::Cpu).unwrap();
+    let outcome = smoother.run(&Options::default()).on(&Backend::Cpu).block().unwrap();
     assert!(support::worst_imr(&with_points(&mesh, &outcome.points)) < 1.1);
 }
 

@@ -144,7 +144,7 @@ fn triangles_that_cannot_be_improved_stay() {
     let smoother = Smoother::new(mesh).unwrap();
     let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
     let mut leave = |_: &gpu_smooth::Progress| std::ops::ControlFlow::Break(());
-    let outcome = smoother.run_observed(&options, &Backend::Cpu, &mut leave).unwrap();
+    let outcome = smoother.run(&options).on(&Backend::Cpu).observe(&mut leave).block().unwrap();
     assert_eq!(outcome.improved, None);
 }
 
@@ -182,7 +182,8 @@ fn improving_the_worst_ends_where_the_observer_says_so() {
                 false => ControlFlow::Continue(()),
             }
         };
-        let outcome = smoother.run_observed(&options, &Backend::Cpu, &mut observe).unwrap();
+        let outcome =
+            smoother.run(&options).on(&Backend::Cpu).observe(&mut observe).block().unwrap();
         (outcome, passes)
     };
     let (outcome, passes) = passes_before_it_ends(u32::MAX);

@@ -143,7 +143,7 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
     let smoother = Smoother::new(&mesh).unwrap();
     let run = |metric: Metric| {
         let options = Options { scheme: metric.into(), max_sweeps: 5, ..Options::default() };
-        smoother.run(&options, &Backend::Cpu)
+        smoother.run(&options).on(&Backend::Cpu).block()
     };
     let outcome = run(Metric::Area).unwrap();
     assert_bad(&Mesh { points: outcome.points, ..mesh.clone() }, &[]);

@@ -169,7 +169,7 @@ impl Checker {
                     goal.desired = Desired::Value(1.0);
                 }
                 // What the library would refuse is refused before, in the words of the options.
-                match self.smoother(&request).run(&options, &Backend::Cpu) {
+                match self.smoother(&request).run(&options).on(&Backend::Cpu).block() {
                     Ok(_) => "run",
                     Err(error) => panic!("{words:?}: {error}"),
                 }

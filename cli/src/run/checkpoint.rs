@@ -1,12 +1,13 @@
 //! Keeps what a long run needs to go on: checkpoints, and another engine if a device fails.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use gpu_smooth::{Checkpoint, GpuError, Keeper, Stop};
+use gpu_smooth::{Checkpoint, CheckpointPolicy, GpuError, Stop};
 use mesh_io::atomic;
 
 use crate::error::CliError;
@@ -40,7 +41,7 @@ pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>
 pub(crate) struct CheckpointKeeper<'a, 'f> {
     /// Where and how often checkpoints are saved; `None` if they are not.
     plan: Option<&'a CheckpointPlan>,
-    follow: &'a RefCell<&'f mut dyn Follow>,
+    follow: &'a Mutex<&'f mut dyn Follow>,
     /// When the next checkpoint is due; `None` if never.
     due: Option<Instant>,
     /// Whether there is a checkpoint of this run in its file.
@@ -51,10 +52,15 @@ pub(crate) struct CheckpointKeeper<'a, 'f> {
 impl<'a, 'f> CheckpointKeeper<'a, 'f> {
     pub(crate) fn new(
         plan: Option<&'a CheckpointPlan>,
-        follow: &'a RefCell<&'f mut dyn Follow>,
+        follow: &'a Mutex<&'f mut dyn Follow>,
     ) -> Self {
         let due = plan.and_then(|plan| Instant::now().checked_add(plan.every));
         Self { plan, follow, due, saved: Cell::new(false), told_of_fault: false }
+    }
+
+    /// Passes a remark on to the user.
+    fn remark(&self, text: &str) {
+        self.follow.lock().unwrap_or_else(PoisonError::into_inner).remark(text);
     }
 
     /// Tells the user how to go on with a run that was left.
@@ -62,12 +68,12 @@ impl<'a, 'f> CheckpointKeeper<'a, 'f> {
         if let (true, Some(plan)) = (self.saved.get(), self.plan) {
             let path = plan.file.display();
             let text = format!("to go on with the run from here, add --continue {path}");
-            self.follow.borrow_mut().remark(&text);
+            self.remark(&text);
         }
     }
 }
 
-impl Keeper for CheckpointKeeper<'_, '_> {
+impl CheckpointPolicy for CheckpointKeeper<'_, '_> {
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
         self.plan.is_some() && (is_ending || self.due.is_some_and(|due| Instant::now() >= due))
     }
@@ -78,13 +84,13 @@ impl Keeper for CheckpointKeeper<'_, '_> {
             Ok(()) => self.saved.set(true),
             Err(error) => {
                 let text = format!("no checkpoint was saved: {error}. The run goes on");
-                self.follow.borrow_mut().remark(&text);
+                self.remark(&text);
             }
         }
         self.due = Instant::now().checked_add(plan.every);
     }
 
-    fn goes_on_without(&mut self, error: &GpuError, from: u32) -> bool {
+    fn falls_back_to_cpu(&mut self, error: &GpuError, from: u32) -> bool {
         // Before the first sweep there is nothing to go on with. The caller then takes the CPU if the choice of engine
         // was left open, or refuses the mesh.
         if from == 0 && engine::is_too_large_for_device(error) {
@@ -93,7 +99,7 @@ impl Keeper for CheckpointKeeper<'_, '_> {
         if !std::mem::replace(&mut self.told_of_fault, true) {
             let text =
                 format!("the GPU failed: {error}. The run goes on on the CPU, from sweep {from}");
-            self.follow.borrow_mut().remark(&text);
+            self.remark(&text);
         }
         true
     }
@@ -140,11 +146,11 @@ mod tests {
     #[test]
     fn the_cpu_takes_over_once_from_a_failed_device_but_not_at_a_start_without_memory() {
         let mut remarks = Remarks::default();
-        let follow: RefCell<&mut dyn Follow> = RefCell::new(&mut remarks);
+        let follow: Mutex<&mut dyn Follow> = Mutex::new(&mut remarks);
         let mut kept = CheckpointKeeper::new(None, &follow);
-        assert!(!kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 0));
-        assert!(kept.goes_on_without(&GpuError::OutOfMemory("full".into()), 7));
-        assert!(kept.goes_on_without(&GpuError::Lost("gone".into()), 0));
+        assert!(!kept.falls_back_to_cpu(&GpuError::OutOfMemory("full".into()), 0));
+        assert!(kept.falls_back_to_cpu(&GpuError::OutOfMemory("full".into()), 7));
+        assert!(kept.falls_back_to_cpu(&GpuError::Lost("gone".into()), 0));
         assert!(!kept.wants_checkpoint(true), "no file was named");
         let told = "the GPU failed: the device is out of memory: full. The run goes on on the CPU, from sweep 7";
         assert_eq!(remarks.0, [told]);

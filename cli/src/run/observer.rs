@@ -7,7 +7,7 @@ use gpu_smooth::Progress;
 use crate::terminal::progress::Stage;
 
 /// Is told how far a mesh is on its way from file to file.
-pub(crate) trait Follow {
+pub(crate) trait Follow: Send {
     /// Is told that a stage begins.
     fn stage(&mut self, stage: Stage);
     /// Is told that the mesh has been read. An error ends the run before any work is done.

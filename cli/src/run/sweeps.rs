@@ -1,8 +1,8 @@
 //! The sweeps of a run, on one engine or, if that fails, on another.
 
-use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use gpu_smooth::{Backend, Options, Outcome, Phase, Precision, Progress, SmoothError, Stop};
@@ -68,14 +68,21 @@ pub(super) fn smooth(
     follow.stage(Stage::Smoothing);
     let mut clock =
         SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };
-    let follow = RefCell::new(follow);
+    let follow = Mutex::new(follow);
     let mut kept = CheckpointKeeper::new(request.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
-            follow.borrow_mut().sweep(progress);
+            follow.lock().unwrap_or_else(PoisonError::into_inner).sweep(progress);
             clock.sweep(progress)
         };
-        ready.smoother.run_kept(&options, backend, input.task.resumed, &mut kept, &mut observe)
+        ready
+            .smoother
+            .run(&options)
+            .on(backend)
+            .resume(input.task.resumed)
+            .checkpoints(&mut kept)
+            .observe(&mut observe)
+            .block()
     };
     let mut taken = ready.taken.clone();
     let turn = taken.turn();

@@ -73,13 +73,13 @@ impl Page {
     /// Smooths the mesh on the page's only thread, and blocks it meanwhile.
     pub fn run_on_cpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
-        Ok(told(&smoother, smoother.run(&Options::default(), &Backend::Cpu)?)?)
+        Ok(told(&smoother, smoother.run(&Options::default()).on(&Backend::Cpu).block()?)?)
     }
 
     /// Smooths the mesh on the device, without blocking the page.
     pub async fn run_on_gpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
-        let outcome = smoother.run_async(&Options::default(), self.gpu()?).await?;
+        let outcome = smoother.run(&Options::default()).on(&Backend::Gpu(self.gpu()?.clone())).await?;
         Ok(told(&smoother, outcome)?)
     }
 

@@ -308,7 +308,8 @@ mod tests {
         let smoother = Smoother::new(&mesh).unwrap();
         let observe = &mut |_: &_| ControlFlow::Continue(());
         let backend = Backend::Gpu(opened);
-        let error = smoother.run_observed(&Options::default(), &backend, observe).unwrap_err();
+        let error =
+            smoother.run(&Options::default()).on(&backend).observe(observe).block().unwrap_err();
         assert!(matches!(error, SmoothError::Gpu(GpuError::Arithmetic { .. })), "{error}");
     }
 }

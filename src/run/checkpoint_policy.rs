@@ -10,46 +10,66 @@ use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::saved::Saved;
 
-/// Decides which states of a run are saved, and whether the run continues when a device fails. Every method has a
-/// default: no checkpoint is taken, and a run ends with the error of its device.
-pub trait Keeper {
-    /// Whether a checkpoint is to be taken now. Called between two sweeps, about ten times a second, and once more,
-    /// with `is_ending` set, when the [`Observer`](crate::Observer) ends the run.
+/// Decides when a run takes checkpoints, and whether the run falls back to the CPU if its device fails. Every method has
+/// a default: a run takes no checkpoint, and a failed device ends the run with an error.
+///
+/// `&mut P` is a policy if `P` is.
+pub trait CheckpointPolicy: Send {
+    /// Returns whether the run takes a checkpoint now. The run asks between two sweeps, about ten times a second. If the
+    /// [`Observer`](crate::Observer) ends the run, the run asks once more, with `is_ending` set.
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
         let _ = is_ending;
         false
     }
 
-    /// Receives a checkpoint that was requested.
+    /// Receives a checkpoint that [`wants_checkpoint`](Self::wants_checkpoint) asked for.
     fn checkpoint(&mut self, checkpoint: Checkpoint) {
         let _ = checkpoint;
     }
 
-    /// Called when the device has failed. Returns whether the run is to continue on the CPU, from the state after sweep
-    /// `from`.
-    fn goes_on_without(&mut self, error: &GpuError, from: u32) -> bool {
+    /// Returns whether the run continues on the CPU, from its state after sweep `from`, now that the device has failed
+    /// with `error`.
+    fn falls_back_to_cpu(&mut self, error: &GpuError, from: u32) -> bool {
         let _ = (error, from);
         false
     }
 
-    /// Returns the interval at which positions are saved in memory, for the run to return to if something fails. The
+    /// Returns the interval at which the run saves its positions in memory, to return to them if a device fails. The
     /// actual interval is longer if saving would take more than a fiftieth of the time.
     fn interval(&self) -> Duration {
         Duration::from_secs(1)
     }
 }
 
-/// A keeper that takes no checkpoints.
-pub(crate) struct NoKeeper;
+impl<P: CheckpointPolicy + ?Sized> CheckpointPolicy for &mut P {
+    fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
+        (**self).wants_checkpoint(is_ending)
+    }
 
-impl Keeper for NoKeeper {}
+    fn checkpoint(&mut self, checkpoint: Checkpoint) {
+        (**self).checkpoint(checkpoint);
+    }
+
+    fn falls_back_to_cpu(&mut self, error: &GpuError, from: u32) -> bool {
+        (**self).falls_back_to_cpu(error, from)
+    }
+
+    fn interval(&self) -> Duration {
+        (**self).interval()
+    }
+}
+
+/// A policy that takes no checkpoints.
+pub(crate) struct NoCheckpoints;
+
+impl CheckpointPolicy for NoCheckpoints {}
 
 /// The divisor of the share of the time that saving positions may take: one in this many.
 const SHARE: u32 = 50;
 
-/// The keeper of a run, with the states that were saved.
-pub(crate) struct Keeping<'k, K: ?Sized> {
-    pub(crate) keeper: &'k mut K,
+/// The checkpoint policy of a run, with the latest state that was saved.
+pub(crate) struct Checkpointer<'k> {
+    pub(crate) policy: &'k mut dyn CheckpointPolicy,
     /// The data of checkpoints other than the state; `None` for a run without checkpoints.
     pub(crate) about: Option<About>,
     /// The latest state that was saved.
@@ -58,10 +78,10 @@ pub(crate) struct Keeping<'k, K: ?Sized> {
     due: Option<Instant>,
 }
 
-impl<'k, K: Keeper + ?Sized> Keeping<'k, K> {
-    pub(crate) fn new(keeper: &'k mut K) -> Self {
-        let due = Instant::now().checked_add(keeper.interval());
-        Self { keeper, about: None, last: None, due }
+impl<'k> Checkpointer<'k> {
+    pub(crate) fn new(policy: &'k mut dyn CheckpointPolicy) -> Self {
+        let due = Instant::now().checked_add(policy.interval());
+        Self { policy, about: None, last: None, due }
     }
 
     /// Saves the state if that is due after some sweeps, or at the end of a run that is canceled.
@@ -72,7 +92,7 @@ impl<'k, K: Keeper + ?Sized> Keeping<'k, K> {
         corrections: impl FnOnce() -> Option<Vec<u64>>,
         is_ending: bool,
     ) -> Result<(), GpuError> {
-        let whole = self.about.is_some() && self.keeper.wants_checkpoint(is_ending);
+        let whole = self.about.is_some() && self.policy.wants_checkpoint(is_ending);
         let start = Instant::now();
         if !whole && (is_ending || self.due.is_none_or(|due| start < due)) {
             return Ok(());
@@ -86,10 +106,10 @@ impl<'k, K: Keeper + ?Sized> Keeping<'k, K> {
         let (log, remaining) = (history.log().to_vec(), history.remaining());
         let saved = Saved { log, remaining, corrections: corrections(), engine };
         if let (true, Some(about)) = (whole, &self.about) {
-            self.keeper.checkpoint(Checkpoint { about: about.clone(), saved: saved.clone() });
+            self.policy.checkpoint(Checkpoint { about: about.clone(), saved: saved.clone() });
         }
         self.last = Some(saved);
-        let next = self.keeper.interval().max(SHARE * start.elapsed());
+        let next = self.policy.interval().max(SHARE * start.elapsed());
         self.due = Instant::now().checked_add(next);
         Ok(())
     }

@@ -1,0 +1,147 @@
+//! A run of a prepared mesh that has not begun: its options, backend, observer and checkpoints.
+
+use std::future::IntoFuture;
+use std::ops::ControlFlow;
+use std::pin::Pin;
+
+use crate::error::SmoothError;
+use crate::mesh::Mesh;
+use crate::outcome::Outcome;
+use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Options, Progress};
+use crate::whole::Device;
+
+use super::backend::Backend;
+use super::prepared::Smoother;
+
+/// A run that has not begun; made by [`Smoother::run`]. [`block`](Self::block) smooths the mesh and blocks until the run
+/// ends; `.await` smooths it without blocking the thread while a device works. Without further calls, the run computes on
+/// the CPU, reports nothing and takes no checkpoints.
+///
+/// ```
+/// use gpu_smooth::{Backend, Mesh, Options, Progress, Smoother};
+/// use std::ops::ControlFlow;
+///
+/// let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.3, 0.6]];
+/// let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+/// let mesh = Mesh { points, triangles, fixed: vec![] };
+/// let smoother = Smoother::new(&mesh)?;
+/// let mut sweeps = 0;
+/// let mut observe = |progress: &Progress| {
+///     sweeps = progress.sweep;
+///     ControlFlow::Continue(())
+/// };
+/// let outcome = smoother.run(&Options::default()).on(&Backend::Cpu).observe(&mut observe).block()?;
+/// assert!((outcome.points[4][0] - 0.5).abs() < 1e-6);
+/// # Ok::<(), gpu_smooth::SmoothError>(())
+/// ```
+#[must_use = "a run begins by `block` or `.await`"]
+pub struct Run<'r> {
+    smoother: &'r Smoother<'r>,
+    options: &'r Options,
+    backend: &'r Backend,
+    observer: Box<dyn Observer + 'r>,
+    policy: Box<dyn CheckpointPolicy + 'r>,
+    resumed: Option<&'r Checkpoint>,
+}
+
+/// The future of a [`Run`]. The future is `Send`, except in a browser.
+#[cfg(not(target_family = "wasm"))]
+type Running<'r> = Pin<Box<dyn Future<Output = Result<Outcome, SmoothError>> + Send + 'r>>;
+#[cfg(target_family = "wasm")]
+type Running<'r> = Pin<Box<dyn Future<Output = Result<Outcome, SmoothError>> + 'r>>;
+
+impl Smoother<'_> {
+    /// Returns a run with these options, on the CPU. The run begins by [`Run::block`] or `.await`.
+    pub fn run<'r>(&'r self, options: &'r Options) -> Run<'r> {
+        let (observer, policy) = (Box::new(unobserved), Box::new(NoCheckpoints));
+        Run { smoother: self, options, backend: &Backend::Cpu, observer, policy, resumed: None }
+    }
+}
+
+impl<'r> Run<'r> {
+    /// Sets the engine of the sweeps.
+    pub fn on(self, backend: &'r Backend) -> Self {
+        Self { backend, ..self }
+    }
+
+    /// Sets the observer. The run calls it every few sweeps, about ten times a second. If the observer ends the run, the
+    /// outcome has the best positions so far and [`Stop::Canceled`](crate::Stop::Canceled).
+    pub fn observe(self, observer: impl Observer + 'r) -> Self {
+        Self { observer: Box::new(observer), ..self }
+    }
+
+    /// Sets the policy that decides when the run takes checkpoints, and whether the run falls back to the CPU if its
+    /// device fails.
+    pub fn checkpoints(self, policy: impl CheckpointPolicy + 'r) -> Self {
+        Self { policy: Box::new(policy), ..self }
+    }
+
+    /// Continues from a checkpoint of a run on the same mesh with the same options. On the engine that took the checkpoint,
+    /// the run gives the same bits as a run that was never interrupted. If the checkpoint was taken on the CPU, the run
+    /// continues there, whatever the backend. With `None`, the run starts from the mesh.
+    pub fn resume(self, checkpoint: impl Into<Option<&'r Checkpoint>>) -> Self {
+        Self { resumed: checkpoint.into(), ..self }
+    }
+
+    /// Smooths the mesh. Blocks until the run ends.
+    ///
+    /// # Errors
+    /// [`SmoothError::Option`] if an option is out of its range, or does not go with another option;
+    /// [`SmoothError::Mesh`] with [`MeshError::NothingFree`](crate::MeshError::NothingFree) if no vertex is free and none
+    /// slides; [`SmoothError::Checkpoint`] if the checkpoint is of another run; [`SmoothError::Gpu`] if the device fails
+    /// and the policy does not let the run fall back to the CPU. If the mesh does not fit the device, the error holds
+    /// [`GpuError::Limit`](crate::GpuError::Limit) or [`GpuError::TooLarge`](crate::GpuError::TooLarge) and comes before
+    /// the first sweep.
+    pub fn block(self) -> Result<Outcome, SmoothError> {
+        let device = match self.backend {
+            Backend::Cpu => None,
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(gpu) => Some(Device::blocking(gpu)),
+        };
+        pollster::block_on(self.begin(device))
+    }
+
+    async fn begin(mut self, device: Option<Device<'r>>) -> Result<Outcome, SmoothError> {
+        let Self { smoother, options, resumed, .. } = self;
+        smoother.run_at(options, device, resumed, &mut *self.policy, &mut *self.observer).await
+    }
+}
+
+/// A run that is awaited does not block the thread while a device works. The future completes only if the application
+/// polls the device meanwhile, as an application that draws frames does (`Device::poll` with `PollType::Poll` is enough).
+/// A run on the CPU completes in its first poll. Dropping the future cancels the run without an outcome. The future is
+/// `Send`, except in a browser.
+impl<'r> IntoFuture for Run<'r> {
+    type Output = Result<Outcome, SmoothError>;
+    type IntoFuture = Running<'r>;
+
+    fn into_future(self) -> Running<'r> {
+        let device = match self.backend {
+            Backend::Cpu => None,
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(gpu) => Some(Device::awaited(gpu)),
+        };
+        Box::pin(self.begin(device))
+    }
+}
+
+/// An observer that never ends the run.
+fn unobserved(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Smooths a mesh that is given as slices, in one blocking call, and returns the positions in the order of `points`.
+/// `points` are positions in any unit, `triangles` zero-based vertex triples of either winding. The boundary stays fixed.
+///
+/// # Errors
+/// [`SmoothError`] under the conditions that [`Smoother::new`] and [`Run::block`] give.
+pub fn smooth(
+    points: &[[f64; 2]],
+    triangles: &[[u32; 3]],
+    options: &Options,
+    backend: &Backend,
+) -> Result<Vec<[f64; 2]>, SmoothError> {
+    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: Vec::new() };
+    let smoother = Smoother::new(&mesh)?;
+    Ok(smoother.run(options).on(backend).block()?.points)
+}
