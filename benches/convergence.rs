@@ -16,7 +16,7 @@ mod support;
 use std::path::Path;
 use std::time::Duration;
 
-use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother};
+use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother, Stopping};
 
 /// How many runs a median is taken of.
 const REPEATS: usize = 5;
@@ -49,7 +49,7 @@ fn main() {
         for (start, mesh) in &starts {
             for (name, backend) in &backends {
                 for metric in [Metric::Imr, Metric::Rms] {
-                    for method in [Method::Multilevel, Method::Sweeps] {
+                    for method in [Method::Multilevel, Method::RELAXED] {
                         let row = measure(mesh, metric, method, backend);
                         println!("{vertices:>8} {start} {metric:<4} {method:?} on {name}: {row}");
                     }
@@ -106,9 +106,13 @@ fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> St
     let base = |outcome: &Outcome| -> Vec<f64> {
         outcome.history.iter().map(|o| o.of(metric).unwrap()).collect()
     };
-    let exact = Options { method: Method::Multilevel, tolerance: 1e-10, ..options.clone() };
+    let exact = Options {
+        method: Method::Multilevel,
+        stopping: Stopping::Tolerance(1e-10),
+        ..options.clone()
+    };
     let limit = base(&run(&exact)).into_iter().fold(f64::INFINITY, f64::min);
-    let long = Options { tolerance: 0.0, max_sweeps: 400, ..options.clone() };
+    let long = Options { stopping: Stopping::Tolerance(0.0), max_sweeps: 400, ..options.clone() };
     let long = if method == Method::Multilevel { exact } else { long };
     let history = base(&run(&long));
     let to = |f: f64| history.iter().position(|&reached| reached <= f);
@@ -117,9 +121,14 @@ fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> St
     let text = |sweeps: Option<usize>| sweeps.map_or("-".to_owned(), |n| n.to_string());
     let counts = [way(0.95), way(0.99), within(1e-4), within(1e-6)].map(text).join(" / ");
     let Some(sweeps) = within(1e-6) else { return format!("{counts}; not reached") };
-    let plain = Options { tolerance: 0.0, max_sweeps: PLAIN, ..Options::paper(metric.into()) };
+    let plain = Options {
+        stopping: Stopping::Tolerance(0.0),
+        max_sweeps: PLAIN,
+        ..Options::paper(metric.into())
+    };
     let plain = median(&plain).as_secs_f64() / f64::from(PLAIN);
-    let whole = Options { tolerance: 0.0, max_sweeps: sweeps as u32, ..options };
+    let whole =
+        Options { stopping: Stopping::Tolerance(0.0), max_sweeps: sweeps as u32, ..options };
     let whole = median(&whole).as_secs_f64();
     format!("{counts}; {:.1} (plain sweep {:.2} ms)", whole / plain, plain * 1e3)
 }

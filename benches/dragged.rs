@@ -11,10 +11,11 @@ mod support;
 
 use std::time::Instant;
 
-use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
-    Backend, DeviceMesh, Gpu, Mesh, Method, Metric, ObjectiveValues, Options, Readback, Smoother,
-    Sweeps, Topology, VertexBuffer, signed_area,
+    Backend, Gpu, Mesh, Method, Metric, Options, Smoother, Stopping, Topology,
+    gpu::{DeviceMesh, ObjectiveValues, Readback, Sweeps, VertexBuffer},
+    topology::signed_area,
+    wgpu::{self, BufferUsages as Usage},
 };
 
 /// Sweeps in a frame.
@@ -36,7 +37,7 @@ fn main() {
         let mesh = support::triangulate(&outline, vertices).unwrap();
         let (mesh, _) = optimum(&mesh);
         for far in FAR {
-            measure(&gpu, &mesh, Method::Sweeps, far);
+            measure(&gpu, &mesh, Method::RELAXED, far);
             measure(&gpu, &mesh, Method::Multilevel, far);
         }
     }
@@ -44,7 +45,7 @@ fn main() {
 
 /// The mesh at its optimum, and f there.
 fn optimum(mesh: &Mesh) -> (Mesh, f64) {
-    let options = Options { tolerance: 1e-9, ..Options::default() };
+    let options = Options { stopping: Stopping::Tolerance(1e-9), ..Options::default() };
     let run = Smoother::new(mesh).unwrap();
     let run = run.run(&options).on(&Backend::Cpu).block().unwrap();
     let f = run.history.last().and_then(|f| f.of(Metric::Imr)).unwrap();

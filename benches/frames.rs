@@ -12,10 +12,11 @@ mod support;
 
 use std::time::{Duration, Instant};
 
-use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
-    DeviceMesh, Gpu, Method, ObjectiveValues, Options, Readback, Smoother, Sweeps, Topology,
-    UntanglingSweeps, VertexBuffer, signed_area,
+    Gpu, Method, Options, Smoother, Topology,
+    gpu::{DeviceMesh, ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer},
+    topology::signed_area,
+    wgpu::{self, BufferUsages as Usage},
 };
 
 /// Frames that are measured, after as many that are not.

@@ -25,7 +25,7 @@ fn main() {
         let plate = support::triangulate(&outline, vertices).unwrap();
         let mesh = support::perturb_random(&plate, 1.0, 1);
         let smoother = Smoother::new(&mesh).unwrap();
-        for method in [Method::Multilevel, Method::Sweeps] {
+        for method in [Method::Multilevel, Method::RELAXED] {
             let options = Options { method, ..Options::default() };
             let start = Instant::now();
             let mut run = pin!(smoother.run(&options).on(&backend).into_future());

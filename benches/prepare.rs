@@ -12,9 +12,11 @@ mod support;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use gpu_smooth::internal::{Coloring, Problem};
-use gpu_smooth::validity::certify;
-use gpu_smooth::{Mesh, Quality, Smoother, Topology};
+use gpu_smooth::{
+    Mesh, Quality, Smoother, Topology,
+    internal::{Coloring, Problem},
+    topology::certify,
+};
 use std::fmt;
 use std::sync::Mutex;
 

@@ -12,9 +12,10 @@ mod support;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use gpu_smooth::internal::run_on_gpu;
-use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
-use gpu_smooth::{Gpu, Metric, Options};
+use gpu_smooth::{
+    Gpu, Metric, Options, Stopping,
+    internal::{Plan, Problem, Stepwise, prepare, run_on_cpu, run_on_gpu},
+};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -67,11 +68,11 @@ impl Case {
         let problem = problem(self.size);
         let options = Options {
             scheme: self.metric.into(),
-            tolerance: 0.0,
+            stopping: Stopping::Tolerance(0.0),
             max_sweeps: u32::MAX,
             ..Options::default()
         };
-        let plan = options.plan();
+        let plan = Plan::new(&options);
         if self.on_gpu {
             let engine = run_on_gpu(gpu()?, problem, problem.positions(), plan);
             Some(Box::new(engine.unwrap()))

@@ -11,7 +11,7 @@ mod support;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use gpu_smooth::{Mesh, Precision, untangle};
+use gpu_smooth::{Mesh, precision::Precision, untangle};
 use support::{boundaries, tangle};
 
 const SEEDS: u64 = 10;

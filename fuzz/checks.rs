@@ -4,8 +4,12 @@
 use std::ops::ControlFlow;
 
 use gpu_smooth::{
-    Backend, Derivatives, Guard, Mesh, MeshError, Method, Metric, Options, Precision, Rounding,
-    Scheme, Sharpness, Slide, SmoothError, Smoother, Surface, Targets, WorstBy, untangle, validity,
+    Backend, Guard, Mesh, MeshError, Method, Metric, Options, Scheme, Slide, SmoothError, Smoother,
+    Targets,
+    options::{Derivatives, PNormExponent, Paper, WorstBy},
+    precision::{Precision, Rounding},
+    targets::Surface,
+    topology, untangle,
 };
 
 /// Takes numbers from bytes: zeros after the last one.
@@ -72,7 +76,7 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
         Err(error) => panic!("{error}"),
     };
     let topology = smoother.topology();
-    let bad = validity::infeasible(&outcome.points, topology.triangles()).unwrap();
+    let bad = topology::infeasible(&outcome.points, topology.triangles()).unwrap();
     assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
     // Without a line to slide along, this lists fixed vertices that have moved.
     let slide = slide.unwrap_or_else(|| {
@@ -121,7 +125,7 @@ fn options(bytes: &mut Bytes<'_>) -> Options {
     let mut options = Options {
         scheme,
         max_sweeps: bytes.below(25) as u32,
-        method: if flags & 1 == 0 { Method::Auto } else { Method::Sweeps },
+        method: if flags & 1 == 0 { Method::Auto } else { Method::RELAXED },
         stored: match flags & 14 {
             2 => Precision::Single,
             6 => Precision::Custom(digits!(15)),
@@ -129,14 +133,17 @@ fn options(bytes: &mut Bytes<'_>) -> Options {
             14 => Precision::Custom(digits!(5)),
             _ => Precision::Double,
         },
-        inner: if flags & 48 == 16 { 3 } else { 1 },
         ..Options::default()
     };
+    if flags & 48 == 16 {
+        options.method = Method::Paper(Paper { newton_steps: 3, ..Paper::default() });
+    }
     if flags & 192 == 64 {
-        options.sharpness = Some(Sharpness::CONTINUED);
+        options.edge_norm = Some(PNormExponent::CONTINUED);
     }
     if flags & 192 == 128 {
-        options.derivatives = Derivatives::FiniteDifference;
+        let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
+        options.method = Method::Paper(differences);
     }
     options
 }
@@ -209,7 +216,7 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
     for (vertex, (old, new)) in before.iter().zip(&after).enumerate() {
         assert!(topology.free()[vertex] || old == new, "vertex {vertex} is fixed and has moved");
     }
-    let bad = validity::infeasible(&outcome.points, topology.triangles()).unwrap();
+    let bad = topology::infeasible(&outcome.points, topology.triangles()).unwrap();
     assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
     let f = |points: &[[f64; 2]]| smoother.quality(points).unwrap().f(options.scheme.base());
     let (start, end) = (f(&mesh.points), f(&outcome.points));
@@ -220,7 +227,7 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
 
 /// Untangles a mesh with inverted triangles: it must not get worse, and what is reported as untangled must be valid.
 fn untangled(mesh: &Mesh, options: &Options) -> Became {
-    let mut go_on = |_: &gpu_smooth::Untangling| ControlFlow::Continue(());
+    let mut go_on = |_: &gpu_smooth::untangle::Untangling| ControlFlow::Continue(());
     let Ok(untangled) = untangle(mesh, options.stored, &mut go_on) else { return Became::Refused };
     assert!(untangled.left.len() <= untangled.bad_before);
     let mended = Mesh { points: untangled.points, ..mesh.clone() };

@@ -99,7 +99,7 @@ pub enum MeshError {
         problem: &'static str,
     },
     /// A pole of the sphere is inside a triangle or on its edge, where longitudes have no direction; see
-    /// [`Chart`](crate::Chart).
+    /// [`Chart`](crate::interpolate::Chart).
     #[error("triangle {triangle} has a pole of the sphere inside of it or on an edge")]
     Pole {
         /// The first such triangle.
@@ -172,16 +172,9 @@ pub enum SmoothError {
     /// The mesh cannot be smoothed.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// An option is out of its range.
-    #[error("{option} is {value}: {remedy}")]
-    Option {
-        /// The field of [`Options`](crate::Options).
-        option: &'static str,
-        /// The option's value.
-        value: String,
-        /// What the value should be.
-        remedy: &'static str,
-    },
+    /// An option is out of its range, or does not go with another feature of the run.
+    #[error(transparent)]
+    Option(#[from] crate::options::OptionError),
     /// The checkpoint is from another run.
     #[error("the checkpoint cannot be used: {0}")]
     Checkpoint(String),

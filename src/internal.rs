@@ -13,7 +13,7 @@ use crate::untangle::energy::Corner;
 pub use device::{BindLayout, Kernel, run_on_gpu};
 
 pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
-pub use crate::metric::{Dual, InvariantSlopes, Invariants, Real, Slopes};
+pub use crate::metric::{Dual, InvariantSlopes, Invariants, Properties, Real, Slopes};
 pub use crate::run::{Plan, Step, Stepwise, StopRule};
 
 /// Starts a run of sweeps on the CPU from `positions`, which are normalized and in the problem's order.

@@ -48,36 +48,32 @@
 
 mod adapter;
 mod chart;
-mod choice;
+pub mod choice;
 mod cpu;
 mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
-mod interpolate;
+pub mod interpolate;
 mod layout;
-mod measure;
+pub mod measure;
 mod mesh;
-mod metric;
-mod outcome;
+pub mod metric;
+pub mod options;
+pub mod outcome;
 mod parallel;
 mod periodic;
-mod precision;
+pub mod precision;
 mod quality;
 mod resume;
 mod run;
 pub mod select;
-mod slide;
+pub mod slide;
 mod smoother;
-mod targets;
-mod topology;
-mod untangle;
+pub mod targets;
+pub mod topology;
+pub mod untangle;
 mod whole;
 mod worst;
-
-/// Exact checks for inverted and flat triangles.
-pub mod validity {
-    pub use crate::topology::{certify, infeasible};
-}
 
 /// Compiles the code of docs/embedding.md with the tests.
 #[cfg(all(doctest, feature = "gpu"))]
@@ -88,32 +84,19 @@ mod embedding {}
 #[doc(hidden)]
 pub mod internal;
 
-pub use chart::Chart;
-pub use choice::Reason;
-pub use error::{BadTriangle, GpuError, MeshError, SmoothError};
+pub use error::{GpuError, MeshError, SmoothError};
 #[cfg(feature = "gpu")]
-pub use gpu::{
-    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, LastValid,
-    ObjectiveValues, Readback, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer,
-};
-pub use interpolate::Interpolation;
-pub use measure::{
-    Better, Change, Definition, Measure, Measured, QUANTILES, Spread, Statistics, UnknownMeasure,
-};
+pub use gpu::Gpu;
 pub use mesh::{Mesh, MeshSize};
-pub use metric::{Corner, Metric, Properties, Scheme, UnknownMetric};
-pub use outcome::{DeviceFault, GoalOutcome, Improved, Outcome, Slid};
-pub use periodic::{Motion, Periodic};
-pub use precision::{Precision, Rounding};
+pub use metric::{Metric, Scheme};
+pub use options::{Goal, Guard, Method, OptionError, Options, Stopping};
+pub use outcome::Outcome;
 pub use quality::Quality;
-pub use run::{
-    Checkpoint, CheckpointPolicy, Derivatives, Desired, Goal, Guard, Method, Objectives, Observer,
-    Options, Phase, Progress, Sharpness, Stop, WorstBy,
-};
+pub use run::{Checkpoint, CheckpointPolicy, Observer, Phase, Progress, Stop};
 pub use slide::Slide;
 pub use smoother::{Backend, Run, Smoother, smooth};
-pub use targets::{Outside, Surface, TargetField, Targets};
-pub use topology::{Crossing, HangingNode, Topology, signed_area};
-pub use untangle::{Untangled, Untangling, untangle};
+pub use targets::{TargetField, Targets};
+pub use topology::Topology;
+pub use untangle::untangle;
 #[cfg(feature = "gpu")]
 pub use wgpu;

@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use crate::error::GpuError;
-use crate::run::{Objectives, Stop, WorstBy};
+use crate::options::WorstBy;
+pub use crate::run::Objectives;
+use crate::run::Stop;
 
 /// The result of a run.
 #[derive(Clone, Debug)]

@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use crate::error::SmoothError;
 use crate::mesh::Mesh;
-use crate::run::{About, Checkpoint, Options};
+use crate::options::Options;
+use crate::run::{About, Checkpoint};
 
 /// Describes a run on this mesh, with the target maps of its vertices, as its checkpoints do.
 pub(crate) fn about(mesh: &Mesh, targets: Option<&[[f32; 3]]>, options: &Options) -> About {
@@ -68,7 +69,7 @@ mod tests {
     use super::*;
     use crate::run::checksum::crc32;
     use crate::run::{CheckpointPolicy, Progress, Stop};
-    use crate::{Backend, GpuError, Outcome, Smoother, validity};
+    use crate::{Backend, GpuError, Outcome, Smoother, topology};
 
     /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
     #[derive(Default)]
@@ -149,7 +150,7 @@ mod tests {
                 }
             }
             let check = |outcome: &Outcome| {
-                let bad = validity::infeasible(&outcome.points, &mesh.triangles).unwrap();
+                let bad = topology::infeasible(&outcome.points, &mesh.triangles).unwrap();
                 assert!(bad.is_empty(), "{bad:?}");
                 let f = |p| smoother.quality(p).unwrap().f(options.scheme.base());
                 assert!(f(&outcome.points) <= f(&mesh.points), "{scheme}");
@@ -227,7 +228,7 @@ mod tests {
                     .block()
                 {
                     Ok(outcome) => {
-                        let bad = validity::infeasible(&outcome.points, &mesh.triangles).unwrap();
+                        let bad = topology::infeasible(&outcome.points, &mesh.triangles).unwrap();
                         assert!(bad.is_empty(), "{bad:?}");
                         went_on += 1;
                     }

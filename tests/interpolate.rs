@@ -3,7 +3,7 @@
 #[path = "support/mod.rs"]
 mod support;
 
-use gpu_smooth::{Interpolation, Mesh, MeshError, Topology};
+use gpu_smooth::{Mesh, MeshError, Topology, interpolate::Interpolation};
 use support::{SplitMix64, lattice};
 
 fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {

@@ -10,7 +10,8 @@ mod support;
 mod triangles;
 
 use gpu_smooth::{
-    Better, Definition, Measure, Measured, Mesh, Metric, QUANTILES, Statistics, Topology,
+    Mesh, Metric, Topology,
+    measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics},
 };
 use support::SplitMix64;
 

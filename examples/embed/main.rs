@@ -13,7 +13,9 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
-    DeviceMesh, Gpu, Mesh, MeshSize, Metric, ObjectiveValues, Options, Sweeps, VertexBuffer, wgpu,
+    Gpu, Mesh, MeshSize, Metric, Options,
+    gpu::{DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer},
+    wgpu,
 };
 use mesh_io::MeshFile;
 use picture::Picture;

@@ -1,8 +1,7 @@
 //! The application: what the pointer and the keys do, and what a frame does. It draws into any texture, with a window or
 //! without.
 
-use gpu_smooth::wgpu;
-use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Scheme};
+use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Scheme, wgpu};
 use std::path::Path;
 use std::time::{Duration, Instant};
 

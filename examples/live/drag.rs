@@ -1,6 +1,6 @@
 //! What the user can grab, and where it goes.
 
-use gpu_smooth::{Topology, signed_area};
+use gpu_smooth::{Topology, topology::signed_area};
 
 /// The farthest that a frame moves what is held, in units of the edges around it, so that the sweeps can follow.
 const REACH: f64 = 0.3;

@@ -1,7 +1,9 @@
 //! Draws triangles by quality, edges, what the user holds, and the panel.
 
-use gpu_smooth::Topology;
-use gpu_smooth::wgpu::{self, BufferUsages as Usage, util::DeviceExt};
+use gpu_smooth::{
+    Topology,
+    wgpu::{self, BufferUsages as Usage, util::DeviceExt},
+};
 
 use super::overlay::{self, Panel};
 use super::view::View;

@@ -1,10 +1,13 @@
 //! The mesh on the device: everything in this application that uses gpu-smooth.
 
-use gpu_smooth::wgpu::{self, BufferUsages as Usage, util::DeviceExt};
 use gpu_smooth::{
-    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, Mesh, Metric,
-    ObjectiveValues, Options, Readback, Scheme, Sweeps, Topology, UntanglingSweeps, VertexBuffer,
-    validity,
+    Gpu, Mesh, Metric, Options, Scheme, Stopping, Topology,
+    gpu::{
+        BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, ObjectiveValues, Readback,
+        Sweeps, UntanglingSweeps, VertexBuffer,
+    },
+    topology,
+    wgpu::{self, BufferUsages as Usage, util::DeviceExt},
 };
 
 use super::Result;
@@ -201,12 +204,12 @@ impl Smoothing {
     /// Counts the triangles that are inverted or flat, by exact arithmetic on the device's positions.
     pub(crate) fn count_infeasible(&self) -> Result<usize> {
         let points = self.device_mesh.read_points()?;
-        Ok(validity::infeasible(&points, self.topology.triangles())?.len())
+        Ok(topology::infeasible(&points, self.topology.triangles())?.len())
     }
 }
 
 fn options(scheme: &Scheme) -> Options {
-    Options { scheme: scheme.clone(), tolerance: 1e-4, ..Options::default() }
+    Options { scheme: scheme.clone(), stopping: Stopping::Tolerance(1e-4), ..Options::default() }
 }
 
 fn floats(points: &[[f64; 2]]) -> Vec<[f32; 2]> {

@@ -14,7 +14,10 @@ use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    DeviceMesh, Gpu, Mesh, Options, Quality, Sweeps, Topology, VertexBuffer, signed_area, wgpu,
+    Gpu, Mesh, Options, Quality, Topology,
+    gpu::{DeviceMesh, Sweeps, VertexBuffer},
+    topology::signed_area,
+    wgpu,
 };
 use wgpu::BufferUsages as Usage;
 use wgpu::util::DeviceExt;

@@ -3,9 +3,12 @@
 use std::collections::HashSet;
 use std::time::Instant;
 
-use gpu_smooth::internal::run_on_gpu;
-use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};
-use gpu_smooth::{Corner, Derivatives, Gpu, Mesh, Metric, Scheme, Sharpness, Topology};
+use gpu_smooth::{
+    Gpu, Mesh, Metric, Scheme, Topology,
+    internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
+    metric::Corner,
+    options::{Derivatives, PNormExponent},
+};
 
 use super::domains::{Domain, started};
 use super::store::{BINS, DesiredRecord, DistributionRecord, MeshRecord, RunRecord, Sample};
@@ -101,7 +104,7 @@ impl Runner {
         let problem = &prepared.problem;
         let mut plan = plan(batch, scheme.clone());
         let mut engine = self.engine(case.place, problem, plan.clone())?;
-        let f = |log: &[gpu_smooth::Objectives]| log.last().and_then(|o| o.of(base));
+        let f = |log: &[gpu_smooth::outcome::Objectives]| log.last().and_then(|o| o.of(base));
         let initial = f(&engine.advance(0)?).ok_or("no f before the first sweep")?;
         plan.stop.target = Some(initial - batch.fraction * (initial - desired));
         drop(engine);
@@ -208,7 +211,7 @@ fn plain(scheme: Scheme) -> Plan {
         plain_sweeps: 4,
         inner: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
-        sharpness: Sharpness::FIXED,
+        sharpness: PNormExponent::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
         track_all: false,
         shape_guard: f64::INFINITY,

@@ -10,7 +10,11 @@ use std::error::Error;
 use std::fs;
 use std::time::Instant;
 
-use gpu_smooth::{Backend, DeviceMesh, Gpu, Options, Smoother, Sweeps, VertexBuffer, wgpu};
+use gpu_smooth::{
+    Backend, Gpu, Options, Smoother,
+    gpu::{DeviceMesh, Sweeps, VertexBuffer},
+    wgpu,
+};
 
 /// What the process uses: resident memory in kB, file descriptors, threads. Zeros where the system does not tell.
 fn in_use() -> [u64; 3] {

@@ -5,7 +5,7 @@ use crate::choice::estimate::choose;
 use crate::choice::reason::Reason;
 use crate::error::GpuError;
 use crate::mesh::MeshSize;
-use crate::run::Options;
+use crate::options::Options;
 use crate::smoother::Backend;
 
 impl Backend {

@@ -5,7 +5,7 @@ use crate::choice::reason::Reason;
 use crate::error::GpuError;
 use crate::gpu::{Gpu, ranked_adapters};
 use crate::mesh::MeshSize;
-use crate::run::Options;
+use crate::options::Options;
 use crate::smoother::Backend;
 
 /// Vertex updates per second and core of the CPU engine, measured with imr on two cores (`docs/performance.md`).
@@ -97,7 +97,7 @@ fn pays_from(kind: &str, cores: usize, sweeps: f64) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::metric::Metric;
-    use crate::run::Method;
+    use crate::options::Method;
 
     #[test]
     fn a_gpu_pays_from_where_its_start_is_made_up_for() {
@@ -125,7 +125,7 @@ mod tests {
             expected_sweeps(&Options { scheme, method, max_sweeps, ..Options::default() })
         };
         assert_eq!(expected(Metric::Imr, Method::Auto, 1000), 20.0);
-        assert_eq!(expected(Metric::Imr, Method::Sweeps, 1000), 130.0);
+        assert_eq!(expected(Metric::Imr, Method::RELAXED, 1000), 130.0);
         assert_eq!(expected(Metric::Edge, Method::Auto, 1000), 130.0);
         assert_eq!(expected(Metric::Edge, Method::Auto, 7), 7.0);
         assert_eq!(pays_from("discrete GPU", 2, 0.0), None);

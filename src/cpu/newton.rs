@@ -6,7 +6,8 @@ use crate::cpu::differences;
 use crate::cpu::lanes::{Lanes, Mask, Points};
 use crate::cpu::patch::Patches;
 use crate::metric::{Dual, Formulas, Real};
-use crate::run::{Derivatives, Step, line_search};
+use crate::options::Derivatives;
+use crate::run::{Step, line_search};
 
 /// Visits four vertices at `at`. Returns their new positions.
 #[inline(always)]

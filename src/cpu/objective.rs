@@ -227,7 +227,8 @@ mod tests {
     use super::*;
     use crate::layout::prepare;
     use crate::mesh::Mesh;
-    use crate::run::Options;
+    use crate::options::Options;
+    use crate::run::Plan;
 
     #[test]
     fn the_objective_along_a_direction_is_that_of_the_moved_mesh() {
@@ -239,7 +240,7 @@ mod tests {
         let (_, problem) = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap();
         let positions = problem.positions();
         for metric in [Metric::Imr, Metric::Rms, Metric::Edge] {
-            let plan = Options { scheme: metric.into(), ..Options::default() }.plan();
+            let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });
             let step = Step { sharpness: 6, shape_guard: 30.0, ..plan.base_step(1.0) };
             let along = |direction: Vec2, length: f64| {
                 let direction = &[direction];

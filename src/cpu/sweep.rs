@@ -8,8 +8,9 @@ use crate::cpu::newton;
 use crate::cpu::patch::{self, Patches, Room};
 use crate::layout::Problem;
 use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
+use crate::options::Derivatives;
 use crate::parallel::for_each_chunk;
-use crate::run::{Derivatives, Step};
+use crate::run::Step;
 
 /// Number of vertices of one task.
 const CHUNK: usize = Problem::BLOCK;

@@ -13,7 +13,7 @@ use crate::topology::Topology;
 /// which it is taken.
 ///
 /// ```
-/// use gpu_smooth::{Interpolation, Mesh, Topology};
+/// use gpu_smooth::{interpolate::Interpolation, Mesh, Topology};
 ///
 /// let mesh = Mesh {
 ///     points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.5, 1.0]],

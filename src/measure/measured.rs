@@ -16,7 +16,7 @@ const CHUNK: usize = 1 << 12;
 /// the work.
 ///
 /// ```
-/// use gpu_smooth::{Measure, Measured, Mesh, Topology};
+/// use gpu_smooth::{measure::{Measure, Measured}, Mesh, Topology};
 ///
 /// let mesh = Mesh {
 ///     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],

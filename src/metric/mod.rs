@@ -20,9 +20,12 @@ mod target;
 mod tmop_80;
 mod tmop_94;
 
-pub use corner::{Corner, InvariantSlopes, Invariants, Slopes};
+pub use corner::Corner;
+#[doc(hidden)]
+pub use corner::{InvariantSlopes, Invariants, Slopes};
 pub(crate) use descent::descent;
 pub use dual::{Dual, Real};
+#[doc(hidden)]
 pub use properties::Properties;
 pub use scheme::Scheme;
 pub(crate) use smoothing::Smoothing;

@@ -20,8 +20,8 @@ macro_rules! metrics {
             $($(#[$rare_doc:meta])* $rare:ident = $rare_file:ident of invariants;)*
         }
     ) => {
-        /// A quality metric q of a triangle. Smaller is better. The source of each is in
-        /// [`Properties::citation`](crate::Properties::citation).
+        /// A quality metric q of a triangle. Smaller is better. [`Metric::citation`] names the source
+        /// of each.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Metric {
             $(#[$edge_doc])* $edge,
@@ -37,7 +37,8 @@ macro_rules! metrics {
             /// Every metric: first those of the paper in the order of its Table 1, then the others.
             pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)*];
 
-            /// Returns the metric's properties.
+            /// Returns the metric's row of properties, for this project's own tests and benchmarks.
+            #[doc(hidden)]
             pub const fn properties(self) -> &'static Properties {
                 match self {
                     Metric::$edge => &$edge_file::PROPERTIES,
@@ -290,6 +291,42 @@ impl Metric {
     /// The name on the command line.
     pub const fn name(self) -> &'static str {
         self.properties().name
+    }
+
+    /// The formula of q, as text: L are edge lengths, S is the area.
+    pub const fn formula(self) -> &'static str {
+        self.properties().formula
+    }
+
+    /// The publication that the metric comes from.
+    pub const fn citation(self) -> &'static str {
+        self.properties().citation
+    }
+
+    /// The purpose of the metric, and its effect on shapes.
+    pub const fn purpose(self) -> &'static str {
+        self.properties().purpose
+    }
+
+    /// The least value of q, that of an equilateral triangle of the mean area.
+    pub const fn ideal(self) -> f64 {
+        self.properties().ideal
+    }
+
+    /// Whether q grows to infinity as a triangle's area goes to zero.
+    pub const fn has_barrier(self) -> bool {
+        self.properties().barrier
+    }
+
+    /// Whether q does not depend on the size of the triangle.
+    pub const fn is_scale_invariant(self) -> bool {
+        self.properties().scale_invariant
+    }
+
+    /// Whether sweeps by this metric alone can be corrected from coarser levels; see
+    /// [`Method::Multilevel`](crate::Method::Multilevel).
+    pub const fn supports_multilevel(self) -> bool {
+        self.properties().is_corrected
     }
 
     /// Returns q² of the ideal triangle, which [`Self::excess`] subtracts.

@@ -47,7 +47,7 @@ pub struct Progress {
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// The search for the optimum of [`Desired::Auto`](crate::Desired::Auto).
+    /// The search for the optimum of [`None`](crate::None).
     Reference,
     /// The smoothing of the mesh.
     Smoothing,

@@ -12,7 +12,7 @@ pub(crate) mod line_search;
 pub(crate) mod multilevel;
 mod objectives;
 pub(crate) mod opening;
-mod options;
+
 mod plan;
 pub(crate) mod regularization;
 mod saved;
@@ -21,7 +21,7 @@ mod shape_guard;
 mod step;
 mod stop;
 mod sweeps;
-mod worst_by;
+
 mod yielding;
 
 pub(crate) use checkpoint::About;
@@ -33,13 +33,12 @@ pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{Engine, LEFT_OUT, Proposal};
 pub(crate) use history::History;
 pub use objectives::Objectives;
-pub use options::{Desired, Goal, Guard, Method, Options};
+
 pub use plan::Plan;
 pub(crate) use saved::{CPU, EngineState, Saved};
 pub(crate) use shape_guard::set_guards;
-pub use step::{Derivatives, Sharpness, Step};
+pub use step::Step;
 pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE, ROUNDING};
 pub use stop::{Stop, StopRule};
 pub use sweeps::Stepwise;
 pub(crate) use sweeps::StepwiseRun;
-pub use worst_by::WorstBy;

@@ -1,8 +1,9 @@
 //! The plan of a run, the same for every engine: the step of each sweep, and the stop rule.
 
 use crate::metric::{Metric, Scheme};
-use crate::run::line_search;
-use crate::run::step::{Derivatives, Sharpness, Step};
+use crate::options::{Derivatives, Options, PNormExponent, Paper};
+use crate::run::line_search::{self, LONGEST};
+use crate::run::step::Step;
 use crate::run::stop::StopRule;
 
 /// All parameters by which engines do the same sweeps.
@@ -19,7 +20,7 @@ pub struct Plan {
     /// How each metric is differentiated, in the order of [`Metric::ALL`].
     pub derivatives: [Derivatives; Metric::ALL.len()],
     /// The exponent of EDGE's p-norm.
-    pub sharpness: Sharpness,
+    pub sharpness: PNormExponent,
     /// The rule by which the run ends.
     pub stop: StopRule,
     /// Whether the history holds the objective of every metric, not of the base metric alone.
@@ -39,6 +40,54 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Returns the plan of sweeps with these options, for code that drives sweeps itself. Ignores a
+    /// [`Goal`](crate::Goal), and corrections from coarser levels.
+    pub fn new(options: &Options) -> Self {
+        Self::with(options, None, options.edge_norm.unwrap_or(PNormExponent::FIXED))
+    }
+
+    /// Returns the plan of a run with these options, which ends when the base objective is below `target`, if a target is
+    /// given.
+    pub(crate) fn toward(options: &Options, target: Option<f64>) -> Self {
+        // Sweeps by EDGE that another metric judges are few, and by no p-norm that grows.
+        let is_corrected_edge = options.is_multilevel() && !options.scheme.base().is_smooth();
+        let usual = match (is_corrected_edge, target) {
+            (true, Some(_)) => PNormExponent::CORRECTED,
+            (true, None) => PNormExponent::corrected_to(options.stopping.tolerance()),
+            (false, _) => PNormExponent::FIXED,
+        };
+        let plan = Self::with(options, target, options.edge_norm.unwrap_or(usual));
+        Self { is_guard_penalized: is_corrected_edge, ..plan }
+    }
+
+    fn with(options: &Options, target: Option<f64>, sharpness: PNormExponent) -> Self {
+        let (relaxed, paper) = (options.method.relaxed(), options.method.paper());
+        let own = |metric: Metric| match options.scheme.alternates() {
+            true => 1.0,
+            false => metric.properties().omega,
+        };
+        let mut omega = [1.0; Metric::ALL.len()];
+        for (slot, metric) in omega.iter_mut().zip(Metric::ALL) {
+            *slot = relaxed.omega.unwrap_or(own(*metric));
+        }
+        let Paper { newton_steps, derivatives } = paper;
+        let tolerance = options.stopping.tolerance();
+        Self {
+            scheme: options.scheme.clone(),
+            omega,
+            plain_sweeps: relaxed.unrelaxed_sweeps,
+            inner: newton_steps.max(1),
+            derivatives: [derivatives; Metric::ALL.len()],
+            sharpness,
+            stop: StopRule { target, tolerance, max_sweeps: options.max_sweeps },
+            track_all: options.track_all,
+            shape_guard: f64::INFINITY,
+            worst_guard: f64::INFINITY,
+            longest: if options.is_multilevel() { LONGEST } else { 1.0 },
+            is_guard_penalized: false,
+        }
+    }
+
     /// Returns the step of a sweep; sweeps count from 1.
     pub fn step(&self, sweep: u32) -> Step {
         let metric = self.scheme.metric(sweep);
@@ -48,7 +97,7 @@ impl Plan {
 
     /// Lists all distinct steps that [`step`](Self::step) can return.
     pub(crate) fn steps(&self) -> Vec<Step> {
-        let Sharpness { first, last, .. } = self.sharpness;
+        let PNormExponent { first, last, .. } = self.sharpness;
         let mut steps = Vec::new();
         for &metric in self.scheme.metrics() {
             for omega in [1.0, self.omega[metric as usize]] {

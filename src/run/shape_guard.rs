@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
+use crate::options::Guard;
 use crate::parallel::map_parts;
-use crate::run::options::Guard;
 use crate::run::plan::Plan;
 
 /// Sets the guards of a run from these positions. The bound is the largest inverse mean ratio among the triangles with

@@ -13,6 +13,7 @@ mod rigid;
 mod side;
 mod sliding;
 
+pub use crate::periodic::{Motion, Periodic};
 pub(crate) use acceleration::Acceleration;
 pub(crate) use newton::Rule;
 pub use options::Slide;

@@ -1,6 +1,7 @@
 //! The options of sliding: which vertices slide, and how far they may leave the given curve.
 
 use crate::error::{MeshError, SmoothError};
+use crate::options::OptionRange;
 use crate::periodic::Periodic;
 
 /// Which vertices slide along the curve they are on, and how curves are continued between their vertices; set by
@@ -48,17 +49,8 @@ impl Slide {
         if let Some(&vertex) = listed.find(|&&v| v as usize >= vertices) {
             return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }.into());
         }
-        let refuse = |option, value: f64, remedy| {
-            Err(SmoothError::Option { option, value: value.to_string(), remedy })
-        };
-        if !(0.0..=180.0).contains(&self.corner_angle) {
-            return refuse("corner angle", self.corner_angle, "it must be from 0 to 180 degrees");
-        }
-        match self.hausdorff {
-            Some(bound) if !(bound > 0.0 && bound.is_finite()) => {
-                refuse("hausdorff", bound, "it must be a length above 0")
-            }
-            _ => Ok(()),
-        }
+        OptionRange::CORNER_ANGLE.check(self.corner_angle)?;
+        OptionRange::HAUSDORFF.check(self.hausdorff.unwrap_or(1.0))?;
+        Ok(())
     }
 }

@@ -4,10 +4,10 @@ use glam::DVec2;
 
 use crate::error::SmoothError;
 use crate::metric::{Metric, Scheme};
+use crate::options::{Goal, Options, Stopping};
 use crate::outcome::GoalOutcome;
 use crate::run::{
-    CheckpointPolicy, Checkpointer, Desired, Goal, NOISE, Observer, Options, Phase, ROUNDING, Stop,
-    set_guards,
+    CheckpointPolicy, Checkpointer, NOISE, Observer, Phase, Plan, ROUNDING, Stop, set_guards,
 };
 use crate::whole::{Device, Ended, Live, Spec, drive};
 
@@ -25,14 +25,14 @@ impl Smoother<'_> {
         observe: &mut dyn Observer,
     ) -> Result<Option<GoalOutcome>, SmoothError> {
         let Goal { fraction, desired } = goal;
-        if let Desired::Value(desired) = desired {
+        if let Some(desired) = desired {
             let origin = "given".to_owned();
             return Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }));
         }
         let base = options.scheme.base();
         let full = |metric: Metric| Options {
             scheme: Scheme::from(metric),
-            tolerance: 1e-8,
+            stopping: Stopping::Tolerance(1e-8),
             max_sweeps: 5000,
             guard: options.guard,
             ..Options::default()
@@ -40,7 +40,7 @@ impl Smoother<'_> {
         let start = self.problem.positions();
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {
-            let imr = Options { tolerance: 1e-6, ..full(Metric::Imr) };
+            let imr = Options { stopping: Stopping::Tolerance(1e-6), ..full(Metric::Imr) };
             let after_imr = self.refer(&imr, start, device, policy, observe).await?;
             if after_imr.stop == Stop::Canceled {
                 return Ok(None);
@@ -78,7 +78,7 @@ impl Smoother<'_> {
         observe: &mut dyn Observer,
     ) -> Result<Ended, SmoothError> {
         let problem = &self.problem;
-        let mut plan = options.plan_to(None);
+        let mut plan = Plan::toward(options, None);
         set_guards(&mut plan, options.guard, problem, start);
         let spec = Spec { problem, device, options, phase: Phase::Reference, is_staged: false };
         let mut checkpointer = Checkpointer::new(policy);

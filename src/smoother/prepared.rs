@@ -8,7 +8,7 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::layout::{Problem, prepare, prepare_to_slide};
+use crate::layout::{Problem, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::quality::Quality;
@@ -31,27 +31,14 @@ pub struct Smoother<'a> {
 }
 
 impl<'a> Smoother<'a> {
-    /// Prepares a mesh.
+    /// Prepares a mesh. A mesh without a free vertex, such as a strip of triangles, is accepted: its vertices can slide; see
+    /// [`set_slide`](Self::set_slide).
     ///
     /// # Errors
     /// [`MeshError`] if the mesh cannot be smoothed: see [`Topology::new`] and [`Topology::check_smoothable`].
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         let start = Instant::now();
-        Ok(Self::of(mesh, prepare(mesh)?, start))
-    }
-
-    /// Prepares a mesh of which vertices slide, as [`new`](Self::new) and [`set_slide`](Self::set_slide) do, and also one in
-    /// which no vertex is free, such as a strip of triangles: its runs consist of sliding alone, on the CPU.
-    ///
-    /// # Errors
-    /// [`SmoothError::Mesh`] if the mesh cannot be smoothed, which with [`MeshError::NothingFree`] means that no vertex can
-    /// slide either; [`SmoothError::Option`] under the conditions that [`set_slide`](Self::set_slide) gives.
-    pub fn with_slide(mesh: &'a Mesh, slide: &Slide) -> Result<Self, SmoothError> {
-        let start = Instant::now();
-        let mut smoother = Self::of(mesh, prepare_to_slide(mesh)?, start);
-        smoother.set_slide(Some(slide))?;
-        smoother.check_movable()?;
-        Ok(Self { prepare: start.elapsed(), ..smoother })
+        Ok(Self::of(mesh, prepare_to_slide(mesh)?, start))
     }
 
     fn of(mesh: &'a Mesh, prepared: (Topology<'a>, Problem), start: Instant) -> Self {
@@ -190,7 +177,7 @@ impl<'a> Smoother<'a> {
     }
 
     /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and returns the
-    /// number of these vertices; see [`validity::certify`](crate::validity::certify). Needed if `points` are rounded
+    /// number of these vertices; see [`topology::certify`](crate::topology::certify). Needed if `points` are rounded
     /// again after [`Self::run`]. For pairs that slide, both vertices are set back.
     ///
     /// # Errors

@@ -6,8 +6,9 @@ use std::pin::Pin;
 
 use crate::error::SmoothError;
 use crate::mesh::Mesh;
+use crate::options::Options;
 use crate::outcome::Outcome;
-use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Options, Progress};
+use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Progress};
 use crate::whole::Device;
 
 use super::backend::Backend;

@@ -7,11 +7,12 @@ use web_time::Instant;
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
 use crate::metric::Metric;
+use crate::options::{Feature, Goal, Options};
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::resume;
 use crate::run::{
-    Checkpoint, CheckpointPolicy, Checkpointer, Goal, JITTER, LEAST_SCALE, NOISE, Objectives,
-    Observer, Options, Phase, ROUNDING, Stop, set_guards,
+    Checkpoint, CheckpointPolicy, Checkpointer, JITTER, LEAST_SCALE, NOISE, Objectives, Observer,
+    Phase, Plan, ROUNDING, Stop, set_guards,
 };
 use crate::slide::Sliding;
 use crate::whole::{Device, Ended, Improving, Live, Spec, altitude, drive};
@@ -29,11 +30,10 @@ impl Smoother<'_> {
         observe: &mut dyn Observer,
     ) -> Result<Outcome, SmoothError> {
         let began = Instant::now();
-        options.check_for(&self.problem)?;
+        options.check_with(&self.features())?;
         self.check_movable()?;
         // Vertices slide on the CPU, whatever the engine of the sweeps.
         let device = device.filter(|_| self.problem.free_count() > 0);
-        Stages::check(self, options, from.is_some())?;
         let (device, fault) = self.checked(device, policy).await?;
         let mut about = resume::about(&self.mesh, self.problem.targets(), options);
         let resumed = from
@@ -43,11 +43,11 @@ impl Smoother<'_> {
         let initial = self.objective(base, self.problem.positions());
         if !initial.is_finite() || self.is_beyond_precision(base, initial) {
             let triangle = self.quality(&self.mesh.points)?.worst_triangle;
-            let metric = base.properties().name;
+            let metric = base.name();
             return Err(MeshError::BeyondPrecision { triangle, metric }.into());
         }
         let known = resumed.and_then(|resumed| resumed.about.goal.clone());
-        let goal = match (options.goal, known) {
+        let goal = match (options.stopping.goal(), known) {
             (Some(Goal { fraction, .. }), Some((desired, origin))) => {
                 Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
             }
@@ -65,7 +65,7 @@ impl Smoother<'_> {
 
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
         let mut checkpointer = Checkpointer::new(policy);
-        let mut plan = options.plan_to(target);
+        let mut plan = Plan::toward(options, target);
         let start = self.problem.positions();
         set_guards(&mut plan, options.guard, &self.problem, start);
         let mut stages = Stages::new(self, options, &plan);
@@ -79,6 +79,16 @@ impl Smoother<'_> {
         let outcome = self.judged(options, initial, goal, ended, stages, observe)?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
+    }
+
+    /// Lists the features that a run has by this smoother.
+    fn features(&self) -> Vec<Feature> {
+        let of_smoother = [
+            (Feature::Slide, self.sliding.is_some()),
+            (Feature::Targets, self.problem.targets().is_some()),
+            (Feature::TargetField, self.field.is_some()),
+        ];
+        of_smoother.into_iter().filter(|(_, has)| *has).map(|(feature, _)| feature).collect()
     }
 
     /// Whether a triangle is so flat, or so small beside the others, that double precision cannot judge it as the metric does,
@@ -130,7 +140,7 @@ impl Smoother<'_> {
         let base = options.scheme.base();
         let f = |k: usize| ended.history[k].of(base).unwrap_or(f64::INFINITY);
         let evaluations = ended.history.len();
-        let best_sweep = match options.plan().is_monotone() {
+        let best_sweep = match Plan::new(options).is_monotone() {
             true => evaluations - 1,
             false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
         };

@@ -2,11 +2,12 @@
 
 use glam::DVec2;
 
-use crate::error::{MeshError, SmoothError};
+use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
+use crate::options::Options;
 use crate::outcome::Slid;
-use crate::run::{Derivatives, Desired, Goal, Options, Plan};
+use crate::run::Plan;
 use crate::targets::TargetField;
 use crate::topology::Topology;
 use crate::whole::altitude::least_of;
@@ -28,51 +29,6 @@ pub(super) struct Stages<'s> {
 }
 
 impl<'s> Stages<'s> {
-    /// Checks that the requested stages are possible with these options.
-    pub(super) fn check(
-        smoother: &Smoother<'_>,
-        options: &Options,
-        is_continued: bool,
-    ) -> Result<(), SmoothError> {
-        let refuse = |option, value: &str, remedy| {
-            Err(SmoothError::Option { option, value: value.to_owned(), remedy })
-        };
-        let (slides, has_field) = (smoother.sliding.is_some(), smoother.field.is_some());
-        if slides {
-            check_for("slide", options, is_continued)?;
-        }
-        if options.max_move.is_some() {
-            check_for("max move", options, is_continued)?;
-        }
-        if has_field && options.goal.is_some() {
-            let remedy = "as targets change, there is no desired f: leave out one of the two";
-            return refuse("target field", "with a goal", remedy);
-        }
-        if has_field && options.max_move.is_some() {
-            let remedy = "leave out one of the two, or set targets of vertices";
-            return refuse("target field", "with a bound", remedy);
-        }
-        if has_field {
-            check_for("target field", options, is_continued)?;
-        }
-        if options.keep_altitude && options.max_move.is_some() {
-            let remedy = "leave out one of the two";
-            return refuse("keep altitude", "with a bound on moves", remedy);
-        }
-        if options.keep_altitude {
-            check_for("keep altitude", options, is_continued)?;
-        }
-        if has_field && slides {
-            let remedy = "leave out one of the two, or set targets of vertices";
-            return refuse("target field", "with sliding vertices", remedy);
-        }
-        if has_field && options.keep_altitude {
-            let remedy = "it cannot be combined with a target field: leave out one of the two";
-            return refuse("keep altitude", "on", remedy);
-        }
-        Ok(())
-    }
-
     /// Makes the stages of a run by `plan`.
     pub(super) fn new(smoother: &'s Smoother<'_>, options: &Options, plan: &Plan) -> Self {
         let Smoother { mesh, topology, problem, sliding, field, .. } = smoother;
@@ -93,7 +49,8 @@ impl<'s> Stages<'s> {
             move_limit,
             altitude: options.keep_altitude.then(|| AltitudeStage::new(problem)),
             slide,
-            target_field: field.map(|field| TargetFieldStage::new(mesh, field, options.tolerance)),
+            target_field: field
+                .map(|field| TargetFieldStage::new(mesh, field, options.stopping.tolerance())),
         }
     }
 
@@ -134,29 +91,5 @@ impl<'s> Stages<'s> {
     pub(super) fn slid(&self, gains: bool, points: &[[f64; 2]]) -> Option<Slid> {
         let slide = self.slide.as_ref()?;
         Some(slide.slid(self.mesh, self.topology, gains, points))
-    }
-}
-
-/// Checks that a run with these options can have a stage, which `option` requires.
-fn check_for(
-    option: &'static str,
-    options: &Options,
-    is_continued: bool,
-) -> Result<(), SmoothError> {
-    let refuse = |remedy| Err(SmoothError::Option { option, value: "on".to_owned(), remedy });
-    if options.scheme.period() > 1 || !options.scheme.is_monotone() {
-        return refuse("it needs one metric other than edge, such as imr");
-    }
-    if options.derivatives != Derivatives::Analytic {
-        return refuse("it needs analytic derivatives");
-    }
-    if matches!(options.goal, Some(Goal { desired: Desired::Auto, .. })) {
-        return refuse(
-            "such a run cannot search for the desired f: give its value as Desired::Value",
-        );
-    }
-    match is_continued {
-        true => refuse("such a run cannot continue from a checkpoint: start it without one"),
-        false => Ok(()),
     }
 }

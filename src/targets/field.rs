@@ -60,7 +60,7 @@ impl TargetField {
     /// Converts the field to coordinates on a surface: targets in lengths on the surface become targets in its
     /// coordinates at each point. Longitudes that differ by whole turns are the same point. So a mesh and the mesh that
     /// carries its targets may use different ranges of longitudes, and may be continued across the line where
-    /// longitudes jump, as by a [`Chart`](crate::Chart). Not for targets that are in coordinates already, by
+    /// longitudes jump, as by a [`Chart`](crate::interpolate::Chart). Not for targets that are in coordinates already, by
     /// [`Targets::seen_on`] or otherwise.
     pub fn seen_on(self, surface: Surface) -> Self {
         Self { surface, ..self }

@@ -12,6 +12,7 @@ mod stars;
 mod turns;
 mod winding;
 
+pub use crate::error::BadTriangle;
 pub use boundary::signed_area;
 pub use certify::certify;
 pub use connectivity::Topology;

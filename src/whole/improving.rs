@@ -4,8 +4,9 @@ use glam::DVec2;
 
 use crate::cpu::mean_excess;
 use crate::layout::Problem;
+use crate::options::{Options, WorstBy};
 use crate::outcome::Improved;
-use crate::run::{NOISE, Observer, Options, Phase, Progress, Stop, WorstBy};
+use crate::run::{NOISE, Observer, Phase, Plan, Progress, Stop};
 use crate::whole::altitude;
 use crate::whole::live::Ended;
 use crate::worst::{Badness, Rules, improve, stuck, worst_movable};
@@ -47,7 +48,7 @@ impl Improving {
         let worst_shape = worst_movable(problem, Badness(WorstBy::Imr), positions);
         let rules = Rules {
             badness,
-            step: options.plan().base_step(1.0),
+            step: Plan::new(options).base_step(1.0),
             shape: worst_shape.sqrt() * (1.0 + ROUNDING),
             floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
             bounds,

@@ -9,12 +9,13 @@ use crate::cpu::{CpuEngine, held_back, mean_excess};
 use crate::error::{GpuError, SmoothError};
 use crate::layout::Problem;
 use crate::metric::Metric;
+use crate::options::{Guard, Method, Options};
 use crate::outcome::DeviceFault;
 use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    CPU, Checkpoint, Checkpointer, Counts, DriveError, Engine, Guard, History, Method, Objectives,
-    Observer, Options, Phase, Plan, Report, Saved, Session, Stop, steps,
+    CPU, Checkpoint, Checkpointer, Counts, DriveError, Engine, History, Objectives, Observer,
+    Phase, Plan, Report, Saved, Session, Stop, steps,
 };
 use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::metric::{Corner, Dual, Real, TargetMap};
-use crate::run::WorstBy;
+use crate::options::WorstBy;
 use crate::topology::predicates::is_positive;
 
 /// √3/6: the doubled area of an equilateral triangle, divided by the sum of its squared lengths.

@@ -3,8 +3,12 @@
 use std::sync::{Arc, LazyLock, Mutex};
 
 use gpu_smooth::{
-    BoundMove, BoundObjective, BoundVertices, DeviceMesh, Gpu, GpuError, Mesh, MeshSize,
-    ObjectiveValues, SmoothError, Sweeps, Timestamps, UntanglingSweeps, VertexBuffer, wgpu,
+    Gpu, GpuError, Mesh, MeshSize, SmoothError,
+    gpu::{
+        BoundMove, BoundObjective, BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, Timestamps,
+        UntanglingSweeps, VertexBuffer,
+    },
+    wgpu,
 };
 use pollster::block_on;
 use wgpu::BufferUsages as Usage;

@@ -2,7 +2,11 @@
 
 use std::time::Duration;
 
-use gpu_smooth::{Budget, Options, Sweeps, wgpu};
+use gpu_smooth::{
+    Options,
+    gpu::{Budget, Sweeps},
+    wgpu,
+};
 
 use crate::app::{App, bad_plate};
 

@@ -1,8 +1,9 @@
 //! Vertices that the application moves on the device, as far as the triangles allow.
 
 use gpu_smooth::{
-    BoundMove, DeviceMesh, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, Topology,
-    VertexBuffer, validity, wgpu,
+    GpuError, Mesh, MeshError, Options, SmoothError, Topology,
+    gpu::{BoundMove, DeviceMesh, Sweeps, VertexBuffer},
+    topology, wgpu,
 };
 use wgpu::BufferUsages as Usage;
 
@@ -87,7 +88,7 @@ fn assert_as_on_the_host(
             assert_eq!(found, before[v as usize], "vertex {v}");
         }
     }
-    let bad = validity::infeasible(&moved, &mesh.triangles).unwrap();
+    let bad = topology::infeasible(&moved, &mesh.triangles).unwrap();
     assert!(bad.is_empty(), "{bad:?}");
     for corners in &mesh.triangles {
         let (was, is) = (imr(&before, corners), imr(&moved, corners));
@@ -215,7 +216,7 @@ fn a_dragged_hole_goes_out_and_home_with_sweeps_between_and_inverts_nothing() {
             assert!(value.inverted == 0 && value.worst_imr < 8.001, "{value:?}");
         }
         gone.push(app.points(&device_mesh)[hole[0] as usize][0] - mesh.points[hole[0] as usize][0]);
-        let bad = validity::infeasible(&app.points(&device_mesh), &mesh.triangles).unwrap();
+        let bad = topology::infeasible(&app.points(&device_mesh), &mesh.triangles).unwrap();
         assert!(bad.is_empty(), "{bad:?}");
     }
     // The edge of the plate stops the hole before it has gone all of the way.

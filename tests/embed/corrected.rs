@@ -1,8 +1,10 @@
 //! Encoded sweeps with corrections from coarser levels, whose line search is done on the device.
 
 use gpu_smooth::{
-    Backend, DeviceMesh, Mesh, Method, Metric, ObjectiveValues, Options, SmoothError, Smoother,
-    Sweeps, Targets, wgpu,
+    Backend, Mesh, Method, Metric, OptionError, Options, SmoothError, Smoother, Stopping, Targets,
+    gpu::{DeviceMesh, ObjectiveValues, Sweeps},
+    options::Relaxed,
+    wgpu,
 };
 use wgpu::BufferUsages as Usage;
 
@@ -15,8 +17,8 @@ fn corrected(metric: Metric) -> Options {
 
 /// Options for sweeps with the relaxation of corrected ones, but without corrections.
 fn alone() -> Options {
-    let method = Method::Sweeps;
-    Options { method, omega: Some(1.3), plain_sweeps: 0, ..Options::default() }
+    let relaxed = Relaxed { omega: Some(1.3), unrelaxed_sweeps: 0 };
+    Options { method: Method::Relaxed(relaxed), ..Options::default() }
 }
 
 /// A mesh displaced by long waves, for which sweeps alone take long.
@@ -41,7 +43,11 @@ fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 
 
 /// The least f that a run on the CPU finds.
 fn limit(mesh: &Mesh, metric: Metric) -> f64 {
-    let options = Options { scheme: metric.into(), tolerance: 1e-8, ..Options::default() };
+    let options = Options {
+        scheme: metric.into(),
+        stopping: Stopping::Tolerance(1e-8),
+        ..Options::default()
+    };
     let run = Smoother::new(mesh).unwrap();
     let run = run.run(&options).on(&Backend::Cpu).block().unwrap();
     run.history.last().and_then(|f| f.of(metric)).unwrap()
@@ -59,7 +65,7 @@ fn corrected_sweeps_are_near_the_limit_after_a_dozen_and_never_raise_f() {
         assert!(f.windows(2).all(|f| f[1] <= f[0] * (1.0 + 2e-7)), "{metric}: {f:?}");
         let end = Mesh { points, ..mesh.clone() };
         assert!(orientations(&end).iter().all(|&sign| sign == 1));
-        let plain = Options { method: Method::Sweeps, ..corrected(metric) };
+        let plain = Options { method: Method::RELAXED, ..corrected(metric) };
         let (f, _) = frames(&mesh, &plain, 15);
         assert!(f[14] / limit - 1.0 > 10.0 * left.max(1e-7), "{metric}: {f:?}");
     }
@@ -157,9 +163,9 @@ fn judged_sweeps_with_corrections_end_sooner_and_then_leave_every_bit() {
     let mesh = distorted();
     let app = App::new();
     let mut counts = Vec::new();
-    for method in [Method::Multilevel, Method::Sweeps] {
+    for method in [Method::Multilevel, Method::RELAXED] {
         let device_mesh = app.mesh(&mesh);
-        let options = Options { method, tolerance: 1e-5, ..Options::default() };
+        let options = Options { method, stopping: Stopping::Tolerance(1e-5), ..Options::default() };
         let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 120));
         let values = app.objective(&sweeps);
@@ -205,7 +211,7 @@ fn a_mesh_with_targets_is_corrected_as_they_show_it() {
     let stretched = vec![[4.0, 0.0, 1.0]; mesh.points.len()];
     let targets = Targets::tensors(&stretched).unwrap();
     let app = App::new();
-    let f = [Method::Multilevel, Method::Sweeps].map(|method| {
+    let f = [Method::Multilevel, Method::RELAXED].map(|method| {
         let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
         let options = Options { method, ..Options::default() };
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
@@ -242,16 +248,15 @@ fn meshes_and_options_that_cannot_be_corrected_are_refused_with_the_reason() {
         ..Options::default()
     };
     for (options, reason) in [
-        (multilevel("edge"), "encoded sweeps by edge are not corrected"),
-        (multilevel("imr+rms"), "encoded sweeps are not corrected if metrics alternate"),
-        (multilevel("area"), "runs by this metric are not corrected"),
         (
-            Options { omega: Some(1.5), ..multilevel("imr") },
-            "corrected runs choose the over-relaxation themselves",
+            multilevel("edge"),
+            "encoded sweeps with corrections does not go with a scheme of several",
         ),
+        (multilevel("imr+rms"), "encoded sweeps with corrections does not go with a scheme of"),
+        (multilevel("area"), "cannot be corrected from coarser levels; take another metric"),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();
-        assert!(matches!(error, SmoothError::Option { option: "method", .. }), "{error:?}");
+        assert!(matches!(error, SmoothError::Option(OptionError::Conflict { .. })), "{error:?}");
         assert!(error.to_string().contains(reason), "{error}");
     }
 }

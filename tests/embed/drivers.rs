@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use gpu_smooth::{
     Backend, CheckpointPolicy, Gpu, GpuError, Mesh, MeshSize, Method, Options, Outcome, Progress,
-    Smoother, wgpu,
+    Smoother, Stopping, wgpu,
 };
 use pollster::block_on;
 
@@ -50,12 +50,18 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
     let [vulkan, gl] = [wgpu::Backends::VULKAN, wgpu::Backends::GL].map(open);
     let backends = [Backend::Cpu, Backend::Gpu(vulkan), Backend::Gpu(gl)];
     for (scheme, method) in
-        [("imr", Method::Sweeps), ("imr", Method::Multilevel), ("edge+imr", Method::Sweeps)]
+        [("imr", Method::RELAXED), ("imr", Method::Multilevel), ("edge+imr", Method::RELAXED)]
     {
         let scheme: gpu_smooth::Scheme = scheme.parse().unwrap();
         let base = scheme.base();
         let tolerance = 0.0;
-        let options = Options { scheme, method, max_sweeps: 8, tolerance, ..Options::default() };
+        let options = Options {
+            scheme,
+            method,
+            max_sweeps: 8,
+            stopping: Stopping::Tolerance(tolerance),
+            ..Options::default()
+        };
         let [cpu, vulkan, gl] =
             backends.each_ref().map(|backend| smoother.run(&options).on(backend).block().unwrap());
         let f = |outcome: &Outcome| smoother.quality(&outcome.points).unwrap().f(base);
@@ -85,7 +91,8 @@ fn a_run_goes_on_on_the_cpu_when_a_device_of_opengl_is_lost() {
     let smoother = Smoother::new(&mesh).unwrap();
     let gpu = open(wgpu::Backends::GL);
     let device = gpu.device().clone();
-    let options = Options { tolerance: 0.0, max_sweeps: 20, ..Options::default() };
+    let options =
+        Options { stopping: Stopping::Tolerance(0.0), max_sweeps: 20, ..Options::default() };
     let mut observe = |progress: &Progress| {
         if progress.sweep >= 4 {
             device.destroy();

@@ -1,6 +1,6 @@
 //! Import and export of positions, from and to a vertex buffer of the application.
 
-use gpu_smooth::{Mesh, Options, Sweeps};
+use gpu_smooth::{Mesh, Options, gpu::Sweeps};
 
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
 use crate::support::{boundary, f_imr, perturb_random, transformed};

@@ -8,8 +8,8 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, Desired, Goal, Method, Metric, Options, Outcome, Progress, Smoother, Stop, Sweeps,
-    wgpu,
+    Backend, Goal, Method, Metric, Options, Outcome, Progress, Smoother, Stop, Stopping,
+    gpu::Sweeps, wgpu,
 };
 
 use crate::app::{App, bad_plate};
@@ -49,14 +49,14 @@ fn assert_same(expected: &Outcome, found: &Outcome) {
 fn cases() -> [Options; 3] {
     let edge = Options {
         scheme: "edge+imr".parse().unwrap(),
-        method: Method::Sweeps,
+        method: Method::RELAXED,
         ..Options::default()
     };
-    let goal = Goal { fraction: 0.95, desired: Desired::Auto };
+    let goal = Goal { fraction: 0.95, desired: None };
     [
         Options { track_all: true, ..Options::default() },
         Options { max_sweeps: 30, ..edge },
-        Options { goal: Some(goal), ..Options::default() },
+        Options { stopping: Stopping::Goal(goal), ..Options::default() },
     ]
 }
 
@@ -203,7 +203,7 @@ fn a_canceled_run_returns_the_best_state_so_far() {
     for scheme in ["imr", "edge+imr"] {
         let options = Options {
             scheme: scheme.parse().unwrap(),
-            tolerance: 0.0,
+            stopping: Stopping::Tolerance(0.0),
             max_sweeps: 100_000,
             ..Options::default()
         };
@@ -237,7 +237,8 @@ fn a_dropped_run_leaves_the_device_usable() {
     let [options, ..] = cases();
     let (expected, _) = drive(app.device(), smoother.run(&options).on(&on_app));
     let expected = expected.unwrap();
-    let endless = Options { tolerance: 0.0, max_sweeps: u32::MAX, ..Options::default() };
+    let endless =
+        Options { stopping: Stopping::Tolerance(0.0), max_sweeps: u32::MAX, ..Options::default() };
     // Dropped before the first poll, at its first wait, and later.
     for polls in [0, 1, 2, 7] {
         let mut observe = go_on;

@@ -1,6 +1,10 @@
 //! Meshes in which the application has inverted triangles between two frames.
 
-use gpu_smooth::{Derivatives, Mesh, Metric, Options, Quality, Sweeps, Topology};
+use gpu_smooth::{
+    Mesh, Method, Metric, Options, Quality, Topology,
+    gpu::Sweeps,
+    options::{Derivatives, Paper},
+};
 
 use crate::app::{App, Vertices, bad_plate, interior};
 use crate::support::{is_ccw, orientations};
@@ -76,7 +80,8 @@ fn sweeps_leave_no_nan_invert_nothing_and_improve_the_rest() {
         {
             let app = App::new();
             let device_mesh = app.mesh(&sound);
-            let options = Options { scheme: metric.into(), derivatives, ..Options::default() };
+            let method = Method::Paper(Paper { derivatives, ..Paper::default() });
+            let options = Options { scheme: metric.into(), method, ..Options::default() };
             let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
             let vertices = Vertices::usual(&app, &broken);
             app.submit(|encoder| {

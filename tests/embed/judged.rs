@@ -1,8 +1,9 @@
 //! Sweeps that end by themselves, as the device judges when.
 
 use gpu_smooth::{
-    Backend, DeviceMesh, Mesh, Method, ObjectiveValues, Options, Smoother, Stop, Sweeps,
-    VertexBuffer, wgpu,
+    Backend, Mesh, Method, Options, Smoother, Stop, Stopping,
+    gpu::{DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer},
+    wgpu,
 };
 use wgpu::BufferUsages as Usage;
 
@@ -49,7 +50,7 @@ impl Frames {
 }
 
 fn options() -> Options {
-    Options { method: Method::Sweeps, tolerance: 1e-3, ..Options::default() }
+    Options { method: Method::RELAXED, stopping: Stopping::Tolerance(1e-3), ..Options::default() }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Frames in which the application has inverted triangles are undone.
 
-use gpu_smooth::{Options, Sweeps, validity};
+use gpu_smooth::{Options, gpu::Sweeps, topology};
 
 use crate::app::{App, Vertices, bad_plate, interior};
 
@@ -42,7 +42,7 @@ fn a_mesh_that_the_application_has_tangled_goes_back_to_where_it_was_valid() {
     assert_eq!(words[vertices.word(u)..vertices.word(u) + 2], [x, y]);
     let next = frame();
     assert_ne!(next, good);
-    assert!(validity::infeasible(&next, &mesh.triangles).unwrap().is_empty());
+    assert!(topology::infeasible(&next, &mesh.triangles).unwrap().is_empty());
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Devices with low limits, and meshes that are too large for a device.
 
 use gpu_smooth::{
-    Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Options, Smoother, Sweeps, VertexBuffer,
+    Backend, Gpu, GpuError, Mesh, MeshSize, Options, Smoother,
+    gpu::{DeviceMesh, Sweeps, VertexBuffer},
     wgpu,
 };
 use wgpu::Limits;

@@ -7,8 +7,10 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, CheckpointPolicy, DeviceMesh, Gpu, GpuError, Mesh, Options, Outcome, Progress,
-    Readback, Scheme, Slide, Smoother, Stop, Sweeps, VertexBuffer, wgpu,
+    Backend, CheckpointPolicy, Gpu, GpuError, Mesh, Options, Outcome, Progress, Scheme, Slide,
+    Smoother, Stop, Stopping,
+    gpu::{DeviceMesh, Readback, Sweeps, VertexBuffer},
+    wgpu,
 };
 
 use crate::app::{App, Vertices, bad_plate, gpu_error};
@@ -34,7 +36,7 @@ fn assert_lost(error: &GpuError) {
 }
 
 fn endless() -> Options {
-    Options { tolerance: 0.0, max_sweeps: u32::MAX, ..Options::default() }
+    Options { stopping: Stopping::Tolerance(0.0), max_sweeps: u32::MAX, ..Options::default() }
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! Objectives written to a buffer of the application, compared with those of the points read back.
 
-use gpu_smooth::{Mesh, Metric, ObjectiveValues, Options, Quality, Sweeps, Topology};
+use gpu_smooth::{
+    Mesh, Metric, Options, Quality, Topology,
+    gpu::{ObjectiveValues, Sweeps},
+};
 use wgpu::BufferUsages as Usage;
 
 use gpu_smooth::wgpu;

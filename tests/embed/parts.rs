@@ -4,8 +4,9 @@
 use std::ops::ControlFlow;
 
 use gpu_smooth::{
-    Backend, DeviceMesh, Gpu, GpuError, Mesh, MeshSize, Method, Metric, Options, Outcome, Smoother,
-    Stop, Sweeps, UntanglingSweeps, VertexBuffer, wgpu,
+    Backend, Gpu, GpuError, Mesh, MeshSize, Method, Metric, Options, Outcome, Smoother, Stop,
+    gpu::{DeviceMesh, Sweeps, UntanglingSweeps, VertexBuffer},
+    wgpu,
 };
 use wgpu::Limits;
 
@@ -51,7 +52,7 @@ fn a_run_is_the_same_part_by_part() {
     let devices = devices(&mesh);
     let sweeps = |scheme: &str| Options {
         scheme: scheme.parse().unwrap(),
-        method: Method::Sweeps,
+        method: Method::RELAXED,
         max_sweeps: 30,
         track_all: true,
         ..Options::default()
@@ -159,7 +160,7 @@ fn a_mesh_that_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated(
     assert_eq!(gpu_error(DeviceMesh::new(&app.gpu, &large).err().unwrap()).to_string(), text);
     let backend = Backend::Gpu(app.another_gpu());
     let smoother = Smoother::new(&large).unwrap();
-    for method in [Method::Sweeps, Method::Auto] {
+    for method in [Method::RELAXED, Method::Auto] {
         let options = Options { method, ..Options::default() };
         let run = smoother.run(&options).on(&backend).block();
         assert_eq!(gpu_error(run.unwrap_err()).to_string(), text);

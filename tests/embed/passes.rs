@@ -1,6 +1,10 @@
 //! Encoding into a compute pass of the application.
 
-use gpu_smooth::{ObjectiveValues, Options, Sweeps, UntanglingSweeps, VertexBuffer, wgpu};
+use gpu_smooth::{
+    Options,
+    gpu::{ObjectiveValues, Sweeps, UntanglingSweeps, VertexBuffer},
+    wgpu,
+};
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior};

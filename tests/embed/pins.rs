@@ -1,6 +1,10 @@
 //! Vertices that the application pins, masks and lets go.
 
-use gpu_smooth::{DeviceMesh, GpuError, Mesh, MeshError, Options, SmoothError, Sweeps, wgpu};
+use gpu_smooth::{
+    GpuError, Mesh, MeshError, Options, SmoothError,
+    gpu::{DeviceMesh, Sweeps},
+    wgpu,
+};
 
 use crate::app::{App, bad_plate, interior};
 

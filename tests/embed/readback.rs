@@ -1,6 +1,10 @@
 //! Buffers that are read in each frame without waiting.
 
-use gpu_smooth::{GpuError, ObjectiveValues, Options, Readback, Sweeps, wgpu};
+use gpu_smooth::{
+    GpuError, Options,
+    gpu::{ObjectiveValues, Readback, Sweeps},
+    wgpu,
+};
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate};

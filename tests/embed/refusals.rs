@@ -2,7 +2,9 @@
 //! handler, which [`App`] checks when it is dropped.
 
 use gpu_smooth::{
-    DeviceMesh, Gpu, GpuError, Guard, Mesh, MeshError, Options, SmoothError, Sweeps, VertexBuffer,
+    Gpu, GpuError, Guard, Mesh, MeshError, Method, Options, SmoothError, Stopping,
+    gpu::{DeviceMesh, Sweeps, VertexBuffer},
+    options::{Paper, Relaxed},
     wgpu,
 };
 use wgpu::BufferUsages as Usage;
@@ -227,24 +229,29 @@ fn options_out_of_range_are_refused() {
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
     let ok = Options::default;
+    let omega = |omega| Method::Relaxed(Relaxed { omega: Some(omega), ..Relaxed::default() });
+    let no_steps = Paper { newton_steps: 0, ..Paper::default() };
     for (options, text) in [
+        (Options { method: omega(2.0), ..ok() }, "omega is 2: it must be above 0 and below 2"),
         (
-            Options { omega: Some(2.0), ..ok() },
-            "omega is 2: over-relaxation must be above 0 and below 2",
+            Options { method: omega(f64::NAN), ..ok() },
+            "omega is NaN: it must be above 0 and below 2",
         ),
         (
-            Options { omega: Some(f64::NAN), ..ok() },
-            "omega is NaN: over-relaxation must be above 0 and below 2",
+            Options { method: Method::Paper(no_steps), ..ok() },
+            "newton steps is 0: it must be a number from 1 to 1000",
         ),
-        (Options { inner: 0, ..ok() }, "inner is 0: a visit takes from 1 to 1000 Newton steps"),
-        (Options { tolerance: -1.0, ..ok() }, "tolerance is -1: it must be 0 or above"),
+        (
+            Options { stopping: Stopping::Tolerance(-1.0), ..ok() },
+            "tolerance is -1: it must be 0 or above",
+        ),
         (
             Options { max_move: Some(0.5), ..ok() },
-            "max move is 0.5: encoded sweeps cannot do this: leave it out, or do a whole run",
+            "encoded sweeps does not go with max_move: only a whole run can do this; drop it, or do a whole run",
         ),
         (
             Options { guard: Guard::Worst, ..ok() },
-            "guard is worst: encoded sweeps cannot do this: leave it out, or do a whole run",
+            "encoded sweeps does not go with Guard::Worst: only a whole run can do this; drop it, or do a whole run",
         ),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();

@@ -1,14 +1,17 @@
 //! Encoded sweeps give the same result as a run, however they are split and interleaved.
 
 use gpu_smooth::{
-    Backend, Derivatives, Mesh, Method, Options, Sharpness, Smoother, Sweeps, wgpu::CommandEncoder,
+    Backend, Mesh, Method, Options, Smoother, Stopping,
+    gpu::Sweeps,
+    options::{Derivatives, PNormExponent, Paper, Relaxed},
+    wgpu::CommandEncoder,
 };
 
 use crate::app::{App, bad_plate, plate};
 use crate::support::{lattice, perturb_random};
 
 fn options(scheme: &str) -> Options {
-    let method = Method::Sweeps;
+    let method = Method::RELAXED;
     Options { scheme: scheme.parse().unwrap(), method, ..Options::default() }
 }
 
@@ -16,7 +19,8 @@ fn options(scheme: &str) -> Options {
 fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
-    let options = Options { max_sweeps: sweeps, tolerance: 0.0, ..options.clone() };
+    let options =
+        Options { max_sweeps: sweeps, stopping: Stopping::Tolerance(0.0), ..options.clone() };
     let outcome = Smoother::new(mesh).unwrap().run(&options).on(&backend).block().unwrap();
     assert_eq!((outcome.sweeps, outcome.returned), (sweeps, 0));
     (outcome.points, outcome.best_sweep)
@@ -47,28 +51,22 @@ fn assert_same(name: &str, mesh: &Mesh, expected: &[[f64; 2]], found: &[[f64; 2]
 #[test]
 fn encoded_sweeps_are_those_of_a_run() {
     let mesh = flattened(&plate(800));
+    let relaxed = |omega, unrelaxed_sweeps| Method::Relaxed(Relaxed { omega, unrelaxed_sweeps });
+    let two_steps = Paper { newton_steps: 2, ..Paper::default() };
+    let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
     let cases = [
         ("over-relaxed after four", options("imr"), 13),
-        ("over-relaxed after six", Options { plain_sweeps: 6, ..options("imr") }, 9),
+        ("over-relaxed after six", Options { method: relaxed(None, 6), ..options("imr") }, 9),
         ("as published", Options::paper("imr".parse().unwrap()), 6),
         ("alternating", options("edge+imr"), 7),
         (
             "alternating by three",
-            Options { omega: Some(1.3), plain_sweeps: 2, ..options("imr+rms+area") },
+            Options { method: relaxed(Some(1.3), 2), ..options("imr+rms+area") },
             8,
         ),
-        ("two steps a visit", Options { inner: 2, ..options("imr") }, 6),
-        ("sharpened", Options { sharpness: Some(Sharpness::CONTINUED), ..options("edge") }, 12),
-        (
-            "by differences",
-            // Without over-relaxation: with it, sweeps by differences may raise f, and a run returns the best state.
-            Options {
-                derivatives: Derivatives::FiniteDifference,
-                omega: Some(1.0),
-                ..options("rms")
-            },
-            6,
-        ),
+        ("two steps a visit", Options { method: Method::Paper(two_steps), ..options("imr") }, 6),
+        ("sharpened", Options { edge_norm: Some(PNormExponent::CONTINUED), ..options("edge") }, 12),
+        ("by differences", Options { method: Method::Paper(differences), ..options("rms") }, 6),
         ("all tracked", Options { track_all: true, ..options("area") }, 6),
     ];
     for (name, options, sweeps) in cases {
@@ -138,7 +136,8 @@ fn a_restarted_scheme_starts_with_plain_sweeps_again() {
     let mesh = bad_plate(700);
     let app = App::new();
     let options = options("imr+rms");
-    let options = Options { omega: Some(1.6), ..options };
+    let relaxed = Relaxed { omega: Some(1.6), ..Relaxed::default() };
+    let options = Options { method: Method::Relaxed(relaxed), ..options };
     // Seven sweeps, and then seven more: after a restart, by newly made sweeps, or by going on.
     let [restarted, anew, on] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);

@@ -1,8 +1,10 @@
 //! Targets for a mesh on an application's device.
 
 use gpu_smooth::{
-    Backend, Derivatives, DeviceMesh, Mesh, MeshError, Method, Metric, Options, SmoothError,
-    Smoother, Sweeps, Targets,
+    Backend, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother,
+    Stopping, Targets,
+    gpu::{DeviceMesh, Sweeps},
+    options::{Derivatives, Feature, Paper},
 };
 
 use crate::app::{App, bad_plate};
@@ -21,9 +23,9 @@ fn encoded_sweeps_to_targets_are_those_of_a_run() {
     let targets = growing(&mesh);
     let options = Options {
         scheme: Metric::SoftSize.into(),
-        method: Method::Sweeps,
+        method: Method::RELAXED,
         max_sweeps: 9,
-        tolerance: 0.0,
+        stopping: Stopping::Tolerance(0.0),
         ..Options::default()
     };
     let mut smoother = Smoother::new(&mesh).unwrap();
@@ -63,9 +65,16 @@ fn targets_that_do_not_fit_are_refused() {
     );
     let targets = Targets::equilateral(expected);
     let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
-    let options = Options { derivatives: Derivatives::FiniteDifference, ..Options::default() };
+    let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
+    let options = Options { method: Method::Paper(differences), ..Options::default() };
     let error = Sweeps::new(&device_mesh, &options).err().unwrap();
-    assert!(matches!(error, SmoothError::Option { option: "derivatives", .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            SmoothError::Option(OptionError::Conflict { features: [Feature::Targets, _], .. })
+        ),
+        "{error}"
+    );
 }
 
 /// What a smoother has prepared is not prepared again: with targets, and where fixed vertices are laid out in another way.
@@ -78,7 +87,7 @@ fn a_mesh_from_a_smoother_is_swept_to_the_same_bits() {
     let targets = growing(&mesh);
     let inside = Smoother::new(&mesh).unwrap().topology().free().iter().position(|&free| free);
     let fixed = Mesh { fixed: vec![inside.unwrap() as u32], ..mesh.clone() };
-    let options = Options { method: Method::Sweeps, ..Options::default() };
+    let options = Options { method: Method::RELAXED, ..Options::default() };
     for (mesh, with_targets) in [(&mesh, false), (&mesh, true), (&fixed, false), (&fixed, true)] {
         let mut smoother = Smoother::new(mesh).unwrap();
         let alone = match with_targets {

@@ -5,8 +5,11 @@ use std::future::Future;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-use gpu_smooth::gpu::{Kernel, Span};
-use gpu_smooth::{Derivatives, GpuError, Mesh, Metric, Options, Smoother, Sweeps, Timestamps};
+use gpu_smooth::{
+    GpuError, Mesh, Metric, Options, Smoother,
+    gpu::{Kernel, Span, Sweeps, Timestamps},
+    options::Derivatives,
+};
 use wgpu::BufferUsages as Usage;
 
 use gpu_smooth::wgpu;

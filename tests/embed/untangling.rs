@@ -1,7 +1,8 @@
 //! A mesh that the application has tangled is untangled on the device, within some frames.
 
 use gpu_smooth::{
-    BoundVertices, DeviceMesh, Mesh, ObjectiveValues, Options, Sweeps, Targets, UntanglingSweeps,
+    Mesh, Options, Targets,
+    gpu::{BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, UntanglingSweeps},
 };
 
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};

@@ -8,8 +8,7 @@ mod support;
 mod compiler;
 
 use compiler::Program;
-use gpu_smooth::gpu::Kernel;
-use gpu_smooth::{Derivatives, Metric};
+use gpu_smooth::{Metric, gpu::Kernel, options::Derivatives};
 use support::SplitMix64;
 
 /// Values by the names of a function's arguments.

@@ -14,8 +14,8 @@
 mod support;
 
 use gpu_smooth::{
-    Backend, Desired, Goal, Guard, Mesh, Method, Metric, Options, Precision, Slide, Smoother,
-    Surface, TargetField, Targets, WorstBy, untangle,
+    Backend, Goal, Guard, Mesh, Method, Metric, Options, Slide, Smoother, Stopping, TargetField,
+    Targets, options::WorstBy, precision::Precision, targets::Surface, untangle,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -153,7 +153,7 @@ const CHANGES: &[(&str, Change)] = &[
     ("worst-altitude", |case| case.options.improve_worst = Some(WorstBy::Altitude)),
     ("guard", |case| case.options.guard = Guard::Worst),
     ("goal", |case| {
-        case.options.goal = Some(Goal { fraction: 0.9, desired: Desired::Value(1.2) });
+        case.options.stopping = Stopping::Goal(Goal { fraction: 0.9, desired: Some(1.2) });
     }),
     ("single", |case| case.options.stored = Precision::Single),
 ];
@@ -177,11 +177,15 @@ fn cases() -> Vec<(String, Vec<Change>, Options)> {
         cases.push((format!("paper:{scheme}"), vec![], paper));
     }
     for scheme in ["imr", "edge"] {
-        let sweeps = Options { method: Method::Sweeps, ..options(scheme) };
+        let sweeps = Options { method: Method::RELAXED, ..options(scheme) };
         cases.push((format!("sweeps:{scheme}"), vec![], sweeps));
     }
-    let searched = Goal { fraction: 0.95, desired: Desired::Auto };
-    cases.push(("searched".into(), vec![], Options { goal: Some(searched), ..options("imr") }));
+    let searched = Goal { fraction: 0.95, desired: None };
+    cases.push((
+        "searched".into(),
+        vec![],
+        Options { stopping: Stopping::Goal(searched), ..options("imr") },
+    ));
     for (first, &(name, change)) in CHANGES.iter().enumerate() {
         cases.push((format!("imr,{name}"), vec![change], options("imr")));
         for &(other, also) in &CHANGES[first + 1..] {

@@ -3,8 +3,7 @@
 use crate::oracles::is_linear_in_size;
 use crate::support::SplitMix64;
 use crate::triangles::*;
-use gpu_smooth::internal::Dual;
-use gpu_smooth::{Corner, Metric};
+use gpu_smooth::{Metric, internal::Dual, metric::Corner};
 
 fn central(metric: Metric, t: &Corner<f64>, sharpness: u32, h: f64) -> Dual {
     let value = |i: i32, j: i32| {

@@ -1,9 +1,10 @@
 //! Finite differences as an engine takes them: less exact than analytic derivatives, but good enough to smooth with.
 
 use crate::support;
-use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};
 use gpu_smooth::{
-    Backend, Derivatives, Gpu, Mesh, Method, Metric, Options, Sharpness, Smoother, Topology,
+    Backend, Gpu, Mesh, Method, Metric, Options, Smoother, Topology,
+    internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu},
+    options::{Derivatives, PNormExponent, Paper},
 };
 use std::ops::ControlFlow;
 
@@ -25,7 +26,7 @@ fn a_sweep_by_differences_is_a_little_off() {
                 plain_sweeps: 0,
                 inner: 1,
                 derivatives: [derivatives; Metric::ALL.len()],
-                sharpness: Sharpness::FIXED,
+                sharpness: PNormExponent::FIXED,
                 stop: StopRule { target: None, tolerance: 0.0, max_sweeps: 1 },
                 track_all: false,
                 shape_guard: f64::INFINITY,
@@ -60,8 +61,8 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
     for &metric in Metric::ALL {
         let f = |derivatives, backend| {
             // Without corrections, as runs by differences have none: EDGE would end at another minimum.
-            let (scheme, method) = (metric.into(), Method::Sweeps);
-            let options = Options { scheme, method, derivatives, ..Options::default() };
+            let method = Method::Paper(Paper { derivatives, ..Paper::default() });
+            let options = Options { scheme: metric.into(), method, ..Options::default() };
             let go_on = &mut |_: &_| ControlFlow::Continue(());
             let outcome = smoother.run(&options).on(backend).observe(go_on).block().unwrap();
             smoother.quality(&outcome.points).unwrap().f(metric)
@@ -88,11 +89,9 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
 fn the_best_state_is_returned_though_differences_may_raise_f() {
     let mesh = plate();
     let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options {
-        scheme: Metric::Rms.into(),
-        derivatives: Derivatives::FiniteDifference,
-        ..Options::default()
-    };
+    let derivatives = Derivatives::FiniteDifference;
+    let method = Method::Paper(Paper { derivatives, ..Paper::default() });
+    let options = Options { scheme: Metric::Rms.into(), method, ..Options::default() };
     for backend in [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())] {
         let outcome = smoother.run(&options).on(&backend).block().unwrap();
         let history: Vec<f64> =

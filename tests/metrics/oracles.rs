@@ -2,7 +2,7 @@
 //! missing here does not compile.
 
 use crate::triangles::lengths;
-use gpu_smooth::{Corner, Metric};
+use gpu_smooth::{Metric, metric::Corner};
 
 /// log2 of the exponent of EDGE's p-norm.
 pub(crate) const SHARPNESS: u32 = 4;

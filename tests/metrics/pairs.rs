@@ -2,8 +2,7 @@
 
 use crate::device::{Device, probe};
 use crate::support::SplitMix64;
-use gpu_smooth::gpu::Kernel;
-use gpu_smooth::{Derivatives, Metric};
+use gpu_smooth::{Metric, gpu::Kernel, options::Derivatives};
 
 fn split(x: f64) -> [f32; 2] {
     let high = x as f32;

@@ -3,7 +3,7 @@
 use crate::oracles;
 use crate::support::SplitMix64;
 use crate::triangles::*;
-use gpu_smooth::{Corner, Metric};
+use gpu_smooth::{Metric, metric::Corner};
 
 const COUNT: usize = 500;
 const WORST: f64 = 50.0;

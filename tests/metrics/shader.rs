@@ -5,9 +5,7 @@ use crate::device::{Device, probe};
 use crate::oracles::{SHARPNESS, Scales, mistakes, scales};
 use crate::support::SplitMix64;
 use crate::triangles::*;
-use gpu_smooth::gpu::Kernel;
-use gpu_smooth::internal::Dual;
-use gpu_smooth::{Corner, Derivatives, Metric};
+use gpu_smooth::{Metric, gpu::Kernel, internal::Dual, metric::Corner, options::Derivatives};
 
 /// Half a unit in the last place of a float near one.
 const ULP: f64 = 1.0 / 16_777_216.0;

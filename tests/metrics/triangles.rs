@@ -1,7 +1,7 @@
 //! Triangles to try the metrics on.
 
 use crate::support::SplitMix64;
-use gpu_smooth::Corner;
+use gpu_smooth::metric::Corner;
 
 pub(crate) type Vec2 = [f64; 2];
 

@@ -2,8 +2,7 @@
 
 use crate::device::{Device, probe};
 use crate::support::SplitMix64;
-use gpu_smooth::gpu::Kernel;
-use gpu_smooth::internal::untangling_energy;
+use gpu_smooth::{gpu::Kernel, internal::untangling_energy};
 
 /// The input of an invocation: two edges, and ε in units of the doubled area.
 type Row = [f32; 5];

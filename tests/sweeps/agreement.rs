@@ -1,8 +1,11 @@
 //! Both engines do the same sweeps, however these are grouped.
 
 use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
-use gpu_smooth::internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu};
-use gpu_smooth::{Backend, Derivatives, Metric, Sharpness, Smoother, Stop};
+use gpu_smooth::{
+    Backend, Metric, Smoother, Stop,
+    internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
+    options::{Derivatives, PNormExponent},
+};
 
 /// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU, as a share of the distance it moved.
 struct OneSweep {
@@ -52,7 +55,7 @@ fn a_penalty_keeps_edge_off_the_shape_guard_on_both_engines_alike() {
     let mesh = support::perturb_random(&plate(2000), 0.5, 3);
     let before = Smoother::new(&mesh).unwrap().quality(&mesh.points).unwrap().worst_imr;
     for (share, k) in [(0.5, 1), (0.3, 4), (0.7, 4), (0.3, 7)] {
-        let sharpness = Sharpness { first: k, every: 0, last: k };
+        let sharpness = PNormExponent { first: k, every: 0, last: k };
         let shape_guard = 1.0 + share * (before - 1.0);
         let both = |is_guard_penalized| {
             let plan = plan(Metric::Edge.into(), 1);
@@ -71,7 +74,7 @@ fn a_penalty_keeps_edge_off_the_shape_guard_on_both_engines_alike() {
 #[test]
 fn every_sweep_of_a_run_is_the_same_on_both_engines() {
     let problem = mild();
-    let sharpness = Sharpness { first: 1, every: 3, last: 4 };
+    let sharpness = PNormExponent { first: 1, every: 3, last: 4 };
     let own = |name: &str| Plan { sharpness, plain_sweeps: 3, ..plan(scheme(name), 12) };
     let twice = Plan { inner: 2, ..own("imr") };
     let settled = Plan { inner: 50, ..own("imr") };

@@ -2,8 +2,8 @@
 
 use crate::{backends, history, name, plate, run, support};
 use gpu_smooth::{
-    Change, Mesh, Metric, Options, Precision, Slide, SmoothError, Smoother, Stop, TargetField,
-    Targets, validity,
+    Mesh, Metric, OptionError, Options, Slide, SmoothError, Smoother, Stop, TargetField, Targets,
+    measure::Change, options::Feature, precision::Precision, topology,
 };
 
 /// A square of fields, each cut along the same diagonal. Rows get lower toward one side, and smoothing presses triangles
@@ -43,7 +43,7 @@ fn the_least_altitude_does_not_fall_if_it_is_to_be_kept() {
         let least = *history(&free, Metric::Imr).last().unwrap();
         let share = (f[0] - f[f.len() - 1]) / (f[0] - least);
         assert!((0.05..1.0).contains(&share), "{label}: {share}");
-        let bad = validity::infeasible(&kept.points, smoother.topology().triangles()).unwrap();
+        let bad = topology::infeasible(&kept.points, smoother.topology().triangles()).unwrap();
         assert!(bad.is_empty(), "{label}");
     }
 }
@@ -55,8 +55,10 @@ fn options_that_do_not_go_with_kept_altitudes_are_refused() {
     let refused = |smoother: &Smoother, options: Options| {
         let options = Options { keep_altitude: true, ..options };
         let error = smoother.run(&options).on(&backends()[0]).block();
-        let option = "keep altitude";
-        assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
+        let Err(SmoothError::Option(OptionError::Conflict { features, .. })) = error else {
+            panic!("{error:?}")
+        };
+        assert!(features.contains(&Feature::KeepAltitude), "{features:?}");
     };
     refused(&smoother, Options { max_move: Some(1.0), ..Options::default() });
     refused(&smoother, Options { scheme: Metric::Edge.into(), ..Options::default() });
@@ -87,7 +89,7 @@ fn the_least_altitude_is_kept_where_vertices_slide() {
         assert_eq!(astray, [], "{label}");
         let f = history(&kept, Metric::Imr);
         assert!(f[f.len() - 1] < f[0], "{label}: {f:?}");
-        let bad = validity::infeasible(&kept.points, smoother.topology().triangles()).unwrap();
+        let bad = topology::infeasible(&kept.points, smoother.topology().triangles()).unwrap();
         assert!(bad.is_empty(), "{label}");
     }
 }

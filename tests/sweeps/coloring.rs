@@ -1,8 +1,10 @@
 //! Colors: vertices of one color can move at the same time.
 
 use crate::{distorted, perturbed, support};
-use gpu_smooth::internal::{Coloring, Problem, UNCOLORED};
-use gpu_smooth::{Mesh, Topology};
+use gpu_smooth::{
+    Mesh, Topology,
+    internal::{Coloring, Problem, UNCOLORED},
+};
 
 fn meshes() -> Vec<Mesh> {
     let plain = [

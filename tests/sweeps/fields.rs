@@ -3,8 +3,8 @@
 use crate::support;
 use crate::{backends, history, name, run};
 use gpu_smooth::{
-    Backend, Desired, Goal, Mesh, MeshError, Metric, Options, Slide, SmoothError, Smoother, Stop,
-    Surface, TargetField, Targets,
+    Backend, Goal, Mesh, MeshError, Metric, OptionError, Options, Slide, SmoothError, Smoother,
+    Stop, Stopping, TargetField, Targets, options::Feature, targets::Surface,
 };
 
 /// A square of two triangles, with target sizes that are four times larger on the right than on the left.
@@ -83,11 +83,13 @@ fn options_that_do_not_go_with_a_target_field_are_refused() {
     assert!((outside.most / width - 0.5).abs() < 0.05, "{outside:?}");
     let refused = |smoother: &Smoother, options: &Options| {
         let error = smoother.run(options).on(&Backend::Cpu).block();
-        let option = "target field";
-        assert!(matches!(error, Err(SmoothError::Option { option: o, .. }) if o == option));
+        let Err(SmoothError::Option(OptionError::Conflict { features, .. })) = error else {
+            panic!("{error:?}")
+        };
+        assert!(features.contains(&Feature::TargetField), "{features:?}");
     };
-    let goal = Some(Goal { fraction: 0.95, desired: Desired::Value(1.0) });
-    refused(&smoother, &Options { goal, ..Options::default() });
+    let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: Some(1.0) });
+    refused(&smoother, &Options { stopping, ..Options::default() });
     refused(&smoother, &Options { max_move: Some(1.0), ..Options::default() });
     refused(&smoother, &Options { scheme: Metric::Edge.into(), ..Options::default() });
     smoother.set_slide(Some(&Slide::default())).unwrap();

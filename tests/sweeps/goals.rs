@@ -1,7 +1,9 @@
 //! Goals: the paper's test of convergence, with all its schemes.
 
 use crate::{SCHEMES, backends, history, name, perturbed, run, scheme};
-use gpu_smooth::{Backend, Desired, Goal, Mesh, Metric, Options, Sharpness, Smoother, Stop};
+use gpu_smooth::{
+    Backend, Goal, Mesh, Metric, Options, Smoother, Stop, Stopping, options::PNormExponent,
+};
 use std::sync::OnceLock;
 
 /// The optimum of a metric on the perturbed plate, nearly: as over-relaxed sweeps on the CPU find it.
@@ -10,9 +12,13 @@ fn desired(metric: Metric) -> f64 {
     let found = FOUND.get_or_init(|| {
         let smoother = Smoother::new(perturbed()).unwrap();
         let find = |metric: Metric| {
-            let sharpness = Some(Sharpness::CONTINUED);
-            let options =
-                Options { scheme: metric.into(), sharpness, max_sweeps: 500, ..Options::default() };
+            let sharpness = Some(PNormExponent::CONTINUED);
+            let options = Options {
+                scheme: metric.into(),
+                edge_norm: sharpness,
+                max_sweeps: 500,
+                ..Options::default()
+            };
             let f = history(&run(&smoother, &options, &backends()[0]), metric);
             (metric, f.into_iter().fold(f64::INFINITY, f64::min))
         };
@@ -28,8 +34,8 @@ fn both_engines_reach_goals_at_the_same_sweep() {
         for fraction in [0.95, 0.99] {
             let scheme = scheme(name_of_scheme);
             let base = scheme.base();
-            let goal = Some(Goal { fraction, desired: Desired::Value(desired(base)) });
-            let options = Options { goal, max_sweeps: 300, ..Options::paper(scheme) };
+            let stopping = Stopping::Goal(Goal { fraction, desired: Some(desired(base)) });
+            let options = Options { stopping, max_sweeps: 300, ..Options::paper(scheme) };
             let [cpu, gpu] = backends().each_ref().map(|backend| run(&smoother, &options, backend));
             let [f_cpu, f_gpu] =
                 [&cpu, &gpu].map(|o| history(o, base).into_iter().fold(f64::INFINITY, f64::min));
@@ -53,8 +59,8 @@ fn the_optimum_is_reached_from_the_start_on_an_optimal_mesh() {
     let mesh = Mesh { points, triangles: halves.collect(), fixed: Vec::new() };
     let smoother = Smoother::new(&mesh).unwrap();
     for name_of_scheme in ["imr", "rms", "area+imr"] {
-        let goal = Some(Goal { fraction: 0.95, desired: Desired::Auto });
-        let options = Options { goal, scheme: scheme(name_of_scheme), ..Options::default() };
+        let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: None });
+        let options = Options { stopping, scheme: scheme(name_of_scheme), ..Options::default() };
         for backend in backends() {
             let outcome = run(&smoother, &options, backend);
             let label = format!("{name_of_scheme} on the {}", name(backend));
@@ -74,8 +80,8 @@ fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
             let scheme = scheme(name_of_scheme);
             let base = scheme.base();
             let optimum = if base == Metric::Imr { 1.0 } else { desired(base) };
-            let goal = Some(Goal { fraction: 1.0, desired: Desired::Value(optimum - beyond) });
-            let options = Options { goal, max_sweeps: 400, ..Options::paper(scheme) };
+            let stopping = Stopping::Goal(Goal { fraction: 1.0, desired: Some(optimum - beyond) });
+            let options = Options { stopping, max_sweeps: 400, ..Options::paper(scheme) };
             let outcome = run(&smoother, &options, backend);
             let label = format!("{name_of_scheme} on the {}", name(backend));
             assert!(matches!(outcome.stop, Stop::Stalled | Stop::MaxSweeps), "{label}");

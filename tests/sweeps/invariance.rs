@@ -2,7 +2,7 @@
 
 use crate::support::{self, transformed};
 use crate::{backends, history, name, perturbed, plate, run};
-use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Smoother};
+use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Smoother, Stopping};
 
 fn mild() -> Mesh {
     support::perturb_random(&plate(800), 0.6, 4)
@@ -10,7 +10,13 @@ fn mild() -> Mesh {
 
 fn thirty_sweeps(metric: Metric, method: Method) -> Options {
     let scheme = metric.into();
-    Options { scheme, method, tolerance: 0.0, max_sweeps: 30, ..Options::default() }
+    Options {
+        scheme,
+        method,
+        stopping: Stopping::Tolerance(0.0),
+        max_sweeps: 30,
+        ..Options::default()
+    }
 }
 
 /// How far two results may differ: the distance of a vertex in units of a typical edge, and f.
@@ -30,7 +36,7 @@ const GPU: Bounds = Bounds { distance: 2e-4, f: 2e-6 };
 fn check(here: &Mesh, there: &Mesh, scale: f64, shift: [f64; 2], bounds: [Bounds; 2]) {
     let edge = (support::area(there) / there.triangles.len() as f64).sqrt() * 1.5;
     let (a, b) = (Smoother::new(here).unwrap(), Smoother::new(there).unwrap());
-    let alone = Metric::ALL.iter().map(|&metric| (metric, Method::Sweeps));
+    let alone = Metric::ALL.iter().map(|&metric| (metric, Method::RELAXED));
     let corrected = [Metric::Rms, Metric::Imr].map(|metric| (metric, Method::Multilevel));
     for (metric, method) in alone.chain(corrected) {
         for (backend, bounds) in backends().iter().zip(&bounds) {
@@ -93,7 +99,11 @@ fn numbering_does_not_matter_to_the_optimum() {
     let mesh = perturbed();
     let (other, new_index) = support::renumbered(mesh, 8);
     for metric in [Metric::Rms, Metric::Imr] {
-        let options = Options { scheme: metric.into(), tolerance: 1e-8, ..Options::default() };
+        let options = Options {
+            scheme: metric.into(),
+            stopping: Stopping::Tolerance(1e-8),
+            ..Options::default()
+        };
         for backend in backends() {
             let (a, b) = (Smoother::new(mesh).unwrap(), Smoother::new(&other).unwrap());
             let (a, b) = (run(&a, &options, backend), run(&b, &options, backend));
@@ -116,7 +126,7 @@ fn triangles_a_ten_millionth_of_the_domain_are_smoothed_like_any() {
     let smoother = Smoother::new(&mesh).unwrap();
     for &metric in Metric::ALL {
         // EDGE has many minima, and with corrections rounding decides in which of them a run ends.
-        let method = if metric.is_smooth() { Method::Auto } else { Method::Sweeps };
+        let method = if metric.is_smooth() { Method::Auto } else { Method::RELAXED };
         let options = Options { method, max_sweeps: 400, ..Options::default() };
         let options = Options { scheme: metric.into(), ..options };
         let [cpu, gpu] = backends().each_ref().map(|backend| {

@@ -29,11 +29,10 @@ mod tolerance;
 mod untangle;
 mod worst;
 
-use gpu_smooth::internal::run_on_gpu;
-use gpu_smooth::internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu};
 use gpu_smooth::{
-    Backend, Derivatives, Gpu, Mesh, Metric, Options, Outcome, Scheme, Sharpness, Smoother,
-    Topology,
+    Backend, Gpu, Mesh, Metric, Options, Outcome, Scheme, Smoother, Topology,
+    internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
+    options::{Derivatives, PNormExponent},
 };
 use std::sync::OnceLock;
 
@@ -123,7 +122,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
         plain_sweeps: 4,
         inner: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
-        sharpness: Sharpness::FIXED,
+        sharpness: PNormExponent::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,
         worst_guard: f64::INFINITY,

@@ -4,7 +4,8 @@ use crate::{
     backends, distorted, global, history, name, perturbed, plate, run, scheme, support, with_points,
 };
 use gpu_smooth::{
-    Backend, Derivatives, Mesh, Method, Metric, Options, Outcome, SmoothError, Smoother, Stop,
+    Backend, Mesh, Method, Metric, OptionError, Options, Outcome, SmoothError, Smoother, Stop,
+    Stopping, options::Feature,
 };
 
 fn multilevel(metric: Metric) -> Options {
@@ -13,7 +14,7 @@ fn multilevel(metric: Metric) -> Options {
 
 /// Options for sweeps alone.
 fn sweeps(metric: Metric) -> Options {
-    Options { method: Method::Sweeps, ..multilevel(metric) }
+    Options { method: Method::RELAXED, ..multilevel(metric) }
 }
 
 fn last(outcome: &Outcome, metric: Metric) -> f64 {
@@ -30,7 +31,11 @@ fn a_dozen_sweeps_suffice_whatever_the_size_of_the_mesh() {
         for mesh in meshes {
             let smoother = Smoother::new(&mesh).unwrap();
             let backend = &backends()[0];
-            let long = Options { tolerance: 1e-10, max_sweeps: 3000, ..sweeps(Metric::Imr) };
+            let long = Options {
+                stopping: Stopping::Tolerance(1e-10),
+                max_sweeps: 3000,
+                ..sweeps(Metric::Imr)
+            };
             let limit = last(&run(&smoother, &long, backend), Metric::Imr);
             for backend in backends() {
                 let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
@@ -62,7 +67,7 @@ fn hard_meshes() -> [(&'static str, Mesh, u32); 5] {
 fn hard_meshes_take_a_few_dozen_sweeps_and_the_promise_holds() {
     for (label, mesh, most) in hard_meshes() {
         let smoother = Smoother::new(&mesh).unwrap();
-        let long = Options { tolerance: 1e-12, ..multilevel(Metric::Imr) };
+        let long = Options { stopping: Stopping::Tolerance(1e-12), ..multilevel(Metric::Imr) };
         let limit = last(&run(&smoother, &long, &backends()[0]), Metric::Imr);
         for backend in backends() {
             let label = format!("{label} on the {}", name(backend));
@@ -87,7 +92,7 @@ fn corrected_runs_end_at_the_global_optimum() {
             [(Metric::Imr, imr), (Metric::Ar, imr), (Metric::Rms, global::f_rms(&rms))]
         {
             for backend in backends() {
-                let options = Options { tolerance: 1e-8, ..multilevel(metric) };
+                let options = Options { stopping: Stopping::Tolerance(1e-8), ..multilevel(metric) };
                 let f = last(&run(&smoother, &options, backend), metric);
                 let off = f / optimum - 1.0;
                 assert!(off.abs() < 1e-7, "{metric} on the {}: {off:e}", name(backend));
@@ -182,7 +187,8 @@ fn tiny_and_scattered_meshes_converge() {
 fn elements_graded_over_seven_decades_converge() {
     let mesh = support::perturb_random(&support::graded(24, 1e-7), 0.5, 2);
     let smoother = Smoother::new(&mesh).unwrap();
-    let long = Options { tolerance: 1e-9, max_sweeps: 5000, ..sweeps(Metric::Imr) };
+    let long =
+        Options { stopping: Stopping::Tolerance(1e-9), max_sweeps: 5000, ..sweeps(Metric::Imr) };
     let limit = last(&run(&smoother, &long, &backends()[0]), Metric::Imr);
     for backend in backends() {
         let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
@@ -202,10 +208,7 @@ fn corrections_are_the_default_where_they_are_possible() {
     let others = [
         alone(Metric::Area),
         Options { scheme: scheme("area+imr"), ..imr.clone() },
-        Options { omega: Some(1.5), ..imr.clone() },
-        Options { inner: 2, ..imr.clone() },
-        Options { derivatives: Derivatives::FiniteDifference, ..imr.clone() },
-        Options { method: Method::Sweeps, ..imr.clone() },
+        Options { method: Method::RELAXED, ..imr.clone() },
         Options::paper(Metric::Imr.into()),
     ];
     let smoother = Smoother::new(perturbed()).unwrap();
@@ -214,7 +217,10 @@ fn corrections_are_the_default_where_they_are_possible() {
         let asked = Options { method: Method::Multilevel, ..options.clone() };
         let done = smoother.run(&asked).on(&Backend::Cpu).block();
         match done {
-            Err(SmoothError::Option { option: "method", .. }) => assert!(!asked.is_multilevel()),
+            Err(SmoothError::Option(OptionError::Conflict {
+                features: [Feature::Multilevel, _],
+                ..
+            })) => assert!(!asked.is_multilevel()),
             Ok(outcome) => assert!(asked.is_multilevel() && outcome.corrections > 0),
             Err(error) => panic!("{error}"),
         }

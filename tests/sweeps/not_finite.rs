@@ -1,7 +1,9 @@
 //! Numbers that are not finite: each shows in f, wherever it is.
 
-use gpu_smooth::internal::{Stepwise, run_on_cpu, run_on_gpu};
-use gpu_smooth::{Backend, Metric};
+use gpu_smooth::{
+    Backend, Metric,
+    internal::{Stepwise, run_on_cpu, run_on_gpu},
+};
 
 use super::{backends, name, plan, plate, problem};
 

@@ -2,7 +2,7 @@
 
 use crate::support;
 use crate::{backends, distorted, global, history, name, perturbed, run, with_points};
-use gpu_smooth::{Method, Metric, Options, Sharpness, Smoother, Stop};
+use gpu_smooth::{Method, Metric, Options, Smoother, Stop, Stopping, options::PNormExponent};
 
 #[test]
 fn a_perturbed_lattice_becomes_equilateral_again() {
@@ -12,7 +12,11 @@ fn a_perturbed_lattice_becomes_equilateral_again() {
     let smoother = Smoother::new(&mesh).unwrap();
     for &metric in Metric::ALL {
         for backend in backends() {
-            let options = Options { scheme: metric.into(), tolerance: 1e-9, ..Options::default() };
+            let options = Options {
+                scheme: metric.into(),
+                stopping: Stopping::Tolerance(1e-9),
+                ..Options::default()
+            };
             let outcome = run(&smoother, &options, backend);
             let f = support::f_imr(&with_points(&mesh, &outcome.points));
             assert!(f - 1.0 < 1e-6, "{metric} on the {}: {:e}", name(backend), f - 1.0);
@@ -61,7 +65,7 @@ fn edge_ends_at_the_best_known() {
     let smoother = Smoother::new(mesh).unwrap();
     let edge = |method, sharpness| {
         let options = Options { scheme: Metric::Edge.into(), ..Options::default() };
-        Options { method, sharpness, ..options }
+        Options { method, edge_norm: sharpness, ..options }
     };
     let imr = run(&smoother, &Options::default(), &backends()[0]);
     let from_imr = with_points(mesh, &imr.points);
@@ -70,8 +74,8 @@ fn edge_ends_at_the_best_known() {
         history(outcome, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min)
     };
     // The best of some hundreds of sweeps alone. Thousands more would gain another 3e-5.
-    let alone = |sharpness| edge(Method::Sweeps, Some(sharpness));
-    let continued = Options { max_sweeps: 700, ..alone(Sharpness::CONTINUED) };
+    let alone = |sharpness| edge(Method::RELAXED, Some(sharpness));
+    let continued = Options { max_sweeps: 700, ..alone(PNormExponent::CONTINUED) };
     let best = [&smoother, &after_imr].map(|s| f(&run(s, &continued, &backends()[0])));
     let best = best[0].min(best[1]);
     for backend in backends() {
@@ -84,7 +88,7 @@ fn edge_ends_at_the_best_known() {
         // What is returned is the best state, of whichever sweep.
         let returned = smoother.quality(&corrected.points).unwrap().f(Metric::Edge);
         assert!((returned / end - 1.0).abs() < 1e-6, "{returned} for {end} on the {place}");
-        let fixed = f(&run(&smoother, &alone(Sharpness::FIXED), backend));
+        let fixed = f(&run(&smoother, &alone(PNormExponent::FIXED), backend));
         assert!(fixed / best - 1.0 < 1e-2, "{fixed} for {best} on the {place}");
     }
 }
@@ -112,7 +116,11 @@ fn edge_ends_within_1e_4_of_the_best_known_after_some_eighty_sweeps() {
         for backend in backends() {
             let on = format!("{mesh} on the {}", name(backend));
             let ends = |tolerance| {
-                let edge = Options { scheme: Metric::Edge.into(), tolerance, ..Options::default() };
+                let edge = Options {
+                    scheme: Metric::Edge.into(),
+                    stopping: Stopping::Tolerance(tolerance),
+                    ..Options::default()
+                };
                 let outcome = run(&smoother, &edge, backend);
                 assert_eq!(outcome.stop, Stop::Converged, "{on}");
                 assert!(worst(&outcome.points) <= before, "{on}: the shape guard holds");

@@ -3,8 +3,11 @@
 use crate::support::{SplitMix64, check, trig};
 use crate::{backends, name, run};
 use gpu_smooth::{
-    Backend, Mesh, MeshError, Metric, Motion, Options, Periodic, Precision, Slide, SmoothError,
-    Smoother, Stop, Topology, validity,
+    Backend, Mesh, MeshError, Metric, Options, Slide, SmoothError, Smoother, Stop, Stopping,
+    Topology,
+    precision::Precision,
+    slide::{Motion, Periodic},
+    topology,
 };
 
 const COLUMNS: u32 = 10;
@@ -106,7 +109,7 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
         assert!(apart(&outcome.points, &sides(), translation(2.0, 0.0)) < 1e-15, "{label}");
         let f = |points: &[[f64; 2]]| smoother.f(Metric::Imr, points).unwrap();
         assert!(f(&outcome.points) < f(&held.points) - 1e-3, "{label}");
-        let bad = validity::infeasible(&outcome.points, smoother.topology().triangles()).unwrap();
+        let bad = topology::infeasible(&outcome.points, smoother.topology().triangles()).unwrap();
         assert!(bad.is_empty(), "{label}");
         let astray =
             |points: &[[f64; 2]]| slide.astray(&topology, &mesh.points, points, Precision::Double);
@@ -130,7 +133,7 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
 fn a_pair_rests_where_both_patches_together_are_best() {
     let mesh = lattice(|[u, v]| [2.0 * u, v]);
     let (smoother, _) = sliding(&mesh, &periodic(sides()));
-    let options = Options { tolerance: 1e-10, ..Options::default() };
+    let options = Options { stopping: Stopping::Tolerance(1e-10), ..Options::default() };
     let outcome = run(&smoother, &options, &Backend::Cpu);
     let f = |points: &[[f64; 2]]| smoother.f(Metric::Imr, points).unwrap();
     let best = f(&outcome.points);

@@ -10,8 +10,9 @@
 use crate::support::SplitMix64;
 use crate::{all_schemes, backends, history, name, support, with_points};
 use gpu_smooth::{
-    Backend, Derivatives, Desired, Goal, Mesh, MeshError, Method, Options, Outcome, Precision,
-    Sharpness, SmoothError, Smoother,
+    Backend, Goal, Mesh, MeshError, Method, Options, Outcome, SmoothError, Smoother, Stopping,
+    options::{Derivatives, PNormExponent, Paper, Relaxed},
+    precision::Precision,
 };
 use mesh_io::MeshFile;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
@@ -185,21 +186,30 @@ fn random_options(rng: &mut SplitMix64) -> Options {
     let mut options = Options {
         scheme: schemes.swap_remove(rng.below(schemes.len())),
         max_sweeps: rng.below(60) as u32,
-        tolerance: [0.0, 1e-3, 1e-6, 1e-12][rng.below(4)],
+        stopping: Stopping::Tolerance([0.0, 1e-3, 1e-6, 1e-12][rng.below(4)]),
         track_all: rng.below(4) == 0,
         ..Options::default()
     };
     match rng.below(8) {
-        0 => options.method = Method::Sweeps,
-        1 => options.omega = Some(rng.range(0.1, 1.99)),
-        2 => options.inner = 1 + rng.below(4) as u32,
-        3 => options.sharpness = Some(Sharpness::CONTINUED),
-        4 => options.derivatives = Derivatives::FiniteDifference,
+        0 => options.method = Method::RELAXED,
+        1 => {
+            let omega = Some(rng.range(0.1, 1.99));
+            options.method = Method::Relaxed(Relaxed { omega, ..Relaxed::default() });
+        }
+        2 => {
+            let newton_steps = 1 + rng.below(4) as u32;
+            options.method = Method::Paper(Paper { newton_steps, ..Paper::default() });
+        }
+        3 => options.edge_norm = Some(PNormExponent::CONTINUED),
+        4 => {
+            let derivatives = Derivatives::FiniteDifference;
+            options.method = Method::Paper(Paper { derivatives, ..Paper::default() });
+        }
         5 => options.stored = Precision::Single,
         6 => {
             let fraction = rng.range(0.1, 1.0);
-            let desired = Desired::Value(rng.range(0.5, 2.0));
-            options.goal = Some(Goal { fraction, desired });
+            let desired = Some(rng.range(0.5, 2.0));
+            options.stopping = Stopping::Goal(Goal { fraction, desired });
         }
         _ => {}
     }

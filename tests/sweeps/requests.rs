@@ -2,8 +2,9 @@
 
 use crate::{backends, history, perturbed, plate, run, scheme, support, with_points};
 use gpu_smooth::{
-    Backend, Desired, Goal, Gpu, GpuError, Metric, Options, Phase, Scheme, Sharpness, SmoothError,
-    Smoother, Stop,
+    Backend, Goal, Gpu, GpuError, Method, Metric, OptionError, Options, Phase, Scheme, SmoothError,
+    Smoother, Stop, Stopping,
+    options::{PNormExponent, Paper, Relaxed},
 };
 use std::ops::ControlFlow;
 
@@ -13,7 +14,11 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
     let smoother = Smoother::new(mesh).unwrap();
     for backend in backends() {
         for name in ["imr", "edge+imr"] {
-            let options = Options { scheme: scheme(name), tolerance: 0.0, ..Options::default() };
+            let options = Options {
+                scheme: scheme(name),
+                stopping: Stopping::Tolerance(0.0),
+                ..Options::default()
+            };
             let base = options.scheme.base();
             let mut seen = Vec::new();
             let mut observe = |progress: &gpu_smooth::Progress| {
@@ -48,10 +53,10 @@ fn a_run_canceled_while_the_optimum_is_sought_returns_the_start() {
     // The best f until then was once taken for the optimum, and the run was "reached".
     let mesh = perturbed();
     let smoother = Smoother::new(mesh).unwrap();
-    let goal = Some(Goal { fraction: 0.95, desired: Desired::Auto });
+    let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: None });
     for backend in backends() {
         for name in ["imr", "edge"] {
-            let options = Options { scheme: scheme(name), goal, ..Options::default() };
+            let options = Options { scheme: scheme(name), stopping, ..Options::default() };
             let cancel = &mut |progress: &gpu_smooth::Progress| {
                 assert_eq!(progress.phase, Phase::Reference);
                 ControlFlow::Break(())
@@ -68,47 +73,51 @@ fn options_out_of_range_are_named() {
     let mesh = plate(300);
     let smoother = Smoother::new(&mesh).unwrap();
     let default = Options::default;
-    let goal = |fraction, desired| Some(Goal { fraction, desired: Desired::Value(desired) });
-    let sharpness = |first, last| Some(Sharpness { first, every: 1, last });
+    let goal = |fraction, desired| Stopping::Goal(Goal { fraction, desired: Some(desired) });
+    let omega = |omega| Method::Relaxed(Relaxed { omega: Some(omega), ..Relaxed::default() });
+    let steps = |newton_steps| Method::Paper(Paper { newton_steps, ..Paper::default() });
+    let sharpness = |first, last| Some(PNormExponent { first, every: 1, last });
     let long = Scheme::new(vec![Metric::Imr; 61]).unwrap();
     let wrong = [
-        ("tolerance", Options { tolerance: -1e-9, ..default() }),
-        ("tolerance", Options { tolerance: f64::NAN, ..default() }),
-        ("tolerance", Options { tolerance: f64::INFINITY, ..default() }),
-        ("omega", Options { omega: Some(0.0), ..default() }),
-        ("omega", Options { omega: Some(2.0), ..default() }),
-        ("omega", Options { omega: Some(f64::NAN), ..default() }),
-        ("inner", Options { inner: 0, ..default() }),
+        ("tolerance", Options { stopping: Stopping::Tolerance(-1e-9), ..default() }),
+        ("tolerance", Options { stopping: Stopping::Tolerance(f64::NAN), ..default() }),
+        ("tolerance", Options { stopping: Stopping::Tolerance(f64::INFINITY), ..default() }),
+        ("omega", Options { method: omega(0.0), ..default() }),
+        ("omega", Options { method: omega(2.0), ..default() }),
+        ("omega", Options { method: omega(f64::NAN), ..default() }),
+        ("newton steps", Options { method: steps(0), ..default() }),
         // So long a sweep could not be canceled in time.
-        ("inner", Options { inner: Options::MOST_INNER + 1, ..default() }),
-        ("sharpness", Options { sharpness: sharpness(14, 4), ..default() }),
-        ("sharpness", Options { sharpness: sharpness(1, 14), ..default() }),
+        ("newton steps", Options { method: steps(Paper::MAX_NEWTON_STEPS + 1), ..default() }),
+        ("edge norm", Options { edge_norm: sharpness(14, 4), ..default() }),
+        ("edge norm", Options { edge_norm: sharpness(1, 14), ..default() }),
         // On a device no sweep of such a run was encoded, and it was "converged".
         (
-            "sharpness",
-            Options { sharpness: Some(Sharpness { first: 5, every: 0, last: 2 }), ..default() },
+            "edge norm",
+            Options { edge_norm: Some(PNormExponent { first: 5, every: 0, last: 2 }), ..default() },
         ),
         ("scheme length", Options { scheme: long, ..default() }),
-        ("fraction", Options { goal: goal(0.0, 1.0), ..default() }),
-        ("fraction", Options { goal: goal(1.5, 1.0), ..default() }),
-        ("fraction", Options { goal: goal(f64::NAN, 1.0), ..default() }),
-        ("desired", Options { goal: goal(0.95, f64::NAN), ..default() }),
+        ("fraction", Options { stopping: goal(0.0, 1.0), ..default() }),
+        ("fraction", Options { stopping: goal(1.5, 1.0), ..default() }),
+        ("fraction", Options { stopping: goal(f64::NAN, 1.0), ..default() }),
+        ("desired", Options { stopping: goal(0.95, f64::NAN), ..default() }),
     ];
     for (named, options) in wrong {
         for backend in backends() {
             let error = smoother.run(&options).on(backend).block();
             match error {
-                Err(SmoothError::Option { option, .. }) => assert_eq!(option, named),
+                Err(SmoothError::Option(OptionError::OutOfRange { option, .. })) => {
+                    assert_eq!(option, named)
+                }
                 other => panic!("{named}: {:?}", other.map(|outcome| outcome.stop)),
             }
         }
     }
     // The ends of the ranges are allowed.
     let edge = Options {
-        omega: Some(1.99),
-        sharpness: sharpness(0, 10),
+        method: omega(1.99),
+        edge_norm: sharpness(0, 10),
         scheme: Scheme::new(vec![Metric::Edge; 60]).unwrap(),
-        goal: goal(1.0, 0.0),
+        stopping: goal(1.0, 0.0),
         max_sweeps: 3,
         ..default()
     };

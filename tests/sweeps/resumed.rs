@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gpu_smooth::{
-    Backend, Checkpoint, CheckpointPolicy, Desired, Goal, Mesh, Method, Metric, Options, Outcome,
-    Progress, SmoothError, Smoother, Stop,
+    Backend, Checkpoint, CheckpointPolicy, Goal, Mesh, Method, Metric, Options, Outcome, Progress,
+    SmoothError, Smoother, Stop, Stopping,
 };
 
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
@@ -86,7 +86,7 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
             let options = Options { scheme, max_sweeps: 40, ..Options::default() };
             assert_goes_on(&smoother, &options, backend, 2);
             if alternates {
-                let alone = Options { method: Method::Sweeps, ..options };
+                let alone = Options { method: Method::RELAXED, ..options };
                 assert_goes_on(&smoother, &alone, backend, 2);
             }
         }
@@ -132,8 +132,8 @@ fn a_hard_run_goes_on_to_the_same_bits() {
 fn a_resumed_run_does_not_seek_its_goal_again() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let smoother = Smoother::new(&mesh).unwrap();
-    let goal = Some(Goal { fraction: 0.999, desired: Desired::Auto });
-    let options = Options { goal, method: Method::Sweeps, ..Options::default() };
+    let stopping = Stopping::Goal(Goal { fraction: 0.999, desired: None });
+    let options = Options { stopping, method: Method::RELAXED, ..Options::default() };
     let mut all = All::default();
     let whole = smoother
         .run(&options)
@@ -264,7 +264,7 @@ fn a_checkpoint_of_another_run_is_refused() {
         assert!(matches!(error, SmoothError::Checkpoint(_)), "{error:?}");
         error.to_string()
     };
-    let other = Options { tolerance: 1e-3, ..options.clone() };
+    let other = Options { stopping: Stopping::Tolerance(1e-3), ..options.clone() };
     let error = refused(&smoother, &other);
     assert!(error.contains("tolerance: 1e-6, and this one has tolerance: 0.001"), "{error}");
     let other = Options { scheme: Metric::Rms.into(), ..options.clone() };

@@ -1,7 +1,7 @@
 //! What a run must never do: invert a triangle, move a fixed vertex, or leave a sliver.
 
 use crate::{all_schemes, backends, name, perturbed, plate, run, support, with_points};
-use gpu_smooth::{Mesh, Metric, Options, Smoother};
+use gpu_smooth::{Mesh, Metric, Options, Smoother, Stopping};
 
 /// A strongly perturbed plate with some fixed vertices inside, and some vertices that no triangle uses.
 fn held() -> Mesh {
@@ -27,7 +27,7 @@ fn no_scheme_inverts_a_triangle_or_moves_what_is_held() {
             let options = Options {
                 scheme: scheme.clone(),
                 max_sweeps: 40,
-                tolerance: 0.0,
+                stopping: Stopping::Tolerance(0.0),
                 ..Options::default()
             };
             let outcome = run(&smoother, &options, backend);
@@ -104,7 +104,8 @@ fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
 fn an_optimal_mesh_comes_back_as_it_was() {
     // Rounding on a device once moved thousands of vertices by a millionth, and raised f in the eighth digit.
     let smoother = Smoother::new(perturbed()).unwrap();
-    let options = Options { tolerance: 1e-13, max_sweeps: 300, ..Options::default() };
+    let options =
+        Options { stopping: Stopping::Tolerance(1e-13), max_sweeps: 300, ..Options::default() };
     let outcome = run(&smoother, &options, &backends()[0]);
     let optimal = with_points(perturbed(), &outcome.points);
     let smoother = Smoother::new(&optimal).unwrap();

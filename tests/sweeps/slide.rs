@@ -3,8 +3,8 @@
 use crate::support::{self, SplitMix64};
 use crate::{backends, history, name, plate, run};
 use gpu_smooth::{
-    Backend, Desired, Goal, Mesh, MeshError, Metric, Options, Precision, Slide, SmoothError,
-    Smoother, Stop, Targets, Topology, validity,
+    Backend, Goal, Mesh, MeshError, Metric, OptionError, Options, Slide, SmoothError, Smoother,
+    Stop, Stopping, Targets, Topology, options::Feature, precision::Precision, topology,
 };
 
 /// A plate with two holes and a perturbed interior.
@@ -68,7 +68,7 @@ fn straight_lines_stay_straight_to_the_last_bit_and_corners_stay() {
         let slid = outcome.slid.unwrap();
         assert_eq!((slid.vertices, slid.moved), (count, count), "{label}");
         assert!(slid.off < 1e-12 && slid.area.abs() < 1e-12, "{label}: {slid:?}");
-        let bad = validity::infeasible(&outcome.points, smoother.topology().triangles()).unwrap();
+        let bad = topology::infeasible(&outcome.points, smoother.topology().triangles()).unwrap();
         assert!(bad.is_empty(), "{label}");
     }
 }
@@ -177,14 +177,20 @@ fn options_that_cannot_be_combined_with_sliding_are_refused() {
         smoother.set_slide(Some(&Slide { corner_angle: 0.0, ..Slide::default() })).unwrap(),
         32
     );
-    let auto = Some(Goal { fraction: 0.95, desired: Desired::Auto });
+    let searched = Stopping::Goal(Goal { fraction: 0.95, desired: None });
     for options in [
         Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() },
         Options { scheme: Metric::Edge.into(), ..Options::default() },
-        Options { goal: auto, ..Options::default() },
+        Options { stopping: searched, ..Options::default() },
     ] {
         let error = smoother.run(&options).on(&Backend::Cpu).block().unwrap_err();
-        assert!(matches!(error, SmoothError::Option { option: "slide", .. }), "{error}");
+        assert!(
+            matches!(
+                error,
+                SmoothError::Option(OptionError::Conflict { features: [Feature::Slide, _], .. })
+            ),
+            "{error}"
+        );
     }
 }
 
@@ -201,9 +207,9 @@ fn a_strip_slides_without_a_free_vertex() {
             mesh.triangles.extend([[low, low + 2, low + 3], [low, low + 3, low + 1]]);
         }
     }
-    assert_eq!(Smoother::new(&mesh).err(), Some(MeshError::NothingFree { vertices: 26 }));
     let slide = Slide::default();
-    let smoother = Smoother::with_slide(&mesh, &slide).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_slide(Some(&slide)).unwrap();
     let mut ends = Vec::new();
     for backend in backends() {
         let outcome = run(&smoother, &Options::default(), backend);
@@ -212,18 +218,16 @@ fn a_strip_slides_without_a_free_vertex() {
         assert!(f.windows(2).all(|pair| pair[1] <= pair[0]), "{f:?}");
         assert!(f[f.len() - 1] < 0.97 * f[0], "{f:?}");
         assert_eq!(outcome.slid.unwrap().vertices, 22);
-        assert_eq!(validity::infeasible(&outcome.points, &mesh.triangles), Ok(vec![]));
+        assert_eq!(topology::infeasible(&outcome.points, &mesh.triangles), Ok(vec![]));
         assert!(outcome.points.iter().all(|point| point[1] == 0.0 || point[1] == 1.0));
         ends.push(outcome.points);
     }
     assert!(ends.iter().all(|end| *end == ends[0]));
     // With nothing to slide either, there is nothing to do.
     let held = Slide { held: (0..26).collect(), ..Slide::default() };
-    let refused = |result: Result<(), SmoothError>| {
-        matches!(result, Err(SmoothError::Mesh(MeshError::NothingFree { vertices: 26 })))
-    };
-    assert!(refused(Smoother::with_slide(&mesh, &held).map(drop)));
-    let mut stopped = Smoother::with_slide(&mesh, &slide).unwrap();
-    stopped.set_slide(None).unwrap();
-    assert!(refused(stopped.run(&Options::default()).on(&Backend::Cpu).block().map(drop)));
+    for slide in [Some(&held), None] {
+        smoother.set_slide(slide).unwrap();
+        let error = smoother.run(&Options::default()).block().unwrap_err();
+        assert!(matches!(error, SmoothError::Mesh(MeshError::NothingFree { vertices: 26 })));
+    }
 }

@@ -1,7 +1,9 @@
 //! Runs by EDGE that would end at a shape guard far from what can be reached.
 
 use crate::{backends, name, run, support, with_points};
-use gpu_smooth::{Backend, Mesh, Metric, Options, Outcome, Precision, Smoother, Stop, untangle};
+use gpu_smooth::{
+    Backend, Mesh, Metric, Options, Outcome, Smoother, Stop, precision::Precision, untangle,
+};
 use std::ops::ControlFlow;
 use support::SplitMix64;
 

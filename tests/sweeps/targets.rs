@@ -3,8 +3,10 @@
 use crate::support::{self, SplitMix64};
 use crate::{backends, history, name, perturbed, plate, run};
 use gpu_smooth::{
-    Backend, Derivatives, Mesh, MeshError, Method, Metric, Options, SmoothError, Smoother, Stop,
-    Surface, Targets, Topology,
+    Backend, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother, Stop,
+    Targets, Topology,
+    options::{Derivatives, Feature, Paper},
+    targets::Surface,
 };
 
 type Matrix = [[f64; 2]; 2];
@@ -32,7 +34,7 @@ fn with_targets<'m>(mesh: &'m Mesh, targets: &Targets) -> Smoother<'m> {
 }
 
 fn corrected(metric: Metric) -> bool {
-    metric.properties().is_corrected
+    metric.supports_multilevel()
 }
 
 #[test]
@@ -87,7 +89,7 @@ fn both_engines_do_the_same_sweeps_to_targets() {
     for &metric in Metric::ALL {
         let options = Options {
             scheme: metric.into(),
-            method: Method::Sweeps,
+            method: Method::RELAXED,
             max_sweeps: 6,
             ..Options::default()
         };
@@ -317,7 +319,14 @@ fn sizes_and_tensors_that_are_no_targets_are_refused() {
     let error = smoother.set_targets(&Targets::equilateral(3)).unwrap_err();
     assert_eq!(error, MeshError::ValueCount { expected: count, given: 3 });
     smoother.set_targets(&Targets::equilateral(count)).unwrap();
-    let options = Options { derivatives: Derivatives::FiniteDifference, ..Options::default() };
+    let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
+    let options = Options { method: Method::Paper(differences), ..Options::default() };
     let error = smoother.run(&options).on(&backends()[0]).block().unwrap_err();
-    assert!(matches!(error, SmoothError::Option { option: "derivatives", .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            SmoothError::Option(OptionError::Conflict { features: [Feature::Targets, _], .. })
+        ),
+        "{error}"
+    );
 }

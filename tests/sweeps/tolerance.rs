@@ -1,7 +1,9 @@
 //! The tolerance bounds the distance to the limit, not the change in the last sweep.
 
 use crate::{backends, distorted, global, history, name, perturbed, plate, run, support};
-use gpu_smooth::{Backend, Method, Metric, Options, Smoother, Stop, TargetField, Targets};
+use gpu_smooth::{
+    Backend, Method, Metric, Options, Smoother, Stop, Stopping, TargetField, Targets,
+};
 
 /// The distance to the limit is estimated from the last sweeps, and may be up to this many times the estimate.
 const TRUST: f64 = 1.5;
@@ -9,7 +11,7 @@ const TRUST: f64 = 1.5;
 fn check(smoother: &Smoother, options: &Options, limit: f64) {
     for tolerance in [1e-4, 1e-6] {
         for backend in backends() {
-            let options = Options { tolerance, ..options.clone() };
+            let options = Options { stopping: Stopping::Tolerance(tolerance), ..options.clone() };
             let outcome = run(smoother, &options, backend);
             let label = format!("{} to {tolerance:e} on the {}", options.scheme, name(backend));
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
@@ -31,10 +33,10 @@ fn the_rest_above_the_limit_is_within_the_tolerance() {
     for mesh in [perturbed(), distorted()] {
         let smoother = Smoother::new(mesh).unwrap();
         for (metric, limit) in [(Metric::Imr, imr), (Metric::Rms, global::f_rms(&rms))] {
-            for omega in [None, Some(1.0)] {
+            for method in [Method::Auto, Method::PAPER] {
                 check(
                     &smoother,
-                    &Options { scheme: metric.into(), omega, ..Options::default() },
+                    &Options { scheme: metric.into(), method, ..Options::default() },
                     limit,
                 );
             }
@@ -47,9 +49,13 @@ fn the_rest_above_the_limit_of_edge_is_within_the_tolerance() {
     // The limit is that of the run's own sweeps, where the p-norm leads, and not the best there is. There are no
     // corrections, as with them rounding decides in which of many minima a run ends.
     let smoother = Smoother::new(perturbed()).unwrap();
-    let (scheme, method) = (Metric::Edge.into(), Method::Sweeps);
+    let (scheme, method) = (Metric::Edge.into(), Method::RELAXED);
     let options = Options { scheme, method, ..Options::default() };
-    let long = run(&smoother, &Options { tolerance: 1e-11, ..options.clone() }, &backends()[0]);
+    let long = run(
+        &smoother,
+        &Options { stopping: Stopping::Tolerance(1e-11), ..options.clone() },
+        &backends()[0],
+    );
     let limit = history(&long, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min);
     check(&smoother, &options, limit);
 }
@@ -85,8 +91,8 @@ fn a_run_that_is_cut_short_says_how_far_it_is() {
     let rms = global::rms_optimum(distorted());
     let (limit, _) = global::imr_optimum(&rms);
     let smoother = Smoother::new(distorted()).unwrap();
-    for (omega, max_sweeps) in [(Some(1.0), 120), (None, 8)] {
-        let options = Options { omega, max_sweeps, ..Options::default() };
+    for (method, max_sweeps) in [(Method::PAPER, 120), (Method::Auto, 8)] {
+        let options = Options { method, max_sweeps, ..Options::default() };
         for backend in backends() {
             let outcome = run(&smoother, &options, backend);
             let label = format!("{max_sweeps} sweeps on the {}", name(backend));

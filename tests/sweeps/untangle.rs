@@ -2,8 +2,10 @@
 
 use crate::{plate, support, with_points};
 use gpu_smooth::{
-    Backend, Mesh, MeshError, Metric, Options, Precision, SmoothError, Smoother, Topology,
-    Untangled, Untangling, untangle,
+    Backend, Mesh, MeshError, Metric, Options, SmoothError, Smoother, Topology,
+    precision::Precision,
+    untangle,
+    untangle::{Untangled, Untangling},
 };
 use std::ops::ControlFlow;
 use support::{SplitMix64, boundaries, tangle};
@@ -143,8 +145,9 @@ fn triangles_that_no_move_can_untangle_are_listed_and_the_rest_untangled() {
     };
     let tangled = tangle::moved(&mesh, |_| [3.0, 2.0]);
     let result = mend(&tangled);
-    let list =
-        |bad: &[gpu_smooth::BadTriangle]| bad.iter().map(|bad| bad.triangle).collect::<Vec<_>>();
+    let list = |bad: &[gpu_smooth::topology::BadTriangle]| {
+        bad.iter().map(|bad| bad.triangle).collect::<Vec<_>>()
+    };
     assert_eq!(list(&result.hopeless), [fixed]);
     assert_eq!(list(&result.left), [fixed]);
     assert!(result.bad_before > 20);

@@ -3,8 +3,8 @@
 use crate::support::{self, check};
 use crate::{backends, distorted, name, plate, run, with_points};
 use gpu_smooth::{
-    Backend, Change, Mesh, Metric, Options, Outcome, Phase, Progress, Slide, Smoother, Stop,
-    Targets, WorstBy,
+    Backend, Mesh, Metric, Options, Outcome, Phase, Progress, Slide, Smoother, Stop, Stopping,
+    Targets, measure::Change, options::WorstBy,
 };
 use std::ops::ControlFlow;
 
@@ -16,7 +16,7 @@ fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {
     angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b)).to_degrees()
 }
 
-/// The worst value among triangles with a free vertex, as [`gpu_smooth::Improved::worst`] defines it.
+/// The worst value among triangles with a free vertex, as [`gpu_smooth::outcome::Improved::worst`] defines it.
 fn worst(smoother: &Smoother, points: &[[f64; 2]], by: WorstBy) -> f64 {
     let topology = smoother.topology();
     let can_move = |t: &&[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
@@ -114,7 +114,7 @@ fn the_worst_triangle_is_judged_in_the_shape_of_its_target() {
     let mut shown = Smoother::new(&image).unwrap();
     shown.set_targets(&targets).unwrap();
     for by in [WorstBy::Imr, WorstBy::MinAngle] {
-        let options = Options { tolerance: 1e-9, ..Options::default() };
+        let options = Options { stopping: Stopping::Tolerance(1e-9), ..Options::default() };
         let ends = [&plain, &shown].map(|smoother| {
             improved(smoother, by, options.clone(), &Backend::Cpu).improved.unwrap()
         });

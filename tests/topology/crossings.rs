@@ -1,7 +1,7 @@
 //! Edges that cross and cannot move are found.
 
 use super::support::{self, SplitMix64};
-use gpu_smooth::{Crossing, Mesh, MeshError, Topology};
+use gpu_smooth::{Mesh, MeshError, Topology, topology::Crossing};
 
 fn found(mesh: &Mesh, most: usize) -> Vec<Crossing> {
     Topology::by_area(mesh).unwrap().crossings(&mesh.points, most).unwrap()

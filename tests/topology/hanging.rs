@@ -1,7 +1,7 @@
 //! Hanging nodes are found, and boundaries that lie on each other on purpose are none.
 
 use super::support::SplitMix64;
-use gpu_smooth::{HangingNode, Mesh, Topology};
+use gpu_smooth::{Mesh, Topology, topology::HangingNode};
 
 fn found(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<HangingNode> {
     let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: vec![] };

@@ -3,8 +3,10 @@
 
 use crate::boundary::assert_loops_are_the_boundary;
 use crate::support::{self, trig};
-use gpu_smooth::internal::{Coloring, prepare};
-use gpu_smooth::{Mesh, Topology};
+use gpu_smooth::{
+    Mesh, Topology,
+    internal::{Coloring, prepare},
+};
 
 /// Triangles around the hub.
 const MANY: u32 = 200_000;

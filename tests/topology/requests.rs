@@ -1,9 +1,11 @@
 //! Mistakes of an application are answered with an error, not a panic.
 
 use crate::support;
-use gpu_smooth::internal::Coloring;
-use gpu_smooth::validity::{certify, infeasible};
-use gpu_smooth::{Mesh, MeshError, Quality, Smoother, Topology};
+use gpu_smooth::{
+    Mesh, MeshError, Quality, Smoother, Topology,
+    internal::Coloring,
+    topology::{certify, infeasible},
+};
 
 #[test]
 fn lists_of_points_that_are_too_short_or_too_long_are_errors() {

@@ -2,8 +2,8 @@
 
 use crate::support::{self, check};
 use gpu_smooth::{
-    Backend, BadTriangle, Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother,
-    Topology, smooth,
+    Backend, Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother, Topology, smooth,
+    topology::BadTriangle,
 };
 
 /// The bad triangles of a mesh, by index, and those of them that are flat.

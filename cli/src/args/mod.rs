@@ -22,6 +22,7 @@ pub(crate) use cli::{
 };
 pub(crate) use fields::RidingArgs;
 pub(crate) use movable::MoveArgs;
+pub(crate) use parse::Desired;
 pub(crate) use picture::PictureArgs;
 pub(crate) use quality::{QualityArgs, Threshold};
 pub(crate) use read::ReadArgs;

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
-use gpu_smooth::{Measure, Metric, Scheme};
+use gpu_smooth::{Metric, Scheme, measure::Measure};
 use mesh_io::Format;
 
 use crate::args::parse;
@@ -71,7 +71,7 @@ pub(crate) fn scheme_help() -> String {
 
 /// Words the help of `--method`.
 pub(crate) fn method_help() -> String {
-    let uncorrected = either(&metrics(|metric| !metric.properties().is_corrected));
+    let uncorrected = either(&metrics(|metric| !metric.supports_multilevel()));
     format!(
         "Sweeps corrected from coarser levels of the mesh, by all metrics but {uncorrected} (multilevel), over-relaxed sweeps \
          (relaxed), the plain sweeps of Park & Shontz, as relaxed with --omega 1 (paper), or the first of these that the other \

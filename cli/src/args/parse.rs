@@ -2,7 +2,30 @@
 
 use std::time::Duration;
 
-use gpu_smooth::{Desired, Scheme};
+use gpu_smooth::{Scheme, options::OptionRange};
+
+/// The desired f of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Desired {
+    /// The optimum, which the run searches for.
+    Auto,
+    Value(f64),
+}
+
+impl Desired {
+    /// Returns the desired f as the library takes it.
+    pub(crate) fn value(self) -> Option<f64> {
+        match self {
+            Self::Auto => None,
+            Self::Value(value) => Some(value),
+        }
+    }
+}
+
+/// Parses a number of an option's range.
+fn within(text: &str, range: &OptionRange) -> Result<f64, String> {
+    number(text, |value| range.contains(value), range.words)
+}
 
 /// Parses a number, and refuses it if `fits` does not hold. `range` describes the numbers that fit.
 pub(crate) fn number(text: &str, fits: impl Fn(f64) -> bool, range: &str) -> Result<f64, String> {
@@ -39,12 +62,12 @@ pub(crate) fn ratio(text: &str) -> Result<f64, String> {
 
 /// Parses an angle in degrees.
 pub(crate) fn angle(text: &str) -> Result<f64, String> {
-    number(text, |angle| (0.0..=180.0).contains(&angle), "an angle from 0 to 180 degrees")
+    within(text, &OptionRange::CORNER_ANGLE)
 }
 
 /// Parses a length.
 pub(crate) fn distance(text: &str) -> Result<f64, String> {
-    number(text, |length| length > 0.0 && length.is_finite(), "a length above 0")
+    within(text, &OptionRange::HAUSDORFF)
 }
 
 /// Parses the names of two groups with a comma between them.
@@ -65,22 +88,22 @@ pub(crate) fn field_name(text: &str) -> Result<String, String> {
 
 /// Parses a number that is not negative.
 pub(crate) fn nonnegative(text: &str) -> Result<f64, String> {
-    number(text, |t| t >= 0.0 && t.is_finite(), "0 or above")
+    within(text, &OptionRange::TOLERANCE)
 }
 
 /// Parses a share of the way to the desired f.
 pub(crate) fn fraction(text: &str) -> Result<f64, String> {
-    number(text, |f| f > 0.0 && f <= 1.0, "above 0 and at most 1")
+    within(text, &OptionRange::FRACTION)
 }
 
 /// Parses a number of lengths of edges.
 pub(crate) fn edges(text: &str) -> Result<f64, String> {
-    number(text, |most| most > 0.0 && most.is_finite(), "above 0")
+    within(text, &OptionRange::MAX_MOVE)
 }
 
 /// Parses a factor of over-relaxation.
 pub(crate) fn omega(text: &str) -> Result<f64, String> {
-    number(text, |w| w > 0.0 && w < 2.0, "above 0 and below 2")
+    within(text, &OptionRange::OMEGA)
 }
 
 /// Parses a scheme.

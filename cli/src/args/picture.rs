@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use gpu_smooth::Measure;
+use gpu_smooth::measure::Measure;
 
 use crate::args::names;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
-use gpu_smooth::{Better, Measure};
+use gpu_smooth::measure::{Better, Measure};
 
 use crate::args::PictureArgs;
 use crate::args::ReadArgs;

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{ArgGroup, Args, ValueEnum};
-use gpu_smooth::{Desired, Scheme};
+use gpu_smooth::Scheme;
 
-use crate::args::{MoveArgs, PictureArgs, ReadArgs, RidingArgs, SlideArgs, TargetArgs, WorstArgs};
+use crate::args::{
+    Desired, MoveArgs, PictureArgs, ReadArgs, RidingArgs, SlideArgs, TargetArgs, WorstArgs,
+};
 use crate::args::{names, parse};
 
 #[derive(Args)]

@@ -1,7 +1,6 @@
 //! `gpu-smooth adapters`: lists the GPU adapters and whether each can be used.
 
-use gpu_smooth::GpuError;
-use gpu_smooth::gpu::AdapterSummary;
+use gpu_smooth::{GpuError, gpu::AdapterSummary};
 
 use crate::args::AdaptersArgs;
 use crate::error::CliError;

@@ -9,7 +9,7 @@ use crate::report::FileHash;
 use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest};
 use crate::run::proof::{self, MeshVersion, Proof};
 use crate::terminal::tell;
-use gpu_smooth::Surface;
+use gpu_smooth::targets::Surface;
 
 /// How many vertices, or triangles, are listed at most.
 const LISTED: usize = 10;

@@ -2,7 +2,10 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{BadTriangle, Crossing, HangingNode, MeshError, Topology};
+use gpu_smooth::{
+    MeshError, Topology,
+    topology::{BadTriangle, Crossing, HangingNode},
+};
 use mesh_io::{Format, Location, Place};
 use serde::Serialize;
 use std::collections::HashSet;

@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::request::FieldsRequest;
-use gpu_smooth::{Interpolation, Topology};
+use gpu_smooth::{Topology, interpolate::Interpolation};
 use mesh_io::PointField;
 
 /// Data of vertices that are interpolated at the new places.

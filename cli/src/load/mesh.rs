@@ -1,6 +1,11 @@
 //! A mesh file with the mesh that is smoothed.
 
-use gpu_smooth::{Chart, Mesh, MeshError, Periodic, Precision, Rounding};
+use gpu_smooth::{
+    Mesh, MeshError,
+    interpolate::Chart,
+    precision::{Precision, Rounding},
+    slide::Periodic,
+};
 use mesh_io::{MeshFile, Place, PointField, WriteError};
 use std::borrow::Cow;
 use std::collections::BTreeMap;

@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{Chart, Surface};
+use gpu_smooth::{interpolate::Chart, targets::Surface};
 
 use crate::load::explain;
 

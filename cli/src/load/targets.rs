@@ -5,7 +5,10 @@ use crate::load::LoadedMesh;
 use std::path::Path;
 
 use gpu_smooth::{
-    Chart, Mesh, MeshError, Outside, Precision, Smoother, Surface, TargetField, Targets,
+    Mesh, MeshError, Smoother, TargetField, Targets,
+    interpolate::Chart,
+    precision::Precision,
+    targets::{Outside, Surface},
 };
 use mesh_io::{MeshFile, ReadError, Solution, View};
 

@@ -1,6 +1,6 @@
 //! Histograms of measures. Their bins depend on the measure alone, so that histograms of two meshes can be compared.
 
-use gpu_smooth::{Measure, Measured};
+use gpu_smooth::measure::{Measure, Measured};
 
 /// How many triangles have a value in each bin.
 pub(crate) struct Histogram {

@@ -1,6 +1,6 @@
 //! The report on how the worst triangles were improved.
 
-use gpu_smooth::Improved;
+use gpu_smooth::outcome::Improved;
 use serde::Serialize;
 
 use crate::terminal::numbers::six;

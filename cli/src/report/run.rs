@@ -2,7 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use gpu_smooth::{Change, Metric, Outcome, Quality, Scheme, Slid, Spread};
+use gpu_smooth::{
+    Metric, Outcome, Quality, Scheme,
+    measure::{Change, Spread},
+    outcome::Slid,
+};
 use serde::Serialize;
 
 use crate::load::explain::BadTriangleReport;
@@ -236,7 +240,7 @@ pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<Swee
         true => scheme.metric(sweep),
         false => scheme.base(),
     };
-    let one = |(sweep, objectives): (u32, &gpu_smooth::Objectives)| SweepReport {
+    let one = |(sweep, objectives): (u32, &gpu_smooth::outcome::Objectives)| SweepReport {
         sweep,
         metric: (sweep > 0).then(|| metric(sweep).name()),
         f: objectives.of(scheme.base()).unwrap_or(f64::NAN),

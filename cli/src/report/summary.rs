@@ -124,7 +124,7 @@ impl Report {
             return None;
         }
         let judges_shape =
-            |metric: &str| metric.parse::<Metric>().is_ok_and(|metric| metric.properties().barrier);
+            |metric: &str| metric.parse::<Metric>().is_ok_and(|metric| metric.has_barrier());
         let shape = self.scheme.split('+').any(judges_shape);
         let base = self.base();
         let remedy = match shape {

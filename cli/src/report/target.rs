@@ -1,6 +1,6 @@
 //! The report on the targets of elements.
 
-use gpu_smooth::Surface;
+use gpu_smooth::targets::Surface;
 use serde::Serialize;
 
 use crate::error::CliError;

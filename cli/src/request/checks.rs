@@ -6,7 +6,8 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 use clap::{Arg, Command, CommandFactory};
 use gpu_smooth::{
-    Backend, Desired, Mesh, Precision, Slide, Smoother, Surface, TargetField, Targets,
+    Backend, Mesh, Slide, Smoother, Stopping, TargetField, Targets, precision::Precision,
+    targets::Surface,
 };
 
 use crate::args::Cli;
@@ -163,10 +164,8 @@ impl Checker {
                 let mut options = request.options(Precision::Double);
                 options.max_sweeps = options.max_sweeps.min(3);
                 // Looking for the optimum would take most of the time.
-                if let Some(goal) =
-                    options.goal.as_mut().filter(|goal| goal.desired == Desired::Auto)
-                {
-                    goal.desired = Desired::Value(1.0);
+                if let Stopping::Goal(goal) = &mut options.stopping {
+                    goal.desired = goal.desired.or(Some(1.0));
                 }
                 // What the library would refuse is refused before, in the words of the options.
                 match self.smoother(&request).run(&options).on(&Backend::Cpu).block() {

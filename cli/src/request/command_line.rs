@@ -49,7 +49,10 @@ impl From<&OutputArgs> for Verbosity {
 /// Words what is wrong with options that contradict each other.
 fn contradiction(cli: &Cli) -> Option<String> {
     match &cli.command {
-        None => conflicts::first(OF_RUN, &cli.smooth),
+        None => {
+            let first = conflicts::first(OF_RUN, &cli.smooth);
+            first.or_else(|| conflicts::of_library(&cli.smooth))
+        }
         Some(Command::Quality(args)) => conflicts::first(OF_QUALITY, args),
         Some(Command::Bench(args)) => conflicts::first(OF_BENCH, args),
         Some(Command::Convert(args)) => conflicts::first(OF_CONVERT, args),

@@ -1,6 +1,6 @@
 //! The tables of options that contradict each other, by command.
 
-use gpu_smooth::{Desired, Metric, Scheme};
+use gpu_smooth::{Metric, OptionError, options::Feature};
 use mesh_io::Format;
 
 use crate::args::names;
@@ -8,6 +8,7 @@ use crate::args::{
     BenchArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, OnSurface, QualityArgs,
     SmoothArgs, Target,
 };
+use crate::request::smooth::options;
 use crate::request::target::TargetRequest;
 
 /// Two options, or values of options, that do not go together.
@@ -39,77 +40,23 @@ pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
     row(["--target", "--scheme"], sizes_unseen, |a| {
         a.target.is_of_sizes() && !a.scheme().metrics().iter().any(sees_sizes)
     }),
-    row(["--target-of place", "--slide"], of_places, |a| is_of_places(a) && a.sliding.slide),
-    row(["--target-of place", "--max-move"], of_places, |a| {
-        is_of_places(a) && a.max_move.is_some()
-    }),
-    row(["--target-of place", "--fraction"], of_places, |a| {
-        is_of_places(a) && a.fraction.is_some()
-    }),
-    row(["--target-of place", "--desired"], of_places, |a| is_of_places(a) && a.desired.is_some()),
-    row(["--target-of place", "--keep-altitude"], of_places, |a| {
-        is_of_places(a) && a.keep_altitude
-    }),
-    row(["--target-of place", "--checkpoint"], of_places, |a| {
-        is_of_places(a) && a.checkpoint.is_some()
-    }),
-    row(["--target-of place", "--continue"], of_places, |a| {
-        is_of_places(a) && a.continued.is_some()
-    }),
-    row(["--target-of place", "--scheme"], one_metric, |a| is_of_places(a) && alternates(a)),
-    row(["--keep-altitude", "--max-move"], together, |a| a.keep_altitude && a.max_move.is_some()),
-    row(["--keep-altitude", "--checkpoint"], together, |a| {
-        a.keep_altitude && a.checkpoint.is_some()
-    }),
-    row(["--keep-altitude", "--continue"], together, |a| a.keep_altitude && a.continued.is_some()),
-    row(["--keep-altitude", "--scheme"], one_metric, |a| a.keep_altitude && alternates(a)),
-    row(["--keep-altitude", "--derivatives finite-difference"], analytic, |a| {
-        a.keep_altitude && has_finite_differences(a)
-    }),
-    row(["--keep-altitude", "--fraction"], searches, |a| a.keep_altitude && has_only_fraction(a)),
-    row(["--keep-altitude", "--desired auto"], searches, |a| {
-        a.keep_altitude && a.desired == Some(Desired::Auto)
-    }),
-    row(["--max-move", "--untangle"], together, |a| a.max_move.is_some() && a.untangle),
-    row(["--max-move", "--checkpoint"], together, |a| {
-        a.max_move.is_some() && a.checkpoint.is_some()
-    }),
-    row(["--max-move", "--continue"], together, |a| a.max_move.is_some() && a.continued.is_some()),
-    row(["--max-move", "--scheme"], one_metric, |a| a.max_move.is_some() && alternates(a)),
-    row(["--max-move", "--derivatives finite-difference"], analytic, |a| {
-        a.max_move.is_some() && has_finite_differences(a)
-    }),
-    row(["--max-move", "--fraction"], searches, |a| a.max_move.is_some() && has_only_fraction(a)),
-    row(["--max-move", "--desired auto"], searches, |a| {
-        a.max_move.is_some() && a.desired == Some(Desired::Auto)
-    }),
-    row(["--slide", "--checkpoint or --continue"], together, |a| {
-        a.sliding.slide && (a.checkpoint.is_some() || a.continued.is_some())
-    }),
-    row(["--slide", "--scheme"], one_metric, |a| a.sliding.slide && alternates(a)),
-    row(["--slide", "--derivatives finite-difference"], analytic, |a| {
-        a.sliding.slide && has_finite_differences(a)
-    }),
-    row(["--slide", "--fraction"], searches, |a| a.sliding.slide && has_only_fraction(a)),
-    row(["--slide", "--desired auto"], searches, |a| {
-        a.sliding.slide && a.desired == Some(Desired::Auto)
-    }),
-    row(["--target", "--derivatives finite-difference"], analytic, |a| {
-        a.target.target != Target::Equilateral && has_finite_differences(a)
-    }),
-    row(["--surface sphere", "--derivatives finite-difference"], analytic, |a| {
-        a.target.surface.surface == OnSurface::Sphere && has_finite_differences(a)
-    }),
     row(["--target metric=VIEW", "a view of gmsh"], sizes_alone, |a| {
         matches!(a.target.target, Target::Metric { .. }) && a.target.has_view()
     }),
-    row(["--method multilevel", "--scheme"], uncorrected, |a| {
-        is_multilevel(a) && !a.scheme().base().properties().is_corrected
-    }),
-    row(["--method multilevel", "--derivatives finite-difference"], analytic, |a| {
+    row(["--method multilevel", "--derivatives finite-difference"], of_paper, |a| {
         is_multilevel(a) && has_finite_differences(a)
     }),
-    row(["--method multilevel", "--inner"], one_step, |a| is_multilevel(a) && a.inner != 1),
+    row(["--method multilevel", "--inner"], of_paper, |a| is_multilevel(a) && a.inner != 1),
+    row(["--method relaxed", "--derivatives finite-difference"], of_paper, |a| {
+        is_relaxed(a) && has_finite_differences(a)
+    }),
+    row(["--method relaxed", "--inner"], of_paper, |a| is_relaxed(a) && a.inner != 1),
+    row(["--omega", "--derivatives finite-difference"], of_paper, |a| {
+        a.method == MethodChoice::Auto && a.omega.is_some() && has_finite_differences(a)
+    }),
+    row(["--omega", "--inner"], of_paper, |a| {
+        a.method == MethodChoice::Auto && a.omega.is_some() && a.inner != 1
+    }),
     row(["--edge-norm", "edge in --scheme"], without, |a| {
         a.edge_norm.is_some() && !a.scheme().metrics().contains(&Metric::Edge)
     }),
@@ -148,44 +95,72 @@ pub(super) const OF_CONVERT: &[Conflict<ConvertArgs>] =
         a.to == Some(Format::Triangle) && a.output.as_os_str() == "-"
     })];
 
-fn together<A>([a, b]: [&str; 2], _: &A) -> String {
-    format!("{a} does not go with {b}: drop one of them")
+/// Words the first conflict of the library's table that a run has.
+pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
+    let targets = args.target.target != Target::Equilateral
+        || args.target.surface.surface == OnSurface::Sphere;
+    let more = [
+        (Feature::Slide, args.sliding.slide),
+        (Feature::Targets, targets),
+        (Feature::TargetField, args.target.is_of_places()),
+        (Feature::Untangle, args.untangle),
+    ];
+    let more: Vec<Feature> =
+        more.into_iter().filter_map(|(feature, has)| has.then_some(feature)).collect();
+    match options(args).check_with(&more) {
+        Err(OptionError::Conflict { features, why }) => {
+            let [a, b] = features.map(|feature| flag(feature, args));
+            let remedy = match features {
+                _ if features.contains(&Feature::TargetField) => " (--target-of vertex)",
+                _ if features.contains(&Feature::SearchedGoal) => " (--desired F)",
+                _ => "",
+            };
+            Some(format!("{a} does not go with {b}: {why}{remedy}"))
+        }
+        // Parsers have checked the ranges.
+        Err(error) => Some(error.to_string()),
+        Ok(()) => None,
+    }
+}
+
+/// Returns the option of a command line that gives a run a feature.
+fn flag(feature: Feature, args: &SmoothArgs) -> String {
+    match feature {
+        Feature::UnevenScheme | Feature::UncorrectedScheme => format!("--scheme {}", args.scheme()),
+        Feature::Multilevel => "--method multilevel".into(),
+        Feature::FiniteDifferences => "--derivatives finite-difference".into(),
+        Feature::Goal | Feature::SearchedGoal if args.desired.is_none() => "--fraction".into(),
+        Feature::Goal => "--desired".into(),
+        Feature::SearchedGoal => "--desired auto".into(),
+        Feature::WorstGuard => "--guard worst".into(),
+        Feature::MaxMove => "--max-move".into(),
+        Feature::KeepAltitude => "--keep-altitude".into(),
+        Feature::ImproveWorst => "--improve-worst".into(),
+        Feature::Slide => "--slide".into(),
+        Feature::Targets if args.target.target == Target::Equilateral => "--surface sphere".into(),
+        Feature::Targets => "--target".into(),
+        Feature::TargetField => "--target-of place".into(),
+        Feature::Untangle => "--untangle".into(),
+        other => other.to_string(),
+    }
 }
 
 fn idle<A>([a, b]: [&str; 2], _: &A) -> String {
     format!("{b} has no effect with {a}: drop one of them")
 }
 
+fn of_paper<A>([a, b]: [&str; 2], _: &A) -> String {
+    format!("{a} does not go with {b}, a setting of --method paper: drop one of them")
+}
+
 fn without<A>([option, wanted]: [&str; 2], _: &A) -> String {
     format!("{option} has no effect without {wanted}: drop it")
-}
-
-fn analytic<A>([a, b]: [&str; 2], _: &A) -> String {
-    format!("{a} needs analytic derivatives and does not go with {b}: drop one of them")
-}
-
-/// The library goes in rounds, each of which must lower f.
-fn one_metric([a, _]: [&str; 2], args: &SmoothArgs) -> String {
-    let scheme = args.scheme();
-    format!("{a} needs one metric other than edge, such as imr, and not --scheme {scheme}")
-}
-
-fn searches<A>([a, b]: [&str; 2], _: &A) -> String {
-    format!(
-        "{b} makes a run search for the desired f, which does not go with {a}: give its value by --desired"
-    )
-}
-
-fn of_places<A>([_, b]: [&str; 2], _: &A) -> String {
-    format!(
-        "a target that belongs to places does not go with {b}: drop {b}, or let vertices take their targets along (--target-of vertex)"
-    )
 }
 
 fn sizes_unseen(_: [&str; 2], args: &SmoothArgs) -> String {
     let (scheme, target) = (args.scheme(), TargetRequest::from(&args.target).name());
     let others =
-        names::either(&names::metrics(|metric| sees_sizes(&metric) && metric.properties().barrier));
+        names::either(&names::metrics(|metric| sees_sizes(&metric) && metric.has_barrier()));
     format!(
         "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take {others}"
     )
@@ -195,19 +170,6 @@ fn sizes_alone(_: [&str; 2], args: &SmoothArgs) -> String {
     let source = args.target.source().unwrap_or_default();
     format!(
         "the background of --target: {source}: a view of gmsh holds sizes, not tensors: give size={source}"
-    )
-}
-
-fn uncorrected([a, _]: [&str; 2], args: &SmoothArgs) -> String {
-    let base = args.scheme().base();
-    format!(
-        "{a} does not go with --scheme {base}, whose runs are not corrected from coarser levels: take another metric, such as imr, or drop {a}"
-    )
-}
-
-fn one_step<A>([a, b]: [&str; 2], _: &A) -> String {
-    format!(
-        "{a} needs one Newton step per visit of a vertex and does not go with {b}: drop one of them"
     )
 }
 
@@ -224,31 +186,20 @@ fn several_files<A>(_: [&str; 2], _: &A) -> String {
     "a Triangle mesh has several files and cannot go to standard output: name OUT".to_owned()
 }
 
-fn is_of_places(args: &SmoothArgs) -> bool {
-    args.target.is_of_places()
-}
-
-/// Whether the scheme is other than one metric whose every sweep lowers f.
-fn alternates(args: &SmoothArgs) -> bool {
-    let scheme: Scheme = args.scheme();
-    scheme.period() > 1 || !scheme.is_monotone()
-}
-
 fn has_finite_differences(args: &SmoothArgs) -> bool {
     args.derivatives == DerivativesChoice::FiniteDifference
-}
-
-/// Whether the run ends at a share of the way to an f that is not given.
-fn has_only_fraction(args: &SmoothArgs) -> bool {
-    args.fraction.is_some() && args.desired.is_none()
 }
 
 fn is_multilevel(args: &SmoothArgs) -> bool {
     args.method == MethodChoice::Multilevel
 }
 
+fn is_relaxed(args: &SmoothArgs) -> bool {
+    args.method == MethodChoice::Relaxed
+}
+
 fn sees_sizes(metric: &Metric) -> bool {
-    !metric.properties().scale_invariant
+    !metric.is_scale_invariant()
 }
 
 #[cfg(test)]
@@ -261,19 +212,14 @@ mod tests {
     /// Returns the words that give an option of a table on a command line.
     fn words(options: [&str; 2], view: &str) -> Vec<String> {
         let of = |option: &str| match (option, options) {
-            ("--target-of place", _) => "--target keep-shape --target-of place".to_owned(),
-            ("--checkpoint or --continue", _) => "--checkpoint state".to_owned(),
             ("--target metric=VIEW", _) => format!("--target metric={view}"),
-            ("--target", ["--target", "--scheme"]) => "--target keep-size".to_owned(),
-            ("--target", _) => "--target keep-shape".to_owned(),
-            ("--scheme", ["--target", _]) => "--scheme imr".to_owned(),
-            ("--scheme", ["--method multilevel", _]) => "--scheme area".to_owned(),
-            ("--scheme", _) => "--scheme edge+imr".to_owned(),
+            ("--target", _) => "--target keep-size".to_owned(),
+            ("--scheme", _) => "--scheme imr".to_owned(),
             ("--edge-norm", _) => "--edge-norm fixed".to_owned(),
             ("--target-of", _) => "--target-of vertex".to_owned(),
             ("--target-rings" | "--inner", _) => format!("{option} 3"),
-            ("--max-move" | "--fraction" | "--desired" | "--omega", _) => format!("{option} 0.5"),
-            ("--checkpoint" | "--continue" | "--adapter", _) => format!("{option} name"),
+            ("--omega", _) => format!("{option} 0.5"),
+            ("--adapter", _) => format!("{option} name"),
             ("--picture", _) => "--picture p.png".to_owned(),
             ("--picture-arrows", _) => "--picture p.png --picture-arrows".to_owned(),
             ("several meshes", _) => "another".to_owned(),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::Measure;
+use gpu_smooth::measure::Measure;
 
 use crate::args::PictureArgs;
 use crate::error::CliError;

@@ -4,13 +4,15 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use gpu_smooth::{
-    Derivatives, Desired, Goal, Guard, Method, Metric, Options, Precision, Scheme, Sharpness,
-    Surface, WorstBy,
+    Goal, Guard, Method, Metric, Options, Scheme, Stopping,
+    options::{Derivatives, PNormExponent, Paper, Relaxed, WorstBy},
+    precision::Precision,
+    targets::Surface,
 };
 
 use crate::args::{
-    DerivativesChoice, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice, SmoothArgs,
-    WorstArgs, WorstChoice,
+    DerivativesChoice, Desired, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice,
+    SmoothArgs, WorstArgs, WorstChoice,
 };
 use crate::error::CliError;
 use crate::request::movable::{FieldsRequest, MovableRequest, SlideRequest};
@@ -159,7 +161,10 @@ impl SmoothRequest {
 
     /// Returns the share of f within which the run ends, if it has no other goal.
     pub(crate) fn estimated_end(&self) -> Option<f64> {
-        self.run.goal.is_none().then_some(self.run.tolerance)
+        match self.run.stopping {
+            Stopping::Tolerance(tolerance) => Some(tolerance),
+            _ => None,
+        }
     }
 
     /// Returns the options of a run on a mesh whose file stores coordinates with precision `stored`.
@@ -176,48 +181,56 @@ impl SmoothArgs {
 }
 
 /// Returns the options of a run, for coordinates in double precision.
-fn options(args: &SmoothArgs) -> Options {
+pub(super) fn options(args: &SmoothArgs) -> Options {
     let has_goal = args.fraction.is_some() || args.desired.is_some();
+    let goal = Goal {
+        fraction: args.fraction.unwrap_or(0.95),
+        desired: args.desired.and_then(Desired::value),
+    };
     let options = Options {
         scheme: args.scheme(),
+        method: method(args),
+        stopping: match has_goal {
+            true => Stopping::Goal(goal),
+            false => Stopping::Tolerance(args.tolerance),
+        },
         max_sweeps: args.max_sweeps,
-        tolerance: args.tolerance,
-        goal: has_goal.then(|| Goal {
-            fraction: args.fraction.unwrap_or(0.95),
-            desired: args.desired.unwrap_or(Desired::Auto),
-        }),
-        method: match args.method {
-            MethodChoice::Auto => Method::Auto,
-            MethodChoice::Multilevel => Method::Multilevel,
-            MethodChoice::Relaxed | MethodChoice::Paper => Method::Sweeps,
-        },
-        omega: match args.method {
-            MethodChoice::Paper => Some(1.0),
-            _ => args.omega,
-        },
-        inner: args.inner,
-        max_move: args.max_move,
-        keep_altitude: args.keep_altitude,
-        improve_worst: worst_by(&args.improving),
         guard: match args.guard {
             GuardChoice::ByMetric => Guard::ByMetric,
             GuardChoice::Worst => Guard::Worst,
         },
-        derivatives: match args.derivatives {
-            DerivativesChoice::Analytic => Derivatives::Analytic,
-            DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
-        },
+        max_move: args.max_move,
+        keep_altitude: args.keep_altitude,
+        improve_worst: worst_by(&args.improving),
         track_all: args.history == History::All,
         ..Options::default()
     };
-    let sharpness = match args.edge_norm {
+    let edge_norm = match args.edge_norm {
         None => None,
-        Some(EdgeNorm::Fixed) => Some(Sharpness::FIXED),
-        // What such runs do anyway, as far as the tolerance asks.
+        Some(EdgeNorm::Fixed) => Some(PNormExponent::FIXED),
+        // The default exponent of such runs, as far as the tolerance asks.
         Some(EdgeNorm::Continued) if doubles_anyway(&options) => None,
-        Some(EdgeNorm::Continued) => Some(Sharpness::CONTINUED),
+        Some(EdgeNorm::Continued) => Some(PNormExponent::CONTINUED),
     };
-    Options { sharpness, ..options }
+    Options { edge_norm, ..options }
+}
+
+/// Returns the method of a run. A setting of one method alone chooses that method if the command line names none.
+fn method(args: &SmoothArgs) -> Method {
+    let derivatives = match args.derivatives {
+        DerivativesChoice::Analytic => Derivatives::Analytic,
+        DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
+    };
+    let paper = Paper { newton_steps: args.inner, derivatives };
+    let relaxed = Relaxed { omega: args.omega, ..Relaxed::default() };
+    match args.method {
+        MethodChoice::Multilevel => Method::Multilevel,
+        MethodChoice::Relaxed => Method::Relaxed(relaxed),
+        MethodChoice::Paper => Method::Paper(paper),
+        MethodChoice::Auto if relaxed != Relaxed::default() => Method::Relaxed(relaxed),
+        MethodChoice::Auto if paper != Paper::default() => Method::Paper(paper),
+        MethodChoice::Auto => Method::Auto,
+    }
 }
 
 /// Whether the exponent of edge's p-norm doubles anyway.

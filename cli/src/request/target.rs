@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::{Metric, Surface};
+use gpu_smooth::{Metric, targets::Surface};
 
 use crate::args::{OnSurface, Owner, SurfaceArgs, Target, TargetArgs};
 

@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, Precision, Reason, SmoothError};
+use gpu_smooth::{
+    Backend, Checkpoint, Gpu, GpuError, MeshSize, SmoothError, choice::Reason, precision::Precision,
+};
 
 use crate::error::CliError;
 use crate::request::{EngineRequest, SmoothRequest};

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use gpu_smooth::{MeshSize, Surface};
+use gpu_smooth::{MeshSize, targets::Surface};
 
 use crate::error::CliError;
 use crate::load::remarks;

@@ -124,14 +124,15 @@ pub(super) fn set_up<'a>(
 
 /// Prepares a mesh to be smoothed. If vertices slide, none needs to be free.
 fn smoother<'f>(request: &SmoothRequest, file: &'f LoadedMesh) -> Result<Smoother<'f>, MeshError> {
-    let slides = |error| match request.slide.as_ref().map(|slide| slide.slide(file)) {
-        Some(Ok(slide)) => Smoother::with_slide(file.mesh(), &slide).map_err(|_| error),
-        _ => Err(error),
-    };
-    match Smoother::new(file.mesh()) {
-        Err(error @ MeshError::NothingFree { .. }) => slides(error),
-        made => made,
+    let mut smoother = Smoother::new(file.mesh())?;
+    if smoother.topology().free_count() == 0 {
+        let slide = request.slide.as_ref().and_then(|slide| slide.slide(file).ok());
+        let slides = slide.and_then(|slide| smoother.set_slide(Some(&slide)).ok());
+        if slides.unwrap_or(0) == 0 {
+            return Err(MeshError::NothingFree { vertices: file.mesh().points.len() });
+        }
     }
+    Ok(smoother)
 }
 
 /// Words why a mesh is not smoothed, with its inverted and flat triangles if a report was asked for.

@@ -1,7 +1,7 @@
 //! Compares two files of a mesh to prove that one is the other with vertices moved.
 
 use crate::load::LoadedMesh;
-use gpu_smooth::{BadTriangle, MeshError, Slide, Topology};
+use gpu_smooth::{MeshError, Slide, Topology, topology::BadTriangle};
 use mesh_io::Difference;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use gpu_smooth::{Change, Quality};
+use gpu_smooth::{Quality, measure::Change};
 
 use crate::error::CliError;
 use crate::load::{Riding, streams};

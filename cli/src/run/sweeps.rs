@@ -5,7 +5,9 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use gpu_smooth::{Backend, Options, Outcome, Phase, Precision, Progress, SmoothError, Stop};
+use gpu_smooth::{
+    Backend, Options, Outcome, Phase, Progress, SmoothError, Stop, Stopping, precision::Precision,
+};
 
 use crate::error::CliError;
 use crate::load::{Choice, LoadedMesh, explain};
@@ -124,7 +126,9 @@ fn worded(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> Cli
 fn options(request: &SmoothRequest, choice: &Choice, stored: Precision) -> Options {
     let options = request.options(stored);
     match choice.nothing_to_do {
-        Some(_) => Options { max_sweeps: 0, goal: None, improve_worst: None, ..options },
+        Some(_) => {
+            Options { max_sweeps: 0, stopping: Stopping::default(), improve_worst: None, ..options }
+        }
         None => options,
     }
 }

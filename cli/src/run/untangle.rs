@@ -5,7 +5,11 @@ use crate::load::LoadedMesh;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use gpu_smooth::{BadTriangle, Mesh, MeshError, Smoother, Topology, Untangled, Untangling};
+use gpu_smooth::{
+    Mesh, MeshError, Smoother, Topology,
+    topology::BadTriangle,
+    untangle::{Untangled, Untangling},
+};
 
 use crate::load::explain;
 use crate::load::streams;

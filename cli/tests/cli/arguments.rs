@@ -90,18 +90,69 @@ fn contradictions_are_refused() {
 fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
     let folder = Folder::new(&[]);
     for (options, told) in [
-        ("--slide --scheme edge+imr", "--slide needs one metric other than edge"),
-        ("--slide --scheme imr+imr", "--slide needs one metric other than edge"),
-        ("--slide --fraction 0.9", "give its value by --desired"),
-        ("--slide --desired auto", "give its value by --desired"),
-        ("--max-move 1 --derivatives finite-difference", "--max-move needs analytic derivatives"),
-        ("--keep-altitude --fraction 0.9", "give its value by --desired"),
-        ("--method multilevel --inner 2", "--method multilevel needs one Newton step per visit"),
+        (
+            "--target keep-shape --target-of place --slide",
+            "--target-of place does not go with --slide: targets of places change",
+        ),
+        (
+            "--target keep-shape --target-of place --max-move 1",
+            "--target-of place does not go with --max-move",
+        ),
+        (
+            "--target keep-shape --target-of place --keep-altitude",
+            "--target-of place does not go with --keep-altitude",
+        ),
+        (
+            "--target keep-shape --target-of place --fraction 0.9",
+            "--target-of place does not go with --fraction",
+        ),
+        (
+            "--target keep-shape --target-of place --desired 1.1",
+            "--target-of place does not go with --desired",
+        ),
+        (
+            "--target keep-shape --target-of place --scheme edge",
+            "--target-of place does not go with --scheme edge: each of its periods",
+        ),
+        (
+            "--slide --scheme edge+imr",
+            "--slide does not go with --scheme edge+imr: each of its periods",
+        ),
+        ("--slide --scheme imr+imr", "--slide does not go with --scheme imr+imr"),
+        ("--slide --derivatives finite-difference", "it needs analytic derivatives"),
+        ("--slide --fraction 0.9", "--slide does not go with --fraction"),
+        ("--slide --desired auto", "give the goal a value (--desired F)"),
+        (
+            "--max-move 1 --scheme edge+imr",
+            "--max-move does not go with --scheme edge+imr: each of its periods",
+        ),
+        ("--max-move 1 --scheme imr+imr", "--max-move does not go with --scheme imr+imr"),
+        ("--max-move 1 --derivatives finite-difference", "it needs analytic derivatives"),
+        ("--max-move 1 --fraction 0.9", "--max-move does not go with --fraction"),
+        ("--max-move 1 --desired auto", "give the goal a value (--desired F)"),
+        (
+            "--keep-altitude --scheme edge+imr",
+            "--keep-altitude does not go with --scheme edge+imr: each of its periods",
+        ),
+        ("--keep-altitude --scheme imr+imr", "--keep-altitude does not go with --scheme imr+imr"),
+        ("--keep-altitude --derivatives finite-difference", "it needs analytic derivatives"),
+        ("--keep-altitude --fraction 0.9", "--keep-altitude does not go with --fraction"),
+        ("--keep-altitude --desired auto", "give the goal a value (--desired F)"),
+        ("--keep-altitude --max-move 1", "--keep-altitude does not go with --max-move"),
+        (
+            "--keep-altitude --untangle",
+            "--keep-altitude does not go with --untangle: inverted triangles",
+        ),
+        ("--max-move 1 --untangle", "--max-move does not go with --untangle: inverted triangles"),
         ("--method multilevel --scheme area", "--method multilevel does not go with --scheme area"),
-        ("--method multilevel --derivatives finite-difference", "needs analytic derivatives"),
-        ("--target keep-size --derivatives finite-difference", "--target needs analytic"),
-        ("--surface sphere --derivatives finite-difference", "--surface sphere needs analytic"),
-        ("--target keep-shape --target-of place --scheme edge", "--target-of place needs one"),
+        (
+            "--target keep-size --derivatives finite-difference",
+            "--target does not go with --derivatives",
+        ),
+        ("--surface sphere --derivatives finite-difference", "--surface sphere does not go with"),
+        ("--method multilevel --inner 2", "--inner, a setting of --method paper"),
+        ("--method relaxed --derivatives finite-difference", "a setting of --method paper"),
+        ("--omega 1.2 --inner 2", "--omega does not go with --inner, a setting of --method paper"),
     ] {
         // There is no mesh, so that reading one would be another error.
         assert_usage(&folder, &format!("none out {options}"), &[told]);

@@ -3,7 +3,10 @@
 use super::{Folder, assert_holds, plate_path, small};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use gpu_smooth::{Measure, Measured, Mesh, Topology};
+use gpu_smooth::{
+    Mesh, Topology,
+    measure::{Measure, Measured},
+};
 use serde_json::Value;
 use std::fs;
 

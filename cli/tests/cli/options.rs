@@ -152,7 +152,7 @@ fn corrections_from_coarser_levels_are_the_default() {
         let line = format!("in out --engine cpu --scheme {scheme} --method multilevel");
         let refused = folder.line(&line);
         assert_eq!(refused.code, Some(2));
-        assert_holds(&refused.err, &["--method multilevel", "not corrected from coarser levels"]);
+        assert_holds(&refused.err, &["--method multilevel", "cannot be corrected from coarser"]);
     }
     let text = folder.line("in out --engine cpu").clean().out;
     assert_holds(&text, &["converged after ", " corrected from coarser levels)"]);
@@ -195,7 +195,8 @@ fn options_work_on_the_gpu_too() {
     for options in [
         "--fraction 0.95",
         "--method paper",
-        "--omega 1.2 --inner 2",
+        "--omega 1.2",
+        "--inner 2",
         "--derivatives finite-difference",
         "--scheme edge --edge-norm continued --max-sweeps 50",
     ] {

@@ -2,7 +2,10 @@
 
 use super::output::INVERTED;
 use super::{Folder, assert_holds, disturbed, finish, number, small, support};
-use gpu_smooth::{Measure, Measured, Topology};
+use gpu_smooth::{
+    Topology,
+    measure::{Measure, Measured},
+};
 use mesh_io::MeshFile;
 use serde_json::Value;
 use std::fs;

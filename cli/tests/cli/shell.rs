@@ -1,7 +1,7 @@
 //! Completions, manual pages, and colors.
 
 use super::{Folder, assert_holds, finish};
-use gpu_smooth::{Measure, Metric};
+use gpu_smooth::{Metric, measure::Measure};
 use std::fs;
 
 /// All names of options and commands that a help text mentions.

@@ -6,7 +6,7 @@
 mod plate;
 mod scene;
 
-use gpu_smooth::{Backend, Gpu, Metric, Objectives, Options, Outcome, SmoothError, Smoother};
+use gpu_smooth::{Backend, Gpu, Metric, Options, Outcome, SmoothError, Smoother, outcome::Objectives};
 use wasm_bindgen::prelude::*;
 
 use plate::Plate;

@@ -1,7 +1,6 @@
 //! The mesh on the device, everything that is bound to it, and its frames.
 
-use gpu_smooth::wgpu::{self, BufferUsages as Usage};
-use gpu_smooth::{BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, Method, ObjectiveValues, Options, Readback, SmoothError, Sweeps, UntanglingSweeps, VertexBuffer};
+use gpu_smooth::{Gpu, Method, Options, SmoothError, gpu::{BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer}, wgpu::{BufferUsages as Usage, self}};
 
 use crate::plate::{Plate, Random};
 
@@ -38,7 +37,7 @@ impl Scene {
     /// corrected sweeps only so.
     pub(crate) async fn new(gpu: &Gpu, plate: &Plate) -> Result<Self, SmoothError> {
         let mesh = &plate.mesh;
-        let options = Options { method: Method::Multilevel, tolerance: 1e-5, ..Options::default() };
+        let options = Options { method: Method::Multilevel, stopping: Stopping::Tolerance(1e-5), ..Options::default() };
         let device_mesh = DeviceMesh::new(gpu, mesh)?;
         let buffer = |label, size, usage| {
             gpu.device().create_buffer(&wgpu::BufferDescriptor {

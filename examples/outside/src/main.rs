@@ -13,8 +13,9 @@ mod scene;
 
 use std::path::PathBuf;
 
-use gpu_smooth::wgpu;
-use gpu_smooth::{Gpu, GpuError, Mesh, MeshSize, Topology, VertexBuffer, signed_area};
+use gpu_smooth::{
+    Gpu, GpuError, Mesh, MeshSize, Topology, gpu::VertexBuffer, topology::signed_area, wgpu,
+};
 use mesh_io::MeshFile;
 use scene::{STRIDE, Scene, Seen};
 

@@ -1,9 +1,12 @@
 //! A mesh on the device and everything that is bound to it: made for a mesh, and dropped with it.
 
-use gpu_smooth::wgpu::{self, BufferUsages as Usage};
 use gpu_smooth::{
-    BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Gpu, GpuError, Mesh, Method,
-    ObjectiveValues, Options, Readback, Sweeps, UntanglingSweeps, VertexBuffer,
+    Gpu, GpuError, Mesh, Method, Options, Stopping,
+    gpu::{
+        BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, ObjectiveValues, Readback,
+        Sweeps, UntanglingSweeps, VertexBuffer,
+    },
+    wgpu::{self, BufferUsages as Usage},
 };
 
 use super::Result;
@@ -44,7 +47,11 @@ pub(crate) struct Seen {
 /// How the mesh is smoothed. A correction from coarser levels follows each sweep, so a frame has time for fewer sweeps, but a
 /// dragged mesh converges within a few frames.
 pub(crate) fn options() -> Options {
-    Options { method: Method::Multilevel, tolerance: 1e-4, ..Options::default() }
+    Options {
+        method: Method::Multilevel,
+        stopping: Stopping::Tolerance(1e-4),
+        ..Options::default()
+    }
 }
 
 impl Scene {

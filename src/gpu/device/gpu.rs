@@ -13,7 +13,8 @@ use crate::gpu::kernels::row::User;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::scope::poll;
 use crate::mesh::MeshSize;
-use crate::run::Options;
+use crate::options::Options;
+use crate::run::Plan;
 
 /// A device with its pipelines. Created once, it serves many meshes. It is a handle: clones refer to the same device.
 #[derive(Clone)]
@@ -99,8 +100,8 @@ impl Gpu {
     /// # Errors
     /// [`SmoothError::Option`] for an option out of its range, or [`SmoothError::Gpu`] if the device fails.
     pub fn prepare(&self, options: &Options) -> Result<(), SmoothError> {
-        options.check()?;
-        let plan = options.plan();
+        options.check_with(&[])?;
+        let plan = Plan::new(options);
         let mut kernels = Kernel::needed_by(&plan, User::Sweeps);
         if options.is_multilevel() {
             kernels.extend(Kernel::needed_by(&plan, User::Corrections));
@@ -152,7 +153,7 @@ impl Gpu {
     /// are bound part by part; `max_storage_buffer_binding_size` is then the adapter's largest.
     ///
     /// ```no_run
-    /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize, VertexBuffer};
+    /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize, gpu::VertexBuffer};
     /// # async fn f(adapter: wgpu::Adapter) -> Result<(), Box<dyn std::error::Error>> {
     /// let size = MeshSize { vertices: 100_000, triangles: 200_000 };
     /// // A vertex buffer with 32 bytes for each vertex.

@@ -20,7 +20,7 @@ use crate::gpu::scope::scoped;
 ///
 /// ```
 /// # use std::time::Duration;
-/// use gpu_smooth::Budget;
+/// use gpu_smooth::gpu::Budget;
 ///
 /// let mut budget = Budget::micros(500);
 /// assert_eq!(budget.sweeps(), 1);

@@ -16,7 +16,8 @@ use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::run::Options;
+use crate::options::Options;
+use crate::run::Plan;
 
 /// The positions of a mesh when it was last valid. Created by
 /// [`DeviceMesh::keep_last_valid`](crate::gpu::DeviceMesh::keep_last_valid); it can be used after the mesh is dropped.
@@ -29,7 +30,7 @@ pub struct LastValid {
 
 impl LastValid {
     pub(crate) fn new(gpu: &Gpu, problem: &Problem, mesh: &MeshBuffers) -> Result<Self, GpuError> {
-        let plan = Options::default().plan().endless();
+        let plan = Plan::new(&Options::default()).endless();
         let evaluation = Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)?;
         let form = mesh.parts.form();
         let restore = gpu.pipelines.get(&gpu.device, &Kernel::RestoreLastValid, form)?;

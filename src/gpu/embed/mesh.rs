@@ -24,7 +24,8 @@ use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::layout::prepare;
 use crate::mesh::{Mesh, MeshSize};
-use crate::run::Options;
+use crate::options::{Feature, Options};
+use crate::run::Plan;
 use crate::run::multilevel::NONE;
 use crate::targets::Targets;
 
@@ -196,15 +197,15 @@ impl DeviceMesh {
 
     /// Binds a place for the objectives of the vertices as they are drawn: of the floats in an application's vertex buffer, in its
     /// origin and scale, with all that their rounding does to triangles. [`BoundObjective::encode_objective`] is to be encoded
-    /// behind the export, and writes [`ObjectiveValues`](crate::ObjectiveValues) to byte `values.1` of the buffer `values.0`, those
-    /// that `options` track; of no sweeps, so that [`stop`](crate::ObjectiveValues::stop) is 0.
+    /// behind the export, and writes [`ObjectiveValues`](crate::gpu::ObjectiveValues) to byte `values.1` of the buffer `values.0`, those
+    /// that `options` track; of no sweeps, so that [`stop`](crate::gpu::ObjectiveValues::stop) is 0.
     ///
     /// Takes 16 bytes on the device for each vertex, 32 with targets. A vertex whose floats are not finite is judged as it was when they
     /// last were.
     ///
     /// # Errors
     /// [`SmoothError::Option`] for an option out of its range, and those of [`bind_vertices`](Self::bind_vertices) and
-    /// [`Sweeps::bind_objective`](crate::Sweeps::bind_objective).
+    /// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective).
     pub fn bind_drawn_objective(
         &self,
         vertices: &VertexBuffer<'_>,
@@ -212,18 +213,23 @@ impl DeviceMesh {
         values: (&wgpu::Buffer, u64),
     ) -> Result<BoundObjective, SmoothError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
-        options.check_for(problem)?;
+        options.check_with(&self.features())?;
         // An import passes over a vertex whose floats are those that its position has in the buffer: no vertex is here.
         let nowhere = vec![DVec2::splat(1e30); problem.positions().len()];
         let drawn = buffers.with_positions(gpu, problem, &nowhere)?;
         let bound = BoundVertices::new(gpu, problem, *vertex_count, &drawn, numbers, vertices)?;
-        let plan = options.plan().endless();
+        let plan = Plan::new(options).endless();
         let run = Run::of_no_sweeps(gpu, problem, &drawn, plan)?;
         Ok(BoundObjective::new(gpu, &run, Some(bound), values.0, values.1)?)
     }
 
+    /// Lists the features that sweeps have by this mesh.
+    pub(super) fn features(&self) -> Vec<Feature> {
+        self.problem.targets().map(|_| Feature::Targets).into_iter().collect()
+    }
+
     /// The vertices of a triangle, counter-clockwise, given its number on the device
-    /// ([`ObjectiveValues::worst_triangle`](crate::ObjectiveValues::worst_triangle)). `None` if there is no such triangle.
+    /// ([`ObjectiveValues::worst_triangle`](crate::gpu::ObjectiveValues::worst_triangle)). `None` if there is no such triangle.
     pub fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
         let corners = self.problem.triangles().get(triangle as usize)?;
         Some(corners.map(|v| self.problem.vertices()[v as usize]))

@@ -56,7 +56,7 @@ pub struct ObjectiveValues {
     /// because the mesh was changed. Always 0 for sweeps that do not end by the stop rule.
     pub sweeps: u32,
     /// The number on the device of the triangle with the largest inverse mean ratio or, while there are inverted or
-    /// flat triangles, of one of these. [`DeviceMesh::corners`](crate::DeviceMesh::corners) returns its vertices.
+    /// flat triangles, of one of these. [`DeviceMesh::corners`](crate::gpu::DeviceMesh::corners) returns its vertices.
     pub worst_triangle: u32,
 }
 
@@ -80,7 +80,7 @@ impl ObjectiveValues {
 
 /// Part of a buffer of the application that receives objectives: those of one [`Sweeps`](crate::gpu::Sweeps), or those
 /// of the vertices as they are drawn. Created by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
-/// [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective); it can be used after these are
+/// [`DeviceMesh::bind_drawn_objective`](crate::gpu::DeviceMesh::bind_drawn_objective); it can be used after these are
 /// dropped.
 pub struct BoundObjective {
     evaluation: Arc<Dispatches>,
@@ -160,7 +160,7 @@ impl BoundObjective {
 
     /// Encodes an evaluation, and the writing of its [`ObjectiveValues`]. It evaluates the mesh as it is at this point
     /// of the command buffer, or, if made by
-    /// [`DeviceMesh::bind_drawn_objective`](crate::DeviceMesh::bind_drawn_objective), the vertices in the vertex buffer
+    /// [`DeviceMesh::bind_drawn_objective`](crate::gpu::DeviceMesh::bind_drawn_objective), the vertices in the vertex buffer
     /// at this point.
     pub fn encode_objective(&self, encoder: &mut impl Encoder) {
         if let Some(drawn) = &self.drawn {

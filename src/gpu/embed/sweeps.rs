@@ -17,8 +17,9 @@ use crate::gpu::kernels::table::Kernel;
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Scheme;
+use crate::options::{Feature, Method, Options};
 use crate::run::corrections::plan_steps::OMEGA_BETWEEN;
-use crate::run::{Guard, Method, Options, Plan, Step};
+use crate::run::{Plan, Step};
 
 /// A scheme bound to a mesh on the device. It encodes sweeps into the application's command encoder; it never submits
 /// and never reads back. Sweeps made by [`new`](Self::new) never end. Those made by
@@ -114,26 +115,12 @@ impl Sweeps {
         ending: Ending,
         waiting: Waiting,
     ) -> Result<Self, SmoothError> {
-        options.check_for(&mesh.problem)?;
-        check_encoded(options)?;
         let is_corrected = options.method == Method::Multilevel;
-        if is_corrected {
-            let refuse = |remedy| {
-                let (option, value) = ("method", "multilevel".to_owned());
-                Err(SmoothError::Option { option, value, remedy })
-            };
-            if !options.scheme.base().is_smooth() {
-                return refuse(
-                    "encoded sweeps by edge are not corrected: take Method::Auto, or do a whole run",
-                );
-            }
-            if options.scheme.alternates() {
-                return refuse(
-                    "encoded sweeps are not corrected if metrics alternate: take Method::Auto, one metric, or a whole run",
-                );
-            }
-        }
-        let plan = options.plan();
+        let mut features = mesh.features();
+        features.push(Feature::Encoded);
+        features.extend(is_corrected.then_some(Feature::EncodedCorrections));
+        options.check_with(&features)?;
+        let plan = Plan::new(options);
         let endless = plan.clone().endless();
         let steps = match is_corrected {
             true => vec![between(&plan)],
@@ -234,21 +221,6 @@ impl Sweeps {
         offset: u64,
     ) -> Result<BoundObjective, GpuError> {
         BoundObjective::new(&self.gpu, &self.run, None, buffer, offset)
-    }
-}
-
-/// Checks that an application can encode sweeps with these options.
-fn check_encoded(options: &Options) -> Result<(), SmoothError> {
-    let refuse = |option, value| {
-        let remedy = "encoded sweeps cannot do this: leave it out, or do a whole run";
-        Err(SmoothError::Option { option, value, remedy })
-    };
-    match (options.guard, options.max_move) {
-        (Guard::Worst, _) => refuse("guard", "worst".to_owned()),
-        (_, Some(most)) => refuse("max move", most.to_string()),
-        _ if options.keep_altitude => refuse("keep altitude", "on".to_owned()),
-        _ if options.improve_worst.is_some() => refuse("improve worst", "on".to_owned()),
-        _ => Ok(()),
     }
 }
 

@@ -45,7 +45,7 @@ const EACH: u32 = 8;
 /// whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
 ///
 /// There is no proof that every mesh that can be untangled is.
-/// [`ObjectiveValues::inverted`](crate::ObjectiveValues::inverted) tells how many triangles are left. Inverted means
+/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) tells how many triangles are left. Inverted means
 /// the same as there: the area is not positive in single precision.
 pub struct UntanglingSweeps {
     find: Pipeline,
@@ -156,7 +156,7 @@ impl UntanglingSweeps {
     /// flat.
     ///
     /// Each sweep begins with a check of all triangles. Sweeps that find inverted triangles count as a change of the
-    /// mesh: sweeps [`until_converged`](crate::Sweeps::until_converged) begin again.
+    /// mesh: sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) begin again.
     pub fn encode_untangle(&self, encoder: &mut impl Encoder, sweeps: u32) {
         let mut passes = encoder.passes("gpu-smooth untangling");
         let Dispatches { triangles, vertices, .. } = &self.dispatches;

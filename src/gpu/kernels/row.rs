@@ -2,7 +2,8 @@
 
 use crate::gpu::kernels::layouts::BindLayout;
 use crate::metric::Metric;
-use crate::run::{Derivatives, Plan};
+use crate::options::Derivatives;
+use crate::run::Plan;
 
 /// The columns of the table.
 pub(crate) struct Row {

@@ -11,10 +11,11 @@ use crate::gpu::kernels::uniforms::{
 };
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
+use crate::options::Derivatives;
+use crate::run::Stop;
 use crate::run::multilevel::search::{CLOSE, MOST_FIRST};
 use crate::run::multilevel::{LEAST_FIRST, NONE, SMOOTHING};
 use crate::run::secant::LEAST_CURVATURE;
-use crate::run::{Derivatives, Stop};
 use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search, regularization};
 
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");

@@ -8,7 +8,8 @@ use crate::gpu::kernels::layouts::BindLayout;
 use crate::gpu::kernels::row::{Arguments, Composition, Row, Source, User};
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, SLOTS, WORKGROUP};
 use crate::metric::Metric;
-use crate::run::{Derivatives, Plan};
+use crate::options::Derivatives;
+use crate::run::Plan;
 
 /// A part of a kernel's source: the name of a file, or a variant of [`Source`].
 macro_rules! source {

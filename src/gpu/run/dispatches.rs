@@ -19,7 +19,8 @@ use crate::gpu::mesh::{Parts, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Metric;
-use crate::run::{Derivatives, Plan, Step, StopRule};
+use crate::options::Derivatives;
+use crate::run::{Plan, Step, StopRule};
 
 /// The dispatches of a plan, bound to a mesh on the device. They encode sweeps and evaluations, and submit nothing.
 pub(crate) struct Dispatches {

@@ -2,8 +2,8 @@
 
 use super::plan_steps::exponents;
 use super::state::{Correcting, Corrections, Stage};
+use crate::options::PNormExponent;
 use crate::run::history::History;
-use crate::run::step::Sharpness;
 
 /// The exponent k of EDGE's p-norm doubles once a sweep with its correction lowers the p-norm by less than this share over k. A third of it
 /// takes a few sweeps more and ends a little lower; three times as much leaves more to the last exponents, which gain little a sweep.
@@ -20,7 +20,11 @@ impl Corrections {
     /// The share of f by which the exponent keeps it above a minimum of its own. None is told of an exponent that the caller has chosen.
     pub(super) fn above(&self) -> f64 {
         let exponents = exponents(&self.plan);
-        if exponents.start() < exponents.end() { Sharpness::ABOVE / self.exponent() } else { 0.0 }
+        if exponents.start() < exponents.end() {
+            PNormExponent::ABOVE / self.exponent()
+        } else {
+            0.0
+        }
     }
 
     /// The tolerance of what corrections lower, such that f is within this one as far as the exponent allows.

@@ -1,8 +1,8 @@
 //! The over-relaxation, the exponents and the reopening sweeps of a plan in a run with corrections.
 
 use crate::metric::Metric;
+use crate::options::PNormExponent;
 use crate::run::plan::Plan;
-use crate::run::step::Sharpness;
 use std::ops::RangeInclusive;
 
 /// Over-relaxation of sweeps before corrections begin, except the first sweep. Chosen by measurements on strongly
@@ -21,7 +21,7 @@ pub(super) const FLAT: f64 = 3.0;
 
 /// The values of log2 k that a run by `plan` takes one after the other, k the exponent of EDGE's p-norm.
 pub(super) fn exponents(plan: &Plan) -> RangeInclusive<u32> {
-    let Sharpness { first, .. } = plan.sharpness;
+    let PNormExponent { first, .. } = plan.sharpness;
     let last = plan.sharpness.largest();
     if plan.scheme.base().is_smooth() { last..=last } else { first.min(last)..=last }
 }

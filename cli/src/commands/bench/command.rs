@@ -1,9 +1,10 @@
 //! `gpu-smooth bench`: measures how fast this machine smooths.
 
-use gpu_smooth::gpu::Kernel;
-use gpu_smooth::internal::run_on_gpu;
-use gpu_smooth::internal::{Problem, Stepwise, prepare, run_on_cpu};
-use gpu_smooth::{Mesh, Options, SmoothError};
+use gpu_smooth::{
+    Mesh, Options, SmoothError, Stopping,
+    gpu::Kernel,
+    internal::{Plan, Problem, Stepwise, prepare, run_on_cpu, run_on_gpu},
+};
 
 use crate::args::BenchArgs;
 use crate::args::EngineChoice;
@@ -93,11 +94,11 @@ fn measure(
 ) -> Result<Row, SmoothError> {
     let options = Options {
         scheme: args.scheme.clone(),
-        tolerance: 0.0,
+        stopping: Stopping::Tolerance(0.0),
         max_sweeps: u32::MAX,
         ..Options::default()
     };
-    let plan = options.plan();
+    let plan = Plan::new(&options);
     let (seconds, kernels) = match &place.gpu {
         None => {
             let mut engine = run_on_cpu(problem, problem.positions(), plan);

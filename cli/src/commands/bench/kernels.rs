@@ -1,7 +1,10 @@
 //! Measures the time of each kernel by the device's own clock.
 
-use gpu_smooth::gpu::{Kernel, Timestamps};
-use gpu_smooth::{DeviceMesh, Gpu, Mesh, Options, SmoothError, Sweeps, wgpu};
+use gpu_smooth::{
+    Gpu, Mesh, Options, SmoothError,
+    gpu::{DeviceMesh, Kernel, Sweeps, Timestamps},
+    wgpu,
+};
 
 /// Sweeps before the clock starts, so that the timed ones run warm.
 const BEFORE: u32 = 6;

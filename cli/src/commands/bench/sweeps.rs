@@ -2,8 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use gpu_smooth::SmoothError;
-use gpu_smooth::internal::{Problem, Stepwise};
+use gpu_smooth::{
+    SmoothError,
+    internal::{Problem, Stepwise},
+};
 
 /// Sweeps before the clock starts. After these, kernels are compiled, caches are warm and sweeps are over-relaxed.
 const BEFORE: u32 = 6;

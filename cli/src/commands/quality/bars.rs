@@ -95,7 +95,7 @@ fn bar(columns: f64, blocks: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gpu_smooth::Measure;
+    use gpu_smooth::measure::Measure;
 
     fn drawn(counts: &[usize], style: &Style) -> String {
         let edges = vec![1.0, 1.05, 2.0, 100.0, f64::INFINITY];

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use gpu_smooth::{QUANTILES, Statistics};
+use gpu_smooth::measure::{QUANTILES, Statistics};
 use mesh_io::Place;
 use serde_json::{Map, Value, json};
 

@@ -5,7 +5,12 @@ use crate::load::LoadedMesh;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::{BadTriangle, Measure, Measured, Quality, Statistics, Surface, Topology};
+use gpu_smooth::{
+    Quality, Topology,
+    measure::{Measure, Measured, Statistics},
+    targets::Surface,
+    topology::BadTriangle,
+};
 use mesh_io::{Group, Groups, Location, Place};
 
 use crate::args::{QualityArgs, Threshold};

@@ -2,7 +2,10 @@
 
 use std::fmt::Write;
 
-use gpu_smooth::{Measure, Metric, Statistics};
+use gpu_smooth::{
+    Metric,
+    measure::{Measure, Statistics},
+};
 
 use crate::commands::quality::bars::{self, Style};
 use crate::commands::quality::sheet::{Region, Sheet, Worst};

@@ -7,7 +7,10 @@ use std::collections::HashSet;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use gpu_smooth::{Measure, Measured, Topology};
+use gpu_smooth::{
+    Topology,
+    measure::{Measure, Measured},
+};
 use serde_json::{Value, json};
 
 use crate::render::html::worst::Spot;

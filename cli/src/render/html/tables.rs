@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use gpu_smooth::{Measure, Measured, Statistics};
+use gpu_smooth::measure::{Measure, Measured, Statistics};
 
 use crate::render::html::page::escape;
 use crate::report::{Report, Seconds};

@@ -3,7 +3,7 @@
 use crate::load::LoadedMesh;
 use std::fmt::Write;
 
-use gpu_smooth::{Measure, Measured};
+use gpu_smooth::measure::{Measure, Measured};
 
 use crate::load::as_in_file;
 use crate::render::html::page::escape;

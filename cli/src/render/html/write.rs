@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gpu_smooth::{Measure, Measured};
+use gpu_smooth::measure::{Measure, Measured};
 use mesh_io::atomic;
 
 use crate::error::CliError;

@@ -1,6 +1,6 @@
 //! Colors by quality.
 
-use gpu_smooth::{Better, Measure};
+use gpu_smooth::measure::{Better, Measure};
 
 pub(crate) type Color = [u8; 3];
 

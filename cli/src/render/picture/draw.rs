@@ -10,7 +10,11 @@ use crate::render::picture::layout::{Extent, Frame};
 use crate::render::picture::outlines::Outlines;
 use crate::render::picture::raster::Raster;
 use crate::render::picture::scene::{Panel, Scene};
-use gpu_smooth::{Measure, Measured, MeshError, Surface, Topology};
+use gpu_smooth::{
+    MeshError, Topology,
+    measure::{Measure, Measured},
+    targets::Surface,
+};
 use mesh_io::atomic;
 
 use crate::terminal::numbers::five;

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use gpu_smooth::Measure;
+use gpu_smooth::measure::Measure;
 
 use crate::render::picture::arrows;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};

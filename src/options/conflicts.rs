@@ -1,0 +1,93 @@
+//! The table of features that do not go together.
+
+use crate::options::error::OptionError;
+use crate::options::feature::Feature;
+
+/// Two features that do not go together in one run.
+pub(crate) struct Conflict {
+    pub(crate) features: [Feature; 2],
+    why: &'static str,
+}
+
+const fn row(a: Feature, b: Feature, why: &'static str) -> Conflict {
+    Conflict { features: [a, b], why }
+}
+
+const ONE_METRIC: &str =
+    "each of its periods must lower f, as one metric other than edge does, such as imr";
+const ANALYTIC: &str = "it needs analytic derivatives";
+const NO_SEARCH: &str = "its runs cannot search for the desired f; give the goal a value";
+const BETWEEN: &str =
+    "each of the two moves vertices by its own rule between sweeps; drop one of the two";
+const CHANGING: &str =
+    "targets of places change during the run; drop one of the two, or take targets of vertices";
+const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
+const TANGLED: &str = "inverted triangles give no bound; untangle the mesh in a run of its own";
+
+/// Every pair of features that do not go together, in the order in which a run is checked.
+pub(crate) const CONFLICTS: &[Conflict] = &[
+    row(Feature::TargetField, Feature::Slide, CHANGING),
+    row(Feature::TargetField, Feature::MaxMove, CHANGING),
+    row(Feature::TargetField, Feature::KeepAltitude, CHANGING),
+    row(Feature::TargetField, Feature::Goal, CHANGING),
+    row(Feature::TargetField, Feature::UnevenScheme, ONE_METRIC),
+    row(Feature::KeepAltitude, Feature::MaxMove, BETWEEN),
+    row(Feature::KeepAltitude, Feature::UnevenScheme, ONE_METRIC),
+    row(Feature::KeepAltitude, Feature::FiniteDifferences, ANALYTIC),
+    row(Feature::KeepAltitude, Feature::SearchedGoal, NO_SEARCH),
+    row(Feature::KeepAltitude, Feature::Untangle, TANGLED),
+    row(Feature::MaxMove, Feature::UnevenScheme, ONE_METRIC),
+    row(Feature::MaxMove, Feature::FiniteDifferences, ANALYTIC),
+    row(Feature::MaxMove, Feature::SearchedGoal, NO_SEARCH),
+    row(Feature::MaxMove, Feature::Untangle, TANGLED),
+    row(Feature::Slide, Feature::UnevenScheme, ONE_METRIC),
+    row(Feature::Slide, Feature::FiniteDifferences, ANALYTIC),
+    row(Feature::Slide, Feature::SearchedGoal, NO_SEARCH),
+    row(Feature::Targets, Feature::FiniteDifferences, ANALYTIC),
+    row(
+        Feature::Multilevel,
+        Feature::UncorrectedScheme,
+        "sweeps by this metric cannot be corrected from coarser levels; take another metric, such as imr",
+    ),
+    row(
+        Feature::EncodedCorrections,
+        Feature::UnevenScheme,
+        "corrections cannot follow these sweeps; take Method::Auto, one metric other than edge, or a whole run",
+    ),
+    row(Feature::Encoded, Feature::WorstGuard, WHOLE_RUN),
+    row(Feature::Encoded, Feature::MaxMove, WHOLE_RUN),
+    row(Feature::Encoded, Feature::KeepAltitude, WHOLE_RUN),
+    row(Feature::Encoded, Feature::ImproveWorst, WHOLE_RUN),
+];
+
+/// Returns the error of the first row of the table whose two features both are in `features`.
+pub(super) fn check(features: &[Feature]) -> Result<(), OptionError> {
+    let meets = |row: &&Conflict| row.features.iter().all(|feature| features.contains(feature));
+    match CONFLICTS.iter().find(meets) {
+        Some(&Conflict { features, why }) => Err(OptionError::Conflict { features, why }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_row_repeats_or_hides_another() {
+        for (i, row) in CONFLICTS.iter().enumerate() {
+            assert_ne!(row.features[0], row.features[1]);
+            let error = check(&row.features).unwrap_err();
+            let OptionError::Conflict { features, .. } = error else { panic!("{error}") };
+            assert_eq!(features, row.features, "row {i} is hidden by another row");
+        }
+    }
+
+    #[test]
+    fn every_feature_but_those_that_go_with_all_is_in_a_row() {
+        for feature in Feature::ALL {
+            let is_listed = CONFLICTS.iter().any(|row| row.features.contains(&feature));
+            assert!(is_listed, "{feature} is in no row: drop the feature");
+        }
+    }
+}

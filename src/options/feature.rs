@@ -1,0 +1,87 @@
+//! The features of a run that rules on combinations speak of.
+
+use std::fmt;
+
+/// A feature of a run. Some features do not go together; see
+/// [`Options::check_with`](crate::Options::check_with). Displays as the words of the library for the feature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Feature {
+    /// A scheme of several metrics, or of edge, in which some sweeps may raise f.
+    UnevenScheme,
+    /// A base metric whose sweeps cannot be corrected from coarser levels.
+    UncorrectedScheme,
+    /// [`Method::Multilevel`](crate::Method::Multilevel).
+    Multilevel,
+    /// [`Derivatives::FiniteDifference`](crate::options::Derivatives::FiniteDifference).
+    FiniteDifferences,
+    /// [`Stopping::Goal`](crate::Stopping::Goal).
+    Goal,
+    /// A [`Goal`](crate::Goal) whose desired objective is searched for.
+    SearchedGoal,
+    /// [`Guard::Worst`](crate::Guard::Worst).
+    WorstGuard,
+    /// [`Options::max_move`](crate::Options::max_move).
+    MaxMove,
+    /// [`Options::keep_altitude`](crate::Options::keep_altitude).
+    KeepAltitude,
+    /// [`Options::improve_worst`](crate::Options::improve_worst).
+    ImproveWorst,
+    /// Vertices that slide along curves; see [`Smoother::set_slide`](crate::Smoother::set_slide).
+    Slide,
+    /// Targets of vertices or of places; see [`Smoother::set_targets`](crate::Smoother::set_targets).
+    Targets,
+    /// Targets of places; see [`Smoother::set_target_field`](crate::Smoother::set_target_field).
+    TargetField,
+    /// [`untangle`](fn@crate::untangle) before the run.
+    Untangle,
+    /// Sweeps that an application encodes, in place of a run.
+    Encoded,
+    /// Sweeps that an application encodes with [`Method::Multilevel`](crate::Method::Multilevel).
+    EncodedCorrections,
+}
+
+impl Feature {
+    /// Every feature.
+    pub const ALL: [Self; 16] = [
+        Self::UnevenScheme,
+        Self::UncorrectedScheme,
+        Self::Multilevel,
+        Self::FiniteDifferences,
+        Self::Goal,
+        Self::SearchedGoal,
+        Self::WorstGuard,
+        Self::MaxMove,
+        Self::KeepAltitude,
+        Self::ImproveWorst,
+        Self::Slide,
+        Self::Targets,
+        Self::TargetField,
+        Self::Untangle,
+        Self::Encoded,
+        Self::EncodedCorrections,
+    ];
+}
+
+impl fmt::Display for Feature {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::UnevenScheme => "a scheme of several metrics, or of edge",
+            Self::UncorrectedScheme => "a base metric without corrections",
+            Self::Multilevel => "Method::Multilevel",
+            Self::FiniteDifferences => "Derivatives::FiniteDifference",
+            Self::Goal => "Stopping::Goal",
+            Self::SearchedGoal => "a Goal without a desired f",
+            Self::WorstGuard => "Guard::Worst",
+            Self::MaxMove => "max_move",
+            Self::KeepAltitude => "keep_altitude",
+            Self::ImproveWorst => "improve_worst",
+            Self::Slide => "a Slide",
+            Self::Targets => "Targets",
+            Self::TargetField => "a TargetField",
+            Self::Untangle => "untangling",
+            Self::Encoded => "encoded sweeps",
+            Self::EncodedCorrections => "encoded sweeps with corrections",
+        })
+    }
+}

@@ -1,0 +1,15 @@
+//! The limit on how bad a step may make a triangle.
+
+/// A limit on how bad a step may make a triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Guard {
+    /// With a metric that has a barrier, no limit but the objective. With other metrics, a step may leave no triangle
+    /// with an inverse mean ratio larger than that of the worst triangle with a free vertex before the run, nor larger
+    /// than 30, unless the patch already had a worse triangle.
+    #[default]
+    ByMetric,
+    /// With any metric, a step may leave no triangle worse than the worst triangle with a free vertex before the run,
+    /// by the inverse mean ratio after target maps are applied. So the worst element of a run never gets worse.
+    Worst,
+}

@@ -1,0 +1,22 @@
+//! The options of a run, their ranges, and the table of features that do not go together.
+
+mod conflicts;
+mod error;
+mod feature;
+mod guard;
+mod method;
+mod norm;
+mod options;
+mod ranges;
+mod stopping;
+mod worst_by;
+
+pub use error::OptionError;
+pub use feature::Feature;
+pub use guard::Guard;
+pub use method::{Derivatives, Method, Paper, Relaxed};
+pub use norm::PNormExponent;
+pub use options::Options;
+pub use ranges::OptionRange;
+pub use stopping::{Goal, Stopping};
+pub use worst_by::WorstBy;

@@ -1,0 +1,135 @@
+//! All options of a run.
+
+use crate::metric::{Metric, Scheme};
+use crate::options::conflicts;
+use crate::options::error::OptionError;
+use crate::options::feature::Feature;
+use crate::options::guard::Guard;
+use crate::options::method::{Derivatives, Method};
+use crate::options::norm::PNormExponent;
+use crate::options::ranges::OptionRange;
+use crate::options::stopping::{Goal, Stopping};
+use crate::options::worst_by::WorstBy;
+use crate::precision::Precision;
+
+/// The options of a run: how the mesh is smoothed. The mesh itself, its targets and its vertices that slide belong to the
+/// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR with corrections from coarser levels, until an
+/// estimated 1e-6 of f is left to gain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The metric, or several metrics in turn. The first metric judges convergence.
+    pub scheme: Scheme,
+    /// The method by which sweeps lower the objective.
+    pub method: Method,
+    /// The test by which the run ends before `max_sweeps` sweeps.
+    pub stopping: Stopping,
+    /// The most sweeps of the run.
+    pub max_sweeps: u32,
+    /// A limit on how bad a step may make a triangle. No step ever inverts a triangle.
+    pub guard: Guard,
+    /// The largest distance of a vertex from its position before the run, divided by the mean length of the edges there
+    /// before. Above 0; `None` for no bound. Only for whole runs, by one metric other than edge.
+    pub max_move: Option<f64>,
+    /// Whether every triangle must keep an altitude of at least the least altitude in the mesh, which bounds the time
+    /// step of explicit solvers. Only for whole runs, by one metric other than edge.
+    pub keep_altitude: bool,
+    /// The measure by which the worst triangles are improved after the last sweep, on the CPU; `None` to leave them as
+    /// they are. Free vertices around the worst thousandth of the triangles (10 to 1000 of them) move so that the worst
+    /// triangle around them becomes less bad, and none becomes worse than that was. f may rise a little; where the worst
+    /// triangle of the mesh becomes no better, nothing moves. Only for whole runs, and not after a run that was canceled.
+    pub improve_worst: Option<WorstBy>,
+    /// The precision in which the result will be stored. The result is rounded to it before it is checked: as stored,
+    /// it has no inverted triangle and a lower f. Fixed vertices are rounded as well, if the mesh is not in that
+    /// precision.
+    pub stored: Precision,
+    /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`], as far
+    /// as the tolerance asks, in runs with corrections and [`PNormExponent::FIXED`] in runs of sweeps alone.
+    pub edge_norm: Option<PNormExponent>,
+    /// Whether the history holds the objective of every metric, not of the base metric alone.
+    pub track_all: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            scheme: Metric::Imr.into(),
+            method: Method::Auto,
+            stopping: Stopping::default(),
+            max_sweeps: 1000,
+            guard: Guard::ByMetric,
+            max_move: None,
+            keep_altitude: false,
+            improve_worst: None,
+            stored: Precision::Double,
+            edge_norm: None,
+            track_all: false,
+        }
+    }
+}
+
+impl Options {
+    /// Returns the options of the method of Park & Shontz (ICCS 2011): sweeps alone, one Newton step per visit, no
+    /// over-relaxation.
+    pub fn paper(scheme: Scheme) -> Self {
+        Self { scheme, method: Method::PAPER, ..Self::default() }
+    }
+
+    /// Whether runs with these options are corrected from coarser levels, if the device has room for the levels.
+    pub fn is_multilevel(&self) -> bool {
+        let may_be = matches!(self.method, Method::Auto | Method::Multilevel);
+        may_be && self.scheme.base().supports_multilevel()
+    }
+
+    /// Checks every number against its range, and whether the features of these options go together with each other and
+    /// with `more` features of the run. A [`Run`](crate::Run) does the same check, with the features of its smoother.
+    ///
+    /// # Errors
+    /// [`OptionError::OutOfRange`] or [`OptionError::Conflict`].
+    pub fn check_with(&self, more: &[Feature]) -> Result<(), OptionError> {
+        self.check_ranges()?;
+        let mut features = self.features();
+        features.extend_from_slice(more);
+        conflicts::check(&features)
+    }
+
+    /// Lists the features of these options that some rule speaks of.
+    fn features(&self) -> Vec<Feature> {
+        let goal = self.stopping.goal();
+        let searches = matches!(goal, Some(Goal { desired: None, .. }));
+        let has_differences = self.method.paper().derivatives == Derivatives::FiniteDifference;
+        let is_uneven = self.scheme.period() > 1 || !self.scheme.is_monotone();
+        [
+            (Feature::UnevenScheme, is_uneven),
+            (Feature::UncorrectedScheme, !self.scheme.base().supports_multilevel()),
+            (Feature::Multilevel, self.method == Method::Multilevel),
+            (Feature::FiniteDifferences, has_differences),
+            (Feature::Goal, goal.is_some()),
+            (Feature::SearchedGoal, searches),
+            (Feature::WorstGuard, self.guard == Guard::Worst),
+            (Feature::MaxMove, self.max_move.is_some()),
+            (Feature::KeepAltitude, self.keep_altitude),
+            (Feature::ImproveWorst, self.improve_worst.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(feature, is_wanted)| is_wanted.then_some(feature))
+        .collect()
+    }
+
+    fn check_ranges(&self) -> Result<(), OptionError> {
+        OptionRange::TOLERANCE.check(self.stopping.tolerance())?;
+        if let Some(Goal { fraction, desired }) = self.stopping.goal() {
+            OptionRange::FRACTION.check(fraction)?;
+            OptionRange::DESIRED.check(desired.unwrap_or_default())?;
+        }
+        OptionRange::OMEGA.check(self.method.relaxed().omega.unwrap_or(1.0))?;
+        OptionRange::NEWTON_STEPS.check(self.method.paper().newton_steps.into())?;
+        OptionRange::MAX_MOVE.check(self.max_move.unwrap_or(1.0))?;
+        if let Some(PNormExponent { first, last, .. }) = self.edge_norm {
+            OptionRange::EXPONENT.check(first.max(last).into())?;
+            if first > last {
+                return Err(OptionRange::EXPONENT.refuse(first.into()));
+            }
+        }
+        OptionRange::SCHEME_LENGTH.check(self.scheme.period().into())
+    }
+}
