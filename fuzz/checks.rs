@@ -70,7 +70,10 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
     let run = || smoother.run(&options).on(backend).block();
     let outcome = match run() {
         Ok(outcome) => outcome,
-        Err(SmoothError::Option { .. } | SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => {
+        Err(
+            SmoothError::Option(_)
+            | SmoothError::Mesh(MeshError::BeyondPrecision { .. } | MeshError::NothingFree { .. }),
+        ) => {
             return;
         }
         Err(error) => panic!("{error}"),
@@ -205,7 +208,9 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
     let run = || smoother.run(options).on(backend).block();
     let outcome = match run() {
         Ok(outcome) => outcome,
-        Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => return Became::Refused,
+        Err(SmoothError::Mesh(
+            MeshError::BeyondPrecision { .. } | MeshError::NothingFree { .. },
+        )) => return Became::Refused,
         Err(error) => panic!("{error}"),
     };
     let again = run().unwrap();

@@ -4,7 +4,7 @@ use std::fmt;
 use std::hash::{Hash, Hasher};
 
 /// The precision in which the coordinates of a mesh are stored.
-#[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// Single precision: about seven digits, as in files of 32-bit floats.
     Single,
@@ -39,6 +39,15 @@ impl Precision {
         }
     }
 
+    /// The name of the precision in checkpoints.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Precision::Single => "single",
+            Precision::Double => "double",
+            Precision::Custom(rule) => rule.name,
+        }
+    }
+
     /// Returns a bound on the error of rounding numbers of at most this size, except for the smallest and the largest numbers
     /// of the precision.
     pub(crate) fn error(self, size: f64) -> f64 {
@@ -61,17 +70,6 @@ impl Eq for Rounding {}
 impl Hash for Rounding {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.name.hash(state);
-    }
-}
-
-/// Writes the name of the precision, which checkpoints hold.
-impl fmt::Debug for Precision {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Precision::Single => f.write_str("Single"),
-            Precision::Double => f.write_str("Double"),
-            Precision::Custom(rule) => rule.fmt(f),
-        }
     }
 }
 

@@ -3,59 +3,69 @@
 use glam::DVec2;
 
 use crate::error::SmoothError;
+use crate::layout::Problem;
 use crate::mesh::Mesh;
 use crate::options::Options;
-use crate::run::{About, Checkpoint};
+use crate::run::{About, Checkpoint, PeriodState};
 
-/// Describes a run on this mesh, with the target maps of its vertices, as its checkpoints do.
-pub(crate) fn about(mesh: &Mesh, targets: Option<&[[f32; 3]]>, options: &Options) -> About {
-    About { mesh: hash(mesh, targets), options: format!("{options:#?}"), goal: None, opened: None }
+/// Describes a run on this mesh, with the target maps of its vertices, as its checkpoints do. `more` are other data that
+/// the run depends on.
+pub(crate) fn about(
+    mesh: &Mesh,
+    targets: Option<&[[f32; 3]]>,
+    more: &[u64],
+    options: &Options,
+) -> About {
+    About { mesh: hash(mesh, targets, more), options: options.lines(), goal: None, opened: None }
 }
 
-/// Checks that a checkpoint is from a run with the same options on the same mesh, whose triangles use `vertices`
-/// vertices.
+/// Checks that a checkpoint is from a run with the same options on the same mesh, whose layout is `problem`.
 pub(crate) fn check(
     own: &About,
     checkpoint: &Checkpoint,
-    vertices: usize,
+    problem: &Problem,
 ) -> Result<(), SmoothError> {
+    let vertices = problem.positions().len();
     let fits = |points: &[DVec2]| points.len() == vertices && points.iter().all(|p| p.is_finite());
-    let opened = checkpoint.about.opened.as_ref();
-    let is_whole = opened.is_none_or(|opened| {
+    let Checkpoint { about, saved, period } = checkpoint;
+    let is_whole = about.opened.as_ref().is_none_or(|opened| {
         !opened.log.is_empty() && fits(&opened.positions) && fits(&opened.best)
     });
-    if own.mesh != checkpoint.about.mesh || !is_whole {
+    let is_of_stages = period.as_ref().is_none_or(|period| {
+        let PeriodState { began, before, f_before, held, .. } = period;
+        fits(before)
+            && held.len() == problem.free_count()
+            && (*began as usize) < saved.log.len()
+            && f_before.is_finite()
+    });
+    if own.mesh != about.mesh || !is_whole || !is_of_stages {
         return Err(foreign());
     }
-    let mut lines = own.options.lines().zip(checkpoint.about.options.lines());
+    let mut lines = own.options.lines().zip(about.options.lines());
     match lines.find(|(now, then)| now != then) {
-        None if own.options == checkpoint.about.options => Ok(()),
+        None if own.options == about.options => Ok(()),
         None => Err(foreign()),
-        Some((now, then)) => {
-            let told = |line: &str| line.trim().trim_end_matches(',').to_owned();
-            Err(SmoothError::Checkpoint(format!(
-                "it is of a run with {}, and this one has {}: go on with the same options",
-                told(then),
-                told(now)
-            )))
-        }
+        Some((now, then)) => Err(SmoothError::Checkpoint(format!(
+            "it is of a run with {then}, and this run has {now}: continue with the same options"
+        ))),
     }
 }
 
 /// The error for a checkpoint from another mesh.
 pub(crate) fn foreign() -> SmoothError {
     SmoothError::Checkpoint(
-        "it is of another mesh, or other vertices were held or other targets set: continue with the mesh that the run began with".to_owned(),
+        "it is of another mesh, or other vertices were held, other curves or other targets set: continue with the mesh that the run began with".to_owned(),
     )
 }
 
 /// A hash of all data of a mesh that a run depends on: FNV-1a over words of 64 bits.
-fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>) -> u64 {
+fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
     let counts = [mesh.points.len(), mesh.triangles.len(), mesh.fixed.len()];
     let points = mesh.points.as_flattened().iter().map(|x| x.to_bits());
     let indices = mesh.triangles.as_flattened().iter().chain(&mesh.fixed).map(|&i| u64::from(i));
     let targets = targets.unwrap_or_default().as_flattened().iter().map(|x| x.to_bits().into());
     let words = counts.into_iter().map(|n| n as u64).chain(points).chain(indices).chain(targets);
+    let words = words.chain(more.iter().copied());
     words.fold(0xcbf2_9ce4_8422_2325, |hash, word| {
         let mixed = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
         mixed ^ (mixed >> 32)
@@ -69,7 +79,7 @@ mod tests {
     use super::*;
     use crate::run::checksum::crc32;
     use crate::run::{CheckpointPolicy, Progress, Stop};
-    use crate::{Backend, GpuError, Outcome, Smoother, topology};
+    use crate::{Backend, GpuError, Outcome, Slide, Smoother, topology};
 
     /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
     #[derive(Default)]
@@ -178,7 +188,7 @@ mod tests {
     #[test]
     fn a_hostile_checkpoint_does_no_harm() {
         let mesh = lattice(6);
-        let smoother = Smoother::new(&mesh).unwrap();
+        let mut smoother = Smoother::new(&mesh).unwrap();
         let mut state = 1_u64;
         let (mut refused, mut went_on) = (0, 0);
         let mut random = |below: usize| {
@@ -187,8 +197,12 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as usize % below
         };
-        let of_each = |backend| ["imr", "edge+imr"].map(|scheme| (backend, scheme));
-        for (backend, scheme) in backends().iter().flat_map(of_each) {
+        let of_each = |backend| {
+            [("imr", false), ("edge+imr", false), ("imr", true)].map(|case| (backend, case))
+        };
+        for (backend, (scheme, slides)) in backends().iter().flat_map(of_each) {
+            let slide = slides.then(Slide::default);
+            smoother.set_slide(slide.as_ref()).unwrap();
             let rounds = if matches!(backend, Backend::Cpu) { 150 } else { 12 };
             let options =
                 Options { scheme: scheme.parse().unwrap(), max_sweeps: 30, ..Options::default() };
@@ -269,11 +283,11 @@ mod tests {
             |mesh| mesh.fixed.clear(),
         ];
         let targets = [[1.0, 0.0, 1.0]; 4];
-        let mut hashes = vec![hash(&mesh, None), hash(&mesh, Some(&targets))];
+        let mut hashes = vec![hash(&mesh, None, &[]), hash(&mesh, Some(&targets), &[])];
         for change in changes {
             let mut changed = mesh.clone();
             change(&mut changed);
-            hashes.push(hash(&changed, None));
+            hashes.push(hash(&changed, None, &[]));
         }
         hashes.sort_unstable();
         hashes.dedup();

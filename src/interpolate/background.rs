@@ -26,6 +26,11 @@ pub(crate) struct Spot {
 }
 
 impl Background {
+    /// Returns the position of each vertex.
+    pub(crate) fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
     /// Makes a background of a mesh.
     ///
     /// # Errors

@@ -13,3 +13,13 @@ pub enum Guard {
     /// by the inverse mean ratio after target maps are applied. So the worst element of a run never gets worse.
     Worst,
 }
+
+impl Guard {
+    /// The name on the command line and in checkpoints.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ByMetric => "by-metric",
+            Self::Worst => "worst",
+        }
+    }
+}

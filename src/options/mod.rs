@@ -9,6 +9,7 @@ mod norm;
 mod options;
 mod ranges;
 mod stopping;
+mod text;
 mod worst_by;
 
 pub use error::OptionError;

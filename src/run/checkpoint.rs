@@ -1,30 +1,29 @@
 //! Checkpoints: the state of a run as bytes, from which the run can continue later.
 
-use glam::DVec2;
-
-use crate::metric::Metric;
 use crate::run::checksum::crc32;
-use crate::run::objectives::Objectives;
 use crate::run::opening::Opened;
-use crate::run::saved::{CPU, EngineState, Saved};
+use crate::run::records::{Reader, Writer};
+use crate::run::saved::{CPU, EngineState, PeriodState, Saved};
 
 /// The state of a run between two sweeps, with all data needed to continue it. On the same engine the continued run
-/// gives the same bits as one that was never interrupted.
+/// gives the same bits as a run that was never interrupted.
 ///
-/// A [`CheckpointPolicy`](crate::CheckpointPolicy) receives it, and [`Smoother::run_kept`](crate::Smoother::run_kept) continues from it,
-/// with the same mesh and the same options.
+/// A [`CheckpointPolicy`](crate::CheckpointPolicy) receives checkpoints, and [`Run::resume`](crate::Run::resume) continues
+/// from a checkpoint, with the same mesh and the same options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     pub(crate) about: About,
     pub(crate) saved: Saved,
+    /// The state of the stages between sweeps, if the run has any.
+    pub(crate) period: Option<PeriodState>,
 }
 
 /// The data of a checkpoint other than the state of the sweeps.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct About {
-    /// A hash of the mesh.
+    /// A hash of the mesh, of its targets and of the curves on which vertices slide.
     pub(crate) mesh: u64,
-    /// The options, a field on each line.
+    /// The options, a line for each.
     pub(crate) options: String,
     /// The desired objective and its origin, if the run has a goal.
     pub(crate) goal: Option<(f64, String)>,
@@ -33,8 +32,10 @@ pub(crate) struct About {
 }
 
 impl Checkpoint {
-    /// The first bytes of every checkpoint, with the version of the format.
-    pub const MAGIC: &[u8; 24] = b"gpu-smooth checkpoint 1\n";
+    /// The first bytes of every checkpoint, of any version of the format.
+    pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
+    /// The version of the format that this version of the library reads and writes, which follows [`Self::MAGIC`].
+    const VERSION: &[u8; 2] = b"2\n";
 
     /// Returns the number of sweeps that were done.
     pub fn sweeps(&self) -> u32 {
@@ -47,168 +48,135 @@ impl Checkpoint {
         Some(&*self.saved.engine.engine).filter(|name| *name != CPU)
     }
 
-    /// Returns the checkpoint as bytes, with a checksum: about 16 bytes for each vertex, and up to 76 once sweeps are
-    /// corrected from coarser levels.
+    /// Returns the checkpoint as bytes, with a checksum: about 16 bytes for each vertex, up to 76 once sweeps are
+    /// corrected from coarser levels, and up to 128 more if vertices slide.
+    ///
+    /// The bytes are [`MAGIC`](Self::MAGIC), the version, records of a name and a content, each after its length in
+    /// bytes, and a CRC-32 of all. Numbers are little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let Self { about, saved } = self;
-        let mut out = Writer(Self::MAGIC.to_vec());
-        out.number(about.mesh);
-        out.bytes(about.options.as_bytes());
-        out.list(about.goal.as_slice(), |out, (desired, origin)| {
-            out.number(desired.to_bits());
-            out.bytes(origin.as_bytes());
+        let Self { about, saved, period } = self;
+        let mut out = Writer([&Self::MAGIC[..], Self::VERSION].concat());
+        out.record("mesh", |out| out.number(about.mesh));
+        out.record("options", |out| out.text(&about.options));
+        if let Some((desired, origin)) = &about.goal {
+            out.record("goal", |out| {
+                out.real(*desired);
+                out.text(origin);
+            });
+        }
+        if let Some(Opened { log, least, positions, best }) = &about.opened {
+            out.record("opening", |out| {
+                out.log(log);
+                out.real(*least);
+                out.points(positions);
+                out.points(best);
+            });
+        }
+        out.record("history", |out| {
+            out.log(&saved.log);
+            out.optional(saved.remaining);
         });
-        out.list(about.opened.as_slice(), |out, opened| {
-            out.log(&opened.log);
-            out.number(opened.least.to_bits());
-            out.points(&opened.positions);
-            out.points(&opened.best);
-        });
-        out.log(&saved.log);
-        out.list(saved.remaining.as_slice(), |out, share| out.number(share.to_bits()));
-        out.list(saved.corrections.as_slice(), |out, words| {
-            out.list(words, |out, word| out.number(*word));
-        });
+        if let Some(words) = &saved.corrections {
+            out.record("corrections", |out| out.list(words, |out, word| out.number(*word)));
+        }
         let EngineState { engine, positions, best, roots, own } = &saved.engine;
-        out.bytes(engine.as_bytes());
-        out.points(positions);
-        out.list(best.as_slice(), |out, best| out.points(best));
-        out.list(roots, |out, roots| out.list(roots, |out, r| out.0.extend(r.to_le_bytes())));
-        out.list(own, |out, (name, bytes)| {
-            out.bytes(name.as_bytes());
-            out.bytes(bytes);
+        out.record("engine", |out| {
+            out.text(engine);
+            out.points(positions);
+            out.list(best.as_slice(), |out, best| out.points(best));
+            out.list(roots, |out, roots| out.list(roots, |out, r| out.0.extend(r.to_le_bytes())));
+            out.list(own, |out, (name, bytes)| {
+                out.text(name);
+                out.bytes(bytes);
+            });
         });
+        if let Some(PeriodState { began, before, f_before, held, on_cpu_from, stages }) = period {
+            out.record("period", |out| {
+                out.number((*began).into());
+                out.points(before);
+                out.real(*f_before);
+                out.bytes(&held.iter().map(|&held| held.into()).collect::<Vec<u8>>());
+                out.list(on_cpu_from.as_slice(), |out, sweep| out.number((*sweep).into()));
+            });
+            out.record("stages", |out| {
+                stages.iter().for_each(|(name, state)| out.record(name, |out| out.0.extend(state)));
+            });
+        }
         let sum = crc32(&out.0);
         out.0.extend(sum.to_le_bytes());
         out.0
     }
 
     /// Reads a checkpoint from the bytes that [`to_bytes`](Self::to_bytes) returned. `None` if the bytes are anything
-    /// else, or were changed.
+    /// else, were changed, or are of another version of the format.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (content, sum) = bytes.split_last_chunk()?;
         if crc32(content) != u32::from_le_bytes(*sum) {
             return None;
         }
-        let mut from = Reader(content.strip_prefix(Self::MAGIC)?);
+        let content = content.strip_prefix(Self::MAGIC)?.strip_prefix(Self::VERSION)?;
+        let mut records = Reader(content).records()?;
         let about = About {
-            mesh: from.number()?,
-            options: from.text()?,
-            goal: from.option(|from| Some((f64::from_bits(from.number()?), from.text()?)))?,
-            opened: from.option(|from| {
-                let (log, least) = (from.log()?, f64::from_bits(from.number()?));
+            mesh: records.read("mesh", Reader::number)?,
+            options: records.read("options", Reader::text)?,
+            goal: records.read_if_any("goal", |from| Some((from.real()?, from.text()?)))?,
+            opened: records.read_if_any("opening", |from| {
+                let (log, least) = (from.log()?, from.real()?);
                 Some(Opened { log, least, positions: from.points()?, best: from.points()? })
             })?,
         };
+        let (log, remaining) =
+            records.read("history", |from| Some((from.log()?, from.option(Reader::real)?)))?;
         let saved = Saved {
-            log: from.log()?,
-            remaining: from.option(|from| Some(f64::from_bits(from.number()?)))?,
-            corrections: from.option(|from| from.list(8, Reader::number))?,
-            engine: EngineState {
-                engine: from.text()?,
-                positions: from.points()?,
-                best: from.option(Reader::points)?,
-                roots: from
-                    .list(8, |from| from.list(4, |from| Some(f32::from_le_bytes(from.take()?))))?,
-                own: from.list(16, |from| Some((from.text()?, from.bytes()?.to_vec())))?,
-            },
+            log,
+            remaining,
+            corrections: records.read_if_any("corrections", |from| from.list(8, Reader::number))?,
+            engine: records.read("engine", |from| {
+                Some(EngineState {
+                    engine: from.text()?,
+                    positions: from.points()?,
+                    best: from.option(Reader::points)?,
+                    roots: from.list(8, |from| {
+                        from.list(4, |from| Some(f32::from_le_bytes(from.take()?)))
+                    })?,
+                    own: from.list(16, |from| Some((from.text()?, from.bytes()?.to_vec())))?,
+                })
+            })?,
         };
-        from.0.is_empty().then_some(Self { about, saved })
-    }
-}
-
-/// Writes numbers with their least byte first, and lists after their length.
-struct Writer(Vec<u8>);
-
-impl Writer {
-    fn number(&mut self, number: u64) {
-        self.0.extend(number.to_le_bytes());
-    }
-
-    fn list<T>(&mut self, list: &[T], mut write: impl FnMut(&mut Self, &T)) {
-        self.number(list.len() as u64);
-        list.iter().for_each(|item| write(self, item));
-    }
-
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.number(bytes.len() as u64);
-        self.0.extend(bytes);
-    }
-
-    fn points(&mut self, points: &[DVec2]) {
-        self.list(points, |out, p| p.to_array().iter().for_each(|x| out.number(x.to_bits())));
-    }
-
-    fn log(&mut self, log: &[Objectives]) {
-        self.list(log, |out, one| one.values().iter().for_each(|f| out.number(f.to_bits())));
-    }
-}
-
-struct Reader<'b>(&'b [u8]);
-
-impl<'b> Reader<'b> {
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (taken, rest) = self.0.split_first_chunk()?;
-        self.0 = rest;
-        Some(*taken)
-    }
-
-    fn number(&mut self) -> Option<u64> {
-        self.take().map(u64::from_le_bytes)
-    }
-
-    /// Reads a list of items that each take at least `least` bytes, so that an impossible length is refused.
-    fn list<T>(
-        &mut self,
-        least: usize,
-        mut read: impl FnMut(&mut Self) -> Option<T>,
-    ) -> Option<Vec<T>> {
-        let length = usize::try_from(self.number()?).ok()?;
-        if length > self.0.len() / least {
-            return None;
-        }
-        (0..length).map(|_| read(self)).collect()
-    }
-
-    fn option<T>(&mut self, read: impl FnMut(&mut Self) -> Option<T>) -> Option<Option<T>> {
-        let mut list = self.list(1, read)?;
-        let item = list.pop();
-        list.is_empty().then_some(item)
-    }
-
-    fn bytes(&mut self) -> Option<&'b [u8]> {
-        let length = usize::try_from(self.number()?).ok()?;
-        let (bytes, rest) = self.0.split_at_checked(length)?;
-        self.0 = rest;
-        Some(bytes)
-    }
-
-    fn text(&mut self) -> Option<String> {
-        String::from_utf8(self.bytes()?.to_vec()).ok()
-    }
-
-    fn float(&mut self) -> Option<f64> {
-        self.number().map(f64::from_bits)
-    }
-
-    fn points(&mut self) -> Option<Vec<DVec2>> {
-        self.list(16, |from| Some(DVec2::new(from.float()?, from.float()?)))
-    }
-
-    fn log(&mut self) -> Option<Vec<Objectives>> {
-        self.list(8 * Metric::ALL.len(), |from| {
-            let mut values = [0.0; Metric::ALL.len()];
-            for value in &mut values {
-                *value = from.float()?;
+        let period = records.read_if_any("period", |from| {
+            Some(PeriodState {
+                began: from.count()?,
+                before: from.points()?,
+                f_before: from.real()?,
+                held: from.bytes()?.iter().map(|&held| held == 1).collect(),
+                on_cpu_from: from.option(Reader::count)?,
+                stages: Vec::new(),
+            })
+        })?;
+        let stages = records.read_if_any("stages", |from| {
+            let mut stages = Vec::new();
+            while !from.is_empty() {
+                stages.push((from.text()?, from.bytes()?.to_vec()));
             }
-            Some(Objectives::of_values(values))
-        })
+            Some(stages)
+        })?;
+        records.end()?;
+        let period = match (period, stages) {
+            (Some(period), Some(stages)) => Some(PeriodState { stages, ..period }),
+            (None, None) => None,
+            _ => return None,
+        };
+        Some(Self { about, saved, period })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
+    use crate::metric::Metric;
+    use crate::run::objectives::Objectives;
 
     fn example() -> Checkpoint {
         let log = vec![Objectives::of_values([1.5; Metric::ALL.len()]); 3];
@@ -223,7 +191,17 @@ mod tests {
         engine.add("words", &[1_u32, 2, 3]);
         let opened =
             Opened { log: log.clone(), least: 1.25, positions: points.clone(), best: points };
+        let stages = vec![("slide".to_owned(), vec![1, 2, 3]), ("move limit".to_owned(), vec![])];
+        let period = PeriodState {
+            began: 2,
+            before: engine.positions.clone(),
+            f_before: 1.5,
+            held: vec![true, false],
+            on_cpu_from: Some(1),
+            stages,
+        };
         Checkpoint {
+            period: Some(period),
             about: About {
                 mesh: 17,
                 options: "max_sweeps: 3".to_owned(),

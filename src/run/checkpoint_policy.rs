@@ -8,7 +8,7 @@ use crate::error::GpuError;
 use crate::run::checkpoint::{About, Checkpoint};
 use crate::run::engine::Engine;
 use crate::run::history::History;
-use crate::run::saved::Saved;
+use crate::run::saved::{PeriodState, Saved};
 
 /// Decides when a run takes checkpoints, and whether the run falls back to the CPU if its device fails. Every method has
 /// a default: a run takes no checkpoint, and a failed device ends the run with an error.
@@ -64,6 +64,9 @@ pub(crate) struct NoCheckpoints;
 
 impl CheckpointPolicy for NoCheckpoints {}
 
+/// Returns the state of the host and of the stages when the present period began; `None` in a run without stages.
+pub(crate) type PeriodSource<'p> = Option<&'p (dyn Fn() -> PeriodState + Sync)>;
+
 /// The divisor of the share of the time that saving positions may take: one in this many.
 const SHARE: u32 = 50;
 
@@ -90,6 +93,7 @@ impl<'k> Checkpointer<'k> {
         engine: &mut impl Engine,
         history: &History,
         corrections: impl FnOnce() -> Option<Vec<u64>>,
+        period: PeriodSource<'_>,
         is_ending: bool,
     ) -> Result<(), GpuError> {
         let whole = self.about.is_some() && self.policy.wants_checkpoint(is_ending);
@@ -106,7 +110,9 @@ impl<'k> Checkpointer<'k> {
         let (log, remaining) = (history.log().to_vec(), history.remaining());
         let saved = Saved { log, remaining, corrections: corrections(), engine };
         if let (true, Some(about)) = (whole, &self.about) {
-            self.policy.checkpoint(Checkpoint { about: about.clone(), saved: saved.clone() });
+            let period = period.map(|period| period());
+            let (about, saved) = (about.clone(), saved.clone());
+            self.policy.checkpoint(Checkpoint { about, saved, period });
         }
         self.last = Some(saved);
         let next = self.policy.interval().max(SHARE * start.elapsed());

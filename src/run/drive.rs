@@ -7,7 +7,7 @@ use web_time::Instant;
 
 use crate::error::GpuError;
 use crate::layout::Problem;
-use crate::run::checkpoint_policy::Checkpointer;
+use crate::run::checkpoint_policy::{Checkpointer, PeriodSource};
 use crate::run::corrections::Corrections;
 use crate::run::engine::Engine;
 use crate::run::history::History;
@@ -69,12 +69,20 @@ pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
     if corrected { Corrections::steps(plan) } else { plan.steps() }
 }
 
-/// The part of a run that the observer is told.
+/// A leg of a run: sweeps between two works of the host.
 #[derive(Clone, Copy)]
-pub(crate) struct Report {
+pub(crate) struct Leg<'l> {
+    /// The number of sweeps after which the leg ends.
+    pub(crate) until: u32,
+    /// Whether a device without room for the coarser levels is an error: true for
+    /// [`Method::Multilevel`](crate::Method::Multilevel).
+    pub(crate) requires_levels: bool,
+    /// The part of the run that the observer is told.
     pub(crate) phase: Phase,
-    /// Number of sweeps before this part. Reports count them too.
+    /// The number of sweeps before this run of the engine. The observer is told their sum.
     pub(crate) done: u32,
+    /// The state of the host and of the stages, for checkpoints.
+    pub(crate) period: PeriodSource<'l>,
 }
 
 /// A run in progress. The engine lives as long as the run.
@@ -127,17 +135,14 @@ impl<E: Engine> Session<E> {
         &self.history
     }
 
-    /// Sweeps until `until` sweeps are done, or the run ends. Returns the reason if it ends. If `requires_levels`, a
-    /// device that has no room for the coarser levels is an error.
+    /// Sweeps to the end of a leg, or of the run. Returns the reason if the run ends.
     pub(crate) async fn advance(
         &mut self,
-        until: u32,
-        requires_levels: bool,
-        report: Report,
+        leg: Leg<'_>,
         checkpointer: &mut Checkpointer<'_>,
         observe: &mut dyn Observer,
     ) -> Result<Option<Stop>, DriveError> {
-        let Report { phase, done } = report;
+        let Leg { until, requires_levels, phase, done, period } = leg;
         loop {
             let left = until - self.history.sweeps().min(until);
             if left == 0 && !self.history.is_empty() {
@@ -166,7 +171,7 @@ impl<E: Engine> Session<E> {
                 Strategy::Sweeps => None,
                 Strategy::Corrected(corrections) => Some(corrections.save()),
             };
-            checkpointer.after_sweeps(engine, history, corrections, is_ending).await?;
+            checkpointer.after_sweeps(engine, history, corrections, period, is_ending).await?;
             if is_ending {
                 return Ok(Some(Stop::Canceled));
             }

@@ -14,6 +14,7 @@ mod objectives;
 pub(crate) mod opening;
 
 mod plan;
+pub(crate) mod records;
 pub(crate) mod regularization;
 mod saved;
 pub(crate) mod secant;
@@ -27,15 +28,15 @@ mod yielding;
 pub(crate) use checkpoint::About;
 pub use checkpoint::Checkpoint;
 pub use checkpoint_policy::CheckpointPolicy;
-pub(crate) use checkpoint_policy::{Checkpointer, NoCheckpoints};
-pub(crate) use drive::{Counts, DriveError, Report, Session, steps};
+pub(crate) use checkpoint_policy::{Checkpointer, NoCheckpoints, PeriodSource};
+pub(crate) use drive::{Counts, DriveError, Leg, Session, steps};
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{Engine, LEFT_OUT, Proposal};
 pub(crate) use history::History;
 pub use objectives::Objectives;
 
 pub use plan::Plan;
-pub(crate) use saved::{CPU, EngineState, Saved};
+pub(crate) use saved::{CPU, EngineState, PeriodState, Saved};
 pub(crate) use shape_guard::set_guards;
 pub use step::Step;
 pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE, ROUNDING};

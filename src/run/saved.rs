@@ -27,6 +27,23 @@ impl Saved {
     }
 }
 
+/// The state of the host and of the stages in a period: what they were when the period began.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PeriodState {
+    /// The number of sweeps before the period.
+    pub(crate) began: u32,
+    /// The positions before the period, normalized and in the order of the problem.
+    pub(crate) before: Vec<DVec2>,
+    /// f by the base metric before the period.
+    pub(crate) f_before: f64,
+    /// For each free vertex, whether sweeps are not to move it.
+    pub(crate) held: Vec<bool>,
+    /// The number of sweeps after which the CPU took over from the device.
+    pub(crate) on_cpu_from: Option<u32>,
+    /// The name and the state of each stage, in the order in which the stages work.
+    pub(crate) stages: Vec<(String, Vec<u8>)>,
+}
+
 /// The state of an engine between two sweeps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct EngineState {

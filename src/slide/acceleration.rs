@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use crate::slide::sliding::Params;
+use crate::run::records::{Reader, Writer};
+use crate::slide::params::{Params, read_params, write_params};
 
 /// The most rounds that are stored.
 const MOST: usize = 6;
@@ -27,6 +28,34 @@ impl Acceleration {
     /// Drops all rounds.
     pub(crate) fn forget(&mut self) {
         self.0.clear();
+    }
+
+    /// Writes the stored rounds to a checkpoint.
+    pub(crate) fn save(&self, out: &mut Writer) {
+        out.list(&self.0, |out, Past { change, params, positions }| {
+            out.reals(change);
+            write_params(params, out);
+            out.points(positions);
+        });
+    }
+
+    /// Reads rounds from a checkpoint, of the curves that `params` belong to and of `vertices` vertices. `None` if they
+    /// are of other curves.
+    pub(crate) fn restored(
+        params: &Params,
+        vertices: usize,
+        from: &mut Reader<'_>,
+    ) -> Option<Self> {
+        let count: usize = params.iter().map(Vec::len).sum();
+        let past = from.list(24, |from| {
+            let (change, params) = (from.reals()?, read_params(params, from)?);
+            let positions = from.points()?;
+            let fits = change.len() == count && positions.len() == vertices;
+            let is_finite = change.iter().all(|x| x.is_finite())
+                && positions.iter().all(|point| point.is_finite());
+            (fits && is_finite).then_some(Past { change, params, positions })
+        })?;
+        (past.len() <= MOST).then_some(Self(past))
     }
 
     /// Stores a round. Returns parameters and positions from which the next round may begin; the caller must check that

@@ -42,6 +42,24 @@ impl Slide {
         self.hausdorff.unwrap_or(0.1 * edge)
     }
 
+    /// Returns all data as words, by whose hash a checkpoint tells the curves of its run.
+    pub(crate) fn words(&self) -> Vec<u64> {
+        let Self { corner_angle, hausdorff, lines, held, periodic } = self;
+        let mut words = vec![corner_angle.to_bits(), hausdorff.unwrap_or(-1.0).to_bits()];
+        let list = |words: &mut Vec<u64>, vertices: &[u32]| {
+            words.push(vertices.len() as u64);
+            words.extend(vertices.iter().map(|&v| u64::from(v)));
+        };
+        list(&mut words, lines.as_flattened());
+        list(&mut words, held);
+        for Periodic { pairs, motion } in periodic {
+            list(&mut words, pairs.as_flattened());
+            let motion = motion.unwrap_or_default();
+            words.extend(motion.as_flattened().iter().map(|x| x.to_bits()));
+        }
+        words
+    }
+
     /// Checks the ranges of numbers, and that all listed vertices exist.
     pub(crate) fn check(&self, vertices: usize) -> Result<(), SmoothError> {
         let pairs = self.periodic.iter().flat_map(|periodic| periodic.pairs.as_flattened());

@@ -7,6 +7,7 @@ use crate::precision::Precision;
 use crate::slide::chains::chains;
 use crate::slide::newton::{self, Reach, Rule, Visited, Window};
 use crate::slide::options::Slide;
+use crate::slide::params::Params;
 use crate::slide::patch::Fan;
 use crate::slide::side::Side;
 use crate::topology::Topology;
@@ -45,9 +46,6 @@ impl Slide {
 const GIVE_WAY: u32 = 5;
 /// The largest difference between the parameters of partners, as a multiple of the rounding of a coordinate.
 const TOGETHER: f64 = 4.0;
-
-/// The parameters of the vertices of each curve. Two curves whose vertices form pairs share them.
-pub(crate) type Params = Vec<Vec<f64>>;
 
 /// The curves of a mesh, with the vertices that slide on them.
 #[derive(Clone, Debug)]

@@ -83,6 +83,6 @@ impl Smoother<'_> {
         let spec = Spec { problem, device, options, phase: Phase::Reference, is_staged: false };
         let mut checkpointer = Checkpointer::new(policy);
         let live = Live::new(spec, plan, start, None, &mut checkpointer).await?;
-        drive(live, &mut [], &mut checkpointer, observe).await
+        drive(live, &mut [], &mut checkpointer, observe, None).await
     }
 }

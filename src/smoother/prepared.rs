@@ -22,6 +22,8 @@ pub struct Smoother<'a> {
     pub(super) mesh: Cow<'a, Mesh>,
     pub(super) topology: Topology<'a>,
     pub(super) problem: Problem,
+    /// The curves on which vertices slide, as the caller has given them.
+    pub(super) slide: Option<Slide>,
     pub(super) sliding: Option<Sliding>,
     /// Number of pairs that slide, and of pairs that do not move, as the motion of the others does not fit them.
     pairs: [usize; 2],
@@ -45,8 +47,9 @@ impl<'a> Smoother<'a> {
         let (mut topology, problem) = prepared;
         // Runs need only the problem. The stars are found again if a vertex has to be set back.
         topology.forget_stars();
-        let (mesh, sliding, pairs, field) = (Cow::Borrowed(mesh), None, [0; 2], None);
-        Self { mesh, topology, problem, sliding, pairs, field, prepare: start.elapsed() }
+        let (mesh, pairs) = (Cow::Borrowed(mesh), [0; 2]);
+        let (slide, sliding, field) = (None, None, None);
+        Self { mesh, topology, problem, slide, sliding, pairs, field, prepare: start.elapsed() }
     }
 
     /// Fails if no vertex is free and none slides.
@@ -64,6 +67,7 @@ impl<'a> Smoother<'a> {
             mesh: Cow::Owned(self.mesh.into_owned()),
             topology: self.topology.into_owned(),
             problem: self.problem,
+            slide: self.slide,
             sliding: self.sliding,
             pairs: self.pairs,
             field: self.field,
@@ -105,7 +109,7 @@ impl<'a> Smoother<'a> {
     /// [`SmoothError::Option`] if a number is out of its range, [`MeshError::IndexOutOfRange`] if a listed vertex does
     /// not exist.
     pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
-        (self.sliding, self.pairs) = (None, [0; 2]);
+        (self.slide, self.sliding, self.pairs) = (None, None, [0; 2]);
         let Some(slide) = slide else { return Ok(0) };
         let vertices = self.mesh.points.len();
         slide.check(vertices)?;
@@ -115,6 +119,7 @@ impl<'a> Smoother<'a> {
         let count = sliding.count();
         self.pairs = sliding.pairs();
         self.sliding = (count > 0).then_some(sliding);
+        self.slide = self.sliding.is_some().then(|| slide.clone());
         Ok(count)
     }
 

@@ -11,10 +11,11 @@ use crate::options::{Feature, Goal, Options};
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::resume;
 use crate::run::{
-    Checkpoint, CheckpointPolicy, Checkpointer, JITTER, LEAST_SCALE, NOISE, Objectives, Observer,
-    Phase, Plan, ROUNDING, Stop, set_guards,
+    About, Checkpoint, CheckpointPolicy, Checkpointer, JITTER, LEAST_SCALE, NOISE, Objectives,
+    Observer, Phase, Plan, ROUNDING, Stop, set_guards,
 };
-use crate::slide::Sliding;
+use crate::slide::{Slide, Sliding};
+use crate::targets::TargetField;
 use crate::whole::{Device, Ended, Improving, Live, Spec, altitude, drive};
 
 use super::prepared::Smoother;
@@ -35,9 +36,9 @@ impl Smoother<'_> {
         // Vertices slide on the CPU, whatever the engine of the sweeps.
         let device = device.filter(|_| self.problem.free_count() > 0);
         let (device, fault) = self.checked(device, policy).await?;
-        let mut about = resume::about(&self.mesh, self.problem.targets(), options);
+        let mut about = self.about(options);
         let resumed = from
-            .map(|from| resume::check(&about, from, self.size().vertices).map(|()| from))
+            .map(|from| resume::check(&about, from, &self.problem).map(|()| from))
             .transpose()?;
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
@@ -70,15 +71,26 @@ impl Smoother<'_> {
         set_guards(&mut plan, options.guard, &self.problem, start);
         let mut stages = Stages::new(self, options, &plan);
         let mut in_order = stages.in_order();
-        // A checkpoint does not hold the state of stages, so none is taken of a run that has any.
-        checkpointer.about = in_order.is_empty().then_some(about);
+        checkpointer.about = Some(about);
         let (problem, phase, is_staged) = (&self.problem, Phase::Smoothing, !in_order.is_empty());
         let spec = Spec { problem, device, options, phase, is_staged };
+        let period = resumed.and_then(|resumed| resumed.period.as_ref());
+        if period.is_some() && !is_staged {
+            return Err(resume::foreign());
+        }
         let live = Live::new(spec, plan, start, resumed, &mut checkpointer).await?;
-        let ended = drive(live, &mut in_order, &mut checkpointer, observe).await?;
+        let ended = drive(live, &mut in_order, &mut checkpointer, observe, period).await?;
         let outcome = self.judged(options, initial, goal, ended, stages, observe)?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
+    }
+
+    /// Describes a run with these options, as its checkpoints do.
+    fn about(&self, options: &Options) -> About {
+        let of_slide = self.slide.as_ref().map(Slide::words);
+        let of_field = self.field.as_ref().map(TargetField::words);
+        let more: Vec<u64> = of_slide.into_iter().chain(of_field).flatten().collect();
+        resume::about(&self.mesh, self.problem.targets(), &more, options)
     }
 
     /// Lists the features that a run has by this smoother.

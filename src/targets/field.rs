@@ -103,6 +103,16 @@ impl TargetField {
         Ok(spots)
     }
 
+    /// Returns all data as words, by whose hash a checkpoint tells the field of its run.
+    pub(crate) fn words(&self) -> Vec<u64> {
+        let Self { background, logarithms, surface } = self;
+        let points = background.points().as_flattened().iter();
+        let logarithms = logarithms.iter().flat_map(|tensor| &tensor.0);
+        let mut words: Vec<u64> = points.chain(logarithms).map(|x| x.to_bits()).collect();
+        words.push((*surface == Surface::Plane).into());
+        words
+    }
+
     /// Returns how far rounding may move a point out of the background.
     fn rounding(&self) -> f64 {
         1e-9 * self.background.extent()

@@ -9,6 +9,7 @@ use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::altitude;
 use crate::run::Stop;
+use crate::run::records::{Reader, Writer};
 use crate::topology::Topology;
 use crate::whole::host::Host;
 use crate::whole::stage::{Judged, Period, Stage, Worked};
@@ -103,6 +104,10 @@ impl<'s> AltitudeStage<'s> {
 }
 
 impl Stage for AltitudeStage<'_> {
+    fn name(&self) -> &'static str {
+        "altitude"
+    }
+
     fn period(&self) -> u32 {
         if self.is_clean { u32::MAX } else { SWEEPS }
     }
@@ -141,5 +146,17 @@ impl Stage for AltitudeStage<'_> {
             _ => period.is_last.then_some(Stop::MaxSweeps),
         };
         Judged { stop, remaining: period.remaining }
+    }
+
+    fn save(&self, out: &mut Writer) {
+        out.number(self.is_clean.into());
+        out.number(self.was_clean.into());
+        out.number(self.count.into());
+    }
+
+    fn restore(&mut self, _: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()> {
+        (self.is_clean, self.was_clean) = (from.flag()?, from.flag()?);
+        self.count = from.count()?;
+        Some(())
     }
 }

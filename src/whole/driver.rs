@@ -1,7 +1,9 @@
 //! The loop of a whole run: sweeps on the engine, and the work of stages on the host between them.
 
 use crate::error::SmoothError;
-use crate::run::{Checkpointer, Observer, Stop};
+use crate::resume;
+use crate::run::records::{Reader, Writer};
+use crate::run::{Checkpointer, Observer, PeriodState, Stop};
 use crate::whole::host::{Host, objectives};
 use crate::whole::live::{Ended, Live, Moved};
 use crate::whole::stage::{Judged, Period, Stage};
@@ -13,21 +15,29 @@ pub(crate) async fn drive(
     stages: &mut [&mut dyn Stage],
     checkpointer: &mut Checkpointer<'_>,
     observe: &mut dyn Observer,
+    resumed: Option<&PeriodState>,
 ) -> Result<Ended, SmoothError> {
     let max_sweeps = live.plan.stop.max_sweeps;
     if stages.is_empty() || max_sweeps == 0 {
         // Without stages, the engine ends the run. With stages, the host does.
         let until = if stages.is_empty() { u32::MAX } else { 0 };
-        let (positions, stop) = live.sweep(until, checkpointer, observe).await?;
+        let (positions, stop) = live.sweep(until, None, checkpointer, observe).await?;
         return Ok(live.end(positions, stop.unwrap_or(Stop::MaxSweeps)));
     }
     let plan = live.plan.clone();
     let mut host = Host::new(live.problem.clone(), &plan, live.start());
+    let mut began = 0;
+    if let Some(period) = resumed {
+        restore(period, &mut host, stages).ok_or_else(resume::foreign)?;
+        began = period.began;
+        live.problem = host.problem.clone();
+    }
     loop {
-        let began = live.sweeps();
         let period = stages.iter().map(|stage| stage.period()).min().unwrap_or(u32::MAX);
         let until = began.saturating_add(period).min(max_sweeps);
-        let (swept_to, swept) = live.sweep(until, checkpointer, observe).await?;
+        let on_cpu_from = live.on_cpu_from();
+        let state = || saved(&host, stages, began, on_cpu_from);
+        let (swept_to, swept) = live.sweep(until, Some(&state), checkpointer, observe).await?;
         if swept == Some(Stop::NotFinite) {
             return Ok(live.end(swept_to, Stop::NotFinite));
         }
@@ -69,5 +79,50 @@ pub(crate) async fn drive(
             return Ok(Ended { remaining, ..ended });
         }
         host.begin_period(f);
+        began = live.sweeps();
     }
+}
+
+/// Returns the state of the host and of the stages in a period that began after `began` sweeps.
+fn saved(
+    host: &Host<'_>,
+    stages: &[&mut dyn Stage],
+    began: u32,
+    on_cpu_from: Option<u32>,
+) -> PeriodState {
+    let state = |stage: &&mut dyn Stage| {
+        let mut out = Writer::default();
+        stage.save(&mut out);
+        (stage.name().to_owned(), out.0)
+    };
+    let Host { before, f_before, held, .. } = host;
+    PeriodState {
+        began,
+        before: before.clone(),
+        f_before: *f_before,
+        held: held.clone(),
+        on_cpu_from,
+        stages: stages.iter().map(state).collect(),
+    }
+}
+
+/// Returns the host and the stages to a saved state. `None` if it is not of a run on this mesh with these stages.
+fn restore(period: &PeriodState, host: &mut Host<'_>, stages: &mut [&mut dyn Stage]) -> Option<()> {
+    if period.stages.len() != stages.len() {
+        return None;
+    }
+    host.before.clone_from(&period.before);
+    host.positions.clone_from(&period.before);
+    host.held.clone_from(&period.held);
+    host.f_before = period.f_before;
+    for (stage, (name, state)) in stages.iter_mut().zip(&period.stages) {
+        let mut from = Reader(state);
+        if stage.name() != name {
+            return None;
+        }
+        stage.restore(host, &mut from)?;
+        from.is_empty().then_some(())?;
+    }
+    host.has_new_targets = false;
+    Some(())
 }

@@ -14,8 +14,8 @@ use crate::outcome::DeviceFault;
 use crate::resume;
 use crate::run::opening::{self, Obstacle, Opened};
 use crate::run::{
-    CPU, Checkpoint, Checkpointer, Counts, DriveError, Engine, History, Objectives, Observer,
-    Phase, Plan, Report, Saved, Session, Stop, steps,
+    CPU, Checkpoint, Checkpointer, Counts, DriveError, Engine, History, Leg, Objectives, Observer,
+    PeriodSource, Phase, Plan, Saved, Session, Stop, steps,
 };
 use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;
@@ -85,7 +85,7 @@ impl<'s> Live<'s> {
         checkpointer: &mut Checkpointer<'_>,
     ) -> Result<Self, SmoothError> {
         let (device, opened) = match resumed {
-            Some(Checkpoint { about, saved }) => {
+            Some(Checkpoint { about, saved, .. }) => {
                 (spec.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
             }
             None => opened(&spec, &plan, from).await?,
@@ -98,16 +98,25 @@ impl<'s> Live<'s> {
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
         let positions = opened.as_ref().map_or(from, |opened| &opened.positions).to_vec();
         let is_refused = spec.device.is_some() && device.is_none() && resumed.is_none();
+        let period = resumed.and_then(|resumed| Some((resumed, resumed.period.as_ref()?)));
+        let (last, held, on_cpu_from) = match period {
+            Some((Checkpoint { saved, .. }, period)) => {
+                let log = saved.log[..=period.began as usize].to_vec();
+                let last = Point { log, positions: period.before.clone() };
+                (last, period.held.clone(), period.on_cpu_from)
+            }
+            None => (Point { log: Vec::new(), positions }, Vec::new(), is_refused.then_some(0)),
+        };
         Ok(Self {
             problem: spec.problem.clone(),
             plan,
             spec,
             device,
             session: None,
-            last: Point { log: Vec::new(), positions },
-            held: Vec::new(),
+            last,
+            held,
             opened,
-            on_cpu_from: is_refused.then_some(0),
+            on_cpu_from,
             fault: None,
         })
     }
@@ -129,20 +138,27 @@ impl<'s> Live<'s> {
         &self.last.positions
     }
 
+    /// Returns the number of sweeps after which the CPU took over from the device, if the CPU did.
+    pub(crate) fn on_cpu_from(&self) -> Option<u32> {
+        self.on_cpu_from
+    }
+
     /// Returns the share of f that is estimated to be left to gain, from the sweeps alone.
     pub(crate) fn remaining(&self) -> Option<f64> {
         self.session.as_ref().and_then(|session| session.history().remaining())
     }
 
-    /// Sweeps until `until` sweeps are done, or the run ends. Returns the best positions, and the reason if it ends.
+    /// Sweeps until `until` sweeps are done, or the run ends. Returns the best positions, and the reason if the run ends.
+    /// Checkpoints take the state of the host and of the stages from `period`.
     pub(crate) async fn sweep(
         &mut self,
         until: u32,
+        period: PeriodSource<'_>,
         checkpointer: &mut Checkpointer<'_>,
         observe: &mut dyn Observer,
     ) -> Result<(Vec<DVec2>, Option<Stop>), SmoothError> {
         loop {
-            match self.try_to_sweep(until, checkpointer, observe).await {
+            match self.try_to_sweep(until, period, checkpointer, observe).await {
                 Ok(done) => return Ok(done),
                 Err(DriveError::Device(error)) => self.fall_back(error, checkpointer)?,
                 Err(DriveError::NotFinite { sweep }) => {
@@ -162,6 +178,7 @@ impl<'s> Live<'s> {
     async fn try_to_sweep(
         &mut self,
         until: u32,
+        period: PeriodSource<'_>,
         checkpointer: &mut Checkpointer<'_>,
         observe: &mut dyn Observer,
     ) -> Result<(Vec<DVec2>, Option<Stop>), DriveError> {
@@ -170,9 +187,9 @@ impl<'s> Live<'s> {
             None => self.begun(checkpointer.last.clone())?,
         };
         let done = self.opened.as_ref().map_or(0, Opened::sweeps);
-        let report = Report { phase: self.spec.phase, done };
         let requires_levels = self.spec.options.method == Method::Multilevel;
-        let stop = session.advance(until, requires_levels, report, checkpointer, observe).await?;
+        let leg = Leg { until, requires_levels, phase: self.spec.phase, done, period };
+        let stop = session.advance(leg, checkpointer, observe).await?;
         let positions = session.engine.best_positions().await?;
         self.session = Some(session);
         Ok((positions, stop))

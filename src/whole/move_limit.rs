@@ -8,6 +8,7 @@ use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::Mesh;
 use crate::precision::Precision;
+use crate::run::records::{Reader, Writer};
 use crate::run::{Step, StopRule, line_search};
 use crate::slide::{Fan, Params, Patch, Sliding};
 use crate::topology::Topology;
@@ -146,6 +147,10 @@ impl<'s> MoveLimitStage<'s> {
 }
 
 impl Stage for MoveLimitStage<'_> {
+    fn name(&self) -> &'static str {
+        "move limit"
+    }
+
     fn period(&self) -> u32 {
         SWEEPS
     }
@@ -184,5 +189,14 @@ impl Stage for MoveLimitStage<'_> {
 
     fn judge(&mut self, period: &Period) -> Judged {
         self.rule.judge(period)
+    }
+
+    fn save(&self, out: &mut Writer) {
+        self.rule.save(out);
+    }
+
+    fn restore(&mut self, _: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()> {
+        self.rule.restore(from)?;
+        Some(())
     }
 }

@@ -6,7 +6,8 @@ use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::outcome::Slid;
 use crate::run::StopRule;
-use crate::slide::{Acceleration, Params, Rule, Sliding};
+use crate::run::records::{Reader, Writer};
+use crate::slide::{Acceleration, Params, Rule, Sliding, read_params, write_params};
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 use crate::whole::host::Host;
@@ -88,6 +89,10 @@ impl<'s> SlideStage<'s> {
 }
 
 impl Stage for SlideStage<'_> {
+    fn name(&self) -> &'static str {
+        "slide"
+    }
+
     fn period(&self) -> u32 {
         SWEEPS
     }
@@ -125,5 +130,20 @@ impl Stage for SlideStage<'_> {
 
     fn judge(&mut self, period: &Period) -> Judged {
         self.rule.judge(period)
+    }
+
+    fn save(&self, out: &mut Writer) {
+        out.number(self.count.into());
+        write_params(&self.params, out);
+        self.memory.save(out);
+        self.rule.save(out);
+    }
+
+    fn restore(&mut self, host: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()> {
+        self.count = from.count()?;
+        self.params = read_params(&self.params, from)?;
+        self.memory = Acceleration::restored(&self.params, host.positions.len(), from)?;
+        self.rule.restore(from)?;
+        Some(())
     }
 }

@@ -3,11 +3,15 @@
 use glam::DVec2;
 
 use crate::error::MeshError;
+use crate::run::records::{Reader, Writer};
 use crate::run::{Stop, StopRule};
 use crate::whole::host::Host;
 
 /// Work on the host between sweeps on the engine.
-pub(crate) trait Stage: Send {
+pub(crate) trait Stage: Send + Sync {
+    /// The name of the stage in checkpoints.
+    fn name(&self) -> &'static str;
+
     /// The most sweeps before the stage works again.
     fn period(&self) -> u32;
 
@@ -32,6 +36,13 @@ pub(crate) trait Stage: Send {
 
     /// Decides whether the run ends. The driver asks the last stage of the run alone.
     fn judge(&mut self, period: &Period) -> Judged;
+
+    /// Writes the state of the stage between two periods.
+    fn save(&self, out: &mut Writer);
+
+    /// Returns to a state that [`save`](Self::save) wrote, with the vertices of `host` where they were then. `None` if the
+    /// state is not of a run on this mesh.
+    fn restore(&mut self, host: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()>;
 }
 
 /// The result of the work of a stage.
@@ -81,6 +92,16 @@ impl PeriodRule {
     pub(crate) fn new(rule: StopRule) -> Self {
         let rule = StopRule { max_sweeps: u32::MAX, ..rule };
         Self { rule, f: Vec::new(), estimates: 0 }
+    }
+
+    pub(crate) fn save(&self, out: &mut Writer) {
+        out.reals(&self.f);
+        out.number(self.estimates.into());
+    }
+
+    pub(crate) fn restore(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        (self.f, self.estimates) = (from.reals()?, from.count()?);
+        Some(())
     }
 
     pub(crate) fn judge(&mut self, period: &Period) -> Judged {

@@ -6,6 +6,7 @@ use glam::DVec2;
 use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
+use crate::run::records::{Reader, Writer};
 use crate::run::{NOISE, Stop};
 use crate::targets::TargetField;
 use crate::whole::host::Host;
@@ -48,22 +49,37 @@ pub(crate) struct TargetFieldStage<'s> {
     settled: u32,
     /// Whether the last period has moved the vertices.
     has_moved: bool,
+    /// Whether the targets of the run are no longer those of the start.
+    has_followed: bool,
 }
 
 impl<'s> TargetFieldStage<'s> {
     /// Begins a run that ends at this tolerance.
     pub(crate) fn new(mesh: &'s Mesh, field: &'s TargetField, tolerance: f64) -> Self {
         let tolerance = tolerance.max(NOISE);
-        Self { mesh, field, tolerance, gained: None, settled: 0, has_moved: true }
+        Self {
+            mesh,
+            field,
+            tolerance,
+            gained: None,
+            settled: 0,
+            has_moved: true,
+            has_followed: false,
+        }
     }
 
-    fn follow_to(&self, host: &mut Host<'_>, positions: &[DVec2]) -> Result<(), MeshError> {
+    fn follow_to(&mut self, host: &mut Host<'_>, positions: &[DVec2]) -> Result<(), MeshError> {
         host.has_new_targets = true;
+        self.has_followed = true;
         set_targets_of(self.field, self.mesh, &mut host.problem, positions)
     }
 }
 
 impl Stage for TargetFieldStage<'_> {
+    fn name(&self) -> &'static str {
+        "target field"
+    }
+
     fn period(&self) -> u32 {
         SWEEPS
     }
@@ -116,5 +132,22 @@ impl Stage for TargetFieldStage<'_> {
             false => period.is_last.then_some(Stop::MaxSweeps),
         };
         Judged { stop, remaining: Some(to_come).filter(|left| left.is_finite()) }
+    }
+
+    fn save(&self, out: &mut Writer) {
+        out.optional(self.gained);
+        out.number(self.settled.into());
+        out.number(self.has_moved.into());
+        out.number(self.has_followed.into());
+    }
+
+    fn restore(&mut self, host: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()> {
+        (self.gained, self.settled) = (from.option(Reader::real)?, from.count()?);
+        (self.has_moved, self.has_followed) = (from.flag()?, from.flag()?);
+        if self.has_followed {
+            let before = host.before.clone();
+            self.follow_to(host, &before).ok()?;
+        }
+        Some(())
     }
 }

@@ -1,6 +1,7 @@
 //! Finite differences as an engine takes them: less exact than analytic derivatives, but good enough to smooth with.
 
 use crate::support;
+use gpu_smooth::Stopping;
 use gpu_smooth::{
     Backend, Gpu, Mesh, Method, Metric, Options, Smoother, Topology,
     internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu},
@@ -62,7 +63,8 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
         let f = |derivatives, backend| {
             // Without corrections, as runs by differences have none: EDGE would end at another minimum.
             let method = Method::Paper(Paper { derivatives, ..Paper::default() });
-            let options = Options { scheme: metric.into(), method, ..Options::default() };
+            let stopping = Stopping::Tolerance(1e-8);
+            let options = Options { scheme: metric.into(), method, stopping, ..Options::default() };
             let go_on = &mut |_: &_| ControlFlow::Continue(());
             let outcome = smoother.run(&options).on(backend).observe(go_on).block().unwrap();
             smoother.quality(&outcome.points).unwrap().f(metric)

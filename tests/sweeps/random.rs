@@ -299,9 +299,7 @@ fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
         }
         let smoother = match Smoother::new(&mesh) {
             Ok(smoother) => smoother,
-            Err(
-                MeshError::NothingFree { .. } | MeshError::Empty | MeshError::OutOfRange { .. },
-            ) => continue,
+            Err(MeshError::Empty | MeshError::OutOfRange { .. }) => continue,
             Err(error) => panic!("seed {seed}: {error}"),
         };
         for backend in backends() {
@@ -312,7 +310,9 @@ fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
             let once = || smoother.run(&options).on(backend).block();
             let outcome = match once() {
                 Ok(outcome) => outcome,
-                Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => continue,
+                Err(SmoothError::Mesh(
+                    MeshError::BeyondPrecision { .. } | MeshError::NothingFree { .. },
+                )) => continue,
                 Err(error) => panic!("{label}: {error}"),
             };
             let result = std::panic::catch_unwind(|| {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use gpu_smooth::{
     Backend, Checkpoint, CheckpointPolicy, Goal, Mesh, Method, Metric, Options, Outcome, Progress,
-    SmoothError, Smoother, Stop, Stopping,
+    Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, options::WorstBy,
 };
 
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
@@ -91,6 +91,61 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
             }
         }
     }
+}
+
+/// A checkpoint in the middle of a period holds what the stages were when the period began.
+#[test]
+fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let sizes: Vec<f64> = mesh.points.iter().map(|[x, _]| 1.0 + x * x).collect();
+    let field = TargetField::new(&plate(300), &Targets::sizes(&sizes).unwrap()).unwrap();
+    let default = Options::default;
+    let limited = Options { max_move: Some(0.2), ..default() };
+    let kept = Options { keep_altitude: true, ..default() };
+    let worst = Options { improve_worst: Some(WorstBy::Imr), ..default() };
+    for (name_of_case, options, slides, has_field) in [
+        ("slide", default(), true, false),
+        ("max move", limited.clone(), false, false),
+        ("slide and max move", limited, true, false),
+        ("keep altitude", kept.clone(), false, false),
+        ("slide and keep altitude", kept, true, false),
+        ("field", default(), false, true),
+        ("worst", worst, true, false),
+    ] {
+        let mut smoother = Smoother::new(&mesh).unwrap();
+        let slide = slides.then(Slide::default);
+        smoother.set_slide(slide.as_ref()).unwrap();
+        if has_field {
+            smoother.set_target_field(field.clone()).unwrap();
+        }
+        for backend in backends() {
+            println!("{name_of_case} on the {}", name(backend));
+            let options = Options { max_sweeps: 20, ..options.clone() };
+            let every = if matches!(backend, Backend::Cpu) { 1 } else { 4 };
+            assert_goes_on(&smoother, &options, backend, every);
+        }
+    }
+}
+
+/// The curves and the field of targets belong to the run, as the mesh does.
+#[test]
+fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
+    let mesh = support::perturb_random(&plate(300), 1.0, 3);
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    let options = Options { max_sweeps: 9, ..Options::default() };
+    let slide = |corner_angle| Slide { corner_angle, ..Slide::default() };
+    smoother.set_slide(Some(&slide(40.0))).unwrap();
+    let mut all = All::default();
+    smoother.run(&options).checkpoints(&mut all).block().unwrap();
+    let from = all.0.last();
+    smoother.set_slide(Some(&slide(20.0))).unwrap();
+    let error = smoother.run(&options).resume(from).block().unwrap_err();
+    assert!(error.to_string().contains("other curves"), "{error}");
+    smoother.set_slide(None).unwrap();
+    let error = smoother.run(&options).resume(from).block().unwrap_err();
+    assert!(matches!(error, SmoothError::Checkpoint(_)), "{error}");
+    smoother.set_slide(Some(&slide(40.0))).unwrap();
+    smoother.run(&options).resume(from).block().unwrap();
 }
 
 /// A hard mesh: sweeps on the CPU open flat triangles for the device, secant pairs accelerate corrections, and levels are
@@ -266,7 +321,10 @@ fn a_checkpoint_of_another_run_is_refused() {
     };
     let other = Options { stopping: Stopping::Tolerance(1e-3), ..options.clone() };
     let error = refused(&smoother, &other);
-    assert!(error.contains("tolerance: 1e-6, and this one has tolerance: 0.001"), "{error}");
+    assert!(
+        error.contains("tolerance 0.000001, and this run has stopping = tolerance 0.001"),
+        "{error}"
+    );
     let other = Options { scheme: Metric::Rms.into(), ..options.clone() };
     refused(&smoother, &other);
     let mut held = mesh.clone();

@@ -325,8 +325,5 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
     }
     let run = folder.line("in out --engine cpu --target size=bg.msh:h --slide");
     assert_eq!(run.code, Some(2));
-    assert_holds(
-        &run.err,
-        &["a target that belongs to places does not go with --slide", "--target-of vertex"],
-    );
+    assert_holds(&run.err, &["--target-of place does not go with --slide", "--target-of vertex"]);
 }

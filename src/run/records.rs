@@ -1,0 +1,193 @@
+//! The bytes of a checkpoint: named records of numbers, lists and texts.
+
+use glam::DVec2;
+
+use crate::metric::Metric;
+use crate::run::objectives::Objectives;
+
+/// Writes numbers with their least byte first, lists after their length, and named records.
+#[derive(Default)]
+pub(crate) struct Writer(pub(crate) Vec<u8>);
+
+impl Writer {
+    /// Writes a record: its name, the length of its content, and the content that `write` writes.
+    pub(crate) fn record(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
+        let mut content = Self::default();
+        write(&mut content);
+        self.bytes(name.as_bytes());
+        self.bytes(&content.0);
+    }
+
+    pub(crate) fn number(&mut self, number: u64) {
+        self.0.extend(number.to_le_bytes());
+    }
+
+    pub(crate) fn real(&mut self, number: f64) {
+        self.number(number.to_bits());
+    }
+
+    pub(crate) fn list<T>(&mut self, list: &[T], mut write: impl FnMut(&mut Self, &T)) {
+        self.number(list.len() as u64);
+        list.iter().for_each(|item| write(self, item));
+    }
+
+    /// Writes a number that may be missing, as a list of up to one number.
+    pub(crate) fn optional(&mut self, number: Option<f64>) {
+        self.list(number.as_slice(), |out, number| out.real(*number));
+    }
+
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        self.number(bytes.len() as u64);
+        self.0.extend(bytes);
+    }
+
+    pub(crate) fn text(&mut self, text: &str) {
+        self.bytes(text.as_bytes());
+    }
+
+    pub(crate) fn reals(&mut self, list: &[f64]) {
+        self.list(list, |out, number| out.real(*number));
+    }
+
+    pub(crate) fn points(&mut self, points: &[DVec2]) {
+        self.list(points, |out, p| p.to_array().iter().for_each(|x| out.real(*x)));
+    }
+
+    pub(crate) fn log(&mut self, log: &[Objectives]) {
+        self.list(log, |out, one| one.values().iter().for_each(|f| out.real(*f)));
+    }
+}
+
+/// Reads the bytes that a [`Writer`] wrote. Every method returns `None` if the bytes are anything else.
+#[derive(Clone, Copy)]
+pub(crate) struct Reader<'b>(pub(crate) &'b [u8]);
+
+impl<'b> Reader<'b> {
+    /// Reads records up to the end of the bytes.
+    pub(crate) fn records(mut self) -> Option<Records<'b>> {
+        let mut records = Vec::new();
+        while !self.0.is_empty() {
+            let name = std::str::from_utf8(self.bytes()?).ok()?;
+            records.push((name, Reader(self.bytes()?)));
+        }
+        Some(Records(records))
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(crate) fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (taken, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*taken)
+    }
+
+    pub(crate) fn number(&mut self) -> Option<u64> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    /// Reads a number of 32 bits.
+    pub(crate) fn count(&mut self) -> Option<u32> {
+        u32::try_from(self.number()?).ok()
+    }
+
+    pub(crate) fn flag(&mut self) -> Option<bool> {
+        match self.number()? {
+            0 => Some(false),
+            1 => Some(true),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn real(&mut self) -> Option<f64> {
+        self.number().map(f64::from_bits)
+    }
+
+    /// Reads a list of items that each take at least `least` bytes, so that an impossible length is refused.
+    pub(crate) fn list<T>(
+        &mut self,
+        least: usize,
+        mut read: impl FnMut(&mut Self) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let length = usize::try_from(self.number()?).ok()?;
+        if length > self.0.len() / least {
+            return None;
+        }
+        (0..length).map(|_| read(self)).collect()
+    }
+
+    /// Reads a list of up to one item.
+    pub(crate) fn option<T>(
+        &mut self,
+        read: impl FnMut(&mut Self) -> Option<T>,
+    ) -> Option<Option<T>> {
+        let mut list = self.list(1, read)?;
+        let item = list.pop();
+        list.is_empty().then_some(item)
+    }
+
+    pub(crate) fn bytes(&mut self) -> Option<&'b [u8]> {
+        let length = usize::try_from(self.number()?).ok()?;
+        let (bytes, rest) = self.0.split_at_checked(length)?;
+        self.0 = rest;
+        Some(bytes)
+    }
+
+    pub(crate) fn text(&mut self) -> Option<String> {
+        String::from_utf8(self.bytes()?.to_vec()).ok()
+    }
+
+    pub(crate) fn reals(&mut self) -> Option<Vec<f64>> {
+        self.list(8, Self::real)
+    }
+
+    pub(crate) fn points(&mut self) -> Option<Vec<DVec2>> {
+        self.list(16, |from| Some(DVec2::new(from.real()?, from.real()?)))
+    }
+
+    pub(crate) fn log(&mut self) -> Option<Vec<Objectives>> {
+        self.list(8 * Metric::ALL.len(), |from| {
+            let mut values = [0.0; Metric::ALL.len()];
+            for value in &mut values {
+                *value = from.real()?;
+            }
+            Some(Objectives::of_values(values))
+        })
+    }
+}
+
+/// Named records that have not been read yet.
+pub(crate) struct Records<'b>(Vec<(&'b str, Reader<'b>)>);
+
+impl<'b> Records<'b> {
+    /// Reads the whole content of the record with this name. `None` if there is no such record, or if `read` leaves a
+    /// part of its content.
+    pub(crate) fn read<T>(
+        &mut self,
+        name: &str,
+        read: impl FnOnce(&mut Reader<'b>) -> Option<T>,
+    ) -> Option<T> {
+        let at = self.0.iter().position(|(known, _)| *known == name)?;
+        let (_, mut content) = self.0.swap_remove(at);
+        let value = read(&mut content)?;
+        content.is_empty().then_some(value)
+    }
+
+    /// Reads a record as [`read`](Self::read) does, if there is one: `Some(None)` if there is none.
+    pub(crate) fn read_if_any<T>(
+        &mut self,
+        name: &str,
+        read: impl FnOnce(&mut Reader<'b>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match self.0.iter().any(|(known, _)| *known == name) {
+            true => self.read(name, read).map(Some),
+            false => Some(None),
+        }
+    }
+
+    /// Succeeds if every record was read.
+    pub(crate) fn end(self) -> Option<()> {
+        self.0.is_empty().then_some(())
+    }
+}
