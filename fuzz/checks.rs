@@ -4,8 +4,8 @@
 use std::ops::ControlFlow;
 
 use gpu_smooth::{
-    Backend, Guard, Mesh, MeshError, Method, Metric, Options, Scheme, Slide, SmoothError, Smoother,
-    Targets,
+    Backend, Guard, Mesh, MeshError, Method, Metric, Options, Quality, Scheme, Slide, SmoothError,
+    Smoother, Targets,
     options::{Derivatives, PNormExponent, Paper, WorstBy},
     precision::{Precision, Rounding},
     targets::Surface,
@@ -223,7 +223,9 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
     }
     let bad = topology::infeasible(&outcome.points, topology.triangles()).unwrap();
     assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
-    let f = |points: &[[f64; 2]]| smoother.quality(points).unwrap().f(options.scheme.base());
+    let f = |points: &[[f64; 2]]| {
+        Quality::of(points, smoother.topology()).unwrap().f(options.scheme.base())
+    };
     let (start, end) = (f(&mesh.points), f(&outcome.points));
     assert!(end <= start * (1.0 + 1e-12), "f rose from {start} to {end}");
     assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1);

@@ -3,6 +3,7 @@
 /// A mesh cannot be smoothed as it is, or arguments do not fit it. Indices are zero-based, as in
 /// [`Mesh`](crate::Mesh).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// The mesh has no triangles.
     #[error("the mesh has no triangles")]
@@ -168,6 +169,7 @@ fn listed(triangles: &[BadTriangle]) -> String {
 
 /// A run failed, or could not start.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SmoothError {
     /// The mesh cannot be smoothed.
     #[error(transparent)]

@@ -9,7 +9,7 @@
 //!
 //! ```
 //! use std::ops::ControlFlow;
-//! use gpu_smooth::{Backend, Mesh, Metric, Options, Smoother};
+//! use gpu_smooth::{Backend, Mesh, Metric, Options, Quality, Smoother};
 //!
 //! // A square with one vertex inside, badly placed.
 //! let mesh = Mesh {
@@ -22,7 +22,7 @@
 //! let outcome = smoother.run(&Options::default()).on(&backend).block()?;
 //! let [x, y] = outcome.points[4];
 //! assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3);
-//! assert!(smoother.quality(&outcome.points)?.f(Metric::Imr) < 1.3334);
+//! assert!(Quality::of(&outcome.points, smoother.topology())?.f(Metric::Imr) < 1.3334);
 //! # Ok::<(), gpu_smooth::SmoothError>(())
 //! ```
 //!

@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use crate::run::checksum::crc32;
     use crate::run::{CheckpointPolicy, Progress, Stop};
-    use crate::{Backend, GpuError, Outcome, Slide, Smoother, topology};
+    use crate::{Backend, GpuError, Outcome, Quality, Slide, Smoother, topology};
 
     /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
     #[derive(Default)]
@@ -162,7 +162,7 @@ mod tests {
             let check = |outcome: &Outcome| {
                 let bad = topology::infeasible(&outcome.points, &mesh.triangles).unwrap();
                 assert!(bad.is_empty(), "{bad:?}");
-                let f = |p| smoother.quality(p).unwrap().f(options.scheme.base());
+                let f = |p| Quality::of(p, smoother.topology()).unwrap().f(options.scheme.base());
                 assert!(f(&outcome.points) <= f(&mesh.points), "{scheme}");
             };
             let from = Some(&spoiled);

@@ -222,7 +222,7 @@ impl From<SmoothError> for CliError {
             SmoothError::Mesh(error) => error.into(),
             SmoothError::Gpu(error) => error.into(),
             SmoothError::Checkpoint(_) => Self::input(error.to_string()),
-            SmoothError::Option { .. } => Self::run(error.to_string()),
+            _ => Self::run(error.to_string()),
         }
     }
 }

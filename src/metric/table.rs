@@ -23,6 +23,7 @@ macro_rules! metrics {
         /// A quality metric q of a triangle. Smaller is better. [`Metric::citation`] names the source
         /// of each.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[non_exhaustive]
         pub enum Metric {
             $(#[$edge_doc])* $edge,
             $($(#[$doc])* $variant,)*

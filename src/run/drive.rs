@@ -46,6 +46,7 @@ pub struct Progress {
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Phase {
     /// The search for the optimum of [`None`](crate::None).
     Reference,

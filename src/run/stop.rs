@@ -4,6 +4,7 @@ use crate::metric::Scheme;
 
 /// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Stop {
     /// The base objective has gone the share of the way to the desired one that the [`Goal`](crate::Goal) asks for.
     Reached,

@@ -11,7 +11,6 @@ use crate::error::{MeshError, SmoothError};
 use crate::layout::{Problem, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
-use crate::quality::Quality;
 use crate::slide::{Slide, Sliding};
 use crate::targets::{Outside, TargetField, Targets};
 use crate::topology::{Topology, certify};
@@ -171,14 +170,6 @@ impl<'a> Smoother<'a> {
     pub fn size(&self) -> MeshSize {
         let triangles = self.problem.triangles().len();
         MeshSize { vertices: self.problem.positions().len(), triangles }
-    }
-
-    /// Returns quality statistics of the mesh with its vertices at `points`.
-    ///
-    /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
-    pub fn quality(&self, points: &[[f64; 2]]) -> Result<Quality, MeshError> {
-        Quality::of(points, &self.topology)
     }
 
     /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and returns the

@@ -9,6 +9,7 @@ use crate::error::{MeshError, SmoothError};
 use crate::metric::Metric;
 use crate::options::{Feature, Goal, Options};
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::quality::Quality;
 use crate::resume;
 use crate::run::{
     About, Checkpoint, CheckpointPolicy, Checkpointer, JITTER, LEAST_SCALE, NOISE, Objectives,
@@ -43,7 +44,7 @@ impl Smoother<'_> {
         let base = options.scheme.base();
         let initial = self.objective(base, self.problem.positions());
         if !initial.is_finite() || self.is_beyond_precision(base, initial) {
-            let triangle = self.quality(&self.mesh.points)?.worst_triangle;
+            let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
             let metric = base.name();
             return Err(MeshError::BeyondPrecision { triangle, metric }.into());
         }

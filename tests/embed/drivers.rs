@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use gpu_smooth::{
     Backend, CheckpointPolicy, Gpu, GpuError, Mesh, MeshSize, Method, Options, Outcome, Progress,
-    Smoother, Stopping, wgpu,
+    Quality, Smoother, Stopping, wgpu,
 };
 use pollster::block_on;
 
@@ -64,7 +64,8 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
         };
         let [cpu, vulkan, gl] =
             backends.each_ref().map(|backend| smoother.run(&options).on(backend).block().unwrap());
-        let f = |outcome: &Outcome| smoother.quality(&outcome.points).unwrap().f(base);
+        let f =
+            |outcome: &Outcome| Quality::of(&outcome.points, smoother.topology()).unwrap().f(base);
         for (name, other) in [("vulkan", &vulkan), ("gl", &gl)] {
             let label = format!("{} {method:?} on {name}", options.scheme);
             let (off, apart) = (f(other) / f(&cpu) - 1.0, apart(other, &cpu) / mean_edge);

@@ -8,7 +8,7 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, Goal, Method, Metric, Options, Outcome, Progress, Smoother, Stop, Stopping,
+    Backend, Goal, Method, Metric, Options, Outcome, Progress, Quality, Smoother, Stop, Stopping,
     gpu::Sweeps, wgpu,
 };
 
@@ -223,7 +223,7 @@ fn a_canceled_run_returns_the_best_state_so_far() {
         assert_eq!(heard[1].1, *f.last().unwrap());
         let least = f.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(least < f[0]);
-        let measured = smoother.quality(&outcome.points).unwrap().f(base);
+        let measured = Quality::of(&outcome.points, smoother.topology()).unwrap().f(base);
         assert!((measured / least - 1.0).abs() < 1e-6, "{measured} {least}");
     }
 }

@@ -7,8 +7,8 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, CheckpointPolicy, Gpu, GpuError, Mesh, Options, Outcome, Progress, Scheme, Slide,
-    Smoother, Stop, Stopping,
+    Backend, CheckpointPolicy, Gpu, GpuError, Mesh, Options, Outcome, Progress, Quality, Scheme,
+    Slide, Smoother, Stop, Stopping,
     gpu::{DeviceMesh, Readback, Sweeps, VertexBuffer},
     wgpu,
 };
@@ -140,7 +140,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
             // A share of the time that a run takes on this machine: on a fast one the run would else be done before.
             let after = time_of_a_run(&smoother, &options).mul_f64(0.8 * random.unit());
             let (outcome, keeper) = run_with_a_loss(&smoother, &options, after);
-            let f = |o: &Outcome| smoother.quality(&o.points).unwrap().f(base);
+            let f = |o: &Outcome| Quality::of(&o.points, smoother.topology()).unwrap().f(base);
             let smoothed = Mesh { points: outcome.points.clone(), ..mesh.clone() };
             assert!(check::is_valid(&smoothed) && check::same_orientations(&mesh, &smoothed));
             assert_eq!(outcome.stop, on_cpu.stop, "round {round}");

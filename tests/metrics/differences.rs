@@ -1,9 +1,8 @@
 //! Finite differences as an engine takes them: less exact than analytic derivatives, but good enough to smooth with.
 
 use crate::support;
-use gpu_smooth::Stopping;
 use gpu_smooth::{
-    Backend, Gpu, Mesh, Method, Metric, Options, Smoother, Topology,
+    Backend, Gpu, Mesh, Method, Metric, Options, Quality, Smoother, Stopping, Topology,
     internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu},
     options::{Derivatives, PNormExponent, Paper},
 };
@@ -67,10 +66,10 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
             let options = Options { scheme: metric.into(), method, stopping, ..Options::default() };
             let go_on = &mut |_: &_| ControlFlow::Continue(());
             let outcome = smoother.run(&options).on(backend).observe(go_on).block().unwrap();
-            smoother.quality(&outcome.points).unwrap().f(metric)
+            Quality::of(&outcome.points, smoother.topology()).unwrap().f(metric)
         };
         let exact = f(Derivatives::Analytic, &backends[0]);
-        let gone = smoother.quality(&mesh.points).unwrap().f(metric) - exact;
+        let gone = Quality::of(&mesh.points, smoother.topology()).unwrap().f(metric) - exact;
         for backend in &backends {
             let near = f(Derivatives::FiniteDifference, backend);
             // The minimum is missed by half a width of the differences. For smooth metrics f then differs in second order,
@@ -100,7 +99,7 @@ fn the_best_state_is_returned_though_differences_may_raise_f() {
             outcome.history.iter().map(|f| f.of(Metric::Rms).unwrap()).collect();
         let best = history.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(history.last() > Some(&(best * (1.0 + 1e-6))), "the last is not the best");
-        let f = smoother.quality(&outcome.points).unwrap().f(Metric::Rms);
+        let f = Quality::of(&outcome.points, smoother.topology()).unwrap().f(Metric::Rms);
         // On a device the history has the digits of single precision.
         assert!((f / best - 1.0).abs() < 2e-7, "{f} returned, {best} seen");
         assert_eq!(history[outcome.best_sweep as usize], best);

@@ -27,6 +27,7 @@ pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, mean_area:
         Metric::Tmop80 => root(0.5 * (shape + square)),
         Metric::Tmop94 => root(shape + 1.5 * linear),
         Metric::SoftSize => root(shape + 0.4 * linear),
+        _ => panic!("{metric}: write the formula of q here, another way than src/metric does"),
     }
 }
 
@@ -41,6 +42,9 @@ pub(crate) fn is_linear_in_size(metric: Metric) -> bool {
         | Metric::Ar
         | Metric::ShapeSize
         | Metric::Tmop80 => false,
+        _ => {
+            panic!("{metric}: say here whether q² of a large triangle is nearly linear in the area")
+        }
     }
 }
 
@@ -81,6 +85,7 @@ pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
             ["scale + 1.0) - e)", "scale + 1.0) + e)"],
             ["2.0 * (e + weight)", "2.0 * (1.01 * e + weight)"],
         ],
+        _ => panic!("{metric}: add two mistakes that a test must notice in its WGSL"),
     }
 }
 
@@ -155,5 +160,6 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
                 conditions: [1.0 + a * b / doubled; 3],
             }
         }
+        _ => panic!("{metric}: write the sizes of its value and derivatives here"),
     }
 }

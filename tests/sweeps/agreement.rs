@@ -2,7 +2,7 @@
 
 use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
 use gpu_smooth::{
-    Backend, Metric, Smoother, Stop,
+    Backend, Metric, Quality, Stop, Topology,
     internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
     options::{Derivatives, PNormExponent},
 };
@@ -53,7 +53,7 @@ fn one_sweep_is_the_same_on_both_engines() {
 fn a_penalty_keeps_edge_off_the_shape_guard_on_both_engines_alike() {
     let problem = mild();
     let mesh = support::perturb_random(&plate(2000), 0.5, 3);
-    let before = Smoother::new(&mesh).unwrap().quality(&mesh.points).unwrap().worst_imr;
+    let before = Quality::of(&mesh.points, &Topology::new(&mesh).unwrap()).unwrap().worst_imr;
     for (share, k) in [(0.5, 1), (0.3, 4), (0.7, 4), (0.3, 7)] {
         let sharpness = PNormExponent { first: k, every: 0, last: k };
         let shape_guard = 1.0 + share * (before - 1.0);

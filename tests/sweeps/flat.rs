@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::task::{Context, Poll, Wake, Waker};
 
 use crate::{backends, history, name, run, scheme, support, with_points};
-use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Smoother, Stop};
+use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Quality, Smoother, Stop};
 
 /// A lattice in which some vertices are at this distance from an opposite edge.
 fn flattened(height: f64) -> Mesh {
@@ -48,7 +48,7 @@ fn flat_triangles_are_opened_in_double_precision() {
                 let after = with_points(&mesh, &outcome.points);
                 assert!(support::is_ccw(&after), "{label}");
                 let least = f.iter().copied().fold(f64::INFINITY, f64::min);
-                let found = smoother.quality(&outcome.points).unwrap().f(base);
+                let found = Quality::of(&outcome.points, smoother.topology()).unwrap().f(base);
                 assert!((found / least - 1.0).abs() < 1e-8, "{label}: {found} for {least}");
                 least
             });

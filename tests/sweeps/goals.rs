@@ -2,7 +2,7 @@
 
 use crate::{SCHEMES, backends, history, name, perturbed, run, scheme};
 use gpu_smooth::{
-    Backend, Goal, Mesh, Metric, Options, Smoother, Stop, Stopping, options::PNormExponent,
+    Backend, Goal, Mesh, Metric, Options, Quality, Smoother, Stop, Stopping, options::PNormExponent,
 };
 use std::sync::OnceLock;
 
@@ -90,7 +90,7 @@ fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
             // In a scheme of one metric the last state is the best, but for the rounding of a device.
             let returned = history[outcome.best_sweep as usize];
             assert!(returned <= best * (1.0 + 1e-9), "{label}: {returned} for {best}");
-            let f = smoother.quality(&outcome.points).unwrap().f(base);
+            let f = Quality::of(&outcome.points, smoother.topology()).unwrap().f(base);
             // The device sums terms that it evaluates in single precision.
             let digits = if matches!(backend, Backend::Cpu) { 1e-12 } else { 2e-7 };
             let rounding = digits * (best - base.ideal_squared());

@@ -1,7 +1,9 @@
 //! Valid meshes at the limits of double precision. Each is a case that once failed.
 
 use crate::{backends, history, name, plate, run, support, with_points};
-use gpu_smooth::{Mesh, MeshError, Metric, Options, SmoothError, Smoother, Stop};
+use gpu_smooth::{
+    Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother, Stop, Topology,
+};
 use std::f64::consts::TAU;
 
 /// A triangle of three vertices around a free one.
@@ -99,7 +101,7 @@ fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
 #[test]
 fn a_mesh_whose_objective_is_not_a_number_is_refused_with_its_worst_triangle() {
     let mut mesh = support::lattice(4, 4);
-    let fine = Smoother::new(&mesh).unwrap().quality(&mesh.points).unwrap();
+    let fine = Quality::of(&mesh.points, &Topology::new(&mesh).unwrap()).unwrap();
     assert!(fine.worst_imr < 1.1);
     mesh.points.iter_mut().for_each(|p| p[1] *= 1e-200);
     let smoother = Smoother::new(&mesh).unwrap();
@@ -119,14 +121,14 @@ fn a_mesh_graded_to_a_point_keeps_the_digits_of_its_smallest_elements() {
         let mesh = halved(times, at);
         assert!(support::is_ccw(&mesh), "{times} halvings toward {at:?}");
         let smoother = Smoother::new(&mesh).unwrap();
-        let before = smoother.quality(&mesh.points).unwrap().f(Metric::Imr);
+        let before = Quality::of(&mesh.points, smoother.topology()).unwrap().f(Metric::Imr);
         for backend in backends() {
             let outcome = run(&smoother, &Options::default(), backend);
             let label = format!("{times} halvings toward {at:?} on the {}", name(backend));
             let f = history(&outcome, Metric::Imr);
             // On a device f is summed from terms in single precision.
             assert!((f[0] / before - 1.0).abs() < 1e-7, "{label}: {} for {before}", f[0]);
-            let after = smoother.quality(&outcome.points).unwrap().f(Metric::Imr);
+            let after = Quality::of(&outcome.points, smoother.topology()).unwrap().f(Metric::Imr);
             let least = f.iter().copied().fold(f64::INFINITY, f64::min);
             // Positions are rounded to 2^-52 of 1. Where that matters, the smallest edges are 2^-44 at most.
             assert!((after / least - 1.0).abs() < 1e-4, "{label}: {after} for {least}");

@@ -2,7 +2,9 @@
 
 use crate::support;
 use crate::{backends, distorted, global, history, name, perturbed, run, with_points};
-use gpu_smooth::{Method, Metric, Options, Smoother, Stop, Stopping, options::PNormExponent};
+use gpu_smooth::{
+    Method, Metric, Options, Quality, Smoother, Stop, Stopping, options::PNormExponent,
+};
 
 #[test]
 fn a_perturbed_lattice_becomes_equilateral_again() {
@@ -86,7 +88,7 @@ fn edge_ends_at_the_best_known() {
         assert!(end / best - 1.0 < -1.5e-4, "{end} for {best} on the {place}");
         assert!(corrected.corrections > 30 && corrected.sweeps < 160, "{}", corrected.sweeps);
         // What is returned is the best state, of whichever sweep.
-        let returned = smoother.quality(&corrected.points).unwrap().f(Metric::Edge);
+        let returned = Quality::of(&corrected.points, smoother.topology()).unwrap().f(Metric::Edge);
         assert!((returned / end - 1.0).abs() < 1e-6, "{returned} for {end} on the {place}");
         let fixed = f(&run(&smoother, &alone(PNormExponent::FIXED), backend));
         assert!(fixed / best - 1.0 < 1e-2, "{fixed} for {best} on the {place}");
@@ -111,7 +113,8 @@ fn edge_ends_within_1e_4_of_the_best_known_after_some_eighty_sweeps() {
         let file = format!("{}/meshes/{mesh}.node", env!("CARGO_MANIFEST_DIR"));
         let read = support::read_mesh(file.as_ref());
         let smoother = Smoother::new(&read).unwrap();
-        let worst = |points: &[[f64; 2]]| smoother.quality(points).unwrap().worst_imr;
+        let worst =
+            |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().worst_imr;
         let before = worst(&read.points);
         for backend in backends() {
             let on = format!("{mesh} on the {}", name(backend));
@@ -124,7 +127,7 @@ fn edge_ends_within_1e_4_of_the_best_known_after_some_eighty_sweeps() {
                 let outcome = run(&smoother, &edge, backend);
                 assert_eq!(outcome.stop, Stop::Converged, "{on}");
                 assert!(worst(&outcome.points) <= before, "{on}: the shape guard holds");
-                let f = smoother.quality(&outcome.points).unwrap().f(Metric::Edge);
+                let f = Quality::of(&outcome.points, smoother.topology()).unwrap().f(Metric::Edge);
                 (outcome, f / best - 1.0)
             };
             let (outcome, above) = ends(1e-6);

@@ -10,7 +10,8 @@
 use crate::support::SplitMix64;
 use crate::{all_schemes, backends, history, name, support, with_points};
 use gpu_smooth::{
-    Backend, Goal, Mesh, MeshError, Method, Options, Outcome, SmoothError, Smoother, Stopping,
+    Backend, Goal, Mesh, MeshError, Method, Options, Outcome, Quality, SmoothError, Smoother,
+    Stopping,
     options::{Derivatives, PNormExponent, Paper, Relaxed},
     precision::Precision,
 };
@@ -240,7 +241,7 @@ fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outc
         let single = is.iter().all(|&x| f64::from(x as f32) == x);
         assert!(options.stored == Precision::Double || single, "vertex {v} is not as stored");
     }
-    let f = |points: &[[f64; 2]]| smoother.quality(points).unwrap().f(base);
+    let f = |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(base);
     let (before, end) = (f(&mesh.points), f(&outcome.points));
     assert!(end <= before, "f rose from {before} to {end}");
     assert_eq!(outcome.best_sweep == 0, outcome.points == mesh.points, "{}", outcome.best_sweep);
@@ -304,7 +305,7 @@ fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
         };
         for backend in backends() {
             // On a device, positions are rounded to 1e-4 of the height of a triangle at worst, and areas of flat triangles too.
-            let flat = 1e-6 * smoother.quality(&mesh.points).unwrap().worst_imr;
+            let flat = 1e-6 * Quality::of(&mesh.points, smoother.topology()).unwrap().worst_imr;
             let near = if matches!(backend, Backend::Cpu) { 1e-9 } else { 1e-3 + flat };
             let label = format!("seed {seed} on the {}, {options:?}", name(backend));
             let once = || smoother.run(&options).on(backend).block();

@@ -2,8 +2,8 @@
 
 use crate::{backends, history, perturbed, plate, run, scheme, support, with_points};
 use gpu_smooth::{
-    Backend, Goal, Gpu, GpuError, Method, Metric, OptionError, Options, Phase, Scheme, SmoothError,
-    Smoother, Stop, Stopping,
+    Backend, Goal, Gpu, GpuError, Method, Metric, OptionError, Options, Phase, Quality, Scheme,
+    SmoothError, Smoother, Stop, Stopping,
     options::{PNormExponent, Paper, Relaxed},
 };
 use std::ops::ControlFlow;
@@ -42,7 +42,11 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
                 (Backend::Gpu(_), 0..4) => 2e-6,
                 (Backend::Gpu(_), _) => 1e-8,
             };
-            assert!((smoother.quality(&after.points).unwrap().f(base) / best - 1.0).abs() < near);
+            assert!(
+                (Quality::of(&after.points, smoother.topology()).unwrap().f(base) / best - 1.0)
+                    .abs()
+                    < near
+            );
             assert!(support::is_ccw(&after));
         }
     }
@@ -134,7 +138,8 @@ fn no_sweep_at_all_leaves_the_mesh_as_it_is() {
             let outcome = run(&smoother, &options, backend);
             assert_eq!((outcome.stop, outcome.sweeps, outcome.best_sweep), (Stop::MaxSweeps, 0, 0));
             assert_eq!(outcome.points, mesh.points);
-            let f = smoother.quality(&mesh.points).unwrap().f(options.scheme.base());
+            let f =
+                Quality::of(&mesh.points, smoother.topology()).unwrap().f(options.scheme.base());
             assert!((history(&outcome, options.scheme.base())[0] / f - 1.0).abs() < 1e-6);
         }
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use gpu_smooth::{
     Backend, Checkpoint, CheckpointPolicy, Goal, Mesh, Method, Metric, Options, Outcome, Progress,
-    Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, options::WorstBy,
+    Quality, Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, options::WorstBy,
 };
 
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
@@ -265,7 +265,9 @@ fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
     for scheme in ["imr", "edge+imr"] {
         let options = Options { scheme: super::scheme(scheme), ..Options::default() };
         let on_cpu = smoother.run(&options).on(cpu).block().unwrap();
-        let f = |o: &Outcome| smoother.quality(&o.points).unwrap().f(options.scheme.base());
+        let f = |o: &Outcome| {
+            Quality::of(&o.points, smoother.topology()).unwrap().f(options.scheme.base())
+        };
         for (left_on, goes_on_on) in [(gpu, cpu), (cpu, gpu)] {
             let mut all = All::default();
             smoother

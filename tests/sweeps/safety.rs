@@ -1,7 +1,7 @@
 //! What a run must never do: invert a triangle, move a fixed vertex, or leave a sliver.
 
 use crate::{all_schemes, backends, name, perturbed, plate, run, support, with_points};
-use gpu_smooth::{Mesh, Metric, Options, Smoother, Stopping};
+use gpu_smooth::{Mesh, Metric, Options, Quality, Smoother, Stopping};
 
 /// A strongly perturbed plate with some fixed vertices inside, and some vertices that no triangle uses.
 fn held() -> Mesh {
@@ -84,15 +84,15 @@ fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
     let mut mesh = even.clone();
     mesh.points.iter_mut().for_each(|p| *p = graded(*p));
     let smoother = Smoother::new(&mesh).unwrap();
-    let before = smoother.quality(&mesh.points).unwrap().worst_movable_imr;
+    let before = Quality::of(&mesh.points, smoother.topology()).unwrap().worst_movable_imr;
     assert!(before < 10.0, "{before}");
     for metric in [Metric::Edge, Metric::Area, Metric::Rms] {
         for backend in backends() {
             let options = Options { scheme: metric.into(), max_sweeps: 100, ..Options::default() };
             let outcome = run(&smoother, &options, backend);
-            let after = smoother.quality(&outcome.points).unwrap();
+            let after = Quality::of(&outcome.points, smoother.topology()).unwrap();
             let label = format!("{metric} on the {}", name(backend));
-            let start = smoother.quality(&mesh.points).unwrap().f(metric);
+            let start = Quality::of(&mesh.points, smoother.topology()).unwrap().f(metric);
             assert!(after.f(metric) < start, "{label} does nothing");
             let worst = after.worst_movable_imr;
             assert!(worst <= before * (1.0 + 1e-4), "{label}: {worst} from {before}");
@@ -162,7 +162,8 @@ fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
     for backend in backends() {
         let outcome = run(&smoother, &Options::default(), backend);
         assert!(support::is_ccw(&with_points(&mesh, &outcome.points)), "on the {}", name(backend));
-        let f = |points: &[[f64; 2]]| smoother.quality(points).unwrap().f(Metric::Imr);
+        let f =
+            |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(Metric::Imr);
         let (before, after) = (f(&mesh.points), f(&outcome.points));
         assert!(after <= before, "on the {}: {after} from {before}", name(backend));
     }

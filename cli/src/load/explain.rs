@@ -267,13 +267,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
         MeshError::OutOfRange { .. } => {
             CliError::input(format!("{path}: {error}")).with_remedy("Write the mesh in another unit")
         }
-        // The readers refuse such meshes, and the command does not ask for such runs.
-        MeshError::Empty
-        | MeshError::TooLarge { .. }
-        | MeshError::IndexOutOfRange { .. }
-        | MeshError::RepeatedVertex { .. }
-        | MeshError::PointCount { .. }
-        | MeshError::ValueCount { .. }
-        | MeshError::BoundNotANumber => CliError::input(format!("{path}: {error}")),
+        // The readers refuse other meshes, and the command does not ask for such runs.
+        _ => CliError::input(format!("{path}: {error}")),
     }
 }

@@ -158,7 +158,7 @@ fn told(smoother: &Smoother<'_>, outcome: Outcome) -> Result<Run, SmoothError> {
         before: f(outcome.history.first()).unwrap_or(f64::NAN),
         after: smoother.f(Metric::Imr, &outcome.points)?,
         sweeps: outcome.sweeps,
-        inverted: smoother.quality(&outcome.points)?.inverted,
+        inverted: Quality::of(&outcome.points, smoother.topology())?.inverted,
         points: single(&outcome.points),
     })
 }

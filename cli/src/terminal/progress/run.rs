@@ -213,8 +213,8 @@ impl State {
                 let figures = format!("f {f:.7}  {speed}  {}", told(began.elapsed().as_secs_f64()));
                 match phase {
                     Phase::Reference => format!("finding the optimum: sweep {sweep}  {figures}"),
-                    Phase::Smoothing => format!("sweep {sweep}/{}  {figures}", self.max_sweeps),
                     Phase::Improving => format!("improving the worst triangles: f {f:.7}"),
+                    _ => format!("sweep {sweep}/{}  {figures}", self.max_sweeps),
                 }
             }
             (stage, _) => {
