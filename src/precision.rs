@@ -40,7 +40,7 @@ impl Precision {
     }
 
     /// The name of the precision in checkpoints.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Precision::Single => "single",
             Precision::Double => "double",

@@ -183,6 +183,20 @@ impl Sliding {
         })
     }
 
+    /// Whether each vertex that slides is between its neighbors on the curve, and every other vertex where it was given.
+    pub(crate) fn is_in_order(&self, params: &Params) -> bool {
+        self.tracks.iter().zip(params).all(|(track, params)| {
+            let is_in_order = |k: usize| match track.slides(k) {
+                true => {
+                    let Window { low, at, high } = track.window(params, k);
+                    low < at && at < high
+                }
+                false => params[k] == track.start()[k],
+            };
+            (0..track.count()).all(is_in_order)
+        })
+    }
+
     /// Returns the largest distance of the lines between vertices from those between the given positions, in the unit
     /// of the mesh.
     pub(crate) fn off(&self, params: &Params) -> f64 {

@@ -142,6 +142,7 @@ impl Stage for SlideStage<'_> {
     fn restore(&mut self, host: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()> {
         self.count = from.count()?;
         self.params = read_params(&self.params, from)?;
+        self.sliding.is_in_order(&self.params).then_some(())?;
         self.memory = Acceleration::restored(&self.params, host.positions.len(), from)?;
         self.rule.restore(from)?;
         Some(())

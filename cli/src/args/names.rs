@@ -74,8 +74,8 @@ pub(crate) fn method_help() -> String {
     let uncorrected = either(&metrics(|metric| !metric.supports_multilevel()));
     format!(
         "Sweeps corrected from coarser levels of the mesh, by all metrics but {uncorrected} (multilevel), over-relaxed sweeps \
-         (relaxed), the plain sweeps of Park & Shontz, as relaxed with --omega 1 (paper), or the first of these that the other \
-         options allow (auto)"
+         (relaxed), or the plain sweeps of Park & Shontz (paper). auto takes relaxed with --omega, paper with --inner or --derivatives, \
+         and otherwise multilevel where the scheme allows corrections"
     )
 }
 

@@ -98,14 +98,14 @@ pub(crate) struct SmoothArgs {
         help = names::method_help()
     )]
     pub(crate) method: MethodChoice,
-    /// Over-relaxation factor, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
+    /// Over-relaxation factor of --method relaxed, above 0 and below 2 [default: by metric, see `gpu-smooth metrics`; 1 if
     /// metrics alternate]
     #[arg(long, value_name = "W", help_heading = "Method", value_parser = parse::omega, allow_negative_numbers = true)]
     pub(crate) omega: Option<f64>,
-    /// Newton steps per visit of a vertex
+    /// Newton steps per visit of a vertex, by --method paper
     #[arg(long, default_value_t = 1, value_name = "N", help_heading = "Method", value_parser = clap::value_parser!(u32).range(1..=1000), allow_negative_numbers = true)]
     pub(crate) inner: u32,
-    /// How metrics are differentiated; finite differences only serve to test the paper's cost model
+    /// How --method paper differentiates metrics; finite differences only serve to test the paper's cost model
     #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
     pub(crate) derivatives: DerivativesChoice,
     /// The exponent of the p-norm that stands for edge in Newton steps: 16 throughout (fixed), or doubled from 2 up to 8192 (continued;

@@ -319,6 +319,6 @@ mod tests {
         let text8 = precision(mesh_io::Precision::Text8);
         assert_eq!(text8.rounded(0.123_456_789), mesh_io::Precision::Text8.rounded(0.123_456_789));
         assert_ne!(text8, precision(mesh_io::Precision::Text16));
-        assert_eq!(format!("{text8:?}"), "Text8");
+        assert_eq!(text8.name(), "Text8");
     }
 }
