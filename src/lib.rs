@@ -28,8 +28,8 @@
 //!
 //! A `Gpu` is opened once and serves every mesh. A [`Smoother`] is one prepared mesh, and serves any number of runs
 //! while the triangles stay the same. A run is one call of [`Smoother::run`] with [`Options`], and returns an
-//! [`Outcome`]. An [`Interpolation`] takes data of vertices to their new positions. Vertices listed in [`Mesh::fixed`] do
-//! not move; [`select`] helps to list them. [`Measured`] evaluates triangles by each [`Measure`] of the field, and
+//! [`Outcome`]. An [`Interpolation`](interpolate::Interpolation) takes data of vertices to their new positions. Vertices listed in [`Mesh::fixed`] do
+//! not move; [`select`] helps to list them. [`Measured`](measure::Measured) evaluates triangles by each [`Measure`](measure::Measure) of the field, and
 //! [`Quality`] compares a mesh before and after smoothing. The crate `mesh-io` reads and writes mesh files.
 //!
 //! The feature `gpu`, which is on by default, adds the GPU engine: `Gpu`, all else that computes on a device, and the

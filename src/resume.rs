@@ -74,11 +74,10 @@ fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use std::ops::ControlFlow;
 
     use super::*;
     use crate::run::checksum::crc32;
-    use crate::run::{CheckpointPolicy, Progress, Stop};
+    use crate::run::{CheckpointPolicy, Stop};
     use crate::{Backend, GpuError, Outcome, Quality, Slide, Smoother, topology};
 
     /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
@@ -102,10 +101,6 @@ mod tests {
             self.told.push(error.clone());
             self.goes_on
         }
-    }
-
-    fn go_on(_: &Progress) -> ControlFlow<()> {
-        ControlFlow::Continue(())
     }
 
     /// A lattice of squares cut in two, with its inner vertices moved.
@@ -144,13 +139,7 @@ mod tests {
         for (backend, scheme) in backends().iter().flat_map(of_each) {
             let options = Options { scheme: scheme.parse().unwrap(), ..Options::default() };
             let mut first = First::default();
-            let whole = smoother
-                .run(&options)
-                .on(backend)
-                .checkpoints(&mut first)
-                .observe(&mut go_on)
-                .block()
-                .unwrap();
+            let whole = smoother.run(&options).on(backend).checkpoints(&mut first).block().unwrap();
             let mut spoiled = first.checkpoint.clone().unwrap();
             let engine = &mut spoiled.saved.engine;
             engine.positions[0].x = 1e200;
@@ -171,7 +160,6 @@ mod tests {
                 .on(backend)
                 .resume(from)
                 .checkpoints(&mut first)
-                .observe(&mut go_on)
                 .block()
                 .unwrap();
             assert_eq!(outcome.stop, Stop::NotFinite, "{scheme}");
@@ -207,13 +195,7 @@ mod tests {
             let options =
                 Options { scheme: scheme.parse().unwrap(), max_sweeps: 30, ..Options::default() };
             let mut kept = Latest::default();
-            smoother
-                .run(&options)
-                .on(backend)
-                .checkpoints(&mut kept)
-                .observe(&mut go_on)
-                .block()
-                .unwrap();
+            smoother.run(&options).on(backend).checkpoints(&mut kept).block().unwrap();
             let bytes = kept.0.unwrap().to_bytes();
             for _ in 0..rounds {
                 let mut hostile = bytes[..bytes.len() - 4].to_vec();
@@ -238,7 +220,6 @@ mod tests {
                     .on(backend)
                     .resume(&from)
                     .checkpoints(&mut none)
-                    .observe(&mut go_on)
                     .block()
                 {
                     Ok(outcome) => {

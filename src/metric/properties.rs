@@ -28,7 +28,7 @@ pub struct Properties {
     /// The largest inverse mean ratio that the shape guard lets a step leave, unless the patch had a worse one
     /// before; see [`Plan::shape_guard`](crate::internal::Plan::shape_guard). Infinite if the metric has a barrier.
     pub shape_guard: f64,
-    /// The default over-relaxation in runs by this metric alone; see [`Options::omega`](crate::Options::omega).
+    /// The default over-relaxation in runs by this metric alone; see [`Relaxed::omega`](crate::options::Relaxed::omega).
     pub omega: f64,
     /// Whether sweeps by this metric alone can be corrected from coarser levels; see
     /// [`Method::Multilevel`](crate::Method::Multilevel).

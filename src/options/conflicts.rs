@@ -58,6 +58,7 @@ pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::Encoded, Feature::MaxMove, WHOLE_RUN),
     row(Feature::Encoded, Feature::KeepAltitude, WHOLE_RUN),
     row(Feature::Encoded, Feature::ImproveWorst, WHOLE_RUN),
+    row(Feature::Encoded, Feature::Goal, WHOLE_RUN),
 ];
 
 /// Returns the error of the first row of the table whose two features both are in `features`.

@@ -2,7 +2,7 @@
 
 use crate::options::method::{Derivatives, Method, Paper, Relaxed};
 use crate::options::norm::PNormExponent;
-use crate::options::options::Options;
+use crate::options::run_options::Options;
 use crate::options::stopping::{Goal, Stopping};
 
 impl Options {

@@ -48,7 +48,7 @@ pub struct Progress {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Phase {
-    /// The search for the optimum of [`None`](crate::None).
+    /// The search for the optimum, if [`Goal::desired`](crate::Goal::desired) is `None`.
     Reference,
     /// The smoothing of the mesh.
     Smoothing,

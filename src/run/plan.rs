@@ -27,7 +27,7 @@ pub struct Plan {
     pub track_all: bool,
     /// The shape guard of metrics without a barrier: no step may leave a triangle with an inverse mean ratio above
     /// this, unless its patch already had a worse one. If the metric's own
-    /// [`shape_guard`](crate::Properties::shape_guard) is smaller, that is used instead.
+    /// [`shape_guard`](crate::metric::Properties::shape_guard) is smaller, that is used instead.
     pub shape_guard: f64,
     /// The guard of all metrics: no step may leave a triangle with an inverse mean ratio above this, unless its patch
     /// already had a worse one. Infinite for no guard.

@@ -1,8 +1,8 @@
 //! Untangling: moving free vertices until no triangle is inverted or flat.
 //!
-//! Sweeps of Newton steps lower an [`energy`] that is finite for inverted triangles too. At first only vertices near bad
+//! Sweeps of Newton steps lower an `energy` that is finite for inverted triangles too. At first only vertices near bad
 //! triangles move, then more. If that does not do it, the free vertices are put at the means of their neighbors, and each
-//! sweep is followed by a step from coarser levels. Then the mesh is [cut](cuts) into pieces in which means are a good start.
+//! sweep is followed by a step from coarser levels. Then the mesh is cut (`cuts`) into pieces in which means are a good start.
 
 mod cuts;
 pub(crate) mod energy;

@@ -94,7 +94,7 @@ fn a_run_goes_on_on_the_cpu_when_a_device_of_opengl_is_lost() {
     let device = gpu.device().clone();
     let options =
         Options { stopping: Stopping::Tolerance(0.0), max_sweeps: 20, ..Options::default() };
-    let mut observe = |progress: &Progress| {
+    let observe = |progress: &Progress| {
         if progress.sweep >= 4 {
             device.destroy();
         }
@@ -105,7 +105,7 @@ fn a_run_goes_on_on_the_cpu_when_a_device_of_opengl_is_lost() {
         .run(&options)
         .on(&backend)
         .checkpoints(&mut GoesOn)
-        .observe(&mut observe)
+        .observe(observe)
         .block()
         .unwrap();
     assert!(outcome.device_fault.is_some());

@@ -69,8 +69,8 @@ fn a_run_polled_by_the_application_is_the_blocking_run() {
     let backend = Backend::Gpu(app.another_gpu());
     for options in cases() {
         let expected = smoother.run(&options).on(&backend).block().unwrap();
-        let mut observe = go_on;
-        let future = smoother.run(&options).on(&on_app).observe(&mut observe);
+        let observe = go_on;
+        let future = smoother.run(&options).on(&on_app).observe(observe);
         let (found, frames) = drive(app.device(), future);
         assert_same(&expected, &found.unwrap());
         assert!(frames > 0, "the future blocked the thread");
@@ -86,9 +86,7 @@ fn futures_can_move_between_threads() {
     let app = App::new();
     let on_app = Backend::Gpu(app.gpu.clone());
     let (device_mesh, options) = (app.mesh(&mesh), Options::default());
-    is_send(
-        &smoother.run(&options).on(&on_app).observe(&mut |_: &Progress| ControlFlow::Break(())),
-    );
+    is_send(&smoother.run(&options).on(&on_app).observe(|_: &Progress| ControlFlow::Break(())));
     let observe: &mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send) = &mut go_on;
     is_send(&smoother.run(&options).on(&on_app).observe(observe));
     is_send(&smoother.run(&options).on(&on_app).into_future());
@@ -170,10 +168,10 @@ fn two_runs_at_once_on_one_device_do_as_alone() {
         first.run(&options).on(&backend).block().unwrap(),
         second.run(&other).on(&backend).block().unwrap(),
     ];
-    let (mut a, mut b) = (go_on, go_on);
+    let (a, b) = (go_on, go_on);
     let mut futures = (
-        pin!(first.run(&options).on(&on_app).observe(&mut a).into_future()),
-        pin!(second.run(&other).on(&on_app).observe(&mut b).into_future()),
+        pin!(first.run(&options).on(&on_app).observe(a).into_future()),
+        pin!(second.run(&other).on(&on_app).observe(b).into_future()),
     );
     let mut found = (None, None);
     let both = std::future::poll_fn(|context| {
@@ -241,9 +239,9 @@ fn a_dropped_run_leaves_the_device_usable() {
         Options { stopping: Stopping::Tolerance(0.0), max_sweeps: u32::MAX, ..Options::default() };
     // Dropped before the first poll, at its first wait, and later.
     for polls in [0, 1, 2, 7] {
-        let mut observe = go_on;
+        let observe = go_on;
         let mut future =
-            Box::pin(smoother.run(&endless).on(&on_app).observe(&mut observe).into_future());
+            Box::pin(smoother.run(&endless).on(&on_app).observe(observe).into_future());
         let mut context = Context::from_waker(Waker::noop());
         for _ in 0..polls {
             assert!(future.as_mut().poll(&mut context).is_pending());

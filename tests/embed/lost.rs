@@ -47,19 +47,17 @@ fn a_run_says_that_the_device_was_lost() {
         let app = App::new();
         let backend = Backend::Gpu(app.another_gpu());
         let calls = AtomicU32::new(0);
-        let mut observe = |_: &Progress| {
+        let observe = |_: &Progress| {
             if calls.fetch_add(1, Ordering::Relaxed) == 1 {
                 app.device().destroy();
             }
             ControlFlow::Continue(())
         };
-        let error =
-            smoother.run(&endless()).on(&backend).observe(&mut observe).block().unwrap_err();
+        let error = smoother.run(&endless()).on(&backend).observe(observe).block().unwrap_err();
         assert_lost(&gpu_error(error));
         assert_eq!(calls.load(Ordering::Relaxed), 2);
         // A later run on the same device fails alike.
-        let error =
-            smoother.run(&endless()).on(&backend).observe(&mut observe).block().unwrap_err();
+        let error = smoother.run(&endless()).on(&backend).observe(observe).block().unwrap_err();
         assert_lost(&gpu_error(error));
     });
 }
@@ -247,9 +245,9 @@ fn a_future_completes_when_the_device_is_lost() {
             let app = App::new();
             let backend = Backend::Gpu(app.gpu.clone());
             let options = endless();
-            let mut observe = |_: &Progress| ControlFlow::Continue(());
+            let observe = |_: &Progress| ControlFlow::Continue(());
             let mut future =
-                Box::pin(smoother.run(&options).on(&backend).observe(&mut observe).into_future());
+                Box::pin(smoother.run(&options).on(&backend).observe(observe).into_future());
             let mut context = Context::from_waker(Waker::noop());
             let mut polls = 0;
             let error = loop {

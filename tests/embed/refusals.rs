@@ -1,6 +1,7 @@
 //! What the library refuses, and the messages. What wgpu itself refuses on the way must not reach the application's error
 //! handler, which [`App`] checks when it is dropped.
 
+use gpu_smooth::Goal;
 use gpu_smooth::{
     Gpu, GpuError, Guard, Mesh, MeshError, Method, Options, SmoothError, Stopping,
     gpu::{DeviceMesh, Sweeps, VertexBuffer},
@@ -248,6 +249,13 @@ fn options_out_of_range_are_refused() {
         (
             Options { max_move: Some(0.5), ..ok() },
             "encoded sweeps does not go with max_move: only a whole run can do this; drop it, or do a whole run",
+        ),
+        (
+            Options {
+                stopping: Stopping::Goal(Goal { fraction: 0.9, desired: Some(1.0) }),
+                ..ok()
+            },
+            "encoded sweeps does not go with Stopping::Goal: only a whole run can do this; drop it, or do a whole run",
         ),
         (
             Options { guard: Guard::Worst, ..ok() },

@@ -6,7 +6,6 @@ use gpu_smooth::{
     internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu},
     options::{Derivatives, PNormExponent, Paper},
 };
-use std::ops::ControlFlow;
 
 fn plate() -> Mesh {
     let outline = support::Outline::parse(include_str!("../../meshes/plate.outline")).unwrap();
@@ -64,8 +63,7 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
             let method = Method::Paper(Paper { derivatives, ..Paper::default() });
             let stopping = Stopping::Tolerance(1e-8);
             let options = Options { scheme: metric.into(), method, stopping, ..Options::default() };
-            let go_on = &mut |_: &_| ControlFlow::Continue(());
-            let outcome = smoother.run(&options).on(backend).observe(go_on).block().unwrap();
+            let outcome = smoother.run(&options).on(backend).block().unwrap();
             Quality::of(&outcome.points, smoother.topology()).unwrap().f(metric)
         };
         let exact = f(Derivatives::Analytic, &backends[0]);

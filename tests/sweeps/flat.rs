@@ -1,7 +1,6 @@
 //! Triangles so flat that single precision cannot tell them from inverted ones.
 
 use std::future::Future;
-use std::ops::ControlFlow;
 use std::pin::pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -132,9 +131,8 @@ fn an_awaited_run_yields_between_the_sweeps_on_the_cpu() {
     assert!(opening > 1, "{opening} sweeps");
     let wakes = Arc::new(Wakes::default());
     let waker = Waker::from(Arc::clone(&wakes));
-    let go_on = &mut |_: &gpu_smooth::Progress| ControlFlow::Continue(());
     let backend = Backend::Gpu(gpu);
-    let mut future = pin!(smoother.run(&options).on(&backend).observe(go_on).into_future());
+    let mut future = pin!(smoother.run(&options).on(&backend).into_future());
     let mut yields = 0;
     loop {
         let before = wakes.0.load(Ordering::SeqCst);

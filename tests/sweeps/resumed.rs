@@ -25,10 +25,6 @@ impl CheckpointPolicy for All {
     }
 }
 
-fn go_on(_: &Progress) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
 #[track_caller]
 fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
     let bits = |outcome: &Outcome| -> Vec<[u64; 2]> {
@@ -47,30 +43,29 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
 
 /// Continues a run from every `every`th checkpoint: each time it must end with the same bits.
 fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend, every: usize) {
+    assert_goes_on_as("", smoother, options, backend, every);
+}
+
+/// Does the same for a run whose failures are told by `label`.
+fn assert_goes_on_as(
+    label: &str,
+    smoother: &Smoother<'_>,
+    options: &Options,
+    backend: &Backend,
+    every: usize,
+) {
     let whole = smoother.run(options).on(backend).block().unwrap();
     let mut all = All::default();
-    let kept = smoother
-        .run(options)
-        .on(backend)
-        .checkpoints(&mut all)
-        .observe(&mut go_on)
-        .block()
-        .unwrap();
-    let what = format!("{} on the {}", options.scheme, name(backend));
+    let kept = smoother.run(options).on(backend).checkpoints(&mut all).block().unwrap();
+    let what = format!("{label} {} on the {}", options.scheme, name(backend));
     assert_same(&whole, &kept, &what);
     assert!(!all.0.is_empty(), "{what}: no checkpoint");
     for checkpoint in all.0.iter().step_by(every) {
         let what = format!("{what}, from sweep {}", checkpoint.sweeps());
         let mut none = All::default();
         let from = Some(checkpoint);
-        let end = smoother
-            .run(options)
-            .on(backend)
-            .resume(from)
-            .checkpoints(&mut none)
-            .observe(&mut go_on)
-            .block()
-            .unwrap();
+        let end =
+            smoother.run(options).on(backend).resume(from).checkpoints(&mut none).block().unwrap();
         assert_same(&whole, &end, &what);
     }
 }
@@ -119,10 +114,9 @@ fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
             smoother.set_target_field(field.clone()).unwrap();
         }
         for backend in backends() {
-            println!("{name_of_case} on the {}", name(backend));
             let options = Options { max_sweeps: 20, ..options.clone() };
             let every = if matches!(backend, Backend::Cpu) { 1 } else { 4 };
-            assert_goes_on(&smoother, &options, backend, every);
+            assert_goes_on_as(name_of_case, &smoother, &options, backend, every);
         }
     }
 }
@@ -162,13 +156,7 @@ fn a_hard_run_goes_on_to_the_same_bits() {
         for backend in backends() {
             let options = Options::default();
             let mut all = All::default();
-            let kept = smoother
-                .run(&options)
-                .on(backend)
-                .checkpoints(&mut all)
-                .observe(&mut go_on)
-                .block()
-                .unwrap();
+            let kept = smoother.run(&options).on(backend).checkpoints(&mut all).block().unwrap();
             assert!(kept.corrections > 2, "{} corrections", kept.corrections);
             // Secant pairs make a checkpoint twice as large.
             let sizes: Vec<usize> = all.0.iter().map(|one| one.to_bytes().len()).collect();
@@ -190,13 +178,7 @@ fn a_resumed_run_does_not_seek_its_goal_again() {
     let stopping = Stopping::Goal(Goal { fraction: 0.999, desired: None });
     let options = Options { stopping, method: Method::RELAXED, ..Options::default() };
     let mut all = All::default();
-    let whole = smoother
-        .run(&options)
-        .on(&Backend::Cpu)
-        .checkpoints(&mut all)
-        .observe(&mut go_on)
-        .block()
-        .unwrap();
+    let whole = smoother.run(&options).on(&Backend::Cpu).checkpoints(&mut all).block().unwrap();
     assert_eq!(whole.stop, Stop::Reached);
     let mut references = 0;
     let mut observe = |progress: &Progress| {
@@ -231,7 +213,7 @@ fn a_run_that_was_canceled_goes_on() {
     let options = Options::default();
     let whole = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
     let mut last = Last(None);
-    let mut cancel = |progress: &Progress| match progress.sweep {
+    let cancel = |progress: &Progress| match progress.sweep {
         0..4 => ControlFlow::Continue(()),
         _ => ControlFlow::Break(()),
     };
@@ -239,7 +221,7 @@ fn a_run_that_was_canceled_goes_on() {
         .run(&options)
         .on(&Backend::Cpu)
         .checkpoints(&mut last)
-        .observe(&mut cancel)
+        .observe(cancel)
         .block()
         .unwrap();
     assert_eq!(left.stop, Stop::Canceled);
@@ -250,7 +232,6 @@ fn a_run_that_was_canceled_goes_on() {
         .on(&Backend::Cpu)
         .resume(from.as_ref())
         .checkpoints(&mut last)
-        .observe(&mut go_on)
         .block()
         .unwrap();
     assert_same(&whole, &end, "canceled");
@@ -270,13 +251,7 @@ fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
         };
         for (left_on, goes_on_on) in [(gpu, cpu), (cpu, gpu)] {
             let mut all = All::default();
-            smoother
-                .run(&options)
-                .on(left_on)
-                .checkpoints(&mut all)
-                .observe(&mut go_on)
-                .block()
-                .unwrap();
+            smoother.run(&options).on(left_on).checkpoints(&mut all).block().unwrap();
             let from = &all.0[all.0.len() / 2];
             assert_eq!(from.adapter().is_some(), matches!(left_on, Backend::Gpu(_)));
             let mut all = All::default();
@@ -285,7 +260,6 @@ fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
                 .on(goes_on_on)
                 .resume(from)
                 .checkpoints(&mut all)
-                .observe(&mut go_on)
                 .block()
                 .unwrap();
             assert!(all.0.iter().all(|checkpoint| checkpoint.adapter().is_none()));
@@ -300,13 +274,7 @@ fn a_checkpoint_of_another_run_is_refused() {
     let smoother = Smoother::new(&mesh).unwrap();
     let options = Options::default();
     let mut all = All::default();
-    smoother
-        .run(&options)
-        .on(&Backend::Cpu)
-        .checkpoints(&mut all)
-        .observe(&mut go_on)
-        .block()
-        .unwrap();
+    smoother.run(&options).on(&Backend::Cpu).checkpoints(&mut all).block().unwrap();
     let from = all.0.first();
     let refused = |smoother: &Smoother<'_>, options: &Options| {
         let mut none = All::default();
@@ -315,7 +283,6 @@ fn a_checkpoint_of_another_run_is_refused() {
             .on(&Backend::Cpu)
             .resume(from)
             .checkpoints(&mut none)
-            .observe(&mut go_on)
             .block()
             .unwrap_err();
         assert!(matches!(error, SmoothError::Checkpoint(_)), "{error:?}");
@@ -351,13 +318,7 @@ fn keeping_positions_changes_no_bit() {
             let options =
                 Options { scheme: super::scheme(scheme), max_sweeps: 40, ..Options::default() };
             let whole = smoother.run(&options).on(backend).block().unwrap();
-            let kept = smoother
-                .run(&options)
-                .on(backend)
-                .checkpoints(&mut Often)
-                .observe(&mut go_on)
-                .block()
-                .unwrap();
+            let kept = smoother.run(&options).on(backend).checkpoints(&mut Often).block().unwrap();
             assert_same(&whole, &kept, scheme);
         }
     }

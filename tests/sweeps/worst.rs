@@ -143,8 +143,8 @@ fn triangles_that_cannot_be_improved_stay() {
     let mesh = distorted();
     let smoother = Smoother::new(mesh).unwrap();
     let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
-    let mut leave = |_: &gpu_smooth::Progress| std::ops::ControlFlow::Break(());
-    let outcome = smoother.run(&options).on(&Backend::Cpu).observe(&mut leave).block().unwrap();
+    let leave = |_: &gpu_smooth::Progress| std::ops::ControlFlow::Break(());
+    let outcome = smoother.run(&options).on(&Backend::Cpu).observe(leave).block().unwrap();
     assert_eq!(outcome.improved, None);
 }
 

@@ -81,9 +81,9 @@ impl Sweeps {
     }
 
     /// Binds options to a mesh like [`new`](Self::new), but the sweeps end by the stop rule, judged on the device: once
-    /// f is within [`Options::tolerance`] of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing.
-    /// [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells whether they have ended. The goal of
-    /// `options` has no effect. Sweeps that do nothing take a GPU next to no time; a software driver, which starts
+    /// f is within [`Stopping::Tolerance`](crate::Stopping::Tolerance) of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing.
+    /// [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells whether they have ended. Sweeps
+    /// that do nothing take a GPU next to no time; a software driver, which starts
     /// every kernel all the same, takes a fifth of the usual time for them.
     ///
     /// The sweeps begin again when the application changes the mesh: when an import finds a vertex that was moved,
