@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::cpu::lanes::{LANES, Lanes, Mask, Points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Dual, Formulas, Real, Smoothing, TargetMap};
+use crate::metric::{Corner, Dual, Formulas, Own, Real, Smoothing, TargetMap};
 
 /// The one-rings of four free vertices with the same number of neighbors. If `MAPPED`, triangles are transformed by
 /// target maps.
@@ -112,7 +112,7 @@ impl<'a, S: Simd, const MAPPED: bool> Patches<'a, S, MAPPED> {
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.degree() {
             let corner = self.corner(i, at);
-            let shown = formulas.expansion(&corner, smoothing);
+            let shown = formulas.expansion(&corner, Own, smoothing);
             sum = sum + if MAPPED { self.maps[i].pull_back(shown) } else { shown };
         }
         sum
