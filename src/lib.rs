@@ -60,6 +60,7 @@ mod mesh;
 mod metric;
 mod outcome;
 mod parallel;
+mod patch;
 mod periodic;
 mod precision;
 mod quality;

@@ -3,11 +3,10 @@
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
-use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_lanes};
-use crate::cpu::patch::{of_corners, points};
 use crate::layout::Problem;
 use crate::metric::{Corner, Formulas, Metric, Smoothing, TargetMap};
 use crate::parallel::{collect, map_parts};
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, target_maps, with_lanes};
 use crate::run::Step;
 
 /// Number of triangles of one task.
@@ -134,9 +133,9 @@ fn map_of<S: Simd>(
     [t, u, v, w]: &[[u32; 3]; LANES],
 ) -> TargetMap<Lanes<S>> {
     TargetMap::mean([
-        of_corners(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
-        of_corners(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
-        of_corners(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
+        target_maps(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
+        target_maps(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
+        target_maps(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
     ])
 }
 

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::run::{Step, line_search};
+use crate::patch::{SUFFICIENT_DECREASE, SearchRule};
+use crate::run::Step;
 use crate::slide::curve::{Curve, Place};
 use crate::slide::patch::Patch;
 use crate::slide::side::Side;
@@ -119,15 +120,15 @@ pub(crate) fn visit(
         })
     };
     let mut length = 1.0;
-    for _ in 0..line_search::TRIALS {
+    for _ in 0..SearchRule::SWEEP.trials {
         let to = at + way * length;
-        let wanted = line_search::SUFFICIENT_DECREASE * slope * way * length;
+        let wanted = SUFFICIENT_DECREASE * slope * way * length;
         match objective(to) {
             Some(value) if value <= most + wanted => {
                 return (to != at && low < to && to < high).then_some(to);
             }
-            Some(_) => length *= line_search::SHORTEN,
-            None => length *= line_search::SHORTEN_INFEASIBLE,
+            Some(_) => length *= SearchRule::SWEEP.shorten,
+            None => length *= SearchRule::SWEEP.shorten_infeasible,
         }
     }
     None

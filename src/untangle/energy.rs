@@ -12,9 +12,6 @@ use crate::metric::{Dual, Real};
 /// S of an equilateral triangle in units of its area.
 const IDEAL: f64 = 4.0 * 1.732_050_807_568_877_2;
 
-/// The smallest eigenvalue of a Hessian that is left, as a share of the largest.
-pub(super) const EIGENVALUE_FLOOR: f64 = 1e-3;
-
 /// χ(ε, d) and √(ε² + d²), without cancellation.
 #[inline(always)]
 fn regularized<T: Real>(epsilon: f64, d: T) -> (T, T) {
@@ -88,7 +85,7 @@ impl<T: Real> Corner<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::descent;
+    use crate::patch::{Direction, SearchRule, newton_direction};
     use glam::DVec2;
 
     fn corner(at: DVec2) -> Corner<f64> {
@@ -140,10 +137,12 @@ mod tests {
     fn the_direction_descends_wherever_the_energy_has_a_slope() {
         for at in [[0.0, 0.0], [0.75, 0.625], [1.5, 1.5], [4.0, 3.0], [0.9, 0.1]].map(DVec2::from) {
             let found = corner(at).expansion(0.1);
-            let gradient = DVec2::from(found.gradient);
-            assert!(descent(gradient, found.hessian, EIGENVALUE_FLOOR).dot(gradient) < 0.0);
+            let direction = newton_direction(&found, SearchRule::UNTANGLE.eigenvalue_floor);
+            let Direction { vector, slope, descends } = direction;
+            let expected = DVec2::from(vector).dot(found.gradient.into());
+            assert!(descends && slope < 0.0 && (slope / expected - 1.0).abs() < 1e-12);
         }
-        let flat = descent(DVec2::ZERO, [1.0, 0.0, 1.0], EIGENVALUE_FLOOR);
-        assert_eq!(flat, DVec2::ZERO);
+        let flat = Dual { value: 1.0, gradient: [0.0; 2], hessian: [1.0, 0.0, 1.0] };
+        assert!(!newton_direction(&flat, SearchRule::UNTANGLE.eigenvalue_floor).descends);
     }
 }

@@ -7,8 +7,9 @@ use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::Mesh;
+use crate::patch::SearchRule;
 use crate::precision::Precision;
-use crate::run::{Step, StopRule, line_search};
+use crate::run::{Step, StopRule};
 use crate::slide::{Fan, Params, Patch, Sliding};
 use crate::topology::Topology;
 use crate::whole::host::Host;
@@ -133,13 +134,13 @@ impl<'s> MoveLimitStage<'s> {
                 false => f64::INFINITY,
             };
             let mut length = 1.0;
-            for _ in 0..line_search::TRIALS {
+            for _ in 0..SearchRule::SWEEP.trials {
                 let to = self.within(v, here + way * length);
                 if patch.objective(to, limit).is_some_and(|value| value < sum.value) {
                     host.positions[v] = to;
                     break;
                 }
-                length *= line_search::SHORTEN;
+                length *= SearchRule::SWEEP.shorten;
             }
         }
     }

@@ -7,7 +7,8 @@ use glam::DVec2;
 use crate::layout::Problem;
 use crate::measure::altitude;
 use crate::metric::{Corner, Dual, TargetMap, descent};
-use crate::run::{Step, line_search};
+use crate::patch::{SUFFICIENT_DECREASE, SearchRule};
+use crate::run::Step;
 use crate::worst::badness::{Badness, corner, is_sound};
 
 /// The log2 of the exponents of the p-norms that are lowered in turn.
@@ -218,11 +219,11 @@ impl<'a> Patch<'a> {
             return 0.0;
         }
         let mut length = 1.0;
-        for _ in 0..line_search::TRIALS {
+        for _ in 0..SearchRule::SWEEP.trials {
             let to = here + way * length;
             let is_allowed =
                 self.is_allowed(v, to) && (limit.is_infinite() || self.worst_at(v, to) <= limit);
-            let most = sum.value + line_search::SUFFICIENT_DECREASE * slope * length;
+            let most = sum.value + SUFFICIENT_DECREASE * slope * length;
             if is_allowed && value(self, to) <= most {
                 self.positions[v] = to;
                 let neighbor = self.stars[v]
@@ -230,7 +231,7 @@ impl<'a> Patch<'a> {
                     .map_or(here, |side| self.positions[side.ends[0] as usize]);
                 return to.distance(here) / neighbor.distance(here);
             }
-            length *= line_search::SHORTEN;
+            length *= SearchRule::SWEEP.shorten;
         }
         0.0
     }
