@@ -4,7 +4,6 @@
 mod ar;
 mod area;
 mod corner;
-mod descent;
 mod dual;
 mod edge;
 mod edge_slopes;
@@ -22,7 +21,6 @@ mod tmop_80;
 mod tmop_94;
 
 pub use corner::{Corner, InvariantSlopes, Invariants, Slopes};
-pub(crate) use descent::descent;
 pub use dual::{Dual, Real};
 pub(crate) use edge_slopes::{EdgeSlopes, Own};
 pub use properties::Properties;

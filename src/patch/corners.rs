@@ -1,6 +1,7 @@
 //! A patch as a list of weighted corner triangles, and its objective by a metric.
 
 use crate::metric::{Corner, Dual, EdgeSlopes, Formulas, Real, Smoothing};
+use crate::patch::acceptance::{is_positive, is_within};
 use crate::patch::direction::{Direction, newton_direction};
 use crate::patch::newton_step::Objective;
 use crate::patch::numbers::Numbers;
@@ -48,21 +49,8 @@ pub(crate) trait Corners<T: Numbers> {
     /// vertex at `at`.
     #[inline(always)]
     fn is_positive(&self, _: usize, _at: [T; 2], corner: &Corner<T>) -> T::Mask {
-        let area = corner.doubled_area();
-        area.constant(0.0).lt(area)
+        is_positive(corner)
     }
-}
-
-/// Whether the inverse mean ratio of a triangle is at most `max_imr`. The area must be positive.
-#[inline(always)]
-pub(crate) fn is_within<T: Numbers>(
-    formulas: impl Formulas,
-    corner: &Corner<T>,
-    max_imr: T,
-) -> T::Mask {
-    // Both sides are multiplied by the area, as a division costs as much as the rest of the guard.
-    let (numerator, area) = formulas.inverse_mean_ratio(corner);
-    numerator.le(max_imr * area)
 }
 
 /// The sum over a patch of the function that Newton's method minimizes for a metric.

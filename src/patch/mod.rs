@@ -2,19 +2,22 @@
 //! of all searches side by side. The code is generic over `f64` and SIMD lanes, in which four vertices are visited at
 //! once.
 
+mod acceptance;
 mod corners;
 mod direction;
+mod fan;
 pub(crate) mod lanes;
 mod newton_step;
 mod numbers;
 mod ring;
-mod search_rule;
+pub(crate) mod search_rule;
 
-pub(crate) use corners::{Corners, MetricObjective, is_within};
-pub(crate) use direction::{Direction, newton_direction};
+pub(crate) use acceptance::{Circle, is_acceptable, is_kept};
+pub(crate) use corners::{Corners, MetricObjective};
+pub(crate) use direction::Direction;
+#[cfg(test)]
+pub(crate) use direction::newton_direction;
+pub(crate) use fan::{Fan, FanCorner, FanPatch};
 pub(crate) use newton_step::{Objective, newton_step};
-pub(crate) use numbers::{Mask, Numbers};
 pub(crate) use ring::{Rings, Scratch};
-pub(crate) use search_rule::{
-    FLAT_EXPONENT, FLAT_RATIO, LEAST_FLAT, SUFFICIENT_DECREASE, SearchRule,
-};
+pub(crate) use search_rule::SearchRule;

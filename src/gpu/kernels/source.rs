@@ -11,7 +11,9 @@ use crate::gpu::kernels::uniforms::{
 };
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
-use crate::patch::{FLAT_EXPONENT, FLAT_RATIO, LEAST_FLAT, SUFFICIENT_DECREASE, SearchRule};
+use crate::patch::search_rule::{
+    FLAT_EXPONENT, FLAT_RATIO, LEAST_FLAT, SUFFICIENT_DECREASE, SearchRule,
+};
 use crate::run::multilevel::search::{CLOSE, MOST_FIRST};
 use crate::run::multilevel::{LEAST_FIRST, NONE, SMOOTHING};
 use crate::run::secant::LEAST_CURVATURE;
