@@ -1,5 +1,5 @@
 // Visits the free vertices of one color by local feasible Newton steps (Park & Shontz, Section 2.1), the same steps as
-// in src/cpu/newton.rs.
+// in src/patch/newton_step.rs.
 
 // Returns in x the sum of the metric's model over the patch with the vertex moved by d, and in y whether the position
 // is feasible: 0 if a triangle is inverted, has an area that is not finite, or breaks the shape guard, else 1.

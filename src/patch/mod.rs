@@ -11,6 +11,8 @@ mod newton_step;
 mod numbers;
 mod ring;
 pub(crate) mod search_rule;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use acceptance::{Circle, is_acceptable, is_kept};
 pub(crate) use corners::{Corners, MetricObjective};
