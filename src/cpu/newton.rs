@@ -45,7 +45,7 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     at
 }
 
-/// The vertices whose step was so short that their visit is over.
+/// Returns the lanes whose step was so short that the visit ends.
 #[inline(always)]
 fn settled<S: Simd, const MAPPED: bool>(
     rings: &Rings<S, MAPPED>,

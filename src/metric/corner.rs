@@ -71,7 +71,7 @@ impl<T: Real> Corner<T> {
         }
     }
 
-    /// The gradients of the excess and of the area. Moving the vertex changes u by (α, -γ) and v by (γ, α), with
+    /// Gradients of excess and area by the visited vertex. Moving the vertex changes u by (α, -γ) and v by (γ, α), with
     /// γ = w (2β - α) and w = 1/√3. The area is linear.
     #[inline(always)]
     fn gradients(&self, edges: impl EdgeSlopes) -> ([T; 2], [T; 2]) {

@@ -57,13 +57,13 @@ mod tests {
 
     const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
 
-    /// Takes the edges of a quadrilateral's corner to those of a triangle that is equilateral if the corner is that of
-    /// a square. Slopes are taken alike.
+    /// Maps the two edges of a square's corner to two edges of an equilateral triangle. Edges are vectors, so their
+    /// slopes are mapped by the same function.
     fn from_right_angle([a, b]: [f64; 2]) -> [f64; 2] {
         [a, 0.5 * a + HALF_ROOT * b]
     }
 
-    /// The corner of a quadrilateral at the first point, with edges to the other two.
+    /// Returns a quadrilateral's corner at p, with edges to q and r.
     fn corner_of_quadrilateral([p, q, r]: [[f64; 2]; 3]) -> Corner<f64> {
         let [x, y] = [0, 1].map(|axis| from_right_angle([q[axis] - p[axis], r[axis] - p[axis]]));
         Corner { a: [x[0], y[0]], b: [x[1], y[1]], mean_area: 0.6 }

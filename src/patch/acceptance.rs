@@ -1,4 +1,4 @@
-//! Whether triangles may be as a move leaves them.
+//! Acceptance tests of triangles and positions after a move.
 
 use glam::DVec2;
 
@@ -25,8 +25,8 @@ pub(crate) fn is_within<T: Numbers>(
     numerator.le(max_imr * area)
 }
 
-/// Whether a triangle is positive after a move, with an inverse mean ratio that is at most `guard` or no larger than
-/// before.
+/// Whether a moved triangle has positive area, and an inverse mean ratio of at most `guard` or of at most the ratio
+/// `before` the move.
 #[inline(always)]
 pub(crate) fn is_kept<T: Numbers>(
     formulas: impl Formulas,
@@ -66,7 +66,7 @@ pub(crate) fn is_acceptable<T: Numbers>(
     acceptable
 }
 
-/// The circle in which a vertex may be, with an infinite radius for no bound.
+/// A circle that limits the moves of a vertex; an infinite radius stands for no limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circle {
     pub(crate) center: DVec2,

@@ -7,7 +7,7 @@ use crate::patch::newton_step::Objective;
 use crate::patch::numbers::Numbers;
 
 /// The corner triangles of a patch: those whose edges depend on the visited vertex, or on one vertex in each lane. A
-/// triangle of a mesh has one corner in the patch of each of its vertices, a quadrilateral three.
+/// mesh triangle contributes one corner to the patch of each vertex, a quadrilateral contributes three.
 pub(crate) trait Corners<T: Numbers> {
     /// The type of the slopes of edges by the position of the visited vertex.
     type Slopes: EdgeSlopes;
@@ -45,8 +45,8 @@ pub(crate) trait Corners<T: Numbers> {
         newton_direction(sum, eigenvalue_floor)
     }
 
-    /// Whether a corner is acceptable but for its shape: neither inverted nor flat. `corner` is the corner `i` with the
-    /// vertex at `at`.
+    /// Whether the triangle of corner `i` is neither inverted nor flat. `corner` is the result of
+    /// [`corner`](Self::corner) for `i` and `at`.
     #[inline(always)]
     fn is_positive(&self, _: usize, _at: [T; 2], corner: &Corner<T>) -> T::Mask {
         is_positive(corner)

@@ -3,12 +3,12 @@
 use crate::metric::{Dual, Real};
 use crate::patch::numbers::Numbers;
 
-/// The direction of a search: for each vertex a vector, and the slope of the objective along the vector.
+/// A search direction, with the objective's slope. In lanes, each vertex has its own direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Direction<T: Numbers> {
     /// The vector to the end of a step of length 1.
     pub(crate) vector: [T; 2],
-    /// The derivative of the objective by the length of the step.
+    /// Derivative of the objective along `vector`; negative for a descent.
     pub(crate) slope: T,
     /// Whether the search may begin. False where the objective is flat or not finite.
     pub(crate) descends: T::Mask,

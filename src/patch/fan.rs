@@ -9,7 +9,7 @@ use crate::patch::corners::Corners;
 use crate::topology::Topology;
 use crate::topology::predicates::is_positive;
 
-/// The triangles at a vertex, each with the vertex itself as its first corner.
+/// Vertex numbers of the triangles around one vertex. Each triangle starts with the common vertex.
 #[derive(Clone, Debug)]
 pub(crate) struct Fan(Vec<[u32; 3]>);
 
@@ -34,8 +34,8 @@ impl Fan {
         self.0.first().map_or(0, |corners| corners[0])
     }
 
-    /// Reads the positions and target maps of the triangles. `min_altitude` is the least altitude that a triangle may
-    /// have, normalized; 0 for no bound.
+    /// Gathers positions and target maps of the triangles. Trials with an altitude below `min_altitude` (normalized; 0 for
+    /// no limit) will be infeasible.
     pub(crate) fn patch(
         &self,
         problem: &Problem,
@@ -74,7 +74,7 @@ pub(crate) struct FanPatch {
     pub(crate) corners: Vec<FanCorner>,
     /// Mean area of the mesh's triangles, after their target maps are applied.
     pub(crate) mean_area: f64,
-    /// The least altitude that a triangle may have, normalized; 0 for no bound.
+    /// Lower limit of triangles' altitudes, normalized; 0 for no limit.
     pub(crate) min_altitude: f64,
 }
 

@@ -162,7 +162,7 @@ fn apart<S: Simd, R>(simd: S, function: impl FnOnce() -> R) -> R {
     simd.vectorize(function)
 }
 
-/// The positions of some vertices, one in each lane.
+/// Gathers the positions of four vertices into lanes.
 #[inline(always)]
 pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANES]) -> Points<S> {
     let [a, b, c, d] = vertices;
@@ -171,7 +171,7 @@ pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANE
     [Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]), Lanes::simd_from(simd, [a.y, b.y, c.y, d.y])]
 }
 
-/// The target maps of some vertices, one in each lane; the identity in a mesh without targets.
+/// Gathers the target maps of four vertices into lanes; identities if the mesh has no targets.
 #[inline(always)]
 pub(crate) fn target_maps<S: Simd>(
     simd: S,

@@ -1,4 +1,4 @@
-//! One Newton step of a vertex with its line search: the only one on the host.
+//! The Newton step of a vertex with its line search. All visits on the host call this function.
 
 use crate::metric::{Dual, Real};
 use crate::patch::direction::{Direction, newton_direction};
@@ -10,8 +10,8 @@ pub(crate) trait Objective<T: Numbers> {
     /// Returns the value with its derivatives.
     fn expansion(&self, at: [T; 2]) -> Dual<T>;
 
-    /// Returns the value at a trial, and whether the vertex may be there. No inverse mean ratio may be above `max_imr`
-    /// if the objective has a [`shape guard`](Self::shape_guard).
+    /// Returns the value at a trial position, and whether the trial is feasible. If the objective has a
+    /// [`shape guard`](Self::shape_guard), inverse mean ratios above `max_imr` are infeasible.
     fn trial(&self, to: [T; 2], max_imr: T) -> (T, T::Mask);
 
     /// Returns the direction of the search.

@@ -1,28 +1,28 @@
-//! Arithmetic and comparisons of one number, or of one number in each lane of a SIMD vector.
+//! Arithmetic and comparisons of scalars and SIMD vectors.
 
 use std::ops::{BitAnd, BitOr, Not};
 
 use crate::metric::Real;
 
-/// One number, or one number in each lane. A comparison gives one truth value for each number.
+/// A scalar, or a SIMD vector with one number per lane. Comparisons return a mask with one truth value per number.
 pub(crate) trait Numbers: Real {
     /// The truth values: `bool` for `f64`.
     type Mask: Mask;
-    /// Returns the same truth value for each number of `self`.
+    /// Returns a mask with `value` in every lane.
     fn mask(self, value: bool) -> Self::Mask;
-    /// Returns whether each number is less than that of `other`. False for NaN.
+    /// Compares by `<`, lane by lane: NaN gives false.
     fn lt(self, other: Self) -> Self::Mask;
-    /// Returns whether each number is at most that of `other`. False for NaN.
+    /// Compares by `<=`, lane by lane: NaN gives false.
     fn le(self, other: Self) -> Self::Mask;
-    /// Returns the numbers of `yes` where `mask` is true, and those of `no` elsewhere.
+    /// Returns `yes` in lanes where `mask` is true, and `no` in other lanes.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// Returns the absolute values.
+    /// Returns absolute values.
     fn abs(self) -> Self;
-    /// Returns the numbers with the other sign.
+    /// Changes signs.
     fn negative(self) -> Self;
 }
 
-/// One truth value, or one truth value in each lane.
+/// A truth value, or a SIMD mask with one truth value per lane.
 pub(crate) trait Mask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
 {

@@ -1,12 +1,12 @@
 //! The constants of all searches along a direction at one vertex, side by side.
 
-/// The rule of a search: which lengths are tried in turn, and which trial is accepted. Each search of this library is
-/// a constant here; fields that depend on the metric or on the sweep are set by the caller.
+/// Parameters of a line search: the lengths of trials, and the condition by which a trial is accepted. Every search for
+/// the step of a vertex has a constant here. Callers replace fields that depend on a metric or a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SearchRule {
-    /// The length of the first trial, in units of the direction.
+    /// Length of the first trial; 1 is a full Newton step.
     pub(crate) first_length: f64,
-    /// Number of trials after which the vertex is left where it is.
+    /// Limit of the trials. If no trial is accepted, the vertex stays.
     pub(crate) trials: u32,
     /// Factor on the length after a trial that does not decrease the objective enough.
     pub(crate) shorten: f64,
@@ -16,7 +16,7 @@ pub(crate) struct SearchRule {
     pub(crate) sufficient_decrease: Option<f64>,
     /// Increase of the objective that counts as rounding, as a share of the sum of q² over the patch.
     pub(crate) slack: f64,
-    /// The eigenvalues of a Hessian are raised to at least this share of the larger.
+    /// Newton's method raises the smaller eigenvalue of a Hessian to this share of the larger eigenvalue.
     pub(crate) eigenvalue_floor: f64,
     /// The largest factor on the first length where nearly flat triangles make up most of the objective; see
     /// [`FLAT_EXPONENT`]. `None` for objectives without a barrier.
@@ -24,7 +24,7 @@ pub(crate) struct SearchRule {
 }
 
 impl SearchRule {
-    /// The search of a sweep over the free vertices, on the CPU and on a device. The caller sets the first length (the
+    /// Sweeps over free vertices, on the CPU and on devices. The caller sets the first length (the
     /// over-relaxation), the eigenvalue floor and the lengthening; a quadratic metric needs no decrease.
     pub(crate) const SWEEP: Self = Self {
         first_length: 1.0,
@@ -39,19 +39,19 @@ impl SearchRule {
         max_lengthening: None,
     };
 
-    /// The search along a curve. It is made in double precision alone, so it allows for less rounding.
+    /// Sliding along a curve. Only the CPU slides vertices, in double precision, so the slack is smaller than in sweeps.
     pub(crate) const CURVE: Self = Self { slack: 1e-12, ..Self::SWEEP };
 
-    /// The search of a vertex at the bound of its move. The vertex moves along its bound, where the slope of the
-    /// direction predicts no decrease, so any decrease is accepted.
+    /// Vertices at the limit of their moves. Trials are projected to the limit, where the slope along the unprojected
+    /// direction predicts no decrease. Any objective up to the present value is accepted.
     pub(crate) const BOUND: Self =
         Self { shorten_infeasible: 0.5, sufficient_decrease: Some(0.0), slack: 0.0, ..Self::SWEEP };
 
-    /// The search that improves the worst triangles, by a p-norm with a Hessian that is nearly singular.
+    /// Improvement of the worst triangles. The Hessians of p-norms are nearly singular, so the eigenvalue floor is low.
     pub(crate) const WORST: Self =
         Self { shorten_infeasible: 0.5, slack: 0.0, eigenvalue_floor: 1e-6, ..Self::SWEEP };
 
-    /// The search that untangles. Its energy is finite for every triangle, so no trial is unacceptable.
+    /// Untangling. The energy is finite for inverted triangles too, so every trial is feasible.
     pub(crate) const UNTANGLE: Self =
         Self { trials: 10, slack: 0.0, eigenvalue_floor: 1e-3, ..Self::SWEEP };
 }
@@ -64,11 +64,11 @@ pub(crate) const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// minima. The Newton step of -E^(1 - 1.4) has the same direction and 1 / (1 - 1.4 r) times the length, with
 /// r = gᵀH⁻¹g / E.
 pub(crate) const FLAT_EXPONENT: f64 = 1.4;
-/// The least r from which steps are lengthened. r is 2/3 for E = 1/d², and at most 1/2 for E = 1/d.
+/// Steps are lengthened for r above this ratio. r is 2/3 for E = 1/d², and at most 1/2 for E = 1/d.
 pub(crate) const FLAT_RATIO: f64 = 0.6;
-/// The least sum of q² around a vertex from which steps are lengthened: a triangle has an inverse mean ratio of a
-/// thousand. Less flat triangles open in a few steps of Newton's own length.
+/// Steps are lengthened if the sum of q² over a patch is larger: a triangle has an inverse mean ratio of a thousand.
+/// Less flat triangles open in a few steps of Newton's own length.
 pub(crate) const LEAST_FLAT: f64 = 1e6;
 /// The shortest first trial next to a nearly flat triangle, on the CPU alone: 2⁻⁴⁶ of the larger coordinate, which is
-/// 128 units in its last place. Shorter moves would be rounded away. A device is given no triangles so flat.
+/// 128 units in its last place. Shorter moves would be rounded away. Devices never sweep triangles of this flatness.
 pub(crate) const LEAST_MOVE: f64 = 1.0 / (1u64 << 46) as f64;

@@ -36,7 +36,7 @@ fn fan(problem: &Problem) -> FanPatch {
     FanPatch { corners, mean_area: problem.mean_area(), min_altitude: 0.0 }
 }
 
-/// Where a vertex is in a test: well inside, and so near to an edge that steps are lengthened.
+/// Positions of the vertex: well inside the hexagon, and so near an edge that first trials are lengthened.
 fn places(problem: &Problem) -> [[f64; 2]; LANES] {
     let [first, second] = [0, 1].map(|i| problem.positions()[problem.ring_of(0)[i] as usize]);
     let middle = (first + second) * 0.5;
@@ -129,7 +129,7 @@ impl EdgeSlopes for Given {
     }
 }
 
-/// Takes edges that are a right angle in a square to those of an equilateral triangle.
+/// Maps the two edges of a square's corner to two edges of an equilateral triangle.
 fn from_right_angle([a, b]: [f64; 2]) -> [f64; 2] {
     [a, 0.5 * a + 0.75f64.sqrt() * b]
 }
@@ -218,7 +218,7 @@ fn newton_steps_take_a_vertex_to_the_middle_of_four_squares() {
     }
 }
 
-/// An objective whose trials all fail, with the length of each.
+/// An objective without acceptable trials. It records the length of every trial.
 struct Failing {
     is_feasible: bool,
     lengths: RefCell<Vec<f64>>,

@@ -1,5 +1,5 @@
-//! Constants of visits in a sweep, the same for both engines. Those of a search are in
-//! [`SearchRule::SWEEP`](crate::patch::SearchRule).
+//! Constants of a sweep's visits, common to CPU and GPU. [`SearchRule::SWEEP`](crate::patch::SearchRule) has the
+//! constants of the line search.
 
 /// The most that steps are longer in runs with corrections from coarser levels. Longer ones were tried in vain more often.
 pub(crate) const LONGEST: f64 = 8.0;

@@ -11,7 +11,7 @@ use crate::run::Step;
 use crate::slide::curve::{Curve, Place};
 use crate::slide::side::Side;
 
-/// A step may go at most this share of the way to a neighbor on the curve.
+/// Limit of a step, as a share of the parameter distance to the neighboring vertex on the curve.
 const NEAREST: f64 = 0.8;
 
 /// The parameters of a vertex and its neighbors on a curve.
@@ -25,7 +25,7 @@ pub(crate) struct Window {
 /// The vertex that a visit moves.
 #[derive(Clone, Copy)]
 pub(crate) struct Visited<'a> {
-    /// The sides of the vertex's track: the curve itself, and the curve of its partner if it has one.
+    /// The curves of the vertex and, if the vertex has a partner, of the partner.
     pub(crate) sides: &'a [Side],
     /// The index of the vertex in its track.
     pub(crate) k: usize,
@@ -37,11 +37,11 @@ pub(crate) struct Visited<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Rule<'a> {
     pub(crate) step: &'a Step,
-    /// The least altitude that a triangle may have, normalized; 0 for no bound.
+    /// Lower limit of triangles' altitudes, normalized; 0 for no limit.
     pub(crate) floor: f64,
 }
 
-/// A bound on how far a vertex may be from its given position.
+/// Limits the distance of a vertex from its given position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
     /// The parameter of the given position.
@@ -51,7 +51,7 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Whether a vertex may be at a parameter.
+    /// Whether the curve point of a parameter is in reach.
     pub(crate) fn allows(self, curve: &Curve, at: f64) -> bool {
         self.most.is_infinite()
             || curve.at(at).point.distance(curve.at(self.start).point) <= self.most
@@ -103,8 +103,8 @@ struct OnCurve<'a> {
     patch: FanPatch,
 }
 
-/// The objective of the patches of a vertex and its partner, as a function of the parameter that they share. The
-/// parameter is the first of two coordinates; the second is 0.
+/// The summed objective of a vertex and its partner, as a function of their common curve parameter. Positions of the
+/// search are (parameter, 0).
 struct CurveObjective<'a> {
     problem: &'a Problem,
     on_curves: Vec<OnCurve<'a>>,

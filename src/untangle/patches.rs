@@ -16,7 +16,7 @@ const FOURS: usize = 256;
 /// Number of triangles of one task.
 const TRIANGLES: usize = 1 << 12;
 
-/// Four free vertices with the same number of neighbors. Where there are fewer, the last one is repeated.
+/// Four free vertices with equally many neighbors. Lanes beyond the last vertex repeat that vertex.
 pub(super) type Four = [u32; LANES];
 
 /// Some free vertices in fours, in their order.
@@ -121,7 +121,7 @@ fn edges<T: Real>(at: [T; 2], [p, q]: [[T; 2]; 2]) -> [[T; 2]; 2] {
     [[p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]]
 }
 
-/// The numbers of some vertices, one in each lane.
+/// Gathers the `numbers` of four vertices into lanes.
 #[inline(always)]
 fn lanes<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> {
     let [a, b, c, d] = vertices;
@@ -131,10 +131,10 @@ fn lanes<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> 
 
 /// The one-rings of four vertices, with the energy of their triangles as an objective.
 struct EnergyRings<'r, S: Simd> {
-    /// The width by which the energy is regularized.
+    /// Regularization width ε of the energy, in units of the target area.
     epsilon: f64,
-    /// The neighbors of each vertex, counter-clockwise, with the first repeated at the end: where they are, and one over the area
-    /// that the triangle with the next one should have.
+    /// For each neighbor its position, and the inverse target area of the triangle with the next neighbor. Neighbors are in
+    /// counter-clockwise order, with the first repeated at the end.
     ring: &'r [(Points<S>, Lanes<S>)],
 }
 

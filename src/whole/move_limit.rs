@@ -22,7 +22,7 @@ use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
 const SWEEPS: u32 = 3;
 /// Number of times that a period visits the vertices at their bound.
 const VISITS: u32 = 3;
-/// Number of times that the move of a period is halved if it cannot be taken.
+/// Limit of the halvings of a period's move, which is halved until it lowers f and keeps triangles sound.
 const HALVED: u32 = 5;
 /// A vertex that has moved by more than this share of its bound is at its bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
@@ -77,7 +77,7 @@ impl<'s> MoveLimitStage<'s> {
         &self.bounds
     }
 
-    /// Returns how far each vertex that slides may be from its given position, in the unit of the mesh.
+    /// Returns the largest distance of each sliding vertex from its given position, in the unit of the mesh.
     pub(crate) fn reach(&self, sliding: &Sliding) -> Params {
         sliding.for_each_vertex(|v| self.all[v as usize])
     }
@@ -118,7 +118,7 @@ impl<'s> MoveLimitStage<'s> {
         false
     }
 
-    /// Visits the vertices at their bound: a step of [`SearchRule::BOUND`].
+    /// Visits the vertices at the limit of their moves, and takes a step of [`SearchRule::BOUND`] at each.
     fn visit_held(&self, host: &mut Host<'_>, step: &Step) {
         let Step { metric, sharpness, shape_guard, .. } = *step;
         let (formulas, smoothing) = (metric.formulas(), Smoothing::of(sharpness));
@@ -132,7 +132,7 @@ impl<'s> MoveLimitStage<'s> {
     }
 }
 
-/// The objective of a vertex at its bound. Trials beyond the bound are brought back to the bound.
+/// The objective of a vertex at the limit of its move. Trials beyond the limit are projected to the circle.
 struct BoundObjective<'a> {
     metric: MetricObjective<'a, FanPatch, AnyFormulas>,
     bound: Circle,

@@ -14,9 +14,9 @@ use crate::worst::badness::Badness;
 
 /// The log2 of the exponents of the p-norms that are lowered in turn.
 const DOUBLINGS: [u32; 3] = [3, 5, 7];
-/// The most visits of each vertex for each exponent.
+/// Limit of the visits of a vertex by one exponent.
 const VISITS: u32 = 10;
-/// The visits for an exponent end after a pass in which no vertex moved by more than this share of an edge.
+/// Visits by an exponent end if a pass moves every vertex by less than this share of an edge.
 const SETTLED: f64 = 1e-3;
 /// Number of visits of each vertex to regain what f lost.
 const RELAXING: u32 = 10;
@@ -28,9 +28,9 @@ pub(crate) struct Rules<'a> {
     pub(crate) step: Step,
     /// The largest inverse mean ratio that a triangle may have, after its target map is applied.
     pub(crate) shape: f64,
-    /// The least altitude that a triangle may have, normalized.
+    /// The lower limit of altitudes, normalized; 0 for no limit.
     pub(crate) floor: f64,
-    /// How far each free vertex may be from the start of the run, normalized; `None` for no bound.
+    /// Upper limits of the distances between free vertices and their start positions, normalized; `None` for no limit.
     pub(crate) bounds: Option<&'a [f64]>,
 }
 
@@ -48,7 +48,7 @@ pub(crate) struct Region<'a> {
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
     stars: Vec<Vec<Side>>,
-    /// The circle in which each vertex may be.
+    /// For each moving vertex, the circle that bounds its moves.
     bounds: Vec<Circle>,
     mean_area: f64,
 }

@@ -64,9 +64,9 @@ fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
 }
 
 /// Improves the worst triangles of a mesh with its vertices at `positions`, in independent regions around them. Passes
-/// continue as long as the worst triangle of all becomes less bad and `goes_on`, called before each pass, allows it. A pass after
-/// which it is not is undone. No triangle becomes worse than the worst of its region was. Returns the number of vertices that
-/// have moved.
+/// continue as long as the worst triangle of the mesh becomes less bad and `goes_on`, called before each pass, allows
+/// it. A pass without such a gain is undone. No triangle becomes worse than the worst triangle of its region was.
+/// Returns the count of moved vertices.
 pub(crate) fn improve(
     problem: &Problem,
     rules: &Rules<'_>,
