@@ -25,9 +25,10 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     let properties = formulas.metric().properties();
     let rule = SearchRule {
         first_length: step.omega,
-        sufficient_decrease: SearchRule::SWEEP
-            .sufficient_decrease
-            .filter(|_| !properties.quadratic),
+        sufficient_decrease: match properties.quadratic {
+            true => None,
+            false => SearchRule::SWEEP.sufficient_decrease,
+        },
         eigenvalue_floor: properties.eigenvalue_floor,
         max_lengthening: properties.barrier.then_some(step.longest),
         ..SearchRule::SWEEP

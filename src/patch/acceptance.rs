@@ -1,9 +1,8 @@
-//! Acceptance tests of triangles and positions after a move.
+//! Acceptance tests of a triangle and of a position after a move.
 
 use glam::DVec2;
 
 use crate::metric::{Corner, Formulas};
-use crate::patch::corners::Corners;
 use crate::patch::numbers::{Mask, Numbers};
 
 /// Whether a triangle is neither inverted nor flat, by its rounded area.
@@ -46,24 +45,6 @@ pub(crate) fn is_kept<T: Numbers>(
     let (numerator, area) = formulas.inverse_mean_ratio(now);
     let (numerator_before, area_before) = formulas.inverse_mean_ratio(before);
     positive & (within | (numerator * area_before).le(numerator_before * area))
-}
-
-/// Whether every corner of a patch is positive and has an inverse mean ratio of at most `max_imr`, with the vertex at
-/// `at`.
-#[inline(always)]
-pub(crate) fn is_acceptable<T: Numbers>(
-    patch: &impl Corners<T>,
-    formulas: impl Formulas,
-    at: [T; 2],
-    max_imr: T,
-) -> T::Mask {
-    let mut acceptable = at[0].mask(true);
-    for i in 0..patch.count() {
-        let corner = patch.corner(i, at);
-        let is_positive = patch.is_positive(i, at, &corner);
-        acceptable = acceptable & is_positive & is_within(formulas, &corner, max_imr);
-    }
-    acceptable
 }
 
 /// A circle that limits the moves of a vertex; an infinite radius stands for no limit.

@@ -53,6 +53,24 @@ pub(crate) trait Corners<T: Numbers> {
     }
 }
 
+/// Whether every corner of a patch is positive and has an inverse mean ratio of at most `max_imr`, with the vertex at
+/// `at`.
+#[inline(always)]
+pub(crate) fn is_acceptable<T: Numbers>(
+    patch: &impl Corners<T>,
+    formulas: impl Formulas,
+    at: [T; 2],
+    max_imr: T,
+) -> T::Mask {
+    let mut acceptable = at[0].mask(true);
+    for i in 0..patch.count() {
+        let corner = patch.corner(i, at);
+        let is_positive = patch.is_positive(i, at, &corner);
+        acceptable = acceptable & is_positive & is_within(formulas, &corner, max_imr);
+    }
+    acceptable
+}
+
 /// The sum over a patch of the function that Newton's method minimizes for a metric.
 #[derive(Clone, Copy)]
 pub(crate) struct MetricObjective<'a, P, F> {
@@ -115,9 +133,9 @@ impl<T: Numbers, P: Corners<T>, F: Formulas> Objective<T> for MetricObjective<'_
         for i in 0..self.patch.count() {
             let corner = self.patch.corner(i, at);
             let (numerator, area) = self.formulas.inverse_mean_ratio(&corner);
-            let positive = area.constant(0.0).lt(area);
             let ratio = numerator / area;
-            worst = Real::max(worst, T::select(positive, ratio, worst.constant(f64::INFINITY)));
+            let infinite = worst.constant(f64::INFINITY);
+            worst = Real::max(worst, T::select(is_positive(&corner), ratio, infinite));
         }
         worst
     }

@@ -14,8 +14,8 @@ pub(crate) mod search_rule;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use acceptance::{Circle, is_acceptable, is_kept};
-pub(crate) use corners::{Corners, MetricObjective};
+pub(crate) use acceptance::{Circle, is_kept};
+pub(crate) use corners::{Corners, MetricObjective, is_acceptable};
 pub(crate) use direction::Direction;
 #[cfg(test)]
 pub(crate) use direction::newton_direction;

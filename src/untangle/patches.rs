@@ -5,7 +5,7 @@ use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::{Dual, Real};
+use crate::metric::{Dual, Own, Real};
 use crate::parallel::{for_each_chunk, map_parts};
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, with_instructions};
 use crate::patch::{Objective, SearchRule, newton_step};
@@ -182,7 +182,7 @@ impl<S: Simd> Objective<Lanes<S>> for EnergyRings<'_, S> {
         let zero = at[0].constant(0.0);
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.ring.len() - 1 {
-            sum = sum + self.corner(i, at).expansion(self.epsilon);
+            sum = sum + self.corner(i, at).expansion(Own, self.epsilon);
         }
         sum
     }
