@@ -1,5 +1,5 @@
 // Visits the free vertices of one color by local feasible Newton steps (Park & Shontz, Section 2.1), the same steps as
-// in src/cpu/newton.rs.
+// in src/patch/newton_step.rs.
 
 // Returns in x the sum of the metric's model over the patch with the vertex moved by d, and in y whether the position
 // is feasible: 0 if a triangle is inverted, has an area that is not finite, or breaks the shape guard, else 1.
@@ -22,13 +22,13 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
 }
 
 // How many times as long as Newton's a step is tried first, where nearly flat triangles make up most of the patch's
-// objective E. `decrease` is gᵀH⁻¹g. See src/run/line_search.rs.
+// objective E. `decrease` is gᵀH⁻¹g. See src/patch/search_rule.rs.
 fn lengthening(decrease: f32, squares: f32) -> f32 {
     let share = decrease / squares;
-    if part.longest <= 1.0 || squares <= LEAST_FLAT || !(share > MOSTLY_FLAT) {
+    if part.longest <= 1.0 || squares <= LEAST_FLAT || !(share > FLAT_RATIO) {
         return 1.0;
     }
-    return 1.0 / max(1.0 - BENT * share, 1.0 / part.longest);
+    return 1.0 / max(1.0 - FLAT_EXPONENT * share, 1.0 / part.longest);
 }
 
 // The Newton step with its line search, in the patch's unit; zero if none improves the patch.

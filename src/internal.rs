@@ -6,6 +6,7 @@ mod device;
 use glam::DVec2;
 
 use crate::cpu::CpuEngine;
+use crate::metric::Own;
 use crate::run::StepwiseRun;
 use crate::untangle::energy::Corner;
 
@@ -25,6 +26,6 @@ pub fn run_on_cpu<'a>(problem: &'a Problem, positions: &[DVec2], plan: Plan) -> 
 /// area `target`: its value, gradient (x, y) and Hessian (xx, xy, yy) by the position of the corner.
 pub fn untangling_energy(edges: [[f64; 2]; 2], target: f64, epsilon: f64) -> [f64; 6] {
     let corner = Corner { edges, inverse_target: 1.0 / target };
-    let Dual { value, gradient: [x, y], hessian: [xx, xy, yy] } = corner.expansion(epsilon);
+    let Dual { value, gradient: [x, y], hessian: [xx, xy, yy] } = corner.expansion(Own, epsilon);
     [value, x, y, xx, xy, yy]
 }

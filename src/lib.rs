@@ -61,6 +61,7 @@ pub mod metric;
 pub mod options;
 pub mod outcome;
 mod parallel;
+mod patch;
 mod periodic;
 pub mod precision;
 mod quality;

@@ -2,24 +2,24 @@
 
 use fearless_simd::prelude::*;
 
-use crate::cpu::lanes::{Lanes, Points};
-use crate::cpu::patch::Patches;
 use crate::metric::{Corner, Dual, Formulas, Real, Smoothing};
+use crate::patch::lanes::{Lanes, Points};
+use crate::patch::{Corners, Rings};
 use crate::run::line_search;
 
 /// Returns the objectives of four patches with their derivatives, by forward differences.
 #[inline(always)]
 pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
-    patches: &Patches<'_, S, MAPPED>,
+    rings: &Rings<'_, S, MAPPED>,
     formulas: impl Formulas,
     at: Points<S>,
     smoothing: Smoothing,
 ) -> Dual<Lanes<S>> {
-    let width = least_height(patches, at) * line_search::DIFFERENCE;
+    let width = least_height(rings, at) * line_search::DIFFERENCE;
     let zero = at[0].constant(0.0);
     let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
-    for i in 0..patches.degree() {
-        let corner = patches.corner(i, at);
+    for i in 0..rings.count() {
+        let corner = rings.corner(i, at);
         sum = sum + differences(formulas, &corner, smoothing, width);
     }
     sum
@@ -28,12 +28,12 @@ pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
 /// The least distance of each vertex from a line through an edge of its one-ring.
 #[inline(always)]
 fn least_height<S: Simd, const MAPPED: bool>(
-    patches: &Patches<'_, S, MAPPED>,
+    rings: &Rings<'_, S, MAPPED>,
     at: Points<S>,
 ) -> Lanes<S> {
     let mut least = at[0].constant(f64::INFINITY);
-    for i in 0..patches.degree() {
-        let c = patches.corner(i, at);
+    for i in 0..rings.count() {
+        let c = rings.corner(i, at);
         let [x, y] = [c.b[0] - c.a[0], c.b[1] - c.a[1]];
         least = Real::min(least, c.doubled_area() / Real::sqrt(x * x + y * y));
     }

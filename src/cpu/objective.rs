@@ -3,11 +3,11 @@
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
-use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_lanes};
-use crate::cpu::patch::{of_corners, points};
 use crate::layout::Problem;
-use crate::metric::{Corner, Formulas, Metric, Smoothing, TargetMap};
+use crate::metric::{Corner, Formulas, Metric, OfEdges, Smoothing, TargetMap};
 use crate::parallel::{collect, map_parts};
+use crate::patch::is_kept;
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, target_maps, with_lanes};
 use crate::run::Step;
 
 /// Number of triangles of one task.
@@ -76,7 +76,9 @@ pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bo
         ring.iter().any(|&neighbor| {
             let triangle = [v as u32, before, neighbor];
             before = neighbor;
-            along.breaks(problem, &triangle, guard)
+            let position = |v: u32| along.positions[v as usize];
+            let now = problem.corner(&triangle, |v| position(v) + along.step(v) * along.length);
+            !is_kept(OfEdges, &problem.corner(&triangle, position), &now, guard)
         })
     })
 }
@@ -103,24 +105,15 @@ fn excess_along<S: Simd, const MAPPED: bool>(
         let (q, moved_q) = along.points(simd, [t[1], u[1], v[1], w[1]]);
         let (r, moved_r) = along.points(simd, [t[2], u[2], v[2], w[2]]);
         let now = corner([moved_p, moved_q, moved_r], problem, &map);
-        borne &= now.doubled_area().simd_gt(0.0);
-        if guard.is_finite() {
-            let (sum, area) = formulas.inverse_mean_ratio(&now);
-            let mut kept = sum.simd_le(area * guard);
-            if !kept.all_true() {
-                let (sum_before, area_before) =
-                    formulas.inverse_mean_ratio(&corner([p, q, r], problem, &map));
-                kept |= (sum * area_before).simd_le(sum_before * area);
-            }
-            borne &= kept;
-        }
+        borne &= is_kept(formulas, &corner([p, q, r], problem, &map), &now, guard);
         sum += formulas.model(&now, step.smoothing());
     }
     let mut last = 0.0;
     for t in rest {
         let position = |v: u32| along.positions[v as usize];
-        borne &= Mask::splat(simd, !along.breaks(problem, t, guard));
         let now = problem.corner(t, |v| position(v) + along.step(v) * along.length);
+        let is_kept = is_kept(formulas, &problem.corner(t, position), &now, guard);
+        borne &= Mask::splat(simd, is_kept);
         last += formulas.model(&now, step.smoothing());
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
@@ -134,9 +127,9 @@ fn map_of<S: Simd>(
     [t, u, v, w]: &[[u32; 3]; LANES],
 ) -> TargetMap<Lanes<S>> {
     TargetMap::mean([
-        of_corners(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
-        of_corners(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
-        of_corners(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
+        target_maps(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
+        target_maps(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
+        target_maps(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
     ])
 }
 
@@ -165,17 +158,6 @@ impl Along<'_> {
         let dx = Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]);
         let dy = Lanes::simd_from(simd, [a.y, b.y, c.y, d.y]);
         ([x, y], [x + dx * self.length, y + dy * self.length])
-    }
-
-    /// Whether the move inverts or flattens a triangle, or makes its inverse mean ratio both worse than before and
-    /// larger than `guard`.
-    fn breaks(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
-        let position = |v: u32| self.positions[v as usize];
-        let now = problem.corner(triangle, |v| position(v) + self.step(v) * self.length);
-        let shape = now.inverse_mean_ratio();
-        let is_kept =
-            shape <= guard || shape <= problem.corner(triangle, position).inverse_mean_ratio();
-        !(now.doubled_area() > 0.0 && is_kept)
     }
 
     /// The direction of a vertex; zero if it is fixed.

@@ -3,13 +3,13 @@
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
-use crate::cpu::lanes::{LANES, Lanes, with_lanes};
 use crate::cpu::newton;
-use crate::cpu::patch::{self, Patches, Room};
 use crate::layout::Problem;
 use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::for_each_chunk;
+use crate::patch::lanes::{LANES, Lanes, points, with_lanes};
+use crate::patch::{MetricObjective, Objective, Rings, Scratch};
 use crate::run::Step;
 
 /// Number of vertices of one task.
@@ -190,7 +190,7 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
     sought: Sought,
     found: &mut [T],
 ) {
-    let mut room = Room::new();
+    let mut scratch = Scratch::new();
     let mut done = 0;
     while done < found.len() {
         let v = (first + done) as u32;
@@ -203,16 +203,18 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
         // Lanes without a vertex of their own visit the last vertex again.
         let last = v + count - 1;
         let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
-        let patches = Patches::<S, MAPPED>::gather(simd, problem, positions, vertices, &mut room);
-        let at = patch::points(simd, positions, vertices);
+        let rings = Rings::<S, MAPPED>::gather(simd, problem, positions, vertices, &mut scratch);
+        let at = points(simd, positions, vertices);
         let [x, y] = match T::STEPS {
-            true => newton::visit(formulas, &patches, at, step),
+            true => newton::visit(formulas, &rings, at, step),
             false => {
-                let sum = patches.derivatives(formulas, at, step.smoothing());
+                let (smoothing, shape_guard) = (step.smoothing(), f64::INFINITY);
+                let objective = MetricObjective { patch: &rings, formulas, smoothing, shape_guard };
+                let sum = objective.expansion(at);
                 match sought {
                     Sought::Gradient => sum.gradient,
                     Sought::StiffnessRoot => {
-                        let sum = match patches.inverse_map() {
+                        let sum = match rings.inverse_map() {
                             Some(inverse) if MAPPED => inverse.shape().pull_back(sum),
                             _ => sum,
                         };

@@ -203,10 +203,17 @@ impl Problem {
     pub(crate) fn corner(&self, t: &[u32; 3], position: impl Fn(u32) -> DVec2) -> Corner<f64> {
         let [p, q, r] = t.map(position);
         let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: self.mean_area };
-        match &self.targets {
+        match self.target_map(t) {
             None => corner,
-            Some(maps) => TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))).show(&corner),
+            Some(map) => map.show(&corner),
         }
+    }
+
+    /// Returns the target map of a triangle, if the mesh has targets.
+    #[inline(always)]
+    pub(crate) fn target_map(&self, t: &[u32; 3]) -> Option<TargetMap<f64>> {
+        let maps = self.targets.as_ref()?;
+        Some(TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))))
     }
 
     /// Mean area of all triangles in normalized units, after target maps are applied if the mesh has any.

@@ -1,6 +1,7 @@
 //! The arguments of metrics: the edges of a triangle from one vertex, and its invariants.
 
 use crate::metric::dual::{Dual, Real};
+use crate::metric::edge_slopes::EdgeSlopes;
 
 /// A triangle seen from one vertex: the edge vectors to the other two, in counter-clockwise order, and the mean area
 /// of the mesh. The argument of a [`Metric`](crate::Metric).
@@ -58,27 +59,37 @@ impl<T: Real> Corner<T> {
         }
     }
 
-    /// Value, gradient and Hessian of a function of the invariants with respect to the vertex that the
-    /// edges start from, by the chain rule.
+    /// Value, gradient and Hessian of a function of the invariants with respect to the visited vertex, by the chain
+    /// rule. The edges depend on the vertex by `edges`.
     #[inline(always)]
-    pub(crate) fn expansion(&self, slopes: &Slopes<T>) -> Dual<T> {
+    pub(crate) fn expansion(&self, edges: impl EdgeSlopes, slopes: &Slopes<T>) -> Dual<T> {
         match slopes {
             Slopes::ByShape { inverse_area, shape, value, first, second } => {
-                self.expansion_by_shape(*inverse_area, *shape, *value, *first, *second)
+                self.expansion_by_shape(edges, *inverse_area, *shape, *value, *first, *second)
             }
-            Slopes::ByInvariants(slopes) => self.expansion_by_invariants(slopes),
+            Slopes::ByInvariants(slopes) => self.expansion_by_invariants(edges, slopes),
         }
     }
 
-    /// The gradients of the excess and of the area. Moving the vertex changes u by (-1, w) and v by (-w, -1), with
-    /// w = 1/√3: the Hessian of the excess is 2w times the identity. The area is linear.
+    /// Gradients of excess and area by the visited vertex. Moving the vertex changes u by (α, -γ) and v by (γ, α), with
+    /// γ = w (2β - α) and w = 1/√3. The area is linear.
     #[inline(always)]
-    fn gradients(&self) -> ([T; 2], [T; 2]) {
+    fn gradients(&self, edges: impl EdgeSlopes) -> ([T; 2], [T; 2]) {
         let [u, v] = self.distortion();
+        let ([ax, ay], [bx, by]) = (self.a, self.b);
+        let (alpha, beta) = (edges.alpha(), edges.beta());
+        let gamma = W * (2.0 * beta - alpha);
         (
-            [(u + v * W) * (-0.5 / W), (u * W - v) * (0.5 / W)],
-            [self.a[1] - self.b[1], self.b[0] - self.a[0]],
+            [(u * -alpha + v * -gamma) * (-0.5 / W), (u * -gamma + v * alpha) * (0.5 / W)],
+            [by * alpha - ay * beta, ax * beta - bx * alpha],
         )
+    }
+
+    /// The Hessian of the excess is 2w (α² - αβ + β²) times the identity, with w = 1/√3.
+    #[inline(always)]
+    fn curvature(edges: impl EdgeSlopes) -> f64 {
+        let (alpha, beta) = (edges.alpha(), edges.beta());
+        2.0 * W * (alpha * alpha - alpha * beta + beta * beta)
     }
 
     /// Does the same as [`Self::expansion`] for a function of the shape m = excess / area, given its first two
@@ -86,19 +97,21 @@ impl<T: Real> Corner<T> {
     #[inline(always)]
     fn expansion_by_shape(
         &self,
+        edges: impl EdgeSlopes,
         inverse_area: T,
         shape: T,
         value: T,
         first: T,
         second: T,
     ) -> Dual<T> {
-        let ([ex, ey], [dx, dy]) = self.gradients();
-        // ∇m = (∇excess - m ∇area) / area, and its Hessian is (2w I - ∇m ∇areaᵀ - ∇area ∇mᵀ) / area. The Hessian of
-        // f(m) is f' times that and f'' ∇m ∇mᵀ: ∇m sᵀ + s ∇mᵀ + 2w f' I / area with s = f'' ∇m / 2 - f' ∇area / area.
+        let ([ex, ey], [dx, dy]) = self.gradients(edges);
+        // ∇m = (∇excess - m ∇area) / area, and the Hessian of m is (c I - ∇m ∇areaᵀ - ∇area ∇mᵀ) / area, with c the
+        // curvature of the excess. The Hessian of f(m) is f' times the Hessian of m, plus f'' ∇m ∇mᵀ:
+        // ∇m sᵀ + s ∇mᵀ + c f' I / area with s = f'' ∇m / 2 - f' ∇area / area.
         let (mx, my) = ((ex - shape * dx) * inverse_area, (ey - shape * dy) * inverse_area);
         let (slope, half) = (first * inverse_area, second * 0.5);
         let (sx, sy) = (half * mx - slope * dx, half * my - slope * dy);
-        let (xx, yy, own) = (mx * sx, my * sy, slope * (2.0 * W));
+        let (xx, yy, own) = (mx * sx, my * sy, slope * Self::curvature(edges));
         Dual {
             value,
             gradient: [first * mx, first * my],
@@ -108,15 +121,19 @@ impl<T: Real> Corner<T> {
 
     /// Does the same as [`Self::expansion`] for a function of the excess and the area.
     #[inline(always)]
-    fn expansion_by_invariants(&self, slopes: &InvariantSlopes<T>) -> Dual<T> {
+    fn expansion_by_invariants(
+        &self,
+        edges: impl EdgeSlopes,
+        slopes: &InvariantSlopes<T>,
+    ) -> Dual<T> {
         let InvariantSlopes { unit, value, excess, area, excess_area, area_area } = *slopes;
-        let ([ex, ey], [dx, dy]) = self.gradients();
+        let ([ex, ey], [dx, dy]) = self.gradients(edges);
         let (ex, ey, dx, dy) = (ex * unit, ey * unit, dx * unit, dy * unit);
         // The gradients of ∂f/∂excess and of ∂f/∂area.
         let (px, py) = (times(excess_area, dx), times(excess_area, dy));
         let rx = sum(times(excess_area, ex), times(area_area, dx));
         let ry = sum(times(excess_area, ey), times(area_area, dy));
-        let own = times(times(excess, unit), unit.constant(2.0 * W));
+        let own = times(times(excess, unit), unit.constant(Self::curvature(edges)));
         let zero = unit.constant(0.0);
         Dual {
             value,

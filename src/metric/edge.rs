@@ -2,6 +2,7 @@
 
 use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
+use crate::metric::edge_slopes::EdgeSlopes;
 use crate::metric::properties::Properties;
 
 pub(super) const PROPERTIES: Properties = Properties {
@@ -52,9 +53,10 @@ pub(super) fn model<T: Real>(t: &Corner<T>, sharpness: u32) -> T {
     root * (most / least) - 1.0
 }
 
-/// Value, gradient and Hessian of [`model`].
+/// Value, gradient and Hessian of [`model`] with respect to the visited vertex, on which the edges depend by `edges`.
 #[inline(always)]
-pub(super) fn expansion<T: Real>(t: &Corner<T>, sharpness: u32) -> Dual<T> {
+pub(super) fn expansion<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes, sharpness: u32) -> Dual<T> {
+    let (alpha, beta, third) = (edges.alpha(), edges.beta(), edges.third());
     let [la, lb, lc] = t.squared_lengths();
     let (most, least) = (la.max(lb).max(lc), la.min(lb).min(lc));
     let one = la.constant(1.0);
@@ -73,27 +75,41 @@ pub(super) fn expansion<T: Real>(t: &Corner<T>, sharpness: u32) -> Dual<T> {
     }
     let q = root * (most * (least.constant(1.0) / least));
 
-    // The shares of the two moving edges in both sums, and the vectors u, v = ∇L/L of these edges.
+    // The shares of the edges a and b in both sums, and the vectors u, v = ∇L/L of these edges.
     let shares = one / (a * b);
     let (wa, wb) = (b * shares, a * shares);
     let (wa0, wa1, wb0, wb1) = (a0 * wa, a1 * wa, b0 * wb, b1 * wb);
-    let (ta, tb) = (ia * -2.0, ib * -2.0);
+    let (ta, tb) = (ia * (2.0 * alpha), ib * (2.0 * beta));
     let (u, v) = ([t.a[0] * ta, t.a[1] * ta], [t.b[0] * tb, t.b[1] * tb]);
-    let mean_a = [u[0] * wa0 + v[0] * wa1, u[1] * wa0 + v[1] * wa1];
-    let mean_b = [u[0] * wb0 + v[0] * wb1, u[1] * wb0 + v[1] * wb1];
-    let (gx, gy) = (mean_a[0] - mean_b[0], mean_a[1] - mean_b[1]);
-    // Hessian of the logarithm: the curvature of each edge, (2 - L u uᵀ)/L, and the change of the shares, k times the
-    // spread of u over the edges.
+    let mut mean_a = [u[0] * wa0 + v[0] * wa1, u[1] * wa0 + v[1] * wa1];
+    let mut mean_b = [u[0] * wb0 + v[0] * wb1, u[1] * wb0 + v[1] * wb1];
+    // Hessian of the logarithm: the curvature of each edge, (2 α² - L u uᵀ)/L for the edge a, and the change of the
+    // shares, k times the spread of u over the edges.
     let k = f64::from(1u32 << sharpness);
     let (net_a, net_b) = (wa0 - wb0, wa1 - wb1);
     let (more_a, more_b) = ((wa0 + wb0) * k - net_a, (wa1 + wb1) * k - net_b);
-    let own = (net_a * ia + net_b * ib) * 2.0;
-    let xx = u[0] * u[0] * more_a + v[0] * v[0] * more_b
-        - (mean_a[0] * mean_a[0] + mean_b[0] * mean_b[0]) * k;
-    let xy = u[0] * u[1] * more_a + v[0] * v[1] * more_b
-        - (mean_a[0] * mean_a[1] + mean_b[0] * mean_b[1]) * k;
-    let yy = u[1] * u[1] * more_a + v[1] * v[1] * more_b
-        - (mean_a[1] * mean_a[1] + mean_b[1] * mean_b[1]) * k;
+    let mut own = (net_a * ia * (alpha * alpha) + net_b * ib * (beta * beta)) * 2.0;
+    let mut xx = u[0] * u[0] * more_a + v[0] * v[0] * more_b;
+    let mut xy = u[0] * u[1] * more_a + v[0] * v[1] * more_b;
+    let mut yy = u[1] * u[1] * more_a + v[1] * v[1] * more_b;
+    // The edge b - a moves too, unless both edges start from the visited vertex.
+    if third != 0.0 {
+        let (wa2, wb2) = (a2 * wa, b2 * wb);
+        let tc = ic * (2.0 * third);
+        let w = [(t.b[0] - t.a[0]) * tc, (t.b[1] - t.a[1]) * tc];
+        mean_a = [mean_a[0] + w[0] * wa2, mean_a[1] + w[1] * wa2];
+        mean_b = [mean_b[0] + w[0] * wb2, mean_b[1] + w[1] * wb2];
+        let net_c = wa2 - wb2;
+        let more_c = (wa2 + wb2) * k - net_c;
+        own = own + net_c * ic * (2.0 * third * third);
+        xx = xx + w[0] * w[0] * more_c;
+        xy = xy + w[0] * w[1] * more_c;
+        yy = yy + w[1] * w[1] * more_c;
+    }
+    let (gx, gy) = (mean_a[0] - mean_b[0], mean_a[1] - mean_b[1]);
+    let xx = xx - (mean_a[0] * mean_a[0] + mean_b[0] * mean_b[0]) * k;
+    let xy = xy - (mean_a[0] * mean_a[1] + mean_b[0] * mean_b[1]) * k;
+    let yy = yy - (mean_a[1] * mean_a[1] + mean_b[1] * mean_b[1]) * k;
     Dual {
         value: q - 1.0,
         gradient: [q * gx, q * gy],

@@ -4,9 +4,9 @@
 mod ar;
 mod area;
 mod corner;
-mod descent;
 mod dual;
 mod edge;
+mod edge_slopes;
 mod imr;
 mod properties;
 mod rms;
@@ -23,12 +23,12 @@ mod tmop_94;
 pub use corner::Corner;
 #[doc(hidden)]
 pub use corner::{InvariantSlopes, Invariants, Slopes};
-pub(crate) use descent::descent;
 pub use dual::{Dual, Real};
+pub(crate) use edge_slopes::{EdgeSlopes, Own};
 #[doc(hidden)]
 pub use properties::Properties;
 pub use scheme::Scheme;
 pub(crate) use smoothing::Smoothing;
-pub(crate) use table::{Formulas, OfEdges, OfInvariants, with_each_metric};
+pub(crate) use table::{AnyFormulas, Formulas, OfEdges, OfInvariants, with_each_metric};
 pub use table::{Metric, UnknownMetric};
 pub(crate) use target::TargetMap;

@@ -2,6 +2,7 @@
 
 use crate::metric::corner::{Corner, Slopes};
 use crate::metric::dual::{Dual, Real};
+use crate::metric::edge_slopes::EdgeSlopes;
 
 /// How EDGE is made smooth for Newton's method. Smooth metrics make no use of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,9 +39,14 @@ impl Smoothing {
         self.power(ratio.min(one)) * PENALTY
     }
 
-    /// Value, gradient and Hessian of [`Self::penalty`].
+    /// Value, gradient and Hessian of [`Self::penalty`] with respect to the visited vertex, on which the edges depend by
+    /// `edges`.
     #[inline(always)]
-    pub(super) fn penalty_expansion<T: Real>(&self, t: &Corner<T>) -> Dual<T> {
+    pub(super) fn penalty_expansion<T: Real>(
+        &self,
+        t: &Corner<T>,
+        edges: impl EdgeSlopes,
+    ) -> Dual<T> {
         let [shape, ratio] = self.ratio(t);
         let one = ratio.constant(1.0);
         let value = self.power(ratio.min(one)) * PENALTY;
@@ -51,7 +57,7 @@ impl Smoothing {
         let first = value * below * per_shape * k;
         let inverse_area = one / t.doubled_area();
         let second = first * per_shape * (k - 1.0);
-        t.expansion(&Slopes::ByShape { inverse_area, shape, value, first, second })
+        t.expansion(edges, &Slopes::ByShape { inverse_area, shape, value, first, second })
     }
 
     /// A triangle's inverse mean ratio less 1, and over that of the guard.
@@ -75,6 +81,7 @@ impl Smoothing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metric::edge_slopes::Own;
 
     fn corner(height: f64) -> Corner<f64> {
         Corner { a: [1.0, 0.1], b: [0.4, height], mean_area: 0.3 }
@@ -97,7 +104,7 @@ mod tests {
                         true => smoothing.power(ratio) * PENALTY,
                         false => ratio.constant(PENALTY),
                     };
-                    let found = smoothing.penalty_expansion(&t);
+                    let found = smoothing.penalty_expansion(&t, Own);
                     let numbers = |d: &Dual| {
                         let ([x, y], [xx, xy, yy]) = (d.gradient, d.hessian);
                         [d.value, x, y, xx, xy, yy]
@@ -119,7 +126,7 @@ mod tests {
             let t = corner(0.04 + height);
             assert!(t.inverse_mean_ratio() > 2.0);
             assert_eq!(smoothing.penalty(&t), PENALTY);
-            let Dual { value, gradient, hessian } = smoothing.penalty_expansion(&t);
+            let Dual { value, gradient, hessian } = smoothing.penalty_expansion(&t, Own);
             assert_eq!((value, gradient, hessian), (PENALTY, [0.0; 2], [0.0; 3]));
         }
         let near = corner(0.8);

@@ -5,6 +5,7 @@
 
 use crate::metric::corner::{Corner, Invariants, Slopes};
 use crate::metric::dual::{Dual, Real};
+use crate::metric::edge_slopes::{EdgeSlopes, Own};
 use crate::metric::properties::Properties;
 use crate::metric::smoothing::Smoothing;
 use crate::metric::{ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
@@ -177,9 +178,14 @@ pub(crate) trait Formulas: Copy + Sync {
     /// The function that Newton's method minimizes: [`Self::excess`] if that is smooth, else a smooth model of it.
     fn model<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> T;
 
-    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start
-    /// from, by the hand-written derivatives.
-    fn expansion<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> Dual<T>;
+    /// Value, gradient and Hessian of [`Self::model`] with respect to the visited vertex, by the hand-written
+    /// derivatives. The edges of `corner` depend on the vertex by `edges`.
+    fn expansion<T: Real>(
+        self,
+        corner: &Corner<T>,
+        edges: impl EdgeSlopes,
+        smoothing: Smoothing,
+    ) -> Dual<T>;
 }
 
 impl Formulas for OfEdges {
@@ -205,9 +211,18 @@ impl Formulas for OfEdges {
     }
 
     #[inline(always)]
-    fn expansion<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> Dual<T> {
-        let norm = edge::expansion(corner, smoothing.sharpness);
-        if smoothing.is_penalized() { norm + smoothing.penalty_expansion(corner) } else { norm }
+    fn expansion<T: Real>(
+        self,
+        corner: &Corner<T>,
+        edges: impl EdgeSlopes,
+        smoothing: Smoothing,
+    ) -> Dual<T> {
+        let norm = edge::expansion(corner, edges, smoothing.sharpness);
+        if smoothing.is_penalized() {
+            norm + smoothing.penalty_expansion(corner, edges)
+        } else {
+            norm
+        }
     }
 }
 
@@ -234,8 +249,13 @@ impl Formulas for OfInvariants {
     }
 
     #[inline(always)]
-    fn expansion<T: Real>(self, corner: &Corner<T>, _: Smoothing) -> Dual<T> {
-        corner.expansion(&self.slopes(&corner.invariants()))
+    fn expansion<T: Real>(
+        self,
+        corner: &Corner<T>,
+        edges: impl EdgeSlopes,
+        _: Smoothing,
+    ) -> Dual<T> {
+        corner.expansion(edges, &self.slopes(&corner.invariants()))
     }
 }
 
@@ -277,12 +297,17 @@ impl Formulas for AnyFormulas {
     }
 
     #[inline(always)]
-    fn expansion<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> Dual<T> {
+    fn expansion<T: Real>(
+        self,
+        corner: &Corner<T>,
+        edges: impl EdgeSlopes,
+        smoothing: Smoothing,
+    ) -> Dual<T> {
         corner.a[0].apart(
             #[inline(always)]
             || match self {
-                AnyFormulas::Edges(f) => f.expansion(corner, smoothing),
-                AnyFormulas::Invariants(f) => f.expansion(corner, smoothing),
+                AnyFormulas::Edges(f) => f.expansion(corner, edges, smoothing),
+                AnyFormulas::Invariants(f) => f.expansion(corner, edges, smoothing),
             },
         )
     }
@@ -355,7 +380,7 @@ impl Metric {
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start from,
     /// by the hand-written derivatives that the CPU engine uses.
     pub fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
-        self.formulas().expansion(corner, Smoothing::of(sharpness))
+        self.formulas().expansion(corner, Own, Smoothing::of(sharpness))
     }
 
     /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of

@@ -80,8 +80,8 @@ impl fmt::Display for Feature {
             Self::Targets => "Targets",
             Self::TargetField => "a TargetField",
             Self::Untangle => "untangling",
-            Self::Encoded => "encoded sweeps",
-            Self::EncodedCorrections => "encoded sweeps with corrections",
+            Self::Encoded => "encoding sweeps",
+            Self::EncodedCorrections => "encoding corrected sweeps",
         })
     }
 }

@@ -1,10 +1,10 @@
 //! Curves with the vertices on them.
 
 use crate::layout::Problem;
+use crate::patch::Fan;
 use crate::slide::chains::Chain;
 use crate::slide::curve::{Curve, Place};
 use crate::slide::options::Slide;
-use crate::slide::patch::Fan;
 use crate::topology::Topology;
 
 /// A curve and its vertices, in order. Only vertices with a fan slide: all except the ends of a curve that is not

@@ -3,12 +3,12 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
+use crate::patch::Fan;
 use crate::precision::Precision;
 use crate::slide::chains::chains;
 use crate::slide::newton::{self, Reach, Rule, Visited, Window};
 use crate::slide::options::Slide;
 use crate::slide::params::Params;
-use crate::slide::patch::Fan;
 use crate::slide::side::Side;
 use crate::topology::Topology;
 

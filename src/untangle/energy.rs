@@ -7,13 +7,10 @@
 //! Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, *Foldover-free maps in 50 lines of code*, ACM Transactions on
 //! Graphics 40 (2021), equations 2 to 5, with the shape term alone.
 
-use crate::metric::{Dual, Real};
+use crate::metric::{Dual, EdgeSlopes, Real};
 
 /// S of an equilateral triangle in units of its area.
 const IDEAL: f64 = 4.0 * 1.732_050_807_568_877_2;
-
-/// The smallest eigenvalue of a Hessian that is left, as a share of the largest.
-pub(super) const EIGENVALUE_FLOOR: f64 = 1e-3;
 
 /// χ(ε, d) and √(ε² + d²), without cancellation.
 #[inline(always)]
@@ -55,16 +52,27 @@ impl<T: Real> Corner<T> {
         self.squares() / regularized(epsilon, self.area()).0
     }
 
-    /// The energy with its derivatives by the corner's position.
+    /// The energy with its derivatives by the visited vertex, on whose position the edges depend by `slopes`.
     #[inline(always)]
-    pub(crate) fn expansion(&self, epsilon: f64) -> Dual<T> {
+    pub(crate) fn expansion(&self, slopes: impl EdgeSlopes, epsilon: f64) -> Dual<T> {
         let [[ax, ay], [bx, by]] = self.edges;
+        let (alpha, beta, third) = (slopes.alpha(), slopes.beta(), slopes.third());
         let (chi, root) = regularized(epsilon, self.area());
         let s = self.squares();
         let unit = self.inverse_target * (1.0 / IDEAL);
-        let (sx, sy, ss) = ((ax + bx) * unit * -2.0, (ay + by) * unit * -2.0, unit * 4.0);
+        // Half the gradient of the sum of squared lengths, over the slope α if both edges have it.
+        let (fx, fy, factor) = match third == 0.0 {
+            true => (ax + bx, ay + by, 2.0 * alpha),
+            false => (
+                ax * alpha + bx * beta + (bx - ax) * third,
+                ay * alpha + by * beta + (by - ay) * third,
+                2.0,
+            ),
+        };
+        let (sx, sy) = (fx * unit * factor, fy * unit * factor);
+        let ss = unit * (2.0 * (alpha * alpha + beta * beta + third * third));
         let half = self.inverse_target * 0.5;
-        let (dx, dy) = ((ay - by) * half, (bx - ax) * half);
+        let (dx, dy) = ((by * alpha - ay * beta) * half, (ax * beta - bx * alpha) * half);
         // The derivatives of 1/χ by d.
         let one = chi.constant(1.0);
         let (inverse, inverse_root) = (one / chi, one / root);
@@ -88,7 +96,8 @@ impl<T: Real> Corner<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::descent;
+    use crate::metric::Own;
+    use crate::patch::{Direction, SearchRule, newton_direction};
     use glam::DVec2;
 
     fn corner(at: DVec2) -> Corner<f64> {
@@ -109,10 +118,10 @@ mod tests {
         // At a good triangle, at a flat one, and at inverted ones.
         for at in [[0.0, 0.0], [0.75, 0.625], [1.5, 1.5], [4.0, 3.0]].map(DVec2::from) {
             for epsilon in [1e-2, 0.3, 2.0] {
-                let found = corner(at).expansion(epsilon);
+                let found = corner(at).expansion(Own, epsilon);
                 let energy = |d: [f64; 2]| corner(at + DVec2::from(d)).energy(epsilon);
                 let gradient = |d: [f64; 2]| {
-                    DVec2::from(corner(at + DVec2::from(d)).expansion(epsilon).gradient)
+                    DVec2::from(corner(at + DVec2::from(d)).expansion(Own, epsilon).gradient)
                 };
                 let h = 1e-6;
                 let close = |found: f64, expected: f64, scale: f64| {
@@ -136,14 +145,55 @@ mod tests {
         }
     }
 
+    /// The slopes of an edge that ends at the visited vertex, and of any other edges.
+    #[derive(Clone, Copy, Debug)]
+    struct Given(f64, f64);
+
+    impl EdgeSlopes for Given {
+        fn alpha(self) -> f64 {
+            self.0
+        }
+        fn beta(self) -> f64 {
+            self.1
+        }
+    }
+
+    #[test]
+    fn derivatives_by_any_slopes_are_those_of_dual_numbers() {
+        let Corner { edges: [a, b], inverse_target } = corner(DVec2::new(0.1, 0.2));
+        for slopes in [Given(-1.0, -1.0), Given(1.0, 0.0), Given(0.0, 1.0), Given(0.5, -1.5)] {
+            let edge = |[x, y]: [f64; 2], slope: f64| {
+                [Dual::variable(x, 0, slope), Dual::variable(y, 1, slope)]
+            };
+            let [a, b] = [edge(a, slopes.0), edge(b, slopes.1)];
+            // The area is positive, where the energy without regularization needs no maximum.
+            let inverse_target = a[0].constant(inverse_target);
+            let dual = Corner { edges: [a, b], inverse_target };
+            let expected = dual.squares() / dual.area();
+            let [a, b] = [a, b].map(|edge| edge.map(|x| x.value));
+            let own = Corner { edges: [a, b], inverse_target: inverse_target.value };
+            let found = own.expansion(slopes, 1e-12);
+            let numbers = |d: &Dual| {
+                let ([x, y], [xx, xy, yy]) = (d.gradient, d.hessian);
+                [d.value, x, y, xx, xy, yy]
+            };
+            for (found, expected) in numbers(&found).iter().zip(numbers(&expected)) {
+                let error = (found - expected).abs();
+                assert!(error < 1e-10 * (1.0 + expected.abs()), "{slopes:?}: {found} {expected}");
+            }
+        }
+    }
+
     #[test]
     fn the_direction_descends_wherever_the_energy_has_a_slope() {
         for at in [[0.0, 0.0], [0.75, 0.625], [1.5, 1.5], [4.0, 3.0], [0.9, 0.1]].map(DVec2::from) {
-            let found = corner(at).expansion(0.1);
-            let gradient = DVec2::from(found.gradient);
-            assert!(descent(gradient, found.hessian, EIGENVALUE_FLOOR).dot(gradient) < 0.0);
+            let found = corner(at).expansion(Own, 0.1);
+            let direction = newton_direction(&found, SearchRule::UNTANGLE.eigenvalue_floor);
+            let Direction { vector, slope, descends } = direction;
+            let expected = DVec2::from(vector).dot(found.gradient.into());
+            assert!(descends && slope < 0.0 && (slope / expected - 1.0).abs() < 1e-12);
         }
-        let flat = descent(DVec2::ZERO, [1.0, 0.0, 1.0], EIGENVALUE_FLOOR);
-        assert_eq!(flat, DVec2::ZERO);
+        let flat = Dual { value: 1.0, gradient: [0.0; 2], hessian: [1.0, 0.0, 1.0] };
+        assert!(!newton_direction(&flat, SearchRule::UNTANGLE.eigenvalue_floor).descends);
     }
 }

@@ -4,23 +4,19 @@ use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use glam::DVec2;
 
-use crate::cpu::lanes::{LANES, Lanes, Mask, Points, with_instructions};
-use crate::cpu::{descent, points};
 use crate::layout::Problem;
-use crate::metric::{Dual, Real};
+use crate::metric::{Dual, Own, Real};
 use crate::parallel::{for_each_chunk, map_parts};
-use crate::untangle::energy::{Corner, EIGENVALUE_FLOOR};
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, with_instructions};
+use crate::patch::{Objective, SearchRule, newton_step};
+use crate::untangle::energy::Corner;
 
-/// The most lengths that are tried along a Newton step.
-const TRIALS: u32 = 10;
-/// Share of the predicted decrease that a trial must reach (Armijo).
-const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// Number of fours of vertices of one task.
 const FOURS: usize = 256;
 /// Number of triangles of one task.
 const TRIANGLES: usize = 1 << 12;
 
-/// Four free vertices with the same number of neighbors. Where there are fewer, the last one is repeated.
+/// Four free vertices with equally many neighbors. Lanes beyond the last vertex repeat that vertex.
 pub(super) type Four = [u32; LANES];
 
 /// Some free vertices in fours, in their order.
@@ -56,13 +52,16 @@ impl Tangle<'_> {
         let mut found = vec![[DVec2::ZERO; LANES]; fours.len()];
         for_each_chunk(&mut found, FOURS, |first, found| {
             with_instructions!(Level::new(), simd => {
-                let mut room = Vec::new();
+                let mut scratch = Vec::new();
                 for (found, &four) in found.iter_mut().zip(&fours[first..]) {
                     let at = points(simd, self.positions, four);
-                    let patches = Patches::gather(simd, self, four, &mut room);
+                    let patches = EnergyRings::gather(simd, self, four, epsilon, &mut scratch);
                     let [x, y] = match STEPS {
-                        true => patches.step(at, epsilon),
-                        false => patches.expansion(at, epsilon).gradient,
+                        true => {
+                            let going = Mask::splat(simd, true);
+                            newton_step(&patches, at, going, &SearchRule::UNTANGLE).0
+                        }
+                        false => patches.expansion(at).gradient,
                     };
                     for lane in 0..LANES {
                         found[lane] = DVec2::new(x[lane], y[lane]);
@@ -122,7 +121,7 @@ fn edges<T: Real>(at: [T; 2], [p, q]: [[T; 2]; 2]) -> [[T; 2]; 2] {
     [[p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]]
 }
 
-/// The numbers of some vertices, one in each lane.
+/// Gathers the `numbers` of four vertices into lanes.
 #[inline(always)]
 fn lanes<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> {
     let [a, b, c, d] = vertices;
@@ -130,21 +129,24 @@ fn lanes<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> 
     Lanes::simd_from(simd, [a, b, numbers[c as usize], numbers[d as usize]])
 }
 
-/// The one-rings of four vertices.
-struct Patches<'r, S: Simd> {
-    /// The neighbors of each vertex, counter-clockwise, with the first repeated at the end: where they are, and one over the area
-    /// that the triangle with the next one should have.
+/// The one-rings of four vertices, with the energy of their triangles as an objective.
+struct EnergyRings<'r, S: Simd> {
+    /// Regularization width ε of the energy, in units of the target area.
+    epsilon: f64,
+    /// For each neighbor its position, and the inverse target area of the triangle with the next neighbor. Neighbors are in
+    /// counter-clockwise order, with the first repeated at the end.
     ring: &'r [(Points<S>, Lanes<S>)],
 }
 
-impl<'r, S: Simd> Patches<'r, S> {
-    /// Reads the one-rings into `room`.
+impl<'r, S: Simd> EnergyRings<'r, S> {
+    /// Reads the one-rings into `scratch`.
     #[inline(always)]
     fn gather(
         simd: S,
         tangle: &Tangle<'_>,
         four: Four,
-        room: &'r mut Vec<(Points<S>, Lanes<S>)>,
+        epsilon: f64,
+        scratch: &'r mut Vec<(Points<S>, Lanes<S>)>,
     ) -> Self {
         let [a, b, c, d] = four;
         let a = tangle.problem.ring_of(a);
@@ -152,18 +154,18 @@ impl<'r, S: Simd> Patches<'r, S> {
         let b = &tangle.problem.ring_of(b)[..degree];
         let c = &tangle.problem.ring_of(c)[..degree];
         let d = &tangle.problem.ring_of(d)[..degree];
-        room.clear();
+        scratch.clear();
         for i in 0..degree {
             let neighbors = [a[i], b[i], c[i], d[i]];
             let target = lanes(simd, tangle.targets, neighbors);
-            room.push((points(simd, tangle.positions, neighbors), target));
+            scratch.push((points(simd, tangle.positions, neighbors), target));
         }
-        room.push(room[0]);
+        scratch.push(scratch[0]);
         let own = lanes(simd, tangle.targets, four);
         for i in 0..degree {
-            room[i].1 = own.constant(3.0) / (own + room[i].1 + room[i + 1].1);
+            scratch[i].1 = own.constant(3.0) / (own + scratch[i].1 + scratch[i + 1].1);
         }
-        Self { ring: room }
+        Self { epsilon, ring: scratch }
     }
 
     /// The triangle between the neighbors `i` and `i` + 1 with the vertices at `at`.
@@ -172,49 +174,25 @@ impl<'r, S: Simd> Patches<'r, S> {
         let ((p, inverse_target), (q, _)) = (self.ring[i], self.ring[i + 1]);
         Corner { edges: edges(at, [p, q]), inverse_target }
     }
+}
 
-    /// The energies of the patches with their derivatives.
+impl<S: Simd> Objective<Lanes<S>> for EnergyRings<'_, S> {
     #[inline(always)]
-    fn expansion(&self, at: Points<S>, epsilon: f64) -> Dual<Lanes<S>> {
+    fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
         let zero = at[0].constant(0.0);
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.ring.len() - 1 {
-            sum = sum + self.corner(i, at).expansion(epsilon);
+            sum = sum + self.corner(i, at).expansion(Own, self.epsilon);
         }
         sum
     }
 
-    /// The energies of the patches.
     #[inline(always)]
-    fn energy(&self, at: Points<S>, epsilon: f64) -> Lanes<S> {
-        let mut sum = at[0].constant(0.0);
+    fn trial(&self, to: Points<S>, _: Lanes<S>) -> (Lanes<S>, Mask<S>) {
+        let mut sum = to[0].constant(0.0);
         for i in 0..self.ring.len() - 1 {
-            sum += self.corner(i, at).energy(epsilon);
+            sum += self.corner(i, to).energy(self.epsilon);
         }
-        sum
-    }
-
-    /// Where a Newton step with a line search takes the vertices.
-    #[inline(always)]
-    fn step(&self, at: Points<S>, epsilon: f64) -> Points<S> {
-        let here = self.expansion(at, epsilon);
-        let ([dx, dy], slope, descends) = descent(&here, EIGENVALUE_FLOOR);
-        let wanted = slope * SUFFICIENT_DECREASE;
-        // Not so where the slope is not finite.
-        let mut searching: Mask<S> = descends & slope.simd_gt(f64::NEG_INFINITY);
-        let mut end = at;
-        let mut length = 1.0;
-        for _ in 0..TRIALS {
-            if searching.all_false() {
-                break;
-            }
-            let to = [at[0] + dx * length, at[1] + dy * length];
-            let most = here.value + wanted * length;
-            let taken = searching & self.energy(to, epsilon).simd_le(most);
-            end = [taken.select(to[0], end[0]), taken.select(to[1], end[1])];
-            searching &= !taken;
-            length *= 0.5;
-        }
-        end
+        (sum, Mask::splat(sum.simd, true))
     }
 }

@@ -7,10 +7,14 @@ use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::Mesh;
+use crate::metric::{AnyFormulas, Dual, Smoothing};
+use crate::patch::{
+    Circle, Direction, Fan, FanPatch, MetricObjective, Objective, SearchRule, newton_step,
+};
 use crate::precision::Precision;
 use crate::run::records::{Reader, Writer};
-use crate::run::{Step, StopRule, line_search};
-use crate::slide::{Fan, Params, Patch, Sliding};
+use crate::run::{Step, StopRule};
+use crate::slide::{Params, Sliding};
 use crate::topology::Topology;
 use crate::whole::host::Host;
 use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
@@ -19,7 +23,7 @@ use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
 const SWEEPS: u32 = 3;
 /// Number of times that a period visits the vertices at their bound.
 const VISITS: u32 = 3;
-/// Number of times that the move of a period is halved if it cannot be taken.
+/// Limit of the halvings of a period's move, which is halved until it lowers f and keeps triangles sound.
 const HALVED: u32 = 5;
 /// A vertex that has moved by more than this share of its bound is at its bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
@@ -74,16 +78,19 @@ impl<'s> MoveLimitStage<'s> {
         &self.bounds
     }
 
-    /// Returns how far each vertex that slides may be from its given position, in the unit of the mesh.
+    /// Returns the largest distance of each sliding vertex from its given position, in the unit of the mesh.
     pub(crate) fn reach(&self, sliding: &Sliding) -> Params {
         sliding.for_each_vertex(|v| self.all[v as usize])
     }
 
+    /// Returns the bound of a free vertex.
+    fn bound(&self, v: usize) -> Circle {
+        Circle { center: self.problem.positions()[v], radius: self.bounds[v] }
+    }
+
     /// Returns the position of a free vertex, brought back to its bound if it is beyond.
     fn within(&self, v: usize, to: DVec2) -> DVec2 {
-        let (start, bound) = (self.problem.positions()[v], self.bounds[v]);
-        let distance = to.distance(start);
-        if distance <= bound { to } else { start + (to - start) * (bound / distance) }
+        self.bound(v).nearest(to)
     }
 
     /// Moves the vertices to where the sweeps have moved them, as far as bounds allow, or a part of the way, if that lowers
@@ -112,37 +119,56 @@ impl<'s> MoveLimitStage<'s> {
         false
     }
 
-    /// Visits the vertices at their bound: a step along the negative gradient, brought back within the bound.
+    /// Visits the vertices at the limit of their moves, and takes a step of [`SearchRule::BOUND`] at each.
     fn visit_held(&self, host: &mut Host<'_>, step: &Step) {
+        let Step { metric, sharpness, shape_guard, .. } = *step;
+        let (formulas, smoothing) = (metric.formulas(), Smoothing::of(sharpness));
         for v in (0..host.held.len()).filter(|&v| host.held[v]) {
-            let here = host.positions[v];
-            let (problem, fan) = (&host.problem, &self.fans[v]);
-            let patch = Patch { problem, positions: &host.positions, fan, step, floor: 0.0 };
-            let sum = patch.derivatives(here);
-            let gradient = DVec2::from(sum.gradient);
-            let [xx, xy, yy] = sum.hessian;
-            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-            let most = mean.abs() + (half * half + xy * xy).sqrt();
-            // The step is the gradient divided by the largest curvature. It moves a vertex along its bound as well as
-            // inward.
-            let way = -gradient / most;
-            if !way.is_finite() {
-                continue;
-            }
-            let limit = match step.shape_guard.is_finite() {
-                true => step.shape_guard.max(patch.worst_shape(here)),
-                false => f64::INFINITY,
-            };
-            let mut length = 1.0;
-            for _ in 0..line_search::TRIALS {
-                let to = self.within(v, here + way * length);
-                if patch.objective(to, limit).is_some_and(|value| value < sum.value) {
-                    host.positions[v] = to;
-                    break;
-                }
-                length *= line_search::SHORTEN;
-            }
+            let patch = &self.fans[v].patch(&host.problem, &host.positions, 0.0);
+            let metric = MetricObjective { patch, formulas, smoothing, shape_guard };
+            let objective = BoundObjective { metric, bound: self.bound(v) };
+            let here = host.positions[v].to_array();
+            host.positions[v] = newton_step(&objective, here, true, &SearchRule::BOUND).0.into();
         }
+    }
+}
+
+/// The objective of a vertex at the limit of its move. Trials beyond the limit are projected to the circle.
+struct BoundObjective<'a> {
+    metric: MetricObjective<'a, FanPatch, AnyFormulas>,
+    bound: Circle,
+}
+
+impl Objective<f64> for BoundObjective<'_> {
+    fn expansion(&self, at: [f64; 2]) -> Dual {
+        self.metric.expansion(at)
+    }
+
+    /// Returns the negative gradient, divided by the largest curvature. The step moves a vertex along its bound as well
+    /// as inward.
+    fn direction(&self, here: &Dual, _: f64) -> Direction<f64> {
+        let ([x, y], [xx, xy, yy]) = (here.gradient, here.hessian);
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let most = mean.abs() + (half * half + xy * xy).sqrt();
+        let vector = [-x / most, -y / most];
+        let slope = vector[0] * x + vector[1] * y;
+        Direction { vector, slope, descends: vector.iter().all(|x| x.is_finite()) }
+    }
+
+    fn point(&self, on_line: [f64; 2]) -> [f64; 2] {
+        self.bound.nearest(on_line.into()).to_array()
+    }
+
+    fn trial(&self, to: [f64; 2], max_imr: f64) -> (f64, bool) {
+        self.metric.trial(to, max_imr)
+    }
+
+    fn shape_guard(&self) -> f64 {
+        self.metric.shape_guard
+    }
+
+    fn worst_shape(&self, at: [f64; 2]) -> f64 {
+        self.metric.worst_shape(at)
     }
 }
 

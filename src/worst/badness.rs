@@ -3,8 +3,9 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::{Corner, Dual, Real, TargetMap};
+use crate::metric::{Corner, Dual, Real};
 use crate::options::WorstBy;
+use crate::patch::{FanCorner, FanPatch};
 use crate::topology::predicates::is_positive;
 
 /// √3/6: the doubled area of an equilateral triangle, divided by the sum of its squared lengths.
@@ -37,9 +38,10 @@ impl Badness {
         self.0 != WorstBy::Altitude
     }
 
-    /// Returns a triangle as it is measured, transformed by its target map if that applies.
-    pub(crate) fn seen(self, corner: Corner<f64>, map: Option<&TargetMap<f64>>) -> Corner<f64> {
-        match map {
+    /// Returns a triangle with one corner at `at`, transformed by its target map if the measure applies to targets.
+    pub(crate) fn seen(self, triangle: &FanCorner, at: DVec2, mean_area: f64) -> Corner<f64> {
+        let corner = triangle.in_plane(at, mean_area);
+        match triangle.map {
             Some(map) if self.is_of_targets() => map.show(&corner),
             _ => corner,
         }
@@ -52,6 +54,12 @@ impl Badness {
         }
         let (terms, _) = self.terms(corner);
         terms.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Returns the badness of the worst triangle of a patch, with the vertex at `at`.
+    pub(crate) fn worst_of(self, patch: &FanPatch, at: DVec2) -> f64 {
+        let of = |triangle: &FanCorner| self.of(&self.seen(triangle, at, patch.mean_area));
+        patch.corners.iter().map(of).fold(0.0, f64::max)
     }
 
     /// Returns the sum of the terms of a triangle, as returned by [`seen`](Self::seen), each divided by `unit` and
@@ -100,13 +108,8 @@ fn power(x: f64, doublings: u32) -> f64 {
 }
 
 /// Whether a triangle is neither inverted nor flat.
-pub(crate) fn is_sound(corner: &Corner<f64>) -> bool {
+fn is_sound(corner: &Corner<f64>) -> bool {
     is_positive(&[[0.0; 2], corner.a, corner.b], &[0, 1, 2]) && corner.doubled_area() > 0.0
-}
-
-/// Makes the triangle of one corner and two others, in coordinates.
-pub(crate) fn corner(at: DVec2, [a, b]: [DVec2; 2], mean_area: f64) -> Corner<f64> {
-    Corner { a: (a - at).into(), b: (b - at).into(), mean_area }
 }
 
 #[cfg(test)]
@@ -116,7 +119,8 @@ mod tests {
     const POINTS: [[f64; 2]; 3] = [[0.1, 0.2], [1.3, 0.1], [0.4, 0.9]];
 
     fn seen_from(at: [f64; 2]) -> Corner<f64> {
-        corner(at.into(), [POINTS[1].into(), POINTS[2].into()], 1.0)
+        let ends = [POINTS[1], POINTS[2]].map(DVec2::from);
+        FanCorner { ends, map: None }.in_plane(at.into(), 1.0)
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::TargetMap;
 use crate::parallel::{collect, map_parts};
-use crate::worst::badness::{Badness, corner};
-use crate::worst::patch::{Patch, Rules};
+use crate::patch::FanCorner;
+use crate::worst::badness::Badness;
+use crate::worst::region::{Region, Rules};
 use crate::worst::regions::around;
 
 /// Of this number of triangles one is improved: the worst of those with a free vertex.
@@ -58,17 +58,15 @@ fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
     collect(problem.triangles().len(), |t| {
         let t = problem.triangles()[t];
         let [p, q, r] = t.map(|v| positions[v as usize]);
-        let map = problem
-            .targets()
-            .map(|maps| TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))));
-        badness.of(&badness.seen(corner(p, [q, r], problem.mean_area()), map.as_ref()))
+        let triangle = FanCorner { ends: [q, r], map: problem.target_map(&t) };
+        badness.of(&badness.seen(&triangle, p, problem.mean_area()))
     })
 }
 
-/// Improves the worst triangles of a mesh with its vertices at `positions`, in independent patches around them. Passes
-/// continue as long as the worst triangle of all becomes less bad and `goes_on`, called before each pass, allows it. A pass after
-/// which it is not is undone. No triangle becomes worse than the worst of its patch was. Returns the number of vertices that
-/// have moved.
+/// Improves the worst triangles of a mesh with its vertices at `positions`, in independent regions around them. Passes
+/// continue as long as the worst triangle of the mesh becomes less bad and `goes_on`, called before each pass, allows
+/// it. A pass without such a gain is undone. No triangle becomes worse than the worst triangle of its region was.
+/// Returns the count of moved vertices.
 pub(crate) fn improve(
     problem: &Problem,
     rules: &Rules<'_>,
@@ -96,7 +94,7 @@ pub(crate) fn improve(
         }
         let here = &*positions;
         let improved = map_parts(around(problem, &bad, RINGS), |_, vertices| {
-            Patch::new(problem, rules, here, vertices).improve()
+            Region::new(problem, rules, here, vertices).improve()
         });
         let moves: Vec<(u32, DVec2)> = improved.into_iter().flatten().flatten().collect();
         let from: Vec<DVec2> = moves.iter().map(|&(v, _)| positions[v as usize]).collect();

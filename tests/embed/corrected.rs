@@ -248,11 +248,8 @@ fn meshes_and_options_that_cannot_be_corrected_are_refused_with_the_reason() {
         ..Options::default()
     };
     for (options, reason) in [
-        (
-            multilevel("edge"),
-            "encoded sweeps with corrections does not go with a scheme of several",
-        ),
-        (multilevel("imr+rms"), "encoded sweeps with corrections does not go with a scheme of"),
+        (multilevel("edge"), "encoding corrected sweeps does not go with a scheme of several"),
+        (multilevel("imr+rms"), "encoding corrected sweeps does not go with a scheme of"),
         (multilevel("area"), "cannot be corrected from coarser levels; take another metric"),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();

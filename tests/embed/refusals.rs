@@ -248,18 +248,18 @@ fn options_out_of_range_are_refused() {
         ),
         (
             Options { max_move: Some(0.5), ..ok() },
-            "encoded sweeps does not go with max_move: only a whole run can do this; drop it, or do a whole run",
+            "encoding sweeps does not go with max_move: only a whole run can do this; drop it, or do a whole run",
         ),
         (
             Options {
                 stopping: Stopping::Goal(Goal { fraction: 0.9, desired: Some(1.0) }),
                 ..ok()
             },
-            "encoded sweeps does not go with Stopping::Goal: only a whole run can do this; drop it, or do a whole run",
+            "encoding sweeps does not go with Stopping::Goal: only a whole run can do this; drop it, or do a whole run",
         ),
         (
             Options { guard: Guard::Worst, ..ok() },
-            "encoded sweeps does not go with Guard::Worst: only a whole run can do this; drop it, or do a whole run",
+            "encoding sweeps does not go with Guard::Worst: only a whole run can do this; drop it, or do a whole run",
         ),
     ] {
         let error = Sweeps::new(&device_mesh, &options).err().unwrap();

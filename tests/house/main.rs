@@ -187,6 +187,48 @@ fn no_function_takes_a_tuple_apart_in_its_signature() {
     assert_eq!(found, TAKES_A_TUPLE_APART);
 }
 
+/// The files with a search for the step of a vertex, each with its rule.
+const SEARCHES: [(&str, &str); 6] = [
+    ("cpu/newton.rs", "SWEEP"),
+    ("gpu/kernels/source.rs", "SWEEP"),
+    ("slide/newton.rs", "CURVE"),
+    ("untangle/patches.rs", "UNTANGLE"),
+    ("whole/move_limit.rs", "BOUND"),
+    ("worst/region.rs", "WORST"),
+];
+
+/// The rules of all searches are to stand side by side in `src/patch/search_rule.rs`.
+#[test]
+fn every_search_for_the_step_of_a_vertex_takes_the_constants_of_its_rule() {
+    let source = root().join("src");
+    let mut files = Vec::new();
+    rust_files(&source, &mut files);
+    files.sort();
+    let mut found = Vec::new();
+    for file in files {
+        let inside = file.strip_prefix(&source).unwrap().to_string_lossy().into_owned();
+        // The search along a correction moves all vertices at once.
+        if inside.starts_with("patch/") || inside == "run/multilevel/search.rs" {
+            continue;
+        }
+        let text = fs::read_to_string(&file).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        for name in ["TRIALS", "SHORTEN", "SUFFICIENT_DECREASE", "SLACK"] {
+            assert!(!code.contains(&format!("const {name}:")), "{inside} has its own {name}");
+        }
+        let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let rules = lines.flat_map(|line| line.split("SearchRule::").skip(1));
+        let name = |text: &str| {
+            let end = text.find(|c: char| !c.is_ascii_uppercase()).unwrap_or(text.len());
+            text[..end].to_owned()
+        };
+        let rules: BTreeSet<String> = rules.map(name).collect();
+        found.extend(rules.into_iter().map(|rule| (inside.clone(), rule)));
+    }
+    let found: Vec<_> = found.iter().map(|(file, rule)| (&file[..], &rule[..])).collect();
+    assert_eq!(found, SEARCHES);
+}
+
 #[test]
 fn only_the_gpu_modules_name_wgpu() {
     let source = root().join("src");

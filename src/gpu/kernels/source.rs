@@ -12,6 +12,9 @@ use crate::gpu::kernels::uniforms::{
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
 use crate::options::Derivatives;
+use crate::patch::search_rule::{
+    FLAT_EXPONENT, FLAT_RATIO, LEAST_FLAT, SUFFICIENT_DECREASE, SearchRule,
+};
 use crate::run::Stop;
 use crate::run::multilevel::search::{CLOSE, MOST_FIRST};
 use crate::run::multilevel::{LEAST_FIRST, NONE, SMOOTHING};
@@ -91,7 +94,7 @@ fn constants() -> String {
         ("LEAST_NORMAL", LEAST_NORMAL),
         ("HELD", HELD),
         ("NONE", NONE),
-        ("TRIALS", line_search::TRIALS),
+        ("TRIALS", SearchRule::SWEEP.trials),
         ("SEARCH_TRIALS", SEARCH_TRIALS),
     ] {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
@@ -102,14 +105,14 @@ fn constants() -> String {
         let _ = writeln!(text, "const STOP_{name}: u32 = {code}u;");
     }
     for (name, value) in [
-        ("SUFFICIENT_DECREASE", line_search::SUFFICIENT_DECREASE),
-        ("SHORTEN_INFEASIBLE", line_search::SHORTEN_INFEASIBLE),
-        ("SHORTEN", line_search::SHORTEN),
-        ("BENT", line_search::BENT),
-        ("MOSTLY_FLAT", line_search::MOSTLY_FLAT),
-        ("LEAST_FLAT", line_search::LEAST_FLAT),
+        ("SUFFICIENT_DECREASE", SUFFICIENT_DECREASE),
+        ("SHORTEN_INFEASIBLE", SearchRule::SWEEP.shorten_infeasible),
+        ("SHORTEN", SearchRule::SWEEP.shorten),
+        ("FLAT_EXPONENT", FLAT_EXPONENT),
+        ("FLAT_RATIO", FLAT_RATIO),
+        ("LEAST_FLAT", LEAST_FLAT),
         ("DIFFERENCE", line_search::DIFFERENCE),
-        ("SLACK", line_search::SLACK),
+        ("SLACK", SearchRule::SWEEP.slack),
         ("PENALTY", PENALTY),
         ("LEAST_SQUARE", regularization::LEAST_SQUARE),
         ("SQUARE_SHARE", regularization::SQUARE_SHARE),

@@ -5,8 +5,10 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f64x4, mask64x4};
+use glam::DVec2;
 
 use crate::metric::Real;
+use crate::patch::numbers::{self, Numbers};
 
 /// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instruction set that the
 /// code is compiled for, and the constant `$mapped` to whether triangles are transformed by target maps.
@@ -51,7 +53,7 @@ macro_rules! with_lanes {
                 );
             }
             let $f = $metric.formulas();
-            $crate::cpu::lanes::with_instructions!(level, $simd => $body)
+            $crate::patch::lanes::with_instructions!(level, $simd => $body)
         }
     };
 }
@@ -116,7 +118,77 @@ impl<S: Simd> Real for Lanes<S> {
     }
 }
 
+impl<S: Simd> numbers::Mask for Mask<S> {
+    #[inline(always)]
+    fn all(self) -> bool {
+        self.all_true()
+    }
+    #[inline(always)]
+    fn none(self) -> bool {
+        self.all_false()
+    }
+}
+
+impl<S: Simd> Numbers for Lanes<S> {
+    type Mask = Mask<S>;
+    #[inline(always)]
+    fn mask(self, value: bool) -> Mask<S> {
+        Mask::splat(self.simd, value)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask<S> {
+        self.simd_lt(other)
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Mask<S> {
+        self.simd_le(other)
+    }
+    #[inline(always)]
+    fn select(mask: Mask<S>, yes: Self, no: Self) -> Self {
+        mask.select(yes, no)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        SimdFloat::abs(self)
+    }
+    #[inline(always)]
+    fn negative(self) -> Self {
+        -self
+    }
+}
+
 #[inline(never)]
 fn apart<S: Simd, R>(simd: S, function: impl FnOnce() -> R) -> R {
     simd.vectorize(function)
+}
+
+/// Gathers the positions of four vertices into lanes.
+#[inline(always)]
+pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANES]) -> Points<S> {
+    let [a, b, c, d] = vertices;
+    let (a, b) = (positions[a as usize], positions[b as usize]);
+    let (c, d) = (positions[c as usize], positions[d as usize]);
+    [Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]), Lanes::simd_from(simd, [a.y, b.y, c.y, d.y])]
+}
+
+/// Gathers the target maps of four vertices into lanes; identities if the mesh has no targets.
+#[inline(always)]
+pub(crate) fn target_maps<S: Simd>(
+    simd: S,
+    targets: Option<&[[f32; 3]]>,
+    vertices: [u32; LANES],
+) -> [Lanes<S>; 3] {
+    let Some(targets) = targets else {
+        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
+        return [one, zero, one];
+    };
+    let [a, b, c, d] = vertices;
+    let (a, b) = (&targets[a as usize], &targets[b as usize]);
+    let (c, d) = (&targets[c as usize], &targets[d as usize]);
+    // A loop over lanes instead of `map` of arrays, which is not inlined here and would take a third of a sweep.
+    let lane = |i: usize| {
+        let numbers = [f64::from(a[i]), f64::from(b[i]), f64::from(c[i]), f64::from(d[i])];
+        Lanes::simd_from(simd, numbers)
+    };
+    [lane(0), lane(1), lane(2)]
 }

@@ -1,0 +1,109 @@
+//! The triangles around one vertex, for visits of single vertices on the host.
+
+use glam::DVec2;
+
+use crate::layout::Problem;
+use crate::measure::altitude;
+use crate::metric::{Corner, Dual, Own, TargetMap};
+use crate::patch::corners::Corners;
+use crate::topology::Topology;
+use crate::topology::predicates::is_positive;
+
+/// Vertex numbers of the triangles around one vertex. Each triangle starts with the common vertex.
+#[derive(Clone, Debug)]
+pub(crate) struct Fan(Vec<[u32; 3]>);
+
+impl Fan {
+    pub(crate) fn new(topology: &Topology<'_>, vertex: u32) -> Self {
+        let own_first = |&t: &u32| {
+            let mut corners = topology.triangles()[t as usize];
+            let own = corners.iter().position(|&v| v == vertex).unwrap_or(0);
+            corners.rotate_left(own);
+            corners
+        };
+        Self(topology.star(vertex).iter().map(own_first).collect())
+    }
+
+    /// Gives every vertex a new number.
+    pub(crate) fn renumber(&mut self, number: &[u32]) {
+        self.0.as_flattened_mut().iter_mut().for_each(|v| *v = number[*v as usize]);
+    }
+
+    /// The vertex in the middle.
+    pub(crate) fn own(&self) -> u32 {
+        self.0.first().map_or(0, |corners| corners[0])
+    }
+
+    /// Gathers positions and target maps of the triangles. Trials with an altitude below `min_altitude` (normalized; 0 for
+    /// no limit) will be infeasible.
+    pub(crate) fn patch(
+        &self,
+        problem: &Problem,
+        positions: &[DVec2],
+        min_altitude: f64,
+    ) -> FanPatch {
+        let corner = |t: &[u32; 3]| FanCorner {
+            ends: [t[1], t[2]].map(|v| positions[v as usize]),
+            map: problem.target_map(t),
+        };
+        let corners = self.0.iter().map(corner).collect();
+        FanPatch { corners, mean_area: problem.mean_area(), min_altitude }
+    }
+}
+
+/// A triangle at the visited vertex.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FanCorner {
+    /// The positions of the other two corners, counter-clockwise.
+    pub(crate) ends: [DVec2; 2],
+    /// The target map of the triangle, if the mesh has targets.
+    pub(crate) map: Option<TargetMap<f64>>,
+}
+
+impl FanCorner {
+    /// Returns the triangle in the plane, with the visited vertex at `at`.
+    pub(crate) fn in_plane(&self, at: DVec2, mean_area: f64) -> Corner<f64> {
+        let [a, b] = self.ends.map(|end| (end - at).to_array());
+        Corner { a, b, mean_area }
+    }
+}
+
+/// The triangles around one vertex in coordinates, for any position of the vertex.
+#[derive(Clone, Debug)]
+pub(crate) struct FanPatch {
+    pub(crate) corners: Vec<FanCorner>,
+    /// Mean area of the mesh's triangles, after their target maps are applied.
+    pub(crate) mean_area: f64,
+    /// Lower limit of triangles' altitudes, normalized; 0 for no limit.
+    pub(crate) min_altitude: f64,
+}
+
+impl Corners<f64> for FanPatch {
+    type Slopes = Own;
+
+    fn count(&self) -> usize {
+        self.corners.len()
+    }
+
+    fn slopes(&self, _: usize) -> Own {
+        Own
+    }
+
+    fn corner(&self, i: usize, at: [f64; 2]) -> Corner<f64> {
+        let corner = self.corners[i].in_plane(at.into(), self.mean_area);
+        self.corners[i].map.map_or(corner, |map| map.show(&corner))
+    }
+
+    fn pull_back(&self, i: usize, shown: Dual) -> Dual {
+        self.corners[i].map.map_or(shown, |map| map.pull_back(shown))
+    }
+
+    /// Whether a triangle is counter-clockwise by its exact sign and by its rounded area, and no lower than the least
+    /// altitude.
+    fn is_positive(&self, i: usize, at: [f64; 2], corner: &Corner<f64>) -> bool {
+        let [p, q] = self.corners[i].ends;
+        is_positive(&[at, p.into(), q.into()], &[0, 1, 2])
+            && corner.doubled_area() > 0.0
+            && (self.min_altitude <= 0.0 || altitude([at.into(), p, q]) >= self.min_altitude)
+    }
+}

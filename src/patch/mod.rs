@@ -1,0 +1,25 @@
+//! The patch of a vertex: the triangles that depend on its position, one Newton step with its line search, and the rules
+//! of all searches side by side. The code is generic over `f64` and SIMD lanes, in which four vertices are visited at
+//! once.
+
+mod acceptance;
+mod corners;
+mod direction;
+mod fan;
+pub(crate) mod lanes;
+mod newton_step;
+mod numbers;
+mod ring;
+pub(crate) mod search_rule;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use acceptance::{Circle, is_kept};
+pub(crate) use corners::{Corners, MetricObjective, is_acceptable};
+pub(crate) use direction::Direction;
+#[cfg(test)]
+pub(crate) use direction::newton_direction;
+pub(crate) use fan::{Fan, FanCorner, FanPatch};
+pub(crate) use newton_step::{Objective, newton_step};
+pub(crate) use ring::{Rings, Scratch};
+pub(crate) use search_rule::SearchRule;

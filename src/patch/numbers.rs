@@ -1,0 +1,72 @@
+//! Arithmetic and comparisons of scalars and SIMD vectors.
+
+use std::ops::{BitAnd, BitOr, Not};
+
+use crate::metric::Real;
+
+/// A scalar, or a SIMD vector with one number per lane. Comparisons return a mask with one truth value per number.
+pub(crate) trait Numbers: Real {
+    /// The truth values: `bool` for `f64`.
+    type Mask: Mask;
+    /// Returns a mask with `value` in every lane.
+    fn mask(self, value: bool) -> Self::Mask;
+    /// Compares by `<`, lane by lane: NaN gives false.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// Compares by `<=`, lane by lane: NaN gives false.
+    fn le(self, other: Self) -> Self::Mask;
+    /// Returns `yes` in lanes where `mask` is true, and `no` in other lanes.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Returns absolute values.
+    fn abs(self) -> Self;
+    /// Changes signs.
+    fn negative(self) -> Self;
+}
+
+/// A truth value, or a SIMD mask with one truth value per lane.
+pub(crate) trait Mask:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
+    /// Whether all truth values are true.
+    fn all(self) -> bool;
+    /// Whether all truth values are false.
+    fn none(self) -> bool;
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn all(self) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn none(self) -> bool {
+        !self
+    }
+}
+
+impl Numbers for f64 {
+    type Mask = bool;
+    #[inline(always)]
+    fn mask(self, value: bool) -> bool {
+        value
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn negative(self) -> Self {
+        -self
+    }
+}

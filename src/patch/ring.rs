@@ -1,0 +1,131 @@
+//! The one-rings of four free vertices, one in each lane.
+
+use fearless_simd::prelude::*;
+use glam::DVec2;
+
+use crate::layout::Problem;
+use crate::metric::{Corner, Dual, Own, TargetMap};
+use crate::patch::corners::Corners;
+use crate::patch::direction::{Direction, newton_direction};
+use crate::patch::lanes::{LANES, Lanes, Points, points, target_maps};
+
+/// The one-rings of four free vertices with the same number of neighbors. If `MAPPED`, triangles are transformed by
+/// target maps.
+#[derive(Clone, Copy)]
+pub(crate) struct Rings<'a, S: Simd, const MAPPED: bool> {
+    /// Positions of the neighbors, counter-clockwise, with the first repeated at the end.
+    ring: &'a [Points<S>],
+    /// The target map of each triangle, if the mesh has targets.
+    maps: &'a [TargetMap<Lanes<S>>],
+    /// The inverse of the target map of each vertex itself, if the mesh has targets.
+    inverse_map: Option<TargetMap<Lanes<S>>>,
+    /// Mean area of the mesh's triangles, after their target maps are applied.
+    mean_area: f64,
+}
+
+/// Memory for [`Rings`], which one visit after another uses.
+pub(crate) struct Scratch<S: Simd> {
+    ring: Vec<Points<S>>,
+    maps: Vec<TargetMap<Lanes<S>>>,
+}
+
+impl<S: Simd> Scratch<S> {
+    pub(crate) fn new() -> Self {
+        Self { ring: Vec::with_capacity(16), maps: Vec::new() }
+    }
+}
+
+impl<'a, S: Simd, const MAPPED: bool> Rings<'a, S, MAPPED> {
+    /// Reads the one-rings of `vertices`, and their target maps, into `scratch`.
+    #[inline(always)]
+    pub(crate) fn gather(
+        simd: S,
+        problem: &Problem,
+        positions: &[DVec2],
+        vertices: [u32; LANES],
+        scratch: &'a mut Scratch<S>,
+    ) -> Self {
+        let Scratch { ring, maps } = scratch;
+        let [a, b, c, d] = vertices;
+        let a = problem.ring_of(a);
+        let degree = a.len();
+        let b = &problem.ring_of(b)[..degree];
+        let c = &problem.ring_of(c)[..degree];
+        let d = &problem.ring_of(d)[..degree];
+        ring.clear();
+        for i in 0..degree {
+            ring.push(points(simd, positions, [a[i], b[i], c[i], d[i]]));
+        }
+        ring.push(ring[0]);
+        let mut inverse_map = None;
+        if MAPPED {
+            let targets = problem.targets();
+            let own = target_maps(simd, targets, vertices);
+            let mut before = target_maps(simd, targets, [a[0], b[0], c[0], d[0]]);
+            let first = before;
+            maps.clear();
+            for i in 1..degree {
+                let next = target_maps(simd, targets, [a[i], b[i], c[i], d[i]]);
+                maps.push(TargetMap::mean([own, before, next]));
+                before = next;
+            }
+            maps.push(TargetMap::mean([own, before, first]));
+            inverse_map = Some(TargetMap(own).inverse());
+        }
+        Self { ring, maps, inverse_map, mean_area: problem.mean_area() }
+    }
+
+    /// The inverse of the target map of each vertex, if the mesh has targets.
+    #[inline(always)]
+    pub(crate) fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
+        &self.inverse_map
+    }
+
+    /// The squared length of one edge at each vertex: that to its first neighbor.
+    #[inline(always)]
+    pub(crate) fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
+        let (x, y) = (self.ring[0][0] - at[0], self.ring[0][1] - at[1]);
+        x * x + y * y
+    }
+}
+
+impl<S: Simd, const MAPPED: bool> Corners<Lanes<S>> for Rings<'_, S, MAPPED> {
+    type Slopes = Own;
+
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.ring.len() - 1
+    }
+
+    #[inline(always)]
+    fn slopes(&self, _: usize) -> Own {
+        Own
+    }
+
+    /// The triangle between the neighbors `i` and `i` + 1.
+    #[inline(always)]
+    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+        let (p, q) = (self.ring[i], self.ring[i + 1]);
+        let (a, b) = ([p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]);
+        let corner = Corner { a, b, mean_area: self.mean_area };
+        if MAPPED { self.maps[i].show(&corner) } else { corner }
+    }
+
+    #[inline(always)]
+    fn pull_back(&self, i: usize, shown: Dual<Lanes<S>>) -> Dual<Lanes<S>> {
+        if MAPPED { self.maps[i].pull_back(shown) } else { shown }
+    }
+
+    #[inline(always)]
+    fn direction(&self, sum: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
+        match &self.inverse_map {
+            Some(inverse) if MAPPED => {
+                // The floor is meant for nearly equilateral triangles, so it is applied in the coordinates of the target
+                // map.
+                let mapped = newton_direction(&inverse.pull_back(*sum), eigenvalue_floor);
+                Direction { vector: inverse.apply(mapped.vector), ..mapped }
+            }
+            _ => newton_direction(sum, eigenvalue_floor),
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! A region of a mesh in which the worst triangle is improved, independently of the rest.
+
+use std::collections::HashMap;
+
+use glam::DVec2;
+
+use crate::layout::Problem;
+use crate::metric::{Dual, Smoothing, TargetMap};
+use crate::patch::{
+    Circle, FanCorner, FanPatch, MetricObjective, Objective, SearchRule, is_acceptable, newton_step,
+};
+use crate::run::Step;
+use crate::worst::badness::Badness;
+
+/// The log2 of the exponents of the p-norms that are lowered in turn.
+const DOUBLINGS: [u32; 3] = [3, 5, 7];
+/// Limit of the visits of a vertex by one exponent.
+const VISITS: u32 = 10;
+/// Visits by an exponent end if a pass moves every vertex by less than this share of an edge.
+const SETTLED: f64 = 1e-3;
+/// Number of visits of each vertex to regain what f lost.
+const RELAXING: u32 = 10;
+
+/// Bounds that every new position of a vertex must keep.
+pub(crate) struct Rules<'a> {
+    pub(crate) badness: Badness,
+    /// A step of the metric that the run minimizes.
+    pub(crate) step: Step,
+    /// The largest inverse mean ratio that a triangle may have, after its target map is applied.
+    pub(crate) shape: f64,
+    /// The lower limit of altitudes, normalized; 0 for no limit.
+    pub(crate) floor: f64,
+    /// Upper limits of the distances between free vertices and their start positions, normalized; `None` for no limit.
+    pub(crate) bounds: Option<&'a [f64]>,
+}
+
+/// A triangle at a vertex: the other two corners, counter-clockwise, and its target map.
+struct Side {
+    ends: [u32; 2],
+    map: Option<TargetMap<f64>>,
+}
+
+/// Some free vertices, and the triangles around each. Vertices are numbered within the region; vertices that move come
+/// first.
+pub(crate) struct Region<'a> {
+    rules: &'a Rules<'a>,
+    /// The numbers in the problem of the vertices that move.
+    vertices: Vec<u32>,
+    positions: Vec<DVec2>,
+    stars: Vec<Vec<Side>>,
+    /// For each moving vertex, the circle that bounds its moves.
+    bounds: Vec<Circle>,
+    mean_area: f64,
+}
+
+impl<'a> Region<'a> {
+    pub(crate) fn new(
+        problem: &Problem,
+        rules: &'a Rules<'a>,
+        positions: &[DVec2],
+        vertices: Vec<u32>,
+    ) -> Self {
+        let mut places: Vec<DVec2> = vertices.iter().map(|&v| positions[v as usize]).collect();
+        let mut number: HashMap<u32, u32> = vertices.iter().copied().zip(0..).collect();
+        let mut stars = Vec::new();
+        for &v in &vertices {
+            let ring = problem.ring_of(v);
+            let next = ring.iter().skip(1).chain(ring.first());
+            let side = |(&a, &b): (&u32, &u32)| {
+                let ends = [a, b].map(|end| {
+                    *number.entry(end).or_insert_with(|| {
+                        places.push(positions[end as usize]);
+                        places.len() as u32 - 1
+                    })
+                });
+                Side { ends, map: problem.target_map(&[v, a, b]) }
+            };
+            stars.push(ring.iter().zip(next).map(side).collect());
+        }
+        let bound = |&v: &u32| {
+            let radius = rules.bounds.map_or(f64::INFINITY, |bounds| bounds[v as usize]);
+            Circle { center: problem.positions()[v as usize], radius }
+        };
+        let bounds = vertices.iter().map(bound).collect();
+        let mean_area = problem.mean_area();
+        Self { rules, vertices, positions: places, stars, bounds, mean_area }
+    }
+
+    /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
+    /// possible. Returns the new positions, with the vertices' numbers in the problem, or `None` if the worst triangle
+    /// cannot be improved.
+    pub(crate) fn improve(mut self) -> Option<Vec<(u32, DVec2)>> {
+        let count = self.vertices.len();
+        let before = self.worst();
+        let mut best = (before, self.positions[..count].to_vec());
+        for doublings in DOUBLINGS {
+            for _ in 0..VISITS {
+                let moves = (0..count).map(|v| self.visit(v, doublings));
+                let most = moves.fold(0.0, f64::max);
+                let worst = self.worst();
+                if worst < best.0 {
+                    best = (worst, self.positions[..count].to_vec());
+                }
+                if most < SETTLED {
+                    break;
+                }
+            }
+        }
+        let (worst, positions) = best;
+        // Rounding alone is no gain.
+        let is_better = worst < before * (1.0 - 1e-9);
+        if !is_better {
+            return None;
+        }
+        self.positions[..count].copy_from_slice(&positions);
+        for _ in 0..RELAXING {
+            for v in 0..count {
+                self.relax(v, worst);
+            }
+        }
+        Some(self.vertices.into_iter().zip(self.positions).collect())
+    }
+
+    /// Returns the triangles around a vertex, in coordinates.
+    fn patch(&self, v: usize) -> FanPatch {
+        let corner = |side: &Side| FanCorner {
+            ends: side.ends.map(|end| self.positions[end as usize]),
+            map: side.map,
+        };
+        let corners = self.stars[v].iter().map(corner).collect();
+        FanPatch { corners, mean_area: self.mean_area, min_altitude: self.rules.floor }
+    }
+
+    /// Returns the badness of the worst triangle.
+    fn worst(&self) -> f64 {
+        let of = |v| self.rules.badness.worst_of(&self.patch(v), self.positions[v]);
+        (0..self.vertices.len()).map(of).fold(0.0, f64::max)
+    }
+
+    /// Takes a Newton step by the p-norm of the triangles around a vertex. Returns the length of the step, divided by
+    /// the length of an edge.
+    fn visit(&mut self, v: usize, doublings: u32) -> f64 {
+        let (patch, badness) = (&self.patch(v), self.rules.badness);
+        let unit = badness.worst_of(patch, self.positions[v]);
+        let power = PowerObjective { patch, badness, unit, doublings };
+        self.step(v, patch, power, f64::INFINITY)
+    }
+
+    /// Takes a Newton step by the metric of the run, after which no triangle around the vertex is worse than `limit`.
+    fn relax(&mut self, v: usize, limit: f64) {
+        let Step { metric, sharpness, .. } = self.rules.step;
+        let (patch, smoothing) = (&self.patch(v), Smoothing::of(sharpness));
+        let formulas = metric.formulas();
+        let shape_guard = f64::INFINITY;
+        let metric = MetricObjective { patch, formulas, smoothing, shape_guard };
+        self.step(v, patch, metric, limit);
+    }
+
+    /// Moves a vertex by a Newton step of an objective by [`SearchRule::WORST`], within all rules. Returns the length of
+    /// the step, divided by the length of an edge.
+    fn step(
+        &mut self,
+        v: usize,
+        patch: &FanPatch,
+        objective: impl Objective<f64>,
+        limit: f64,
+    ) -> f64 {
+        let (rules, bound) = (self.rules, self.bounds[v]);
+        let constrained = Constrained { objective, patch, rules, bound, limit };
+        let here = self.positions[v];
+        let (to, has_stepped) =
+            newton_step(&constrained, here.to_array(), true, &SearchRule::WORST);
+        if !has_stepped {
+            return 0.0;
+        }
+        let to = DVec2::from(to);
+        self.positions[v] = to;
+        let neighbor = patch.corners.first().map_or(here, |corner| corner.ends[0]);
+        to.distance(here) / neighbor.distance(here)
+    }
+}
+
+/// The sum over a patch of the terms of badness, each divided by `unit` and raised to the power 2^doublings.
+struct PowerObjective<'a> {
+    patch: &'a FanPatch,
+    badness: Badness,
+    unit: f64,
+    doublings: u32,
+}
+
+impl Objective<f64> for PowerObjective<'_> {
+    fn expansion(&self, at: [f64; 2]) -> Dual {
+        let Self { patch, badness, unit, doublings } = *self;
+        patch.corners.iter().fold(Dual::default(), |sum, triangle| {
+            let seen = badness.seen(triangle, at.into(), patch.mean_area);
+            let shown = badness.power_derivatives(&seen, unit, doublings);
+            sum + match triangle.map {
+                Some(map) if badness.is_of_targets() => map.pull_back(shown),
+                _ => shown,
+            }
+        })
+    }
+
+    fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
+        let Self { patch, badness, unit, doublings } = *self;
+        let power = |triangle: &FanCorner| {
+            let seen = badness.seen(triangle, to.into(), patch.mean_area);
+            badness.power(&seen, unit, doublings)
+        };
+        (patch.corners.iter().map(power).sum(), true)
+    }
+}
+
+/// An objective for positions of a vertex that keep all rules.
+struct Constrained<'a, O> {
+    objective: O,
+    patch: &'a FanPatch,
+    rules: &'a Rules<'a>,
+    bound: Circle,
+    /// The largest badness that a triangle around the vertex may have.
+    limit: f64,
+}
+
+impl<O: Objective<f64>> Objective<f64> for Constrained<'_, O> {
+    fn expansion(&self, at: [f64; 2]) -> Dual {
+        self.objective.expansion(at)
+    }
+
+    fn trial(&self, to: [f64; 2], max_imr: f64) -> (f64, bool) {
+        let Self { objective, patch, rules, bound, limit } = self;
+        let is_allowed = bound.contains(to.into())
+            && is_acceptable(*patch, rules.step.metric.formulas(), to, rules.shape)
+            && (limit.is_infinite() || rules.badness.worst_of(patch, to.into()) <= *limit);
+        if is_allowed { objective.trial(to, max_imr) } else { (f64::INFINITY, false) }
+    }
+}
