@@ -2,20 +2,20 @@
 
 use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
-use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE, XDMF};
 use crate::format::Format;
 use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
+use crate::registry::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE, XDMF};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
-use crate::visit::reader::Reader;
+use crate::visit::reader::ReaderFunctions;
 use std::path::{Path, PathBuf};
 
 /// Finds the format of a file. If no reader exists for it, the error names the format if it is known.
-pub(crate) fn reader(source: &Source) -> Result<&'static Reader, ReadError> {
+pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let head = head(&source.bytes, b"%");
     if head.is_empty() {
         return Err(source.error("the file is empty", "Write the mesh again"));
@@ -56,7 +56,7 @@ pub(crate) fn reader(source: &Source) -> Result<&'static Reader, ReadError> {
 }
 
 /// Tells apart formats of plain rows of numbers, by how many numbers the first rows have.
-fn by_rows(source: &Source) -> Result<&'static Reader, ReadError> {
+fn by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
         |row: &[&[u8]]| row.iter().map(|token| integer(token)).collect::<Option<Vec<_>>>();
@@ -157,7 +157,7 @@ fn by_first_words(bytes: &[u8]) -> impl Iterator<Item = &'static &'static Family
     FAMILIES.iter().filter(move |family| family.opens.iter().any(opens))
 }
 
-fn of(source: &Source, family: &'static Family) -> Result<&'static Reader, ReadError> {
+fn of(source: &Source, family: &'static Family) -> Result<&'static ReaderFunctions, ReadError> {
     match &family.reader {
         Some(reader) => Ok(reader),
         None => {
@@ -218,7 +218,7 @@ mod tests {
         let source = Source {
             path: name.into(),
             bytes: content_bytes.to_vec(),
-            packed: None,
+            compressed: None,
             options: ReadOptions::new(),
             known: KnownState::default(),
             companions: Vec::new(),

@@ -2,18 +2,18 @@
 
 use super::names;
 use super::targets::{TARGETS, Target, Write};
-use crate::compress::packed::Packing;
+use crate::compress::file::Compression;
 use crate::detect;
-use crate::disk::replace;
-use crate::disk::replace::Job as Replacement;
+use crate::disk::atomic;
+use crate::disk::atomic::Job as Replacement;
 use crate::error::{ReadError, WriteError};
 use crate::export::content::Content;
-use crate::export::job::Job;
-use crate::families::Family;
+use crate::export::writer_input::Job;
 use crate::format::Format;
 use crate::formats::triangle::names::Names;
 use crate::formats::write_grids;
 use crate::mesh_file::mesh::MeshFile;
+use crate::registry::Family;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -107,7 +107,7 @@ impl Conversion {
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         let destinations = self.destinations(path);
         let contents = self.contents();
-        let packs = Packing::of(path);
+        let packs = Compression::of(path);
         let refused = |problem: String, remedy: &str| {
             let (path, remedy) = (path.to_owned(), remedy.to_owned());
             Err(WriteError::Format { path, problem, remedy })
@@ -131,12 +131,12 @@ impl Conversion {
             );
             return refused(problem, "Remove it, or take another name");
         }
-        destinations.iter().try_for_each(|path| replace::check(path))?;
+        destinations.iter().try_for_each(|path| atomic::check(path))?;
         let mut jobs: Vec<Replacement<'_>> = Vec::new();
         for (path, content) in destinations.into_iter().zip(&contents) {
             jobs.push((path, Box::new(move |out| put(content, packs, out))));
         }
-        replace::replace_all(&jobs)
+        atomic::replace_all(&jobs)
     }
 
     /// Returns the content of the file if it is text. `None` for binary formats, and for a Triangle mesh, which has
@@ -171,9 +171,13 @@ impl Conversion {
     }
 }
 
-fn put(bytes: &[u8], packs: Option<Packing>, out: &mut (dyn io::Write + Send)) -> io::Result<()> {
+fn put(
+    bytes: &[u8],
+    packs: Option<Compression>,
+    out: &mut (dyn io::Write + Send),
+) -> io::Result<()> {
     match packs {
-        Some(packing) => packing.pack(out, |out| out.write_all(bytes)),
+        Some(packing) => packing.compress(out, |out| out.write_all(bytes)),
         None => out.write_all(bytes),
     }
 }

@@ -3,7 +3,7 @@
 
 mod conversion;
 #[cfg(test)]
-mod documented;
+mod doc_tests;
 mod names;
 #[cfg(test)]
 mod tables;

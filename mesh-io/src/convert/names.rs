@@ -1,10 +1,10 @@
 //! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
 
 use crate::content::label::Label;
+use crate::export::capabilities::{Holds, first};
 use crate::export::content::{Content, ContentGroup};
-use crate::export::holds::{Holds, first};
-use crate::export::spelling::{Spelling, distinct};
-use crate::export::tags::Tags;
+use crate::export::group_numbers::Tags;
+use crate::export::name_rules::{Spelling, distinct};
 use crate::formats::ugrid;
 use std::collections::HashMap;
 

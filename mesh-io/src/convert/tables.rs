@@ -1,9 +1,9 @@
 //! Makes the table of conversions in docs/formats.md from what each target holds.
 
 use super::targets::TARGETS;
-use crate::export::holds::{Elements, Groups, Holds, Numbers};
-use crate::families::Family;
+use crate::export::capabilities::{Elements, Groups, Holds, Numbers};
 use crate::format::Format;
+use crate::registry::Family;
 use std::fmt::Write;
 
 /// Returns the name of a format in conversions, if it is a target.

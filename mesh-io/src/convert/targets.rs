@@ -1,8 +1,8 @@
 //! The table of formats that meshes are converted to.
 
-use crate::export::holds::{Elements, Groups, Holds, Numbers};
-use crate::export::job::Job;
-use crate::export::spelling::Spelling;
+use crate::export::capabilities::{Elements, Groups, Holds, Numbers};
+use crate::export::name_rules::Spelling;
+use crate::export::writer_input::Job;
 use crate::format::Format;
 use crate::formats::{
     abaqus, exodus, gmsh, medit, ply, su2, triangle, ugrid, vtk, write_grids, write_surface, xdmf,

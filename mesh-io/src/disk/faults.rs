@@ -1,7 +1,7 @@
 //! Tests of writing on disks that fail: each request fails once, and each pair of requests.
 
-use crate::disk::replace::{Job, replace_all_if};
-use crate::disk::system::{Disk, NewFile, System};
+use crate::disk::atomic::{Job, replace_all_if};
+use crate::disk::file_system::{Disk, NewFile, System};
 use std::fs::{self, Permissions};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;

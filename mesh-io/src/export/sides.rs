@@ -1,7 +1,7 @@
 //! Finds lines that are sides of elements, and what is lost of a mesh whose elements stand in blocks.
 
 use super::content::{Content, Data};
-use super::tags::Tags;
+use super::group_numbers::Tags;
 use crate::visit::items::Kind;
 use std::collections::HashSet;
 

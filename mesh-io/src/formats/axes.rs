@@ -1,25 +1,25 @@
 //! Coordinates of which those of each axis stand by themselves.
 
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::disk::source::Source;
-use crate::edit::numbers::{Encoded, Form, Numbers};
+use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::{Array, Encoding, Hdf5};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
-use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::send::REWRITE;
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Home, Layout};
+use crate::visit::storage::{ByteSpace, CoordinateStorage};
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 use std::ops::Range;
 
 /// The encoding of real numbers in binary.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct BinaryReals {
-    pub(crate) order: Order,
+    pub(crate) order: ByteOrder,
     pub(crate) precision: Precision,
 }
 
@@ -74,8 +74,8 @@ impl<'a> Axes<'a> {
         format: Format,
         count: usize,
         first: u64,
-        sink: &mut dyn Sink,
-    ) -> Result<Layout, ReadError> {
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let Axes { source, form: BinaryReals { order, precision }, ranges, encoded } = self;
         let [x, y] = [0, 1].map(|axis| ranges.get(axis).cloned().unwrap_or_default());
         let size = precision.bytes();
@@ -86,11 +86,12 @@ impl<'a> Axes<'a> {
             Some(encoding) => Cursor::at_byte_of(source, encoding.byte_of(at)),
         };
         let y_after = y.start as isize - x.start as isize;
-        let field = |axis: &Range<usize>| Field::new(bytes.get(axis.clone()), size, size, order);
+        let field =
+            |axis: &Range<usize>| NumberField::new(bytes.get(axis.clone()), size, size, order);
         let (x_at, tags) = (x.start, Tags::From(first));
         let place_of = |index: usize| place(x.start + index * size);
         NodeRecords { count, x: field(&x), y: field(&y), x_at, tags }.send(
-            sink,
+            visitor,
             place_of,
             |index| {
                 let tag = index as u64 + first;
@@ -98,15 +99,15 @@ impl<'a> Axes<'a> {
                 place_of(index).error(problem, REWRITE)
             },
         )?;
-        sink.end_nodes(&place(x.start))?;
+        visitor.end_nodes(&place(x.start))?;
         if let Some(z) = ranges.get(2) {
-            let mut heights = Heights::new(sink);
-            heights.see_all(field(z), z.len() / size, z.start);
-            let home = if encoded.is_some() { Home::Points } else { Home::File };
-            heights.send_from("z", Form::Binary(order, precision), home, 0, sink);
+            let mut heights = ZValues::new(visitor);
+            heights.push_records(field(z), z.len() / size, z.start);
+            let home = if encoded.is_some() { ByteSpace::Points } else { ByteSpace::File };
+            heights.send_from("z", NumberEncoding::Binary(order, precision), home, 0, visitor);
         }
-        let numbers = Numbers::Binary { order, precision, y_after };
-        let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);
-        Ok(Layout { encoded, ..Layout::in_place(format, numbers) })
+        let numbers = CoordinateEncoding::Binary { order, precision, y_after };
+        let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn EncodedArrays>);
+        Ok(CoordinateStorage { encoded, ..CoordinateStorage::in_place(format, numbers) })
     }
 }

@@ -6,7 +6,7 @@
 
 use crate::content::label::Label;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::{Names, counted_nodes};
@@ -14,12 +14,12 @@ use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
-use crate::visit::heights::TextNumbers;
-use crate::visit::items::{Column, Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{Element, Kind, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::TextNumbers;
 
 pub(crate) struct Jigsaw;
 
@@ -37,10 +37,13 @@ struct Lists<'a> {
     values: Option<(List<'a>, u64)>,
 }
 
-impl Walk for Jigsaw {
+impl FormatReader for Jigsaw {
     const VERTICES: &'static str = "POINT";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source).of(Syntax::SEMICOLONS);
         let mut lists = Lists::default();
         let (mut dimensions, mut points) = (2, None);
@@ -66,7 +69,7 @@ impl Walk for Jigsaw {
                     cursor.check_vertex_count(count)?;
                     let start = cursor.clone();
                     let names = Names { one: "a point", all: "points" };
-                    let heights = counted_nodes(cursor, count, dimensions, names, sink)?;
+                    let heights = counted_nodes(cursor, count, dimensions, names, visitor)?;
                     points = Some((List { cursor: start, count }, heights));
                 }
                 b"EDGE2" | b"TRIA3" | b"QUAD4" => {
@@ -86,8 +89,8 @@ impl Walk for Jigsaw {
                     let components = number(cursor, &key, second)?;
                     lists.values = Some((List { cursor: cursor.clone(), count }, components));
                 }
-                _ if sink.asks_for_data() => {
-                    sink.leaves_out(&format!("what {}= is", quoted(&key)));
+                _ if visitor.asks_for_data() => {
+                    visitor.unsupported(&format!("what {}= is", quoted(&key)));
                 }
                 _ => {}
             }
@@ -95,30 +98,30 @@ impl Walk for Jigsaw {
         let Some((points, heights)) = points else {
             return Err(source.error("it has no POINT", "Save the mesh again"));
         };
-        if sink.asks_for_groups() {
-            tags(&points, dimensions, sink)?;
+        if visitor.asks_for_groups() {
+            tags(&points, dimensions, visitor)?;
         }
-        sink.end_nodes(cursor)?;
-        heights.send("z", Numbers::TEXT.into(), sink);
+        visitor.end_nodes(cursor)?;
+        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
         if let Some((list, components)) = lists.values {
-            values(list, components, points.count, sink)?;
+            values(list, components, points.count, visitor)?;
         }
-        sink.columns(vec![Column::tags_from_one("tag")]);
+        visitor.region_attributes(vec![RegionAttribute::tags_from_one("tag")]);
         for (kind, List { mut cursor, count }) in lists.elements {
-            sink.expect_elements(cursor.capacity(count, "0;1;2;0\n".len()));
+            visitor.expect_elements(cursor.capacity(count, "0;1;2;0\n".len()));
             each_row(
                 &mut cursor,
                 count,
                 "elements",
-                sink,
+                visitor,
                 |cursor| Ok((nodes(cursor, kind)?, tag(cursor)?)),
-                |cursor, sink, done, (nodes, tag)| {
+                |cursor, visitor, done, (nodes, tag)| {
                     let element = Element { tag: done, kind, region: [tag, 0], nodes };
-                    sink.element(cursor, &element)
+                    visitor.element(cursor, &element)
                 },
             )?;
         }
-        Ok(Layout::in_place(Format::Jigsaw, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Jigsaw, CoordinateEncoding::TEXT))
     }
 }
 
@@ -140,14 +143,18 @@ fn number(cursor: &Cursor<'_>, key: &[u8], value: &[u8]) -> Result<u64, ReadErro
 }
 
 /// Hands on the tags of points that are not 0.
-fn tags(points: &List<'_>, dimensions: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn tags(
+    points: &List<'_>,
+    dimensions: u64,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     let cursor = &mut points.cursor.clone();
     for point in 0..points.count {
         cursor.row(point, points.count, "points")?;
         cursor.tokens(dimensions);
         match tag(cursor)? {
             0 => {}
-            tag => sink.node_within(point as u32, "tag", &Label::Tag(tag)),
+            tag => visitor.node_group(point as u32, "tag", &Label::Tag(tag)),
         }
     }
     Ok(())
@@ -158,13 +165,13 @@ fn values(
     List { mut cursor, count }: List<'_>,
     components: u64,
     points: u64,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     if count != points || components == 0 {
-        sink.leaves_out("values that are not those of points");
+        visitor.unsupported("values that are not those of points");
         return Ok(());
     }
-    if !sink.point_array(b"value", components, true) {
+    if !visitor.point_array(b"value", components, true) {
         return Ok(());
     }
     let mut numbers = TextNumbers::default();
@@ -174,7 +181,7 @@ fn values(
             numbers.read(&mut cursor)?;
         }
     }
-    sink.point_numbers(numbers.finish(Precision::Double, None));
+    visitor.point_numbers(numbers.finish(Precision::Double, None));
     Ok(())
 }
 

@@ -6,24 +6,27 @@
 
 use crate::content::label::Label;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
 use crate::visit::items::{Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Mike;
 
-impl Walk for Mike {
+impl FormatReader for Mike {
     const VERTICES: &'static str = "the list of nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.row(0, 1, "lines of counts")?;
         let mut first = cursor.clone();
@@ -33,12 +36,12 @@ impl Walk for Mike {
         let count = cursor.vertex_count()?;
         cursor.rest();
         let before = &mut cursor.clone();
-        let heights = numbered_nodes(cursor, count, false, sink)?;
-        if sink.asks_for_groups() {
-            codes(before, count, sink)?;
+        let heights = numbered_nodes(cursor, count, false, visitor)?;
+        if visitor.asks_for_groups() {
+            codes(before, count, visitor)?;
         }
-        sink.end_nodes(cursor)?;
-        heights.send("z", Numbers::TEXT.into(), sink);
+        visitor.end_nodes(cursor)?;
+        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
         cursor.row(0, 1, "lines of the count of elements")?;
         let elements = cursor.integer("the number of elements")?;
         let most = cursor.integer("the largest number of nodes of an element")?;
@@ -47,11 +50,11 @@ impl Walk for Mike {
             return Err(cursor.error(problem, "Elements of three and four nodes are read"));
         }
         cursor.rest();
-        sink.expect_elements(cursor.capacity(elements, "1 1 2 3\n".len()));
-        each_row(cursor, elements, "elements", sink, element, |cursor, sink, _, element| {
-            sink.element(cursor, &element)
+        visitor.expect_elements(cursor.capacity(elements, "1 1 2 3\n".len()));
+        each_row(cursor, elements, "elements", visitor, element, |cursor, visitor, _, element| {
+            visitor.element(cursor, &element)
         })?;
-        Ok(Layout::in_place(Format::Mike, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Mike, CoordinateEncoding::TEXT))
     }
 }
 
@@ -68,13 +71,17 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
 }
 
 /// Hands on the codes of nodes. They stand behind z, and inner nodes have the code 0.
-fn codes(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn codes(
+    cursor: &mut Cursor<'_>,
+    count: u64,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     for node in 0..count {
         cursor.row(node, count, "nodes")?;
         cursor.tokens(4);
         let code = if cursor.is_at_end() { 0 } else { cursor.signed("the code of a node")? };
         if code != 0 {
-            sink.node_within(node as u32, "code", &Label::Tag(code));
+            visitor.node_group(node as u32, "code", &Label::Tag(code));
         }
     }
     Ok(())

@@ -1,11 +1,11 @@
 //! Data of nodes: variables whose numbers are handed on record by record.
 
-use crate::edit::numbers::{Encoded, Form, Places};
+use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::hdf5::Encoding;
 use crate::netcdf::{Header, Items, Number, Variable};
 use crate::visit::items::PointNumbers;
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
+use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -45,15 +45,15 @@ impl<'h, 'a> PointData<'h, 'a> {
         variable: &'h Variable,
         parts: &Parts,
         missing: Option<f64>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) {
         let is_real = matches!(variable.number, Number::Real(_));
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
-                if sink.point_array(name, parts.components, is_real)
+                if visitor.point_array(name, parts.components, is_real)
                     && let Some(numbers) = self.numbers(variable, record, part, parts, missing)
                 {
-                    sink.point_numbers(numbers);
+                    visitor.point_numbers(numbers);
                 }
             }
         }
@@ -83,19 +83,24 @@ impl<'h, 'a> PointData<'h, 'a> {
         let size = range.len() / parts.all.max(1);
         let range = range.start + part * size..range.start + (part + 1) * size;
         let (start, home) = match encoding {
-            None => (items.byte_of(range.start), Home::File),
+            None => (items.byte_of(range.start), ByteSpace::File),
             Some(encoding) => {
-                (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
+                (range.start, ByteSpace::Encoded(Arc::clone(encoding) as Arc<dyn EncodedArrays>))
             }
         };
         let mut numbers = variable.numbers(bytes.get(range).unwrap_or_default());
         let is_missing = |number: &&mut f64| Some(**number) == missing;
         numbers.iter_mut().filter(is_missing).for_each(|number| *number = f64::NAN);
         let stored = precision.map(|precision| {
-            let places = Places::Regular { start, stride: precision.bytes() };
-            Stored { places, form: Form::Binary(variable.order, precision), home, part: 0 }
+            let places = Offsets::Regular { start, stride: precision.bytes() };
+            ArrayLocation {
+                offsets: places,
+                encoding: NumberEncoding::Binary(variable.order, precision),
+                space: home,
+                file_index: 0,
+            }
         });
-        Some(PointNumbers { numbers, nodes: None, stored })
+        Some(PointNumbers { numbers, nodes: None, location: stored })
     }
 
     fn encoding(&self, variable: &Variable) -> Option<&Arc<Encoding>> {

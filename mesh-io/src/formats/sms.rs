@@ -6,17 +6,17 @@
 use crate::content::label::Label;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::unquoted;
-use crate::visit::heights::Heights;
-use crate::visit::items::{Column, Element, Kind, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{Element, GroupScope, Kind, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{all_rows, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 pub(crate) struct Sms;
 
@@ -41,50 +41,57 @@ enum End {
     Last(Vec<u8>),
 }
 
-impl Walk for Sms {
+impl FormatReader for Sms {
     const VERTICES: &'static str = "the list of ND rows";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let nodes_first = &mut Cursor::new(source);
-        let mut heights = Heights::new(sink);
-        all_rows(nodes_first, sink, node, |cursor, sink, row| {
+        let mut heights = ZValues::new(visitor);
+        all_rows(nodes_first, visitor, node, |cursor, visitor, row| {
             if let Row::Node(tag, x_at, at, z) = row {
-                sink.node(cursor, tag, 2, x_at, at);
-                heights.see(z);
+                visitor.node(cursor, tag, 2, x_at, at);
+                heights.push(z);
             }
             Ok(())
         })?;
-        sink.end_nodes(nodes_first)?;
-        heights.send("z", Numbers::TEXT.into(), sink);
+        visitor.end_nodes(nodes_first)?;
+        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
         let materials = || {
             let label = |material| (material != NO_MATERIAL).then_some(Label::Tag(material));
-            vec![Column { what: "material".into(), from_dimension: 1, label }]
+            vec![RegionAttribute { what: "material".into(), from_dimension: 1, label }]
         };
-        sink.columns(materials());
-        all_rows(cursor, sink, element, |cursor, sink, row| {
+        visitor.region_attributes(materials());
+        all_rows(cursor, visitor, element, |cursor, visitor, row| {
             match row {
-                Row::Element(element) => sink.element(cursor, &element)?,
+                Row::Element(element) => visitor.element(cursor, &element)?,
                 Row::String(nodes, end) => {
                     // A row that continues a string has the same label.
                     let label = Label::Tag(string);
-                    sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
+                    visitor.group_scopes(&[GroupScope {
+                        what: "nodestring",
+                        label,
+                        dimension: Some(1),
+                    }]);
                     // Node strings belong to no material.
-                    sink.columns(Vec::new());
-                    sink.polyline(cursor, 0, [0; 2], &nodes)?;
-                    sink.columns(materials());
-                    sink.within(&[]);
+                    visitor.region_attributes(Vec::new());
+                    visitor.polyline(cursor, 0, [0; 2], &nodes)?;
+                    visitor.region_attributes(materials());
+                    visitor.group_scopes(&[]);
                     strings.extend(nodes);
                     if let End::Last(name) = end {
                         if !name.is_empty() {
-                            sink.name("nodestring", Some(1), string, &name);
+                            visitor.group_name("nodestring", Some(1), string, &name);
                         }
                         string += 1;
                     }
                 }
-                Row::Material(tag, name) => sink.name("material", Some(2), tag, &name),
+                Row::Material(tag, name) => visitor.group_name("material", Some(2), tag, &name),
                 _ => {}
             }
             Ok(())
@@ -92,9 +99,9 @@ impl Walk for Sms {
         if !strings.is_empty() {
             strings.sort_unstable();
             strings.dedup();
-            sink.remark(Remark::elements(strings.len() as u64, "node", " of node strings"));
+            visitor.remark(Remark::elements(strings.len() as u64, "node", " of node strings"));
         }
-        Ok(Layout::in_place(Format::Sms2dm, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Sms2dm, CoordinateEncoding::TEXT))
     }
 }
 
@@ -119,7 +126,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     }
     let tag = cursor.integer("the number of a node")?;
     let (x_at, at) = cursor.point(format_args!("node {tag}"))?;
-    Ok(Row::Node(tag, x_at, at, cursor.height_if_any(format_args!("node {tag}"))?))
+    Ok(Row::Node(tag, x_at, at, cursor.z_if_any(format_args!("node {tag}"))?))
 }
 
 /// Reads a row if it is that of an element, a node string or a material.

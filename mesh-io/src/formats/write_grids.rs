@@ -1,8 +1,8 @@
 //! Writes grids of coastal models: SMS's `.2dm`, and the grids of ADCIRC and SCHISM.
 
 use crate::export::content::{Content, Data};
-use crate::export::job::Job;
 use crate::export::put;
+use crate::export::writer_input::Job;
 use crate::format::Format;
 use crate::visit::items::Kind;
 use std::collections::{BTreeMap, HashMap, VecDeque};

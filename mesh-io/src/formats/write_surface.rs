@@ -1,7 +1,7 @@
 //! Writes Wavefront's `.obj` and Geomview's `.off`.
 
-use crate::export::job::Job;
 use crate::export::put;
+use crate::export::writer_input::Job;
 use crate::visit::items::Kind;
 use std::fmt::Write;
 

@@ -3,9 +3,9 @@
 use super::btree;
 use super::bytes::{Bytes, Fault};
 use super::file::{Hdf5, Object};
+use super::file_bytes::Raw;
 use super::header::{ATTRIBUTE, ATTRIBUTE_INFO, Header};
 use super::heap::Heap;
-use super::raw::Raw;
 use super::strings;
 use super::types::{Number, Space};
 

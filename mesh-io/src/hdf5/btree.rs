@@ -1,8 +1,8 @@
 //! Trees of both versions that tell where parts of a file stand.
 
 use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
-use super::sum::Sum;
+use super::checksum::Sum;
+use super::file_bytes::Raw;
 
 /// How deep a tree may be. One of so many levels would have more leaves than there are bytes on any disk.
 const DEPTH: u8 = 32;

@@ -1,6 +1,6 @@
 //! The bytes that the metadata of a file consist of.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use std::ops::Range;
 
 /// What is wrong with a part of a file, or is not read of it.
@@ -97,7 +97,7 @@ impl<'a> Bytes<'a> {
 
     /// Takes a number of up to eight bytes.
     pub(super) fn number(&mut self, width: usize) -> Result<u64, Fault> {
-        Ok(Order::Little.whole(self.take(width)?))
+        Ok(ByteOrder::Little.whole(self.take(width)?))
     }
 
     /// The same as a count or a place, the largest there is if it is beyond that.
@@ -113,7 +113,8 @@ impl<'a> Bytes<'a> {
     pub(super) fn address(&mut self) -> Result<Option<usize>, Fault> {
         let bytes = self.take(self.widths.address)?;
         let is_none = bytes.iter().all(|&byte| byte == 0xFF);
-        Ok((!is_none).then(|| usize::try_from(Order::Little.whole(bytes)).unwrap_or(usize::MAX)))
+        Ok((!is_none)
+            .then(|| usize::try_from(ByteOrder::Little.whole(bytes)).unwrap_or(usize::MAX)))
     }
 
     pub(super) fn length(&mut self) -> Result<usize, Fault> {

@@ -2,12 +2,12 @@
 
 use super::btree::Tree;
 use super::bytes::Fault;
+use super::checksum::Sum;
 use super::entry::{Chunk, Entry};
+use super::file_bytes::Raw;
 use super::filters::Filter;
 use super::fixed_array::{self, Slot};
 use super::layout::Index;
-use super::raw::Raw;
-use super::sum::Sum;
 
 /// A dataset as a lattice of chunks. One that is not in chunks is a single one.
 #[derive(Clone, Debug)]

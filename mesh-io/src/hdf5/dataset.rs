@@ -1,14 +1,14 @@
 //! Datasets: what their headers say, and their numbers.
 
 use super::bytes::{DAMAGED, Fault};
+use super::checksum::Sum;
 use super::chunks::Lattice;
 use super::entry::Chunk;
 use super::file::{Hdf5, Object};
+use super::file_bytes::Raw;
 use super::filters::{self, Filter};
 use super::header::{FILTERS, Header, LAYOUT, SPACE, TYPE};
 use super::layout::{Index, Layout};
-use super::raw::Raw;
-use super::sum::Sum;
 use super::types::{Number, Space};
 use crate::error::ReadError;
 use crate::parallel::map_parts;

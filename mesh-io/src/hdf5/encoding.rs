@@ -1,12 +1,12 @@
 //! What becomes of a file when numbers of its datasets change.
 
+use super::checksum::Sum;
 use super::dataset::{Array, Pieces};
 use super::entry::{Chunk, Entry};
 use super::file::Hdf5;
+use super::file_bytes::End;
 use super::filters;
-use super::raw::End;
-use super::sum::Sum;
-use crate::edit::numbers::{Encoded, Splice};
+use crate::edit::numbers::{ByteEdit, EncodedArrays};
 use std::ops::Range;
 
 /// Datasets whose numbers may change, one after another. A chunk that is compressed anew and is no longer than before takes the
@@ -76,7 +76,7 @@ impl Encoding {
         changed: &mut [(&Chunk, Option<Vec<u8>>)],
         file: &[u8],
         end: &mut usize,
-        splices: &mut Vec<Splice>,
+        edits: &mut Vec<ByteEdit>,
     ) {
         if *end != file.len() {
             return;
@@ -108,11 +108,11 @@ impl Encoding {
         for &(chunk, at) in &chunks[first..] {
             let new = at.and_then(|at| changed[at].1.take());
             let own = new.as_deref().unwrap_or(&file[chunk.range.clone()]);
-            self.enter(chunk, start + bytes.len(), own.len(), splices);
+            self.enter(chunk, start + bytes.len(), own.len(), edits);
             bytes.extend_from_slice(own);
         }
         *end = start + bytes.len();
-        splices.push(Splice { range: start..file.len(), bytes });
+        edits.push(ByteEdit { range: start..file.len(), bytes });
     }
 
     /// What replaces a chunk that becomes these bytes; `end` is where the file ends so far.
@@ -122,7 +122,7 @@ impl Encoding {
         bytes: Vec<u8>,
         file: &[u8],
         end: &mut usize,
-        splices: &mut Vec<Splice>,
+        edits: &mut Vec<ByteEdit>,
     ) {
         let (range, length) = (&chunk.range, bytes.len());
         let (mut start, mut place) = (range.start, range.start..range.start + length);
@@ -130,27 +130,27 @@ impl Encoding {
             (start, place) = (*end, file.len()..file.len());
             *end += length;
         }
-        self.enter(chunk, start, length, splices);
-        splices.push(Splice { range: place, bytes });
+        self.enter(chunk, start, length, edits);
+        edits.push(ByteEdit { range: place, bytes });
     }
 
     /// Changes what the index says of a chunk that gets another place or length.
-    fn enter(&self, chunk: &Chunk, start: usize, length: usize, splices: &mut Vec<Splice>) {
+    fn enter(&self, chunk: &Chunk, start: usize, length: usize, edits: &mut Vec<ByteEdit>) {
         let Chunk { range, entry, .. } = chunk;
         if let Some(Entry { address, size, .. }) = entry {
             if start != range.start {
                 let place = *address..*address + self.address;
-                splices.push(Splice { range: place, bytes: self.address_of(start) });
+                edits.push(ByteEdit { range: place, bytes: self.address_of(start) });
             }
             if let Some(place) = size.as_ref().filter(|_| length != range.len()) {
                 let value = (length as u64).to_le_bytes()[..place.len()].to_vec();
-                splices.push(Splice { range: place.clone(), bytes: value });
+                edits.push(ByteEdit { range: place.clone(), bytes: value });
             }
         }
     }
 }
 
-impl Encoded for Encoding {
+impl EncodedArrays for Encoding {
     fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -167,7 +167,7 @@ impl Encoded for Encoding {
         ranges
     }
 
-    fn splices(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<Splice> {
+    fn edits(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<ByteEdit> {
         let mut changed: Vec<(&Chunk, Option<Vec<u8>>)> = Vec::new();
         for Part { pieces, own } in &self.parts {
             let (old, new) = (&self.bytes[own.clone()], &new[own.clone()]);
@@ -189,36 +189,36 @@ impl Encoded for Encoding {
                 changed.push((chunk, Some(stored)));
             }
         }
-        let mut splices = Vec::new();
-        self.relay(&mut changed, file, end, &mut splices);
+        let mut edits = Vec::new();
+        self.relay(&mut changed, file, end, &mut edits);
         for (chunk, stored) in changed {
             if let Some(stored) = stored {
-                self.stored(chunk, stored, file, end, &mut splices);
+                self.stored(chunk, stored, file, end, &mut edits);
             }
         }
-        splices
+        edits
     }
 
-    fn follow(&self, file: &[u8], splices: &[Splice], end: usize) -> Vec<Splice> {
+    fn dependent_edits(&self, file: &[u8], edits: &[ByteEdit], end: usize) -> Vec<ByteEdit> {
         let mut more = Vec::new();
         if end != file.len() {
-            more.push(Splice { range: self.end.place.clone(), bytes: self.address_of(end) });
+            more.push(ByteEdit { range: self.end.place.clone(), bytes: self.address_of(end) });
         }
         let mut sums: Vec<&Sum> = self.sums().collect();
         sums.dedup();
         for sum in sums {
-            if more.iter().all(|splice| splice.range != sum.place()) {
-                more.extend(sum.again(file, splices.iter().chain(&more)));
+            if more.iter().all(|edit| edit.range != sum.place()) {
+                more.extend(sum.again(file, edits.iter().chain(&more)));
             }
         }
         more
     }
 
-    fn followers(&self, _first: usize) -> Vec<Range<usize>> {
+    fn dependent_ranges(&self, _first: usize) -> Vec<Range<usize>> {
         Vec::new()
     }
 
-    fn keeps_places(&self) -> bool {
+    fn preserves_offsets(&self) -> bool {
         true
     }
 }

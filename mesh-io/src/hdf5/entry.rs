@@ -1,6 +1,6 @@
 //! Where a chunk of a dataset stands, and where the file says so.
 
-use super::sum::Sum;
+use super::checksum::Sum;
 use std::ops::Range;
 
 /// Where a chunk stands, and where the file says so.

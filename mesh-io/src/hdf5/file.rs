@@ -1,9 +1,9 @@
 //! A file as the tree of its groups and datasets.
 
 use super::bytes::{DAMAGED, Fault};
+use super::file_bytes::{Raw, SIGNATURE};
 use super::groups::{self, Link, Target};
 use super::header::Header;
-use super::raw::{Raw, SIGNATURE};
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use std::collections::HashMap;

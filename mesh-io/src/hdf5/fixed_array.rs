@@ -1,9 +1,9 @@
 //! Fixed arrays, in which datasets that do not grow have the places of their chunks.
 
 use super::bytes::{Bytes, Fault};
+use super::checksum::Sum;
 use super::entry::Entry;
-use super::raw::Raw;
-use super::sum::Sum;
+use super::file_bytes::Raw;
 
 /// The array of a dataset.
 pub(super) struct Slots {

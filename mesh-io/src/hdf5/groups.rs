@@ -2,9 +2,9 @@
 
 use super::btree::{self, Tree};
 use super::bytes::{Bytes, Fault};
+use super::file_bytes::Raw;
 use super::header::{Header, LINK, LINK_INFO, SYMBOL_TABLE};
 use super::heap::Heap;
-use super::raw::Raw;
 
 /// What a group calls one of its objects.
 pub(super) struct Link {

@@ -1,8 +1,8 @@
 //! The header of an object: its messages, which tell what it is.
 
 use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
-use super::sum::Sum;
+use super::checksum::Sum;
+use super::file_bytes::Raw;
 use std::ops::Range;
 
 /// A message of a header.

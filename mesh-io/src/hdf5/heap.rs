@@ -1,7 +1,7 @@
 //! Fractal heaps, which hold the links and attributes of objects that have many.
 
 use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
+use super::file_bytes::Raw;
 
 /// A heap, and where its blocks stand.
 pub(super) struct Heap {

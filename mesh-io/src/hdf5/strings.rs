@@ -1,7 +1,7 @@
 //! Texts of attributes that stand elsewhere in the file, in a collection of a global heap, as h5py and h5netcdf write them.
 
 use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
+use super::file_bytes::Raw;
 
 const WHAT: &str = "a text in the HDF5 file";
 

@@ -2,7 +2,7 @@
 
 use super::{Encoding, Hdf5, Number};
 use crate::disk::source::Source;
-use crate::edit::numbers::Encoded;
+use crate::edit::numbers::EncodedArrays;
 use crate::edit::rewrite::Rewrite;
 use std::path::Path;
 
@@ -57,7 +57,7 @@ fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     let (array, number) = array(&file, path).unwrap();
     let size = number.bytes();
     let encoding = Encoding::new(&file, vec![array]);
-    let mut new = Encoded::bytes(&encoding).to_vec();
+    let mut new = EncodedArrays::bytes(&encoding).to_vec();
     for (k, number) in new.chunks_exact_mut(size).enumerate() {
         // Digits that no compressor makes shorter.
         let digits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).to_le_bytes();
@@ -65,12 +65,12 @@ fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     }
     let bytes = &source.bytes;
     let mut end = bytes.len();
-    let mut splices = encoding.splices(bytes, &new, &mut end);
-    let more = encoding.follow(bytes, &splices, end);
-    splices.extend(more);
-    splices.sort_by_key(|splice| splice.range.start);
+    let mut edits = encoding.edits(bytes, &new, &mut end);
+    let more = encoding.dependent_edits(bytes, &edits, end);
+    edits.extend(more);
+    edits.sort_by_key(|edit| edit.range.start);
     let mut out = Vec::new();
-    Rewrite { bytes, columns: &[], splices: &splices }.write(&mut out).unwrap();
+    Rewrite { bytes, columns: &[], edits: &edits }.write(&mut out).unwrap();
     assert_eq!(out.len(), end);
     (out, new)
 }

@@ -1,7 +1,7 @@
 //! What a dataset consists of: its type and its lengths.
 
 use super::bytes::{Bytes, Fault};
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::precision::Precision;
 
 /// The types of numbers that are told apart.
@@ -10,8 +10,8 @@ pub(crate) enum Number {
     /// Letters, so many to an item.
     Text(usize),
     /// Whole numbers of so many bytes.
-    Whole(usize, Order),
-    Real(Precision, Order),
+    Whole(usize, ByteOrder),
+    Real(Precision, ByteOrder),
     /// The place of a text of any length, in so many bytes.
     TextElsewhere(usize),
     /// Anything else of this size.
@@ -35,7 +35,7 @@ impl Number {
         let class = bytes.byte()? & 15;
         let bits = bytes.number(3)?;
         let size = bytes.count(4)?;
-        let order = if bits & 1 == 0 { Order::Little } else { Order::Big };
+        let order = if bits & 1 == 0 { ByteOrder::Little } else { ByteOrder::Big };
         Ok(match (class, size) {
             (0, 1 | 2 | 4 | 8) => {
                 let (offset, precision) = (bytes.count(2)?, bytes.count(2)?);

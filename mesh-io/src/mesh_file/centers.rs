@@ -1,12 +1,12 @@
 //! Centers of faces and edges, which UGRID's files may have.
 
-use crate::content::tags::TagMap;
+use crate::content::id_index::TagMap;
 use crate::error::FieldError;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
 use crate::visit::items::Centers;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// How far a number may be from the center that it is taken for, as a share of how far the element reaches.
 const CLOSE: f64 = 1e-6;
@@ -40,16 +40,16 @@ impl MeshFile {
         if points.len() != old.len() {
             return Err(FieldError::PointCount { expected: old.len(), given: points.len() });
         }
-        let mut seeker = Seeker::default();
+        let mut visitor = CenterVisitor::default();
         if self.has_centers() {
             // Reading the file again cannot fail, as it was read before.
-            _ = (self.reader().walk)(self.source(), &mut seeker);
+            _ = (self.reader().visit)(self.source(), &mut visitor);
         }
-        let map = TagMap::new(&seeker.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
+        let map = TagMap::new(&visitor.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
         let (mut fields, mut others) = (Vec::new(), Vec::new());
-        for Array { name, axis, centers } in seeker.found {
+        for Array { name, axis, centers } in visitor.found {
             let new = Elements::of(&centers, &map).and_then(|elements| {
-                let stored = centers.numbers.stored.as_ref()?.form.precision();
+                let stored = centers.numbers.location.as_ref()?.encoding.precision();
                 let error = |size: f64| stored.error(size).max(self.precision().error(size));
                 elements.moved(&centers.numbers.numbers, axis, [old, points], error)
             });
@@ -156,14 +156,14 @@ fn circumcenter(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
 
 /// Walks through a file for its centers.
 #[derive(Default)]
-struct Seeker {
+struct CenterVisitor {
     tags: Vec<u64>,
     last: (String, usize),
     found: Vec<Array>,
 }
 
-impl Sink for Seeker {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for CenterVisitor {
+    fn allows_parallel(&self) -> bool {
         true
     }
 

@@ -1,13 +1,13 @@
 //! Attributes of variables.
 
 use super::types::Number;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 
 /// An attribute: its name, and its content as it stands in the file.
 pub(super) struct Attribute {
     pub(super) name: Vec<u8>,
     pub(super) number: Number,
-    pub(super) order: Order,
+    pub(super) order: ByteOrder,
     pub(super) bytes: Vec<u8>,
 }
 

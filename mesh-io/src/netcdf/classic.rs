@@ -6,12 +6,12 @@
 use super::attribute::Attribute;
 use super::header::{Content, Header, Variable};
 use super::types::{ATTRIBUTES, DIMENSIONS, Number, VARIABLES};
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::{CUT_OFF, Cursor};
 
-const ORDER: Order = Order::Big;
+const ORDER: ByteOrder = ByteOrder::Big;
 
 /// A variable, and where it starts.
 struct Placed {

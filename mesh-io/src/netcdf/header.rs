@@ -2,7 +2,7 @@
 
 use super::attribute::Attribute;
 use super::types::Number;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Dataset, Hdf5};
@@ -27,7 +27,7 @@ pub(crate) struct Variable {
     pub(crate) shape: Vec<u64>,
     pub(crate) is_record: bool,
     pub(crate) number: Number,
-    pub(crate) order: Order,
+    pub(crate) order: ByteOrder,
     pub(super) attributes: Vec<Attribute>,
     /// How many bytes it has, in each record if it is of records.
     pub(crate) size: usize,

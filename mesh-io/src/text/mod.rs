@@ -5,7 +5,7 @@ pub(crate) mod continued;
 pub(crate) mod cursor;
 pub(crate) mod cursor_numbers;
 pub(crate) mod field_text;
-pub(crate) mod layout;
 pub(crate) mod parallel_rows;
+pub(crate) mod row_layout;
 pub(crate) mod syntax;
 pub(crate) mod token;

@@ -9,11 +9,11 @@ use std::collections::HashMap;
 /// The groups found so far. Their indices are their numbers.
 #[derive(Default)]
 pub(crate) struct GroupTable {
-    groups: Vec<Gathered>,
+    groups: Vec<GroupMembers>,
     keys: GroupKeys,
 }
 
-struct Gathered {
+struct GroupMembers {
     group: Group,
     /// Vertices of elements other than triangles, unordered and with repeats.
     others: Vec<u32>,
@@ -39,7 +39,7 @@ impl GroupTable {
                 triangles: Vec::new(),
                 vertices: Vec::new(),
             };
-            self.groups.push(Gathered { group, others: Vec::new() });
+            self.groups.push(GroupMembers { group, others: Vec::new() });
         }
         number
     }
@@ -51,7 +51,7 @@ impl GroupTable {
 
     /// Adds the vertices of an element other than a triangle.
     pub(crate) fn add(&mut self, group: usize, kind: Kind, vertices: &[u32]) {
-        let Gathered { group, others } = &mut self.groups[group];
+        let GroupMembers { group, others } = &mut self.groups[group];
         match kind {
             Kind::Point => group.points += 1,
             Kind::Line => group.lines += 1,
@@ -79,13 +79,13 @@ impl GroupTable {
     pub(crate) fn finish(mut self, triangles: &[[u32; 3]], vertices: usize) -> Groups {
         // Groups of one kind stand together, and kinds are in the order in which the file first has them.
         let mut order: HashMap<String, usize> = HashMap::new();
-        for Gathered { group, .. } in &self.groups {
+        for GroupMembers { group, .. } in &self.groups {
             let next = order.len();
             order.entry(group.what.clone()).or_insert(next);
         }
         // For each vertex the last group that it was counted in.
         let mut last = vec![0; vertices];
-        for (number, Gathered { group, others }) in (1_u32..).zip(&mut self.groups) {
+        for (number, GroupMembers { group, others }) in (1_u32..).zip(&mut self.groups) {
             let of_triangles = group.triangles.iter().flat_map(|&t| triangles[t as usize]);
             for vertex in of_triangles.chain(others.drain(..)) {
                 if std::mem::replace(&mut last[vertex as usize], number) != number {
@@ -94,7 +94,7 @@ impl GroupTable {
             }
             group.vertices.sort_unstable();
         }
-        for Gathered { group, .. } in &mut self.groups {
+        for GroupMembers { group, .. } in &mut self.groups {
             let Some(tag) = group.tag else { continue };
             group.name = self.keys.name_of(&group.what, group.dimension, &Label::Tag(tag));
         }

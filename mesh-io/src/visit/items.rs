@@ -2,7 +2,7 @@
 
 use crate::content::constraints::Affine;
 use crate::content::label::Label;
-use crate::visit::storage::Stored;
+use crate::visit::storage::ArrayLocation;
 
 /// The kinds of elements. The vertices of all elements but triangles are constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ pub(crate) struct Element {
 }
 
 /// The meaning of one number of [`Element::region`].
-pub(crate) struct Column {
+pub(crate) struct RegionAttribute {
     /// The kind of group that the number stands for: `physical`, `reference`, or the name of an array.
     pub(crate) what: String,
     /// The least dimension of elements that have this number.
@@ -73,22 +73,22 @@ pub(crate) struct Column {
     pub(crate) label: fn(i64) -> Option<Label>,
 }
 
-impl Column {
+impl RegionAttribute {
     /// Makes a column of tags that all stand for groups.
-    pub(crate) fn tags(what: &str, from_dimension: u8) -> Column {
-        Column { what: what.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
+    pub(crate) fn tags(what: &str, from_dimension: u8) -> RegionAttribute {
+        RegionAttribute { what: what.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
     }
 
     /// Makes a column of tags in which 0 stands for no group.
-    pub(crate) fn tags_from_one(what: &str) -> Column {
+    pub(crate) fn tags_from_one(what: &str) -> RegionAttribute {
         let label = |tag| (tag != 0).then_some(Label::Tag(tag));
-        Column { what: what.into(), from_dimension: 0, label }
+        RegionAttribute { what: what.into(), from_dimension: 0, label }
     }
 }
 
 /// A group whose elements stand together in the file.
 #[derive(Clone, Debug)]
-pub(crate) struct Within<'w> {
+pub(crate) struct GroupScope<'w> {
     /// The format's word for the kind of group.
     pub(crate) what: &'w str,
     pub(crate) label: Label,
@@ -98,7 +98,7 @@ pub(crate) struct Within<'w> {
 
 /// Nodes that belong together in pairs, as in a periodic model.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Pairs {
+pub(crate) struct PeriodicNodes {
     /// The motion that takes the first node of each pair to the second, if the file gives it.
     pub(crate) motion: Option<Affine>,
     /// The tags of the two nodes of each pair; empty if the file gives only the motion.
@@ -112,7 +112,7 @@ pub(crate) struct PointNumbers {
     /// The tag of each tuple's node; `None` if there is a tuple for each node in order.
     pub(crate) nodes: Option<Vec<u64>>,
     /// Where the numbers stand; `None` if they cannot be replaced.
-    pub(crate) stored: Option<Stored>,
+    pub(crate) location: Option<ArrayLocation>,
 }
 
 /// One coordinate of the centers of some elements: faces, edges, or single nodes.

@@ -4,8 +4,8 @@ use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::text::cursor::Cursor;
 use crate::visit::items::{Element, Kind};
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 
 /// The list in which items are looked for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub(crate) enum List {
 
 /// Where an item stands.
 #[derive(Clone, Copy)]
-pub(crate) struct Found {
+pub(crate) struct ItemLocation {
     /// [`Location::Unknown`] if the walk does not come to the item.
     pub(crate) location: Location,
     /// The file's number of the item; its index in the list if the location is unknown.
@@ -27,39 +27,39 @@ pub(crate) struct Found {
 
 /// Walks through the file and returns one place for each of these items of a list. `indices` are ascending.
 pub(crate) fn locate(
-    reader: &Reader,
+    reader: &ReaderFunctions,
     source: &Source,
     list: List,
     indices: &[usize],
-) -> Vec<Found> {
+) -> Vec<ItemLocation> {
     let found = Vec::with_capacity(indices.len());
-    let mut locator = Locator { list, left: indices, next: 0, found, source };
+    let mut locator = LocationVisitor { list, left: indices, next: 0, found, source };
     // The file was read before without an error. If there is one now, items after it are not found.
-    let _ = (reader.walk)(source, &mut locator);
-    let Locator { left, mut found, .. } = locator;
+    let _ = (reader.visit)(source, &mut locator);
+    let LocationVisitor { left, mut found, .. } = locator;
     let unknown =
-        |&index: &usize| Found { location: Location::Unknown, label: index as u64, part: 0 };
+        |&index: &usize| ItemLocation { location: Location::Unknown, label: index as u64, part: 0 };
     found.extend(left.iter().map(unknown));
     found
 }
 
-struct Locator<'a> {
+struct LocationVisitor<'a> {
     list: List,
     /// The indices not found yet, ascending.
     left: &'a [usize],
     /// The index of the next item of the list.
     next: usize,
-    found: Vec<Found>,
+    found: Vec<ItemLocation>,
     source: &'a Source,
 }
 
-impl Locator<'_> {
+impl LocationVisitor<'_> {
     /// Notes the place of the next item of the list, if the item is looked for.
     fn pass(&mut self, cursor: &Cursor<'_>, label: u64) {
         if self.left.first() == Some(&self.next) {
-            let mut parts = self.source.parts();
+            let mut parts = self.source.files();
             let part = parts.position(|part| std::ptr::eq(part, cursor.source)).unwrap_or(0);
-            self.found.push(Found { location: cursor.location(), label, part });
+            self.found.push(ItemLocation { location: cursor.location(), label, part });
             self.left = &self.left[1..];
         }
         self.next += 1;
@@ -71,7 +71,7 @@ impl Locator<'_> {
     }
 }
 
-impl Sink for Locator<'_> {
+impl MeshVisitor for LocationVisitor<'_> {
     fn asks_for_nodes(&self) -> bool {
         self.list == List::Nodes
     }

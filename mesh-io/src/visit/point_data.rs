@@ -1,18 +1,18 @@
 //! Walks again through a file for arrays of point data.
 
-use crate::content::tags::TagIndex;
+use crate::content::id_index::TagIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
 use crate::visit::items::PointNumbers;
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashSet;
 
 /// Which arrays are looked for.
 #[derive(Clone, Copy)]
-pub(crate) enum Wanted<'n> {
+pub(crate) enum FieldSelection<'n> {
     /// Arrays with these names, of real or whole numbers.
     Named(&'n [String]),
     /// All arrays of real numbers.
@@ -30,18 +30,18 @@ pub(crate) struct PointData {
 
 /// Reads the arrays of point data that are wanted.
 pub(crate) fn point_data(
-    reader: &Reader,
+    reader: &ReaderFunctions,
     source: &Source,
-    wanted: Wanted<'_>,
+    wanted: FieldSelection<'_>,
 ) -> Result<PointData, ReadError> {
     let (last, tags, found) = (Default::default(), TagIndex::default(), PointData::default());
-    let mut seeker = Seeker { wanted, last, tags, found, named: HashSet::new() };
-    (reader.walk)(source, &mut seeker)?;
-    Ok(seeker.found)
+    let mut visitor = PointDataVisitor { wanted, last, tags, found, named: HashSet::new() };
+    (reader.visit)(source, &mut visitor)?;
+    Ok(visitor.found)
 }
 
-struct Seeker<'n> {
-    wanted: Wanted<'n>,
+struct PointDataVisitor<'n> {
+    wanted: FieldSelection<'n>,
     /// The name of the array that was announced last, and its number of components.
     last: (String, usize),
     tags: TagIndex,
@@ -50,8 +50,8 @@ struct Seeker<'n> {
     named: HashSet<String>,
 }
 
-impl Sink for Seeker<'_> {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for PointDataVisitor<'_> {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
@@ -66,8 +66,8 @@ impl Sink for Seeker<'_> {
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
         let name = String::from_utf8_lossy(name).into_owned();
         let wanted = match self.wanted {
-            Wanted::Named(names) => names.contains(&name),
-            Wanted::Real => is_real,
+            FieldSelection::Named(names) => names.contains(&name),
+            FieldSelection::Real => is_real,
         };
         if self.named.insert(name.clone()) {
             self.found.known.push((name.clone(), is_real));

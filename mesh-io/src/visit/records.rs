@@ -3,9 +3,9 @@
 //! A list is read in chunks, as long as these are plain. A reader hands on the other records one by one, and is the
 //! only one that returns errors.
 
-use crate::binary::number_field::Field;
-use crate::content::tags::{FoundTags, TagMap};
-use crate::edit::numbers::FoundPlaces;
+use crate::binary::number_field::NumberField;
+use crate::content::id_index::{FoundTags, TagMap};
+use crate::edit::numbers::OffsetsBuilder;
 use crate::parallel::{map_parts, map_ranges};
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub(crate) const LONG: usize = 1 << 14;
 pub(crate) enum Tags<'a> {
     /// Consecutive tags from this one on.
     From(u64),
-    Listed(Field<'a>),
+    Listed(NumberField<'a>),
 }
 
 impl Tags<'_> {
@@ -36,8 +36,8 @@ impl Tags<'_> {
 pub(crate) struct NodeRecords<'a> {
     pub(crate) count: usize,
     /// The coordinates, single or double precision by the width of the fields.
-    pub(crate) x: Field<'a>,
-    pub(crate) y: Field<'a>,
+    pub(crate) x: NumberField<'a>,
+    pub(crate) y: NumberField<'a>,
     /// The offset of the first node's x, in the bytes that are written again.
     pub(crate) x_at: usize,
     pub(crate) tags: Tags<'a>,
@@ -49,7 +49,7 @@ impl NodeRecords<'_> {
         &self,
         points: &mut Vec<[f64; 2]>,
         tags: &mut FoundTags,
-        places: &mut FoundPlaces,
+        places: &mut OffsetsBuilder,
     ) -> usize {
         let &NodeRecords { count, x, y, .. } = self;
         let fits =
@@ -70,7 +70,7 @@ impl NodeRecords<'_> {
             }
             let is_plain = match self.tags {
                 Tags::From(_) => true,
-                Tags::Listed(field) => field.whole(records).all(|tag| tag <= field.most()),
+                Tags::Listed(field) => field.whole(records).all(|tag| tag <= field.max()),
             };
             (is_finite && is_plain).then_some(())
         });
@@ -83,7 +83,7 @@ impl NodeRecords<'_> {
     }
 }
 
-fn add_tags(field: Field<'_>, count: usize, tags: &mut FoundTags) {
+fn add_tags(field: NumberField<'_>, count: usize, tags: &mut FoundTags) {
     let first = field.whole(0..count.min(1)).next().unwrap_or(0);
     let are_consecutive = |records: Range<usize>| {
         let expected = records.clone().map(|record| first.checked_add(record as u64));
@@ -111,7 +111,7 @@ pub(crate) enum Expected {
 pub(crate) enum Region<'a> {
     /// The same number for all triangles.
     Same(i64),
-    Field(Field<'a>),
+    Field(NumberField<'a>),
     /// A number for each triangle; 0 for triangles beyond the end of the list.
     List(&'a [i64]),
 }
@@ -131,13 +131,13 @@ impl Region<'_> {
 pub(crate) struct TriangleRecords<'a> {
     pub(crate) count: usize,
     /// The numbers of three nodes. Each must be less than `below`.
-    pub(crate) corners: Field<'a>,
+    pub(crate) corners: NumberField<'a>,
     /// This is added to a number to get the node's tag.
     pub(crate) first: u64,
     pub(crate) below: u64,
     pub(crate) regions: [Region<'a>; 2],
     /// Further conditions for a record to be a triangle.
-    pub(crate) expected: &'a [(Field<'a>, Expected)],
+    pub(crate) expected: &'a [(NumberField<'a>, Expected)],
 }
 
 impl TriangleRecords<'_> {
@@ -188,7 +188,7 @@ impl TriangleRecords<'_> {
         index: impl Fn(u64) -> Option<u32>,
     ) -> bool {
         let (most, width) =
-            (self.corners.most().min(self.below.saturating_sub(1)), self.corners.width);
+            (self.corners.max().min(self.below.saturating_sub(1)), self.corners.width);
         for (triangle, bytes) in triangles.iter_mut().zip(self.corners.of(records)) {
             for (corner, bytes) in triangle.iter_mut().zip(bytes.chunks_exact(width)) {
                 let tag = self.corners.order.whole(bytes);
@@ -212,7 +212,7 @@ impl TriangleRecords<'_> {
         self.expected.iter().all(|&(field, expected)| {
             let mut numbers = field.whole(records.clone());
             match expected {
-                Expected::Natural => numbers.all(|number| number <= field.most()),
+                Expected::Natural => numbers.all(|number| number <= field.max()),
                 Expected::Is(one) => numbers.all(|number| number == one),
                 Expected::Steps { first, step } => {
                     let more = |record: usize| first.checked_add(step.checked_mul(record as u64)?);

@@ -11,8 +11,8 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::items::{Element, Kind, Within};
-use crate::visit::sink::Sink;
+use crate::visit::items::{Element, GroupScope, Kind};
+use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// What is found out of elements before they are handed on. All lists are empty if they are not needed.
@@ -38,7 +38,7 @@ impl Found {
         lists: &[List<'_, '_>],
         mut sets: Sets,
         sections: &[&Block<'_>],
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<Found, ReadError> {
         let mut found = Found::default();
         let names = |keyword| -> HashSet<Vec<u8>> {
@@ -52,7 +52,7 @@ impl Found {
             of_sections.iter().find(|&n| !listed.contains(n) && !of_lists.contains(n))
         {
             let name = quoted(name);
-            sink.remark(Remark::Text(format!("a section is of the set {name}, which is not here: vertices at its ends are no constraints")));
+            visitor.remark(Remark::Text(format!("a section is of the set {name}, which is not here: vertices at its ends are no constraints")));
         }
         // Sections of lists of elements need no look at the elements: the lists' sets tell them apart.
         let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));
@@ -60,7 +60,7 @@ impl Found {
         let by_members = sections.is_empty() && of_lists.is_empty() && !listed.is_empty();
         let has_surfaces =
             deck.of_mesh("SURFACE").chain(deck.of_assembly("SURFACE")).next().is_some();
-        let has_groups = sink.asks_for_groups();
+        let has_groups = visitor.asks_for_groups();
         if !by_sets && !by_members && !has_surfaces && !has_groups {
             return Ok(found);
         }
@@ -70,7 +70,7 @@ impl Found {
             let before = tags.len() as u32;
             let Some(kind) = *kind else { continue };
             let rows = &mut rows::of(&mut cursor, block);
-            rows::each_element(rows, kind, sink.takes_ahead(), |_, tag, _| {
+            rows::each_element(rows, kind, visitor.allows_parallel(), |_, tag, _| {
                 tags.push(tag);
                 Ok(())
             })?;
@@ -164,12 +164,12 @@ impl Found {
         deck: &Deck<'_>,
         cursor: &Cursor<'_>,
         lists: &[List<'_, '_>],
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let mut cursor = cursor.clone();
         // The place of the next element, and what is left of the lists by places.
         let (mut place, mut within, mut sides) = (0, &self.within[..], &self.sides[..]);
-        // The groups that the sink was told of last.
+        // The groups that the visitor was told of last.
         let mut told: &[(u32, u32)] = &[];
         let mut lines: Vec<(u32, [u64; 2])> = Vec::new();
         // How many elements hold their nodes, and the types of these.
@@ -177,21 +177,21 @@ impl Found {
         for List { block, of, kind, set, of_assembly } in lists {
             let rows = &mut rows::of(&mut cursor, block);
             let Some(kind) = *kind else {
-                tell(&self.names, &mut told, &[], sink);
-                let count = held(rows, Some(deck).filter(|_| *of_assembly), sink)?;
+                tell(&self.names, &mut told, &[], visitor);
+                let count = held(rows, Some(deck).filter(|_| *of_assembly), visitor)?;
                 if count > 0 {
                     holding += count;
                     types_of.insert(of);
                 }
                 continue;
             };
-            let ahead = sink.takes_ahead();
+            let ahead = visitor.allows_parallel();
             rows::each_element(rows, kind, ahead, |cursor, tag, nodes| {
                 let own = within.partition_point(|&(element, _)| element <= place);
-                tell(&self.names, &mut told, &within[..own], sink);
+                tell(&self.names, &mut told, &within[..own], visitor);
                 let section = self.sections.get(place as usize).copied().unwrap_or(0);
                 let region = [*set, i64::from(section)];
-                sink.element(cursor, &Element { tag, kind, region, nodes })?;
+                visitor.element(cursor, &Element { tag, kind, region, nodes })?;
                 within = &within[own..];
                 while let [(element, surface, label), rest @ ..] = sides
                     && *element == place
@@ -210,7 +210,7 @@ impl Found {
         }
         if let Some(first) = types_of.first() {
             let word = if types_of.len() == 1 { "the type" } else { "types such as" };
-            sink.remark(Remark::elements(
+            visitor.remark(Remark::elements(
                 holding,
                 "element",
                 &format!(" of {word} {}", quoted(first)),
@@ -220,35 +220,35 @@ impl Found {
         for of_surface in lines.chunk_by(|a, b| a.0 == b.0) {
             let (name, at) = &self.surfaces[of_surface[0].0 as usize];
             cursor.go_to(*at);
-            sink.within(&[Within {
+            visitor.group_scopes(&[GroupScope {
                 what: "surface",
                 label: Label::name(name),
                 dimension: Some(1),
             }]);
             for &(_, [a, b]) in of_surface {
                 let (kind, nodes) = (Kind::Line, [a, b, 0, 0]);
-                sink.element(&cursor, &Element { tag: 0, kind, region: [0; 2], nodes })?;
+                visitor.element(&cursor, &Element { tag: 0, kind, region: [0; 2], nodes })?;
             }
         }
-        sink.within(&[]);
+        visitor.group_scopes(&[]);
         Ok(())
     }
 }
 
-/// Tells the sink the groups of the next element, if they differ from those before.
+/// Tells the visitor the groups of the next element, if they differ from those before.
 fn tell<'f>(
     names: &[Vec<u8>],
     told: &mut &'f [(u32, u32)],
     now: &'f [(u32, u32)],
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) {
     let groups = |all: &'f [(u32, u32)]| all.iter().map(|&(_, group)| group);
     if !groups(told).eq(groups(now)) {
         let within = |group: u32| {
             let label = Label::name(&names[group as usize]);
-            Within { what: "elset", label, dimension: None }
+            GroupScope { what: "elset", label, dimension: None }
         };
-        sink.within(&groups(now).map(within).collect::<Vec<_>>());
+        visitor.group_scopes(&groups(now).map(within).collect::<Vec<_>>());
     }
     *told = now;
 }
@@ -257,12 +257,12 @@ fn tell<'f>(
 fn held(
     rows: &mut Cursor<'_>,
     assembly: Option<&Deck<'_>>,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let (mut count, mut last) = (0, None);
     rows::each_held(rows, assembly, |cursor, tag, node| {
         let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
-        sink.element(cursor, &Element { tag, kind, region: [0; 2], nodes })?;
+        visitor.element(cursor, &Element { tag, kind, region: [0; 2], nodes })?;
         count += u64::from(last.replace(tag) != Some(tag));
         Ok(())
     })?;

@@ -6,10 +6,10 @@ use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::integer;
-use crate::visit::heights::Heights;
 use crate::visit::items::Kind;
 use crate::visit::rows::{all_rows, nodes};
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 /// Moves the cursor on to the lines of data of a block. Returns one that does not read beyond them.
 pub(super) fn of<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
@@ -29,14 +29,14 @@ pub(super) struct Counted {
 /// Hands on the nodes of a block, and counts them.
 pub(super) fn send_nodes(
     cursor: &mut Cursor<'_>,
-    sink: &mut dyn Sink,
-    heights: &mut Heights,
+    visitor: &mut dyn MeshVisitor,
+    heights: &mut ZValues,
     tags: &mut Option<Vec<u64>>,
     counted: &mut Counted,
 ) -> Result<(), ReadError> {
-    all_rows(cursor, sink, node, |cursor, sink, (tag, (x_at, is_long), at, z)| {
-        sink.node(cursor, tag, 2, x_at, at);
-        heights.see(z);
+    all_rows(cursor, visitor, node, |cursor, visitor, (tag, (x_at, is_long), at, z)| {
+        visitor.node(cursor, tag, 2, x_at, at);
+        heights.push(z);
         tags.iter_mut().for_each(|tags| tags.push(tag));
         counted.all += 1;
         counted.long += u64::from(is_long);
@@ -66,7 +66,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
         *x = cursor.coordinate(axis, format_args!("node {tag}"))?;
         is_long |= cursor.at - start > MOST;
     }
-    Ok((tag, (x_at, is_long), at, cursor.height_if_any(format_args!("node {tag}"))?))
+    Ok((tag, (x_at, is_long), at, cursor.z_if_any(format_args!("node {tag}"))?))
 }
 
 /// Reads the elements of a block, each with its number and nodes, long lists on all threads if `ahead`. A call of `take` that

@@ -1,9 +1,9 @@
 //! Writes input files of Abaqus and CalculiX, `.inp`, with the mesh alone.
 
 use crate::content::label::Label;
-use crate::export::job::Job;
+use crate::export::name_rules::{Spelling, distinct};
 use crate::export::put;
-use crate::export::spelling::{Spelling, distinct};
+use crate::export::writer_input::Job;
 use crate::precision::short_text;
 use crate::visit::items::Kind;
 use std::fmt::Write;

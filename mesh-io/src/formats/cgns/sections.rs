@@ -2,18 +2,18 @@
 
 use super::boundaries::Boundaries;
 use super::file::{File, labeled};
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::hdf5::{Array, Number, Object};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{Column, Element, Kind};
+use crate::visit::items::{Element, Kind, RegionAttribute};
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
 const MIXED: i64 = 20;
@@ -33,7 +33,7 @@ struct Section<'n, 'a> {
 struct Nodes<'a> {
     array: Array<'a>,
     size: usize,
-    order: Order,
+    order: ByteOrder,
 }
 
 impl Nodes<'_> {
@@ -48,10 +48,14 @@ impl<'a> File<'a> {
     pub(super) fn sections(
         &self,
         boundaries: &Boundaries,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let label = |section| Some(Label::Tag(section));
-        sink.columns(vec![Column { what: "section".into(), from_dimension: 0, label }]);
+        visitor.region_attributes(vec![RegionAttribute {
+            what: "section".into(),
+            from_dimension: 0,
+            label,
+        }]);
         let mut sections: Vec<_> = labeled(self.hdf5, self.zone, b"Elements_t")
             .into_iter()
             .map(|(name, section)| {
@@ -62,8 +66,8 @@ impl<'a> File<'a> {
             .collect();
         sections.sort_by_key(|(range, ..)| range.first().copied());
         for ((range, name, section), number) in sections.into_iter().zip(1..) {
-            if sink.asks_for_groups() {
-                sink.name("section", None, number, name);
+            if visitor.asks_for_groups() {
+                visitor.group_name("section", None, number, name);
             }
             let &[first, last] = &range[..] else {
                 return Err(self.damaged(name, section));
@@ -75,9 +79,9 @@ impl<'a> File<'a> {
                 return Err(self.damaged(name, section));
             };
             let section = Section { name, object: section, number, first, count };
-            self.section(&section, boundaries, sink)?;
+            self.section(&section, boundaries, visitor)?;
         }
-        sink.within(&[]);
+        visitor.group_scopes(&[]);
         Ok(())
     }
 
@@ -92,7 +96,7 @@ impl<'a> File<'a> {
         &self,
         of: &Section<'_, 'a>,
         boundaries: &Boundaries,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let &Section { name, object: section, number, first, count } = of;
         let damaged = || self.damaged(name, section);
@@ -115,12 +119,12 @@ impl<'a> File<'a> {
                 kind,
                 count,
                 first_tag: first,
-                nodes: Field::new(Some(&nodes.array.bytes), kind.nodes() * size, size, order),
+                nodes: NumberField::new(Some(&nodes.array.bytes), kind.nodes() * size, size, order),
                 is_signed: false,
                 regions: [Region::Same(number), Region::Same(0)],
             };
-            return elements.send(sink, |index, sink| {
-                boundaries.of_element(first.saturating_add(index as u64), sink);
+            return elements.send(visitor, |index, visitor| {
+                boundaries.of_element(first.saturating_add(index as u64), visitor);
                 place(index * kind.nodes())
             });
         }
@@ -136,9 +140,9 @@ impl<'a> File<'a> {
                 at += 1;
             }
             let tag = first.saturating_add(element as u64);
-            boundaries.of_element(tag, sink);
+            boundaries.of_element(tag, visitor);
             let element = Element { tag, kind, region: [number, 0], nodes: corners };
-            sink.element(&place(start), &element)?;
+            visitor.element(&place(start), &element)?;
         }
         match at == length {
             true => Ok(()),

@@ -1,8 +1,8 @@
 //! The blocks of elements of an Exodus file.
 
 use super::File;
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::netcdf::{Items, Number, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
@@ -11,7 +11,7 @@ use crate::visit::items::Kind;
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// Elements of one type.
 pub(super) struct Block<'a> {
@@ -26,7 +26,7 @@ pub(super) struct Block<'a> {
     /// Its elements, how many bytes the number of a node has, and in which order.
     items: Items<'a>,
     width: usize,
-    order: Order,
+    order: ByteOrder,
 }
 
 impl Block<'_> {
@@ -44,7 +44,10 @@ impl Block<'_> {
 
 impl<'a> File<'a> {
     /// Hands on the elements of all blocks.
-    pub(super) fn blocks(&self, sink: &mut dyn Sink) -> Result<Vec<Block<'a>>, ReadError> {
+    pub(super) fn blocks(
+        &self,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<Vec<Block<'a>>, ReadError> {
         let ids = self.ids("eb_prop1");
         let names = self.header.variable("eb_names").map(|names| self.header.texts(names));
         let mut blocks = Vec::new();
@@ -53,21 +56,21 @@ impl<'a> File<'a> {
             let block = self.block(number, before, variable)?;
             let id = self.id(&ids, number);
             if let Some(name) = names.as_ref().and_then(|names| names.get(number - 1))
-                && sink.asks_for_groups()
+                && visitor.asks_for_groups()
                 && !name.is_empty()
             {
-                sink.name("block", None, id, name);
+                visitor.group_name("block", None, id, name);
             }
             let (start, size) = (block.items.range(0).start, block.kind.nodes() * block.width);
             let elements = ElementRecords {
                 kind: block.kind,
                 count: block.count as usize,
                 first_tag: before + 1,
-                nodes: Field::new(Some(block.items.own()), size, block.width, block.order),
+                nodes: NumberField::new(Some(block.items.own()), size, block.width, block.order),
                 is_signed: true,
                 regions: [Region::Same(id), Region::Same(0)],
             };
-            elements.send(sink, |index, _| {
+            elements.send(visitor, |index, _| {
                 Cursor::at_byte_of(self.source, block.items.byte_of(start + index * size))
             })?;
             before += block.count;

@@ -17,10 +17,10 @@ use crate::formats::netcdf_axes::axes;
 use crate::hdf5::Hdf5;
 use crate::netcdf::{self, Header, Number, Variable};
 use crate::text::cursor::Cursor;
-use crate::visit::items::Column;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::items::RegionAttribute;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Exodus;
 
@@ -35,10 +35,13 @@ struct File<'a> {
 /// Stands for the block of what is in no block.
 const NO_BLOCK: i64 = i64::MIN;
 
-impl Walk for Exodus {
+impl FormatReader for Exodus {
     const VERTICES: &'static str = "the list of coordinates";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let header = netcdf::open(source)?;
         let start = Cursor::at_byte_of(source, 0);
         let Some(nodes) = header.dimension("num_nodes") else {
@@ -57,15 +60,19 @@ impl Walk for Exodus {
             return Err(error);
         }
         let file = File { source, header, nodes: nodes as usize };
-        let layout = file.axes()?.send(Format::Exodus, file.nodes, 1, sink)?;
+        let layout = file.axes()?.send(Format::Exodus, file.nodes, 1, visitor)?;
         let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
-        sink.columns(vec![Column { what: "block".into(), from_dimension: 0, label }]);
-        let blocks = file.blocks(sink)?;
-        file.side_sets(&blocks, sink)?;
-        if sink.asks_for_groups() {
-            file.node_sets(sink)?;
+        visitor.region_attributes(vec![RegionAttribute {
+            what: "block".into(),
+            from_dimension: 0,
+            label,
+        }]);
+        let blocks = file.blocks(visitor)?;
+        file.side_sets(&blocks, visitor)?;
+        if visitor.asks_for_groups() {
+            file.node_sets(visitor)?;
         }
-        file.data(&blocks, sink);
+        file.data(&blocks, visitor);
         file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
         Ok(layout)
     }

@@ -4,8 +4,8 @@
 
 use crate::content::label::Label;
 use crate::export::content::ContentGroup;
-use crate::export::job::Job;
 use crate::export::sides::{pair, sides};
+use crate::export::writer_input::Job;
 use crate::netcdf::write::{NetCdf, Values};
 use crate::visit::items::Kind;
 use std::collections::{HashMap, HashSet};

@@ -5,26 +5,29 @@ use super::lists::{note_parameters, row};
 use super::model::Model;
 use super::{binary2, binary4, binary40, data, model, periodic, text2, text4, text40, words};
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
-use crate::visit::heights::Heights;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 /// The reader of gmsh's `.msh`.
 pub(crate) struct Gmsh;
 
-impl Walk for Gmsh {
+impl FormatReader for Gmsh {
     const VERTICES: &'static str = "$Nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let Encoding { version, order } = walk(source, sink)?;
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let Encoding { version, order } = walk(source, visitor)?;
         let format = match (version, order) {
             (Version::V2, None) => Format::Gmsh22,
             (Version::V2, Some(_)) => Format::Gmsh22Binary,
@@ -34,15 +37,15 @@ impl Walk for Gmsh {
             (Version::V4, Some(_)) => Format::Gmsh41Binary,
         };
         let numbers = match order {
-            None => Numbers::TEXT,
-            Some(order) => Numbers::adjacent(order, Precision::Double),
+            None => CoordinateEncoding::TEXT,
+            Some(order) => CoordinateEncoding::adjacent(order, Precision::Double),
         };
-        Ok(Layout::in_place(format, numbers))
+        Ok(CoordinateStorage::in_place(format, numbers))
     }
 }
 
-/// Hands a file's nodes and elements to the sink.
-fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
+/// Hands a file's nodes and elements to the visitor.
+fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<Encoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);
@@ -64,26 +67,28 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
-                    note_parameters(sink);
+                    note_parameters(visitor);
                 }
-                let mut seen = Heights::new(sink);
+                let mut seen = ZValues::new(visitor);
                 let heights = &mut seen;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::nodes(cursor, heights, sink)?,
-                    (Version::V40, None) => text40::nodes(cursor, heights, sink)?,
-                    (Version::V40, Some(order)) => binary40::nodes(cursor, order, heights, sink)?,
-                    (Version::V4, None) => text4::nodes(cursor, heights, sink)?,
-                    (Version::V2, Some(order)) => {
-                        binary2::nodes(cursor, order, parametric, heights, sink)?
+                    (Version::V2, None) => text2::nodes(cursor, heights, visitor)?,
+                    (Version::V40, None) => text40::nodes(cursor, heights, visitor)?,
+                    (Version::V40, Some(order)) => {
+                        binary40::nodes(cursor, order, heights, visitor)?
                     }
-                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, sink)?,
+                    (Version::V4, None) => text4::nodes(cursor, heights, visitor)?,
+                    (Version::V2, Some(order)) => {
+                        binary2::nodes(cursor, order, parametric, heights, visitor)?
+                    }
+                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, visitor)?,
                 };
                 node_count = count;
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
                 cursor.syntax = Syntax::PLAIN;
-                sink.end_nodes(cursor)?;
-                seen.send("z", form(order), sink);
+                visitor.end_nodes(cursor)?;
+                seen.send("z", form(order), visitor);
             }
             b"Elements" => {
                 once(cursor, &mut elements, "Elements")?;
@@ -93,23 +98,23 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                 }
                 let Encoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::elements(cursor, sink)?,
+                    (Version::V2, None) => text2::elements(cursor, visitor)?,
                     (Version::V40 | Version::V4, None) => {
-                        text4::elements(cursor, version, &model, sink)?
+                        text4::elements(cursor, version, &model, visitor)?
                     }
-                    (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
+                    (Version::V2, Some(order)) => binary2::elements(cursor, order, visitor)?,
                     (Version::V40 | Version::V4, Some(order)) => {
-                        binary4::elements(cursor, version, order, &model, sink)?
+                        binary4::elements(cursor, version, order, &model, visitor)?
                     }
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
                 cursor.syntax = Syntax::PLAIN;
             }
-            b"PhysicalNames" if sink.asks_for_groups() => {
-                let count = model::physical_names(cursor, sink)?;
+            b"PhysicalNames" if visitor.asks_for_groups() => {
+                let count = model::physical_names(cursor, visitor)?;
                 end_of_section(cursor, "PhysicalNames", opened, &format!("{count} names"))?;
             }
-            b"Entities" | b"PartitionedEntities" if sink.asks_for_groups() => {
+            b"Entities" | b"PartitionedEntities" if visitor.asks_for_groups() => {
                 let partitioned = name == b"PartitionedEntities";
                 model.read(cursor, known(cursor, encoding)?, partitioned)?;
                 let name = str::from_utf8(name).unwrap_or_default();
@@ -118,7 +123,7 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
             b"NodeData" | b"ElementData" => {
                 let order = known(cursor, encoding)?.order;
                 let nodes = (name == b"NodeData").then_some(node_count);
-                data::read(cursor, nodes, order, sink);
+                data::read(cursor, nodes, order, visitor);
                 skip_section(cursor, name, opened)?;
             }
             name if name.starts_with(b"End") => {
@@ -126,12 +131,14 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
             name => {
-                if name == b"Periodic" && sink.asks_for_pairs() {
-                    sink.pairs(encoding.and_then(|encoding| periodic::read(cursor, encoding)));
+                if name == b"Periodic" && visitor.asks_for_periodic_pairs() {
+                    visitor.periodic_pairs(
+                        encoding.and_then(|encoding| periodic::read(cursor, encoding)),
+                    );
                 }
                 let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
-                if sink.asks_for_data() && !is_told {
-                    sink.leaves_out(&format!("the section ${}", quoted(name)));
+                if visitor.asks_for_data() && !is_told {
+                    visitor.unsupported(&format!("the section ${}", quoted(name)));
                 }
                 skip_section(cursor, name, opened)?;
             }

@@ -1,8 +1,8 @@
 //! Writes gmsh's `.msh`, as text of the versions 2.2 and 4.1.
 
 use crate::export::content::Data;
-use crate::export::job::Job;
 use crate::export::put;
+use crate::export::writer_input::Job;
 use crate::visit::items::Kind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;

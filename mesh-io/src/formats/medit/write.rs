@@ -1,7 +1,7 @@
 //! Writes Medit's `.mesh` and `.meshb`, and FreeFem's `.msh`.
 
-use crate::export::job::Job;
 use crate::export::put;
+use crate::export::writer_input::Job;
 use crate::visit::items::Kind;
 use std::fmt::Write;
 

@@ -8,9 +8,9 @@ use crate::text::card;
 use crate::text::card::{Line, Name, letters};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
-use crate::visit::items::{Column, Element, Kind};
+use crate::visit::items::{Element, Kind, RegionAttribute};
 use crate::visit::rows::{all_rows, volume};
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashSet};
 
 /// A card, as far as it is of elements.
@@ -23,15 +23,15 @@ enum Card {
 }
 
 /// Hands on all elements.
-pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
-    sink.columns(vec![Column::tags_from_one("property")]);
+pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
+    visitor.region_attributes(vec![RegionAttribute::tags_from_one("property")]);
     let mut cursor = rows.clone();
     // What elements hold, how many do, and what they are called.
     let (mut held, mut holding, mut names) = (Vec::new(), 0, BTreeSet::new());
-    let (mut others, asks_for_data) = (BTreeSet::new(), sink.asks_for_data());
-    all_rows(&mut cursor, sink, card, |cursor, sink, card| {
+    let (mut others, asks_for_data) = (BTreeSet::new(), visitor.asks_for_data());
+    all_rows(&mut cursor, visitor, card, |cursor, visitor, card| {
         match card {
-            Card::Element(element) => sink.element(cursor, &element)?,
+            Card::Element(element) => visitor.element(cursor, &element)?,
             Card::Holds(name, nodes) => {
                 held.extend(nodes);
                 holding += 1;
@@ -44,7 +44,7 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadErr
     })?;
     if let Some(first) = names.first() {
         let word = if names.len() == 1 { "called" } else { "such as" };
-        sink.remark(Remark::elements(
+        visitor.remark(Remark::elements(
             holding,
             "element",
             &format!(" {word} {}", quoted(letters(first))),
@@ -53,23 +53,23 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadErr
     others.retain(|name| !matches!(letters(name), b"" | b"GRDSET"));
     if let Some(first) = others.first() {
         let first = quoted(letters(first));
-        sink.leaves_out(&match others.len() - 1 {
+        visitor.unsupported(&match others.len() - 1 {
             0 => format!("what {first} says"),
             more => format!("what {first} and {more} more kinds of cards say"),
         });
     }
-    hold(rows, held, sink)
+    hold(rows, held, visitor)
 }
 
 /// Hands on the nodes that elements hold. Some may be scalar points, which are no part of the mesh.
-fn hold(rows: &Cursor<'_>, held: Vec<u64>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn hold(rows: &Cursor<'_>, held: Vec<u64>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
     if held.is_empty() {
         return Ok(());
     }
     let held: HashSet<u64> = held.into_iter().collect();
     let mut there = BTreeSet::new();
     let cursor = &mut rows.clone();
-    all_rows(cursor, sink, node, |_, _, card| {
+    all_rows(cursor, visitor, node, |_, _, card| {
         if let Card::Node(tag) = card
             && held.contains(&tag)
         {
@@ -79,7 +79,7 @@ fn hold(rows: &Cursor<'_>, held: Vec<u64>, sink: &mut dyn Sink) -> Result<(), Re
     })?;
     there.into_iter().try_for_each(|tag| {
         let nodes = [tag, 0, 0, 0];
-        sink.element(cursor, &Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes })
+        visitor.element(cursor, &Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes })
     })
 }
 

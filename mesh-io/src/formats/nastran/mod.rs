@@ -19,24 +19,27 @@ use crate::text::card::{Line, letters};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 use types::Class;
 
 pub(crate) struct Nastran;
 
-impl Walk for Nastran {
+impl FormatReader for Nastran {
     const VERTICES: &'static str = "GRID";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let rows = section::rows(source);
-        let numbers = nodes::send(&rows, sink)?;
-        elements::send(&rows, sink)?;
-        if sink.asks_for_groups() {
-            names::send(source, sink);
+        let numbers = nodes::send(&rows, visitor)?;
+        elements::send(&rows, visitor)?;
+        if visitor.asks_for_groups() {
+            names::send(source, visitor);
         }
-        Ok(Layout::in_place(Format::Nastran, numbers))
+        Ok(CoordinateStorage::in_place(Format::Nastran, numbers))
     }
 }
 

@@ -2,15 +2,15 @@
 
 use crate::disk::source::Source;
 use crate::text::token::line_end;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// Hands on the names of properties.
-pub(super) fn send(source: &Source, sink: &mut dyn Sink) {
+pub(super) fn send(source: &Source, visitor: &mut dyn MeshVisitor) {
     let bytes = &source.bytes;
     let starts = memchr::memchr_iter(b'$', bytes);
     for at in starts.filter(|&at| at == source.begin() || bytes[at - 1] == b'\n') {
         if let Some((tag, name)) = of(&bytes[at..line_end(bytes, at)]) {
-            sink.name("property", None, tag, name);
+            visitor.group_name("property", None, tag, name);
         }
     }
 }

@@ -1,17 +1,17 @@
 //! The nodes: GRID, with what GRDSET says of all of them.
 
 use crate::content::remark::Remark;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::card;
 use crate::text::card::{Line, letters};
 use crate::text::cursor::Cursor;
-use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::text::cursor_numbers::NO_Z;
 use crate::text::token::{float, fortran_float, integer};
-use crate::visit::heights::Heights;
 use crate::visit::rows::all_rows;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 use std::ops::Range;
 
 /// A card, as far as it is of nodes.
@@ -66,17 +66,20 @@ impl Rooms {
 }
 
 /// Hands on all nodes. Returns how coordinates are stored.
-pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<Numbers, ReadError> {
-    let mut heights = Heights::new(sink);
+pub(super) fn send(
+    rows: &Cursor<'_>,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<CoordinateEncoding, ReadError> {
+    let mut heights = ZValues::new(visitor);
     let mut rooms = Rooms::default();
     // Where the first node is that names no coordinate system, and the system of such nodes.
     let (mut count, mut first_at, mut system) = (0, None, 0);
     let cursor = &mut rows.clone();
-    all_rows(cursor, sink, card, |cursor, sink, card| {
+    all_rows(cursor, visitor, card, |cursor, visitor, card| {
         match card {
             Card::Node(Node { tag, x_at, at, z, room, is_of_default }) => {
-                sink.node(cursor, tag, 2, x_at, at);
-                heights.see(z);
+                visitor.node(cursor, tag, 2, x_at, at);
+                heights.push(z);
                 rooms.add(room);
                 count += 1;
                 first_at = first_at.or(is_of_default.then_some((x_at, tag)));
@@ -94,18 +97,18 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<Numbers, Re
     if let (1.., Some((at, tag))) = (system, first_at) {
         return Err(in_system(&Cursor::standing_at(cursor.source, at), tag, system));
     }
-    sink.end_nodes(cursor)?;
+    visitor.end_nodes(cursor)?;
     let (precision, longer) = rooms.precision();
     if longer > 0 {
         let most = if precision == Precision::Text8 { 8 } else { 16 };
         let (s, have) = if longer == 1 { ("", "has") } else { ("s", "have") };
         let nodes = format!("{longer} node{s} {have} coordinates of more than {most} characters");
-        sink.remark(Remark::Text(format!(
+        visitor.remark(Remark::Text(format!(
             "{nodes}, beside fields of {most}: they count as rounded to {most}"
         )));
     }
-    let numbers = Numbers::Fields { precision };
-    heights.send("z", numbers.into(), sink);
+    let numbers = CoordinateEncoding::Fields { precision };
+    heights.send("z", numbers.into(), visitor);
     Ok(numbers)
 }
 
@@ -178,7 +181,7 @@ fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, 
     longest = longest.max(of_z.len());
     let height = number(of_z)
         .ok_or_else(|| cursor.unusable(Some(of_z), format_args!("z of node {tag}"), "a number"))?;
-    let z = z.map_or(NO_HEIGHT, |z| (z.start, height));
+    let z = z.map_or(NO_Z, |z| (z.start, height));
     let given = if line.is_free { longest } else { 0 };
     let size = match given {
         17.. => 2,

@@ -1,14 +1,14 @@
 //! Reads lists of a PLY on all threads, as long as they are plain.
 
 use super::header::{Items, List, Number, Property};
-use crate::binary::number_field::Field;
+use crate::binary::number_field::NumberField;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
-use crate::visit::heights::Heights;
 use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
 use crate::visit::rows::nodes;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 impl Items {
     /// Hands on the first vertices as long as they are plain, if all have the same number of bytes. `x` and `z` are
@@ -19,8 +19,8 @@ impl Items {
         list: &List<'_>,
         x: usize,
         z: Option<usize>,
-        heights: &mut Heights,
-        sink: &mut dyn Sink,
+        heights: &mut ZValues,
+        visitor: &mut dyn MeshVisitor,
     ) -> u64 {
         let properties = &list.properties;
         let before = |index| properties[..index].iter().map(|p| p.number.size()).sum::<usize>();
@@ -30,11 +30,16 @@ impl Items {
         }
         let Some(order) = self.order else {
             let is_first = x == 0;
-            return if is_first { vertices_of_text(cursor, list, z, heights, sink) } else { 0 };
+            return if is_first { vertices_of_text(cursor, list, z, heights, visitor) } else { 0 };
         };
         let Some((bytes, start)) = cursor.ahead(list.count, stride) else { return 0 };
         let field = |index: usize| {
-            Field::new(bytes.get(before(index)..), stride, properties[index].number.size(), order)
+            NumberField::new(
+                bytes.get(before(index)..),
+                stride,
+                properties[index].number.size(),
+                order,
+            )
         };
         let (count, x_at, tags) = (list.count as usize, start + before(x), Tags::From(0));
         let heights_of = z.map(|z| (field(z), start + before(z)));
@@ -42,9 +47,9 @@ impl Items {
             return 0;
         }
         let records = NodeRecords { count, x: field(x), y: field(x + 1), x_at, tags };
-        let taken = sink.node_records(&records);
+        let taken = visitor.node_records(&records);
         if let Some((z, at)) = heights_of {
-            heights.see_all(z, taken, at);
+            heights.push_records(z, taken, at);
         }
         cursor.take(taken * stride);
         taken as u64
@@ -56,7 +61,7 @@ impl Items {
         cursor: &mut Cursor<'_>,
         list: &List<'_>,
         names: &[&[u8]],
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> u64 {
         let properties = &list.properties;
         let size = |property: &Property<'_>| match property.length {
@@ -79,15 +84,16 @@ impl Items {
         }
         let Some(order) = self.order else {
             let is_alone = properties.len() == 1;
-            return if is_alone { triangles_of_text(cursor, list.count, sink) } else { 0 };
+            return if is_alone { triangles_of_text(cursor, list.count, visitor) } else { 0 };
         };
         let stride = properties.iter().map(size).sum::<usize>();
         let at = properties[..corners].iter().map(size).sum::<usize>();
         // If elements have other lengths, there may be too few bytes for this many triangles. Then none is taken here.
         let Some((bytes, _)) = cursor.ahead(list.count, stride) else { return 0 };
-        let field =
-            |at: usize, number: Number| Field::new(bytes.get(at..), stride, number.size(), order);
-        let taken = sink.triangle_records(&TriangleRecords {
+        let field = |at: usize, number: Number| {
+            NumberField::new(bytes.get(at..), stride, number.size(), order)
+        };
+        let taken = visitor.triangle_records(&TriangleRecords {
             count: list.count as usize,
             corners: field(at + length.size(), number),
             first: 0,
@@ -106,10 +112,10 @@ fn vertices_of_text(
     cursor: &mut Cursor<'_>,
     list: &List<'_>,
     z: Option<usize>,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    heights: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> u64 {
-    if !sink.takes_ahead() || sink.asks_for_data() {
+    if !visitor.allows_parallel() || visitor.asks_for_data() {
         return 0;
     }
     let count = list.properties.len();
@@ -119,7 +125,7 @@ fn vertices_of_text(
         let point = cursor.point("a vertex")?;
         let mut height = (0, 0.0);
         for index in 2..count {
-            let number = cursor.height("a vertex")?;
+            let number = cursor.z("a vertex")?;
             if Some(index) == z {
                 height = number;
             }
@@ -127,9 +133,9 @@ fn vertices_of_text(
         Ok((point, height))
     };
     let taken = take_rows(cursor, list.count, read, |((x_at, at), height)| {
-        sink.node(nowhere, tag, 2, x_at, at);
+        visitor.node(nowhere, tag, 2, x_at, at);
         if z.is_some() {
-            heights.see(height);
+            heights.push(height);
         }
         tag += 1;
         true
@@ -141,8 +147,8 @@ fn vertices_of_text(
 }
 
 /// Reads elements of text on all threads, as long as they are triangles. Returns how many were taken.
-fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -> u64 {
-    if !sink.takes_ahead() || sink.asks_for_data() {
+fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, visitor: &mut dyn MeshVisitor) -> u64 {
+    if !visitor.allows_parallel() || visitor.asks_for_data() {
         return 0;
     }
     let nowhere = &Cursor::new(cursor.source);
@@ -154,7 +160,7 @@ fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -
     let taken = take_rows(cursor, count, read, |nodes| {
         let element = Element { tag, kind: Kind::Triangle, region: [0; 2], nodes };
         tag += 1;
-        sink.element(nowhere, &element).is_ok()
+        visitor.element(nowhere, &element).is_ok()
     });
     if taken > 0 && taken == count {
         cursor.rest();

@@ -1,8 +1,8 @@
 //! Writes PLY.
 
 use crate::export::content::Data;
-use crate::export::job::{Job, text_of};
 use crate::export::put;
+use crate::export::writer_input::{Job, text_of};
 use crate::visit::items::Kind;
 use std::fmt::Write;
 

@@ -1,7 +1,7 @@
 //! Writes SU2's `.su2`.
 
-use crate::export::job::Job;
 use crate::export::put;
+use crate::export::writer_input::Job;
 use crate::formats::vtk::types;
 use std::collections::HashMap;
 use std::fmt::Write;

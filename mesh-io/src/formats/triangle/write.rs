@@ -1,7 +1,7 @@
 //! Writes the files of the mesh generator Triangle.
 
-use crate::export::job::{Job, text_of};
 use crate::export::put;
+use crate::export::writer_input::{Job, text_of};
 use crate::visit::items::Kind;
 use std::fmt::Write;
 

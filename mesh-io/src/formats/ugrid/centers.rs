@@ -5,7 +5,7 @@ use super::table::{Table, What};
 use crate::formats::netcdf_points::{Parts, PointData};
 use crate::netcdf::{Number, Variable};
 use crate::visit::items::Centers;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// The nodes of the faces of a mesh, and those of its edges if the file has edges.
 pub(super) struct Tables<'h, 'a> {
@@ -74,7 +74,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         tables: &Tables<'h, 'a>,
         places: &[Place<'h>],
         points: &mut PointData<'h, 'a>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Vec<&'h Variable> {
         let left = places.iter().filter(|&place| {
             let table = match place.of {
@@ -82,7 +82,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
                 What::Edges => tables.edges.as_ref(),
             };
             let first = tables.faces.first;
-            table.and_then(|table| send(table, first, place, points, sink)).is_none()
+            table.and_then(|table| send(table, first, place, points, visitor)).is_none()
         });
         left.map(|place| place.variable).collect()
     }
@@ -95,7 +95,7 @@ fn send<'h, 'a>(
     first: u64,
     &Place { variable, axis, of_corners, .. }: &Place<'h>,
     points: &mut PointData<'h, 'a>,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Option<()> {
     let each = if of_corners { table.corners } else { 1 };
     let shape = [table.count as u64, each as u64];
@@ -104,7 +104,7 @@ fn send<'h, 'a>(
     if axis > 1 || variable.shape != shape || variable.is_record || !is_real {
         return None;
     }
-    if !sink.center_array(&variable.name, axis) {
+    if !visitor.center_array(&variable.name, axis) {
         return Some(());
     }
     let (mut nodes, mut ends, mut of_one) = (Vec::new(), Vec::new(), Vec::new());
@@ -123,6 +123,6 @@ fn send<'h, 'a>(
         }
     }
     let numbers = points.numbers(variable, 0, 0, &Parts::WHOLE, variable.missing())?;
-    sink.center_numbers(Centers { nodes, ends, numbers });
+    visitor.center_numbers(Centers { nodes, ends, numbers });
     Some(())
 }

@@ -6,7 +6,7 @@ use super::table::Table;
 use crate::content::remark::Remark;
 use crate::formats::netcdf_points::{Parts, PointData};
 use crate::netcdf::{Number, Variable};
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// What a variable has numbers for.
 #[derive(Clone, Copy, PartialEq)]
@@ -17,7 +17,7 @@ enum Location {
 
 impl<'h, 'a> Mesh<'h, 'a> {
     /// Hands on data of nodes and faces, and tells what is not handed on. The mesh does not depend on them.
-    pub(super) fn data(&self, tables: &Tables<'h, 'a>, sink: &mut dyn Sink) {
+    pub(super) fn data(&self, tables: &Tables<'h, 'a>, visitor: &mut dyn MeshVisitor) {
         let faces = &tables.faces;
         let lengths = [self.nodes as u64, faces.count as u64];
         let places = self.places(tables);
@@ -29,26 +29,26 @@ impl<'h, 'a> Mesh<'h, 'a> {
         let mut points = PointData::new(self.header);
         for variable in self.header.variables.iter().filter(is_data) {
             let Some((Location::Nodes, parts)) = self.located(variable, lengths) else { continue };
-            match sink.asks_for_data() {
-                true => points.send(&variable.name, variable, &parts, variable.missing(), sink),
+            match visitor.asks_for_data() {
+                true => points.send(&variable.name, variable, &parts, variable.missing(), visitor),
                 false => {
                     let is_real = matches!(variable.number, Number::Real(_));
-                    sink.point_array(&variable.name, parts.components, is_real);
+                    visitor.point_array(&variable.name, parts.components, is_real);
                 }
             }
         }
-        if sink.asks_for_data() {
+        if visitor.asks_for_data() {
             for variable in self.header.variables.iter().filter(is_data) {
                 if let Some((Location::Faces, parts)) = self.located(variable, lengths) {
-                    self.of_faces(faces, variable, &parts, &mut points, sink);
+                    self.of_faces(faces, variable, &parts, &mut points, visitor);
                 }
             }
-            self.left_out(sink);
+            self.left_out(visitor);
         }
-        let left = self.centers(tables, &places, &mut points, sink);
+        let left = self.centers(tables, &places, &mut points, visitor);
         if !left.is_empty() {
             let names: Vec<_> = left.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
-            sink.remark(Remark::Text(format!(
+            visitor.remark(Remark::Text(format!(
                 "{}: places of edges or faces, which stay as they are",
                 names.join(", ")
             )));
@@ -88,17 +88,17 @@ impl<'h, 'a> Mesh<'h, 'a> {
         variable: &'h Variable,
         parts: &Parts,
         points: &mut PointData<'h, 'a>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) {
         let is_real = matches!(variable.number, Number::Real(_));
         let tags = faces.first..faces.first + faces.count as u64;
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
-                if sink.cell_array(&variable.name, parts.components, is_real)
+                if visitor.cell_array(&variable.name, parts.components, is_real)
                     && let Some(own) =
                         points.numbers(variable, record, part, parts, variable.missing())
                 {
-                    sink.cell_numbers(own.numbers, Some(tags.clone().collect()));
+                    visitor.cell_numbers(own.numbers, Some(tags.clone().collect()));
                 }
             }
         }
@@ -106,13 +106,13 @@ impl<'h, 'a> Mesh<'h, 'a> {
 
     /// Tells what is in no mesh of another format. Edges, neighbors and places of faces follow from the mesh; attributes of variables
     /// are like comments.
-    fn left_out(&self, sink: &mut dyn Sink) {
+    fn left_out(&self, visitor: &mut dyn MeshVisitor) {
         let variables = &self.header.variables;
         if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {
-            sink.leaves_out("variables of edges");
+            visitor.unsupported("variables of edges");
         }
         if self.header.records > 1 {
-            sink.leaves_out("times of time steps");
+            visitor.unsupported("times of time steps");
         }
     }
 }

@@ -1,24 +1,24 @@
 //! The faces of a UGRID mesh, handed on.
 
 use super::table::Table;
-use crate::binary::number_field::Field;
+use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::netcdf::Number;
 use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Region, TriangleRecords};
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// Hands on all faces.
-pub(super) fn send(faces: &Table<'_, '_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
-    sink.expect_elements(faces.count);
+pub(super) fn send(faces: &Table<'_, '_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
+    visitor.expect_elements(faces.count);
     let mut taken = 0;
     if let (Number::Whole(width @ (4 | 8)), 3, true) =
         (faces.variable.number, faces.corners, faces.has_rows)
     {
         let own = faces.items.own();
-        taken = sink.triangle_records(&TriangleRecords {
+        taken = visitor.triangle_records(&TriangleRecords {
             count: faces.count,
-            corners: Field::new(Some(own), 3 * width, width, faces.variable.order),
+            corners: NumberField::new(Some(own), 3 * width, width, faces.variable.order),
             first: 0,
             below: u64::MAX,
             regions: [Region::Same(0), Region::Same(0)],
@@ -34,13 +34,13 @@ pub(super) fn send(faces: &Table<'_, '_>, sink: &mut dyn Sink) -> Result<(), Rea
             3 => Kind::Triangle,
             4 => Kind::Quadrilateral,
             _ => {
-                sink.polygon(cursor, tag, region, &nodes)?;
+                visitor.polygon(cursor, tag, region, &nodes)?;
                 continue;
             }
         };
         let mut own = [0; 4];
         own[..nodes.len()].copy_from_slice(&nodes);
-        sink.element(cursor, &Element { tag, kind, region, nodes: own })?;
+        visitor.element(cursor, &Element { tag, kind, region, nodes: own })?;
     }
     Ok(())
 }

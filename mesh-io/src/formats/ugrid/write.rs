@@ -4,7 +4,7 @@
 //! give the variables of their mesh; numbers of nodes start at one.
 
 use crate::export::content::Data;
-use crate::export::job::Job;
+use crate::export::writer_input::Job;
 use crate::netcdf::write::{NetCdf, Values};
 
 /// The names of variables that a mesh consists of, which no data may have.

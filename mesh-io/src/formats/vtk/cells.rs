@@ -1,14 +1,14 @@
 //! Cells of VTK, by the numbers of their types.
 
-use crate::binary::number_field::Field;
-use crate::binary::whole::Whole;
+use crate::binary::int_array::IntArray;
+use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Expected, LONG, Region, TriangleRecords};
 use crate::visit::rows::volume;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 
 /// A cell of one of VTK's formats.
@@ -23,22 +23,26 @@ pub(crate) struct Cell<'a> {
 }
 
 impl Cell<'_> {
-    /// Hands the cell to the sink. The points of cells without a kind of their own, such as polylines and polygons of
+    /// Hands the cell to the visitor. The points of cells without a kind of their own, such as polylines and polygons of
     /// more than four corners, stay fixed.
-    pub(crate) fn send(&self, cursor: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    pub(crate) fn send(
+        &self,
+        cursor: &Cursor<'_>,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<(), ReadError> {
         let Cell { tag, cell_type, points, region } = *self;
         let kind = kind_of(cursor, tag, cell_type, points.len())?;
         if kind.nodes() == points.len() {
             let mut nodes = [0; 4];
             nodes[..points.len()].copy_from_slice(points);
-            return sink.element(cursor, &Element { tag, kind, region, nodes });
+            return visitor.element(cursor, &Element { tag, kind, region, nodes });
         }
         match (kind, cell_type) {
-            (Kind::Corner, _) => sink.polygon(cursor, tag, region, points),
-            (_, types::POLY_LINE) => sink.polyline(cursor, tag, region, points),
+            (Kind::Corner, _) => visitor.polygon(cursor, tag, region, points),
+            (_, types::POLY_LINE) => visitor.polyline(cursor, tag, region, points),
             _ => points.iter().try_for_each(|&point| {
                 let nodes = [point, 0, 0, 0];
-                sink.element(cursor, &Element { tag, kind, region, nodes })
+                visitor.element(cursor, &Element { tag, kind, region, nodes })
             }),
         }
     }
@@ -49,13 +53,13 @@ pub(crate) struct Triangles<'a> {
     /// How many cells there are from the first triangle on.
     pub(crate) count: usize,
     /// The points of all cells, and the range of the first triangle's points.
-    pub(crate) numbers: &'a Whole<'a>,
+    pub(crate) numbers: &'a IntArray<'a>,
     pub(crate) own: Range<usize>,
     /// The ends of the cells' points, from the first triangle on. `None` if each cell's number of points stands before
     /// its points.
-    pub(crate) ends: Option<Field<'a>>,
+    pub(crate) ends: Option<NumberField<'a>>,
     /// The types of the cells from the first triangle on. `None` if all are polygons.
-    pub(crate) types: Option<Field<'a>>,
+    pub(crate) types: Option<NumberField<'a>>,
     /// The number that is added to each point.
     pub(crate) first: u64,
     /// The bound that each point must be less than.
@@ -64,8 +68,8 @@ pub(crate) struct Triangles<'a> {
 }
 
 impl Triangles<'_> {
-    /// Hands on triangles. Returns how many the sink has taken, and where the points of the last one end.
-    pub(crate) fn send(self, sink: &mut dyn Sink) -> (usize, usize) {
+    /// Hands on triangles. Returns how many the visitor has taken, and where the points of the last one end.
+    pub(crate) fn send(self, visitor: &mut dyn MeshVisitor) -> (usize, usize) {
         let Triangles { count, numbers, own, ends, types, first, below, regions } = self;
         let (stride, counts) = match ends {
             Some(ends) => (3, (ends, Expected::Steps { first: own.end as u64, step: 3 })),
@@ -77,7 +81,7 @@ impl Triangles<'_> {
         let triangles = types.map(|types| (types, Expected::Is(types::TRIANGLE)));
         let expected: Vec<_> = [counts].into_iter().chain(triangles).collect();
         let corners = numbers.field(own.start, stride);
-        let taken = sink.triangle_records(&TriangleRecords {
+        let taken = visitor.triangle_records(&TriangleRecords {
             count,
             corners,
             first,

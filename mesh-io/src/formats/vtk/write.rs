@@ -1,8 +1,8 @@
 //! Writes VTK's formats: the legacy `.vtk` as text, and `.vtu` with arrays in base64.
 
 use crate::export::content::Data;
-use crate::export::job::Job;
 use crate::export::put;
+use crate::export::writer_input::Job;
 use crate::formats::vtk::types::number_of;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

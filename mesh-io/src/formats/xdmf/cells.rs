@@ -3,16 +3,16 @@
 use super::File;
 use super::document::Item;
 use super::heavy;
-use crate::binary::whole::Whole;
+use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::Cell;
 use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::Column;
+use crate::visit::items::RegionAttribute;
 use crate::visit::records::TriangleRecords;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// The whole numbers of a topology, one after another.
 enum Words<'a> {
@@ -20,7 +20,7 @@ enum Words<'a> {
     /// Those of a file beside the XML, and how many of them were taken.
     Heavy {
         numbers: Box<heavy::Numbers<'a>>,
-        whole: Whole<'a>,
+        whole: IntArray<'a>,
         taken: usize,
         size: usize,
     },
@@ -62,7 +62,11 @@ impl<'a> Words<'a> {
 
 impl<'a> File<'a> {
     /// Hands on the elements and their data.
-    pub(super) fn elements(&self, item: &Item, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    pub(super) fn elements(
+        &self,
+        item: &Item,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<(), ReadError> {
         let is_region = |item: &&Item| !self.is_real(item) && names_regions(item.name.as_bytes());
         let (mut of_regions, mut regions): (Vec<&Item>, Vec<Vec<i64>>) = (Vec::new(), Vec::new());
         for own in self.attributes("cell").filter(is_region) {
@@ -76,9 +80,11 @@ impl<'a> File<'a> {
             }
         }
         let regions = RegionNumbers::from_iter(regions);
-        sink.columns(of_regions.iter().map(|own| Column::tags(&own.name, 0)).collect());
+        visitor.region_attributes(
+            of_regions.iter().map(|own| RegionAttribute::tags(&own.name, 0)).collect(),
+        );
         let words = &mut self.words(item)?;
-        let (mut tag, mut count) = self.triangles(item, words, &regions, sink);
+        let (mut tag, mut count) = self.triangles(item, words, &regions, visitor);
         let mut points = Vec::new();
         while words.goes_on() {
             let (cell_type, corners) = match item.kind.as_str() {
@@ -96,7 +102,7 @@ impl<'a> File<'a> {
             }
             count += corners;
             let region = regions.of(tag as usize);
-            Cell { tag, cell_type, points: &points, region }.send(&own, sink)?;
+            Cell { tag, cell_type, points: &points, region }.send(&own, visitor)?;
             tag += 1;
         }
         let differs = |announced: Option<u64>, found: u64| announced.is_some_and(|n| n != found);
@@ -104,8 +110,8 @@ impl<'a> File<'a> {
             let problem = format!("the Topology ends after {tag} elements of {count} numbers");
             return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
-        if sink.asks_for_data() {
-            self.cell_data(&of_regions, tag, sink);
+        if visitor.asks_for_data() {
+            self.cell_data(&of_regions, tag, visitor);
         }
         Ok(())
     }
@@ -119,29 +125,29 @@ impl<'a> File<'a> {
             let problem = "a Topology of numbers that are not whole";
             return Err(self.cursor(item).error(problem, "Save the mesh again"));
         };
-        let whole = Whole::binary(std::mem::take(&mut numbers.bytes), size, order);
+        let whole = IntArray::binary(std::mem::take(&mut numbers.bytes), size, order);
         Ok(Words::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
     }
 
-    /// Hands on triangles of a file beside the XML, as many as the sink takes at once. Returns how many these are, and how many
+    /// Hands on triangles of a file beside the XML, as many as the visitor takes at once. Returns how many these are, and how many
     /// numbers they have.
     fn triangles(
         &self,
         item: &Item,
         words: &mut Words<'_>,
         regions: &RegionNumbers,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> (u64, u64) {
         let Words::Heavy { whole, taken, .. } = words else {
             let room = words.cursor().capacity(item.elements.unwrap_or(0), "0 1 2 ".len());
-            sink.expect_elements(room);
+            visitor.expect_elements(room);
             return (0, 0);
         };
-        sink.expect_elements(whole.len() / 4);
+        visitor.expect_elements(whole.len() / 4);
         if item.kind != "triangle" {
             return (0, 0);
         }
-        let found = sink.triangle_records(&TriangleRecords {
+        let found = visitor.triangle_records(&TriangleRecords {
             count: whole.len() / 3,
             corners: whole.field(0, 3),
             first: 0,
@@ -176,22 +182,22 @@ impl<'a> File<'a> {
     }
 
     /// Hands on the data of cells but for those that tell regions.
-    fn cell_data(&self, regions: &[&Item], cells: u64, sink: &mut dyn Sink) {
+    fn cell_data(&self, regions: &[&Item], cells: u64, visitor: &mut dyn MeshVisitor) {
         for item in self.attributes("cell") {
             let is_region = regions.iter().any(|own| own.at == item.at);
             let (is_real, components) = (self.is_real(item), item.components(cells));
-            if !is_region && sink.cell_array(item.name.as_bytes(), components, is_real) {
+            if !is_region && visitor.cell_array(item.name.as_bytes(), components, is_real) {
                 match self.numbers(item) {
                     Ok(numbers) => {
-                        sink.cell_numbers(numbers.numbers, Some((0..cells).collect()));
+                        visitor.cell_numbers(numbers.numbers, Some((0..cells).collect()));
                     }
-                    Err(_) => sink.leaves_out("cell data that are damaged"),
+                    Err(_) => visitor.unsupported("cell data that are damaged"),
                 }
             }
         }
         let is_other = |item: &&Item| !matches!(item.center.as_str(), "node" | "cell");
         if self.items.iter().filter(|i| i.section == "Attribute").any(|i| is_other(&i)) {
-            sink.leaves_out("data of grids, faces or edges");
+            visitor.unsupported("data of grids, faces or edges");
         }
     }
 

@@ -1,6 +1,6 @@
 //! The items of an XDMF file: what its tags say of them, and where their text stands.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::formats::xdmf::companions::Reference;
@@ -136,8 +136,8 @@ fn item(source: &Source, xml: &Tag<'_>, tag: &Section, of: &Section) -> Result<I
             }
             let precision = optional(tag, &["Precision"])?.unwrap_or(4);
             let order = match small(tag, &["Endian"]).as_str() {
-                "big" => Order::Big,
-                _ => Order::Little,
+                "big" => ByteOrder::Big,
+                _ => ByteOrder::Little,
             };
             let number = match (is_real.as_str(), precision) {
                 ("" | "float", 4) => Number::Real(Precision::Single, order),

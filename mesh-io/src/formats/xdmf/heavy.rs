@@ -1,14 +1,14 @@
 //! Numbers that do not stand in the XML: in HDF5 or raw, in files companion it.
 
 use super::document::{Content, Item};
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::{Companion, Source};
-use crate::edit::numbers::{Encoded, Form, Places};
+use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::hdf5::{Array, Encoding, Hdf5, Number};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
@@ -200,7 +200,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// How many bytes each has, and in which order, if they are whole.
-    pub(super) fn whole(&self) -> Option<(usize, Order)> {
+    pub(super) fn whole(&self) -> Option<(usize, ByteOrder)> {
         match self.number {
             Number::Whole(size, order) => Some((size, order)),
             _ => None,
@@ -209,15 +209,21 @@ impl<'a> Numbers<'a> {
 }
 
 /// Where real numbers of data stand, so that they can be replaced.
-pub(super) fn stored(numbers: &mut Numbers<'_>, heavy: &Heavy<'_>) -> Option<Stored> {
+pub(super) fn stored(numbers: &mut Numbers<'_>, heavy: &Heavy<'_>) -> Option<ArrayLocation> {
     let Number::Real(precision, order) = numbers.number else { return None };
-    let (form, part, stride) = (Form::Binary(order, precision), numbers.part, precision.bytes());
+    let (form, part, stride) =
+        (NumberEncoding::Binary(order, precision), numbers.part, precision.bytes());
     let (start, home) = match numbers.start {
-        Some(start) => (start, Home::File),
+        Some(start) => (start, ByteSpace::File),
         None => {
             let encoding = heavy.encoding(numbers)?;
-            (0, Home::Encoded(Arc::new(encoding) as Arc<dyn Encoded>))
+            (0, ByteSpace::Encoded(Arc::new(encoding) as Arc<dyn EncodedArrays>))
         }
     };
-    Some(Stored { places: Places::Regular { start, stride }, form, home, part })
+    Some(ArrayLocation {
+        offsets: Offsets::Regular { start, stride },
+        encoding: form,
+        space: home,
+        file_index: part,
+    })
 }

@@ -11,17 +11,17 @@ mod points;
 pub(crate) mod write;
 
 use crate::disk::source::Source;
-use crate::edit::numbers::Splice;
+use crate::edit::numbers::ByteEdit;
 use crate::error::{ReadError, WriteError};
 use crate::hdf5::Number;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::heights::TextNumbers;
 use crate::visit::items::PointNumbers;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::TextNumbers;
 use document::{Content, Item};
 use heavy::Heavy;
 use std::ops::Range;
@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) struct Xdmf;
 
-impl Walk for Xdmf {
+impl FormatReader for Xdmf {
     const VERTICES: &'static str = "Geometry";
 
     fn load_companions(mut given: Source) -> Result<Source, ReadError> {
@@ -53,16 +53,19 @@ impl Walk for Xdmf {
         companions::destinations(source, path)
     }
 
-    fn renames(source: &Source, path: &Path) -> Vec<Splice> {
+    fn renames(source: &Source, path: &Path) -> Vec<ByteEdit> {
         companions::renames(source, path)
     }
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let items = document::items(source)?;
         let file = File { source, items, heavy: Heavy::open(source)? };
-        let (layout, points) = file.points(file.only("Geometry")?, sink)?;
-        file.elements(file.only("Topology")?, sink)?;
-        file.point_data(points, sink)?;
+        let (layout, points) = file.points(file.only("Geometry")?, visitor)?;
+        file.elements(file.only("Topology")?, visitor)?;
+        file.point_data(points, visitor)?;
         file.heavy.check_apart()?;
         Ok(layout)
     }
@@ -127,11 +130,11 @@ impl<'a> File<'a> {
     }
 
     /// Hands on the data of so many points.
-    fn point_data(&self, points: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    fn point_data(&self, points: u64, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
         // What stands in a file twice is replaced once.
         let mut known: Vec<(usize, Range<usize>)> = Vec::new();
         for section in ["Geometry", "Topology"] {
-            let numbers = match sink.asks_for_data() {
+            let numbers = match visitor.asks_for_data() {
                 true => self.heavy.place(self.only(section)?),
                 false => None,
             };
@@ -139,7 +142,7 @@ impl<'a> File<'a> {
         }
         for item in self.attributes("node") {
             let (components, is_real) = (item.components(points), self.is_real(item));
-            if sink.point_array(item.name.as_bytes(), components, is_real)
+            if visitor.point_array(item.name.as_bytes(), components, is_real)
                 && let Ok(mut numbers) = self.numbers(item)
             {
                 if let Some((part, range)) = self.heavy.place(item) {
@@ -147,11 +150,11 @@ impl<'a> File<'a> {
                         *known != part || own.end <= range.start || range.end <= own.start
                     };
                     if !known.iter().all(is_other) {
-                        numbers.stored = None;
+                        numbers.location = None;
                     }
                     known.push((part, range));
                 }
-                sink.point_numbers(numbers);
+                visitor.point_numbers(numbers);
             }
         }
         Ok(())
@@ -167,7 +170,7 @@ impl<'a> File<'a> {
                     .error("the data are not numbers", "Save the data as Float or Int"));
             };
             let stored = heavy::stored(&mut numbers, &self.heavy);
-            return Ok(PointNumbers { numbers: reals, nodes: None, stored });
+            return Ok(PointNumbers { numbers: reals, nodes: None, location: stored });
         }
         let cursor = &mut self.content(item);
         let mut numbers = TextNumbers::default();
@@ -175,7 +178,7 @@ impl<'a> File<'a> {
             numbers.read(cursor)?;
         }
         let numbers = numbers.finish(item.precision.unwrap_or(Precision::Double), None);
-        let stored = numbers.stored.filter(|_| item.precision.is_some());
-        Ok(PointNumbers { stored, ..numbers })
+        let stored = numbers.location.filter(|_| item.precision.is_some());
+        Ok(PointNumbers { location: stored, ..numbers })
     }
 }

@@ -1,7 +1,7 @@
 //! Writes XDMF with the numbers in the XML.
 
-use crate::export::job::Job;
 use crate::export::put;
+use crate::export::writer_input::Job;
 use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
 use crate::visit::items::Kind;
 use std::fmt::Write;

@@ -1,8 +1,8 @@
 //! Lists of cells of a legacy VTK file.
 
-use super::passed::take;
-use crate::binary::order::Order;
-use crate::binary::whole::Whole;
+use super::skip::take;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::{Cell, Triangles, Tries};
 use crate::formats::vtk::regions::RegionNumbers;
@@ -10,18 +10,18 @@ use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::quoted;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 
 /// A list of cells.
 pub(super) struct Cells<'a> {
     pub(super) count: usize,
     /// The points of all cells. Without offsets, each cell's number of points stands before its points.
-    numbers: Whole<'a>,
+    numbers: IntArray<'a>,
     /// The start of each cell's points, and the end of the last one's.
-    offsets: Option<Whole<'a>>,
+    offsets: Option<IntArray<'a>>,
     /// The type of each cell. `None` for polygonal data.
-    pub(super) types: Option<Whole<'a>>,
+    pub(super) types: Option<IntArray<'a>>,
     kind: List,
     /// The cursor at the first cell.
     first: Cursor<'a>,
@@ -46,14 +46,14 @@ pub(super) fn integers<'a>(
     cursor: &mut Cursor<'a>,
     count: u64,
     size: Option<usize>,
-) -> Result<Whole<'a>, ReadError> {
+) -> Result<IntArray<'a>, ReadError> {
     match size {
         Some(size) => {
             let bytes = take(cursor, count, size)?;
-            Ok(Whole::binary(bytes.into(), size, Order::Big))
+            Ok(IntArray::binary(bytes.into(), size, ByteOrder::Big))
         }
         None => {
-            let mut numbers = Whole::with_capacity(cursor.capacity(count, "0 ".len()));
+            let mut numbers = IntArray::with_capacity(cursor.capacity(count, "0 ".len()));
             if cursor.is_at_end() && cursor.is_long() {
                 whole_rows(cursor, count, &mut numbers);
             }
@@ -70,7 +70,7 @@ pub(super) fn integers<'a>(
 }
 
 /// Reads whole rows of numbers on all threads, as long as they are plain and have no more than `count` numbers in all.
-fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut Whole<'_>) {
+fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut IntArray<'_>) {
     /// Rows with more numbers than this, or with numbers of more than 32 bits, are left to be read one by one.
     const MOST: usize = 10;
     let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MOST], u8), ReadError> {
@@ -167,19 +167,19 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
 }
 
 impl Cells<'_> {
-    /// Hands the cells to the sink. `tag` is that of the first cell, and becomes that of the next list's first cell.
+    /// Hands the cells to the visitor. `tag` is that of the first cell, and becomes that of the next list's first cell.
     pub(super) fn send(
         &self,
         cursor: &Cursor<'_>,
         regions: &RegionNumbers,
         tag: &mut u64,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
-        sink.expect_elements(self.count);
+        visitor.expect_elements(self.count);
         if self.kind == List::Cells && self.types.is_none() && self.count > 0 {
             return Err(cursor.error("CELLS without CELL_TYPES", CUT_OFF));
         }
-        // The location of a cell is found only for a sink that uses it.
+        // The location of a cell is found only for a visitor that uses it.
         let mut place = self.first.clone();
         let mut tries = Tries::NEW;
         let (mut index, mut end) = (0, 0);
@@ -192,7 +192,7 @@ impl Cells<'_> {
                 && tries.is_due(index)
                 && let Some(triangles) = self.triangles(index, own.clone(), regions, *tag)
             {
-                let (taken, last) = triangles.send(sink);
+                let (taken, last) = triangles.send(visitor);
                 tries.done(index, taken);
                 if taken > 0 {
                     (index, end) = (index + taken, last);
@@ -204,14 +204,14 @@ impl Cells<'_> {
             let region = regions.of(*tag as usize);
             let cell =
                 Cell { tag: *tag, cell_type: self.cell_type(index), points: &points, region };
-            if sink.takes_ahead() {
-                if cell.send(cursor, sink).is_err() {
+            if visitor.allows_parallel() {
+                if cell.send(cursor, visitor).is_err() {
                     self.stand_before(&mut place, index);
-                    return cell.send(&place, sink);
+                    return cell.send(&place, visitor);
                 }
             } else {
                 self.stand(&mut place);
-                cell.send(&place, sink)?;
+                cell.send(&place, visitor)?;
                 self.pass(&mut place, own.len());
             }
             (index, end) = (index + 1, own.end);

@@ -1,6 +1,6 @@
 //! Decodes and encodes arrays of a VTK XML file: base64, and compressed blocks.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::compress::zlib;
 use crate::parallel::map_parts;
 use base64::Engine;
@@ -17,7 +17,7 @@ pub(super) enum Compressor {
 /// How the bytes of an array are encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wrapping {
-    pub(super) order: Order,
+    pub(super) order: ByteOrder,
     /// The bytes of a number in the header.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
@@ -160,8 +160,8 @@ impl Wrapping {
     fn bytes_of(&self, number: usize) -> Vec<u8> {
         let number = number as u64;
         match self.order {
-            Order::Big => number.to_be_bytes()[8 - self.header..].to_vec(),
-            Order::Little => number.to_le_bytes()[..self.header].to_vec(),
+            ByteOrder::Big => number.to_be_bytes()[8 - self.header..].to_vec(),
+            ByteOrder::Little => number.to_le_bytes()[..self.header].to_vec(),
         }
     }
 }
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn wrapped_arrays_are_unwrapped_to_the_same_bytes() {
         let bytes: Vec<u8> = (0..10_007_u32).map(|n| (n * n / 7 % 251) as u8).collect();
-        for order in [Order::Little, Order::Big] {
+        for order in [ByteOrder::Little, ByteOrder::Big] {
             for header in [4, 8] {
                 for base64 in [false, true] {
                     for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
@@ -229,7 +229,7 @@ mod tests {
     fn wrong_lengths_in_a_file_allocate_no_memory() {
         for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
             for base64 in [false, true] {
-                let wrapping = Wrapping { order: Order::Little, header: 8, compressor, base64 };
+                let wrapping = Wrapping { order: ByteOrder::Little, header: 8, compressor, base64 };
                 for byte in [b'/', b'A', 0xFF, 1] {
                     assert!(
                         wrapping.unwrap(&[byte; 64]).is_none_or(|found| found.bytes.len() < 64)

@@ -2,46 +2,47 @@
 
 use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
-use crate::binary::whole::Whole;
+use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::{Cell, Triangles, Tries};
 use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::Column;
-use crate::visit::sink::Sink;
+use crate::visit::items::RegionAttribute;
+use crate::visit::visitor::MeshVisitor;
 
 /// The types of the cells of a list.
 enum Types<'a> {
     /// The same type for all cells.
     Same(u64),
-    Listed(Whole<'a>),
+    Listed(IntArray<'a>),
 }
 
 /// A list of cells of a piece.
 struct List<'a> {
-    connectivity: Whole<'a>,
+    connectivity: IntArray<'a>,
     /// The end of each cell's points in `connectivity`.
-    offsets: Whole<'a>,
+    offsets: IntArray<'a>,
     types: Types<'a>,
     /// The offset of the list in the file, for messages.
     at: usize,
 }
 
 impl File<'_> {
-    /// Hands the cells of all pieces to the sink.
-    pub(super) fn cells(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    /// Hands the cells of all pieces to the visitor.
+    pub(super) fn cells(&self, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
         let regions = self.region_names();
-        sink.columns(regions.iter().map(|name| Column::tags(name, 0)).collect());
+        visitor
+            .region_attributes(regions.iter().map(|name| RegionAttribute::tags(name, 0)).collect());
         let (mut first_point, mut first_cell) = (0, 0);
         for (piece, announced) in self.document.pieces.iter().enumerate() {
             let lists = self.lists(piece)?;
             let count: usize = lists.iter().map(|list| list.offsets.len()).sum();
-            if sink.asks_for_data() {
+            if visitor.asks_for_data() {
                 let cells = first_cell..first_cell + count as u64;
-                self.cell_arrays(piece, &regions, cells, sink);
+                self.cell_arrays(piece, &regions, cells, visitor);
             }
-            sink.expect_elements(count);
+            visitor.expect_elements(count);
             let of_cells: RegionNumbers =
                 regions.iter().map(|name| self.regions(piece, name)).collect();
             let mut index = 0;
@@ -71,7 +72,7 @@ impl File<'_> {
                             below: announced.points,
                             regions: of_cells.from(index),
                         };
-                        let (taken, last) = triangles.send(sink);
+                        let (taken, last) = triangles.send(visitor);
                         tries.done(own, taken);
                         if taken > 0 {
                             (own, index, start) = (own + taken, index + taken, last);
@@ -95,7 +96,7 @@ impl File<'_> {
                     (start, own) = (end, own + 1);
                     let region = of_cells.of(index);
                     let tag = first_cell + index as u64;
-                    Cell { tag, cell_type, points: &points, region }.send(cursor, sink)?;
+                    Cell { tag, cell_type, points: &points, region }.send(cursor, visitor)?;
                     index += 1;
                 }
             }
@@ -175,9 +176,9 @@ impl File<'_> {
         array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
     }
 
-    /// Hands the arrays of point data that the sink wants to it. Damaged ones are skipped, as the mesh does not depend
+    /// Hands the arrays of point data that the visitor wants to it. Damaged ones are skipped, as the mesh does not depend
     /// on them.
-    pub(super) fn point_arrays(&self, sink: &mut dyn Sink) {
+    pub(super) fn point_arrays(&self, visitor: &mut dyn MeshVisitor) {
         let pieces = &self.document.pieces;
         let mut first = 0;
         for (piece, announced) in pieces.iter().enumerate() {
@@ -187,7 +188,7 @@ impl File<'_> {
                 let of_points = array.section == "PointData" && announced.points > 0;
                 let is_real = precision_of(array).is_some();
                 if of_points
-                    && sink.point_array(array.name.as_bytes(), array.components, is_real)
+                    && visitor.point_array(array.name.as_bytes(), array.components, is_real)
                     && let Ok(mut numbers) = self.numbers(array)
                 {
                     let fits = Some(numbers.numbers.len() as u64)
@@ -198,35 +199,35 @@ impl File<'_> {
                         }
                         numbers.nodes = Some(points.clone().collect());
                     }
-                    sink.point_numbers(numbers);
+                    visitor.point_numbers(numbers);
                 }
             }
         }
     }
 
-    /// Hands the arrays of cell data that the sink wants to it, except those that tell regions.
+    /// Hands the arrays of cell data that the visitor wants to it, except those that tell regions.
     fn cell_arrays(
         &self,
         piece: usize,
         regions: &[String],
         cells: std::ops::Range<u64>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) {
         for array in &self.document.arrays {
             let is_region = tells_regions(array) && regions.contains(&array.name);
             let is_real = precision_of(array).is_some();
             match array.section.as_str() {
-                "FieldData" => sink.leaves_out("field data"),
+                "FieldData" => visitor.unsupported("field data"),
                 "CellData"
                     if array.piece == piece
                         && !is_region
-                        && sink.cell_array(array.name.as_bytes(), array.components, is_real) =>
+                        && visitor.cell_array(array.name.as_bytes(), array.components, is_real) =>
                 {
                     match self.numbers(array) {
                         Ok(numbers) => {
-                            sink.cell_numbers(numbers.numbers, Some(cells.clone().collect()));
+                            visitor.cell_numbers(numbers.numbers, Some(cells.clone().collect()));
                         }
-                        Err(_) => sink.leaves_out("cell data that are damaged"),
+                        Err(_) => visitor.unsupported("cell data that are damaged"),
                     }
                 }
                 _ => {}

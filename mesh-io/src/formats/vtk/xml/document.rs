@@ -1,8 +1,8 @@
 //! The elements of a VTK XML file, and their offsets.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
-use crate::edit::numbers::Offset;
+use crate::edit::numbers::AppendedOffset;
 use crate::error::ReadError;
 use crate::formats::vtk::xml::blocks::Compressor;
 use crate::text::cursor::CUT_OFF;
@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// The content of a file's tags.
 pub(super) struct Document {
-    pub(super) order: Order,
+    pub(super) order: ByteOrder,
     /// The bytes of a number that gives the length of a block.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
@@ -74,7 +74,7 @@ pub(super) struct Appended {
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
         let mut document = Document {
-            order: Order::Little,
+            order: ByteOrder::Little,
             header: 4,
             compressor: None,
             content: Content::Grid,
@@ -111,11 +111,15 @@ impl Document {
     }
 
     /// Returns the offsets of appended arrays, as the file gives them.
-    pub(super) fn offsets(&self) -> Vec<Offset> {
+    pub(super) fn offsets(&self) -> Vec<AppendedOffset> {
         let Some(appended) = self.appended else { return Vec::new() };
         let offset = |array: &Array| {
             let (value, place) = array.offset.clone()?;
-            Some(Offset { value, array_at: appended.start.saturating_add(value), place })
+            Some(AppendedOffset {
+                value,
+                array_start: appended.start.saturating_add(value),
+                range: place,
+            })
         };
         self.arrays.iter().filter_map(offset).collect()
     }
@@ -133,7 +137,7 @@ impl Document {
             }
         };
         if tag.attribute("byte_order")?.as_deref() == Some("BigEndian") {
-            self.order = Order::Big;
+            self.order = ByteOrder::Big;
         }
         if tag.attribute("header_type")?.as_deref() == Some("UInt64") {
             self.header = 8;

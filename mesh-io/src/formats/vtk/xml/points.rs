@@ -4,32 +4,32 @@ use super::arrays::File;
 use super::blocks::{Unwrapped, Wrapping};
 use super::document::{Array, Coding};
 use super::encoding::Encoding;
-use crate::binary::number_field::Field;
-use crate::edit::numbers::{Encoded, Numbers};
+use crate::binary::number_field::NumberField;
+use crate::edit::numbers::{CoordinateEncoding, EncodedArrays};
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::heights::Heights;
 use crate::visit::records::{NodeRecords, Tags};
 use crate::visit::send::REWRITE;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Home;
+use crate::visit::storage::ByteSpace;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// How the points of all pieces are stored in the file.
 pub(super) struct Stored {
-    pub(super) numbers: Numbers,
-    pub(super) encoded: Option<Box<dyn Encoded>>,
+    pub(super) numbers: CoordinateEncoding,
+    pub(super) encoded: Option<Box<dyn EncodedArrays>>,
 }
 
 /// The points read so far.
 struct Points<'s, 'f> {
-    sink: &'s mut dyn Sink,
-    heights: Heights,
+    visitor: &'s mut dyn MeshVisitor,
+    heights: ZValues,
     /// How the numbers are stored, and whether they are encoded. It must be the same in all pieces.
-    numbers: Option<(Numbers, bool)>,
+    numbers: Option<(CoordinateEncoding, bool)>,
     encoded: Vec<(Wrapping, Unwrapped<'f>, Range<usize>)>,
     /// The bytes of all encoded arrays, decoded.
     bytes: usize,
@@ -40,26 +40,26 @@ struct Points<'s, 'f> {
 }
 
 /// Hands on the points of all pieces.
-pub(super) fn read(file: &File<'_>, sink: &mut dyn Sink) -> Result<Stored, ReadError> {
-    let heights = Heights::new(sink);
+pub(super) fn read(file: &File<'_>, visitor: &mut dyn MeshVisitor) -> Result<Stored, ReadError> {
+    let heights = ZValues::new(visitor);
     let mut points =
-        Points { sink, heights, numbers: None, encoded: Vec::new(), bytes: 0, count: 0, end: 0 };
+        Points { visitor, heights, numbers: None, encoded: Vec::new(), bytes: 0, count: 0, end: 0 };
     for (piece, announced) in file.document.pieces.iter().enumerate() {
         if announced.points > 0 || file.document.pieces.len() == 1 {
             points.read(file, file.array(piece, "Points", None)?, announced.points)?;
         }
     }
-    let Points { heights, numbers, encoded, sink, .. } = points;
+    let Points { heights, numbers, encoded, visitor, .. } = points;
     let Some((numbers, is_encoded)) = numbers else {
         return Err(file.source.error("it has no piece with points", CORRECT));
     };
-    let home = if is_encoded { Home::Points } else { Home::File };
+    let home = if is_encoded { ByteSpace::Points } else { ByteSpace::File };
     let encoded = is_encoded.then(|| {
         let offsets = Arc::clone(&file.offsets);
-        Box::new(Encoding::new(encoded, offsets)) as Box<dyn Encoded>
+        Box::new(Encoding::new(encoded, offsets)) as Box<dyn EncodedArrays>
     });
-    sink.end_nodes(&Cursor::new(file.source))?;
-    heights.send_from("z", numbers.into(), home, 0, sink);
+    visitor.end_nodes(&Cursor::new(file.source))?;
+    heights.send_from("z", numbers.into(), home, 0, visitor);
     Ok(Stored { numbers, encoded })
 }
 
@@ -83,7 +83,7 @@ impl<'f> Points<'_, 'f> {
         let (start, numbers, is_encoded) = match points.format {
             Coding::Ascii => {
                 self.text(file, points, count)?;
-                (points.content.start, Numbers::Text { precision }, false)
+                (points.content.start, CoordinateEncoding::Text { precision }, false)
             }
             _ => self.binary(file, points, count, precision)?,
         };
@@ -108,7 +108,7 @@ impl<'f> Points<'_, 'f> {
         points: &Array,
         count: u64,
         precision: Precision,
-    ) -> Result<(usize, Numbers, bool), ReadError> {
+    ) -> Result<(usize, CoordinateEncoding, bool), ReadError> {
         let cursor = &Cursor::standing_at(file.source, points.at);
         let (wrapping, old, range) = file.unwrap(points)?;
         let wide = precision.bytes();
@@ -120,14 +120,15 @@ impl<'f> Points<'_, 'f> {
         // Raw bytes can be replaced in place. All others are encoded again.
         let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
         let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
-        let [x, y, z] = [0, 1, 2]
-            .map(|axis| Field::new(old.bytes.get(axis * wide..), 3 * wide, wide, wrapping.order));
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            NumberField::new(old.bytes.get(axis * wide..), 3 * wide, wide, wrapping.order)
+        });
         let (tags, count) = (Tags::From(self.count), count as usize);
         let not_finite = |index| cursor.error(format!("point {index} is not finite"), REWRITE);
         let records = NodeRecords { count, x, y, x_at: start, tags };
-        records.send(self.sink, |_| cursor.clone(), not_finite)?;
-        self.heights.see_all(z, count, start + 2 * wide);
-        let numbers = Numbers::adjacent(wrapping.order, precision);
+        records.send(self.visitor, |_| cursor.clone(), not_finite)?;
+        self.heights.push_records(z, count, start + 2 * wide);
+        let numbers = CoordinateEncoding::adjacent(wrapping.order, precision);
         if is_encoded {
             self.bytes += old.bytes.len();
             self.encoded.push((wrapping, old, range));
@@ -138,7 +139,7 @@ impl<'f> Points<'_, 'f> {
     /// Hands on points of a text.
     fn text(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
         let cursor = &mut Cursor::within(file.source, points.content.clone());
-        self.sink.expect_nodes(cursor.capacity(count, "0 0 0 ".len()));
+        self.visitor.expect_nodes(cursor.capacity(count, "0 0 0 ".len()));
         for index in 0..count {
             let mut point = [0.0; 3];
             let mut places = [0; 3];
@@ -149,12 +150,12 @@ impl<'f> Points<'_, 'f> {
                 }
                 places[axis] = cursor.at();
                 *x = match axis {
-                    2 => cursor.height(format_args!("point {index}"))?.1,
+                    2 => cursor.z(format_args!("point {index}"))?.1,
                     _ => cursor.coordinate(['x', 'y'][axis], format_args!("point {index}"))?,
                 };
             }
-            self.sink.node(cursor, self.count + index, 2, places[0], [point[0], point[1]]);
-            self.heights.see((places[2], point[2]));
+            self.visitor.node(cursor, self.count + index, 2, places[0], [point[0], point[1]]);
+            self.heights.push((places[2], point[2]));
         }
         Ok(())
     }

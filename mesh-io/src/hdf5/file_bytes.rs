@@ -1,7 +1,7 @@
 //! The bytes of a file, and how much of them was read.
 
 use super::bytes::{Bytes, Fault, Widths};
-use super::sum::Sum;
+use super::checksum::Sum;
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 

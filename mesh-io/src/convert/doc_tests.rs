@@ -4,9 +4,9 @@
 
 use super::tables;
 use super::targets::TARGETS;
-use crate::compress::packed::Packing;
-use crate::families::{FAMILIES, Family};
+use crate::compress::file::Compression;
 use crate::format::Format;
+use crate::registry::{FAMILIES, Family};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -379,7 +379,7 @@ fn the_lists_of_formats_in_both_readme_files_have_every_format() {
             assert!(has, "{name} must name {} by its ending {ending}", family.name);
         }
     }
-    assert!(Packing::of(Path::new("m.msh.gz")).is_some() && readme.contains("`.gz`"));
+    assert!(Compression::of(Path::new("m.msh.gz")).is_some() && readme.contains("`.gz`"));
 }
 
 /// Names of rows that stand for several formats, which have rows of their own.

@@ -2,30 +2,30 @@
 
 use super::content::{Content, ContentGroup, Data};
 use crate::content::group_keys::GroupKeys;
+use crate::content::id_index::TagIndex;
 use crate::content::label::Label;
-use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::scatter;
-use crate::visit::items::{Column, Element, Kind, PointNumbers, Within};
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::items::{Element, GroupScope, Kind, PointNumbers, RegionAttribute};
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
 /// Reads the description of a mesh, from a file that was read before.
-pub(crate) fn content(reader: &Reader, source: &Source) -> Result<Content, ReadError> {
-    let mut collector = Collector::default();
-    (reader.walk)(source, &mut collector)?;
+pub(crate) fn content(reader: &ReaderFunctions, source: &Source) -> Result<Content, ReadError> {
+    let mut collector = ContentBuilder::default();
+    (reader.visit)(source, &mut collector)?;
     Ok(collector.finish())
 }
 
 /// Collects all that a reader hands on.
 #[derive(Default)]
-struct Collector {
+struct ContentBuilder {
     content: Content,
     tags: TagIndex,
-    columns: Vec<Column>,
+    columns: Vec<RegionAttribute>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
     within: Vec<(String, Label, Option<u8>)>,
     keys: GroupKeys,
@@ -34,7 +34,7 @@ struct Collector {
     /// The last set of cells of a dimension and region, as long as the groups they stand within are the same.
     last: HashMap<(u8, [i64; 2]), u32>,
     /// The array that was announced last.
-    announced: Option<Announced>,
+    announced: Option<PendingArray>,
     /// How many data have the same name, for names with more than one.
     steps: HashMap<String, usize>,
     /// The last vertex of a line that may be continued.
@@ -46,7 +46,7 @@ struct Collector {
 /// What data are called that have no name.
 const UNNAMED: &str = "unnamed";
 
-struct Announced {
+struct PendingArray {
     name: String,
     components: usize,
     is_real: bool,
@@ -66,7 +66,7 @@ fn common(what: &str) -> String {
     common.to_owned()
 }
 
-impl Collector {
+impl ContentBuilder {
     /// Returns the description after all was handed on.
     fn finish(self) -> Content {
         let Self { mut content, keys, by_tag, .. } = self;
@@ -153,8 +153,8 @@ impl Collector {
     }
 }
 
-impl Sink for Collector {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for ContentBuilder {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
@@ -169,7 +169,7 @@ impl Sink for Collector {
         self.open_end = None;
         if kind == Kind::Corner {
             // The corners of required triangles, which are listed a second time.
-            self.leaves_out("the list of required triangles");
+            self.unsupported("the list of required triangles");
             return Ok(());
         }
         let set = self.set(kind.dimension(), region);
@@ -218,14 +218,14 @@ impl Sink for Collector {
         true
     }
 
-    fn columns(&mut self, columns: Vec<Column>) {
+    fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
         self.columns = columns;
         self.last.clear();
     }
 
-    fn within(&mut self, groups: &[Within<'_>]) {
+    fn group_scopes(&mut self, groups: &[GroupScope<'_>]) {
         let owned =
-            |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+            |group: &GroupScope<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
         let within: Vec<_> = groups.iter().map(owned).collect();
         // A line is continued only within the same group. Calls without groups in between do not end it.
         if !within.is_empty() && within != self.within {
@@ -246,7 +246,7 @@ impl Sink for Collector {
         self.last.clear();
     }
 
-    fn node_within(&mut self, node: u32, what: &str, label: &Label) {
+    fn node_group(&mut self, node: u32, what: &str, label: &Label) {
         let groups = &mut self.content.vertex_groups;
         let (number, is_new) = self.vertex_keys.number(what, 0, label);
         if is_new {
@@ -256,7 +256,7 @@ impl Sink for Collector {
         groups[number].1.push(node);
     }
 
-    fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+    fn group_name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         let name = String::from_utf8_lossy(name).into_owned();
         self.keys.set_name(&common(what), dimension, tag, name);
     }
@@ -268,11 +268,11 @@ impl Sink for Collector {
             _ => String::from_utf8_lossy(name).into_owned(),
         };
         let components = usize::try_from(components).unwrap_or(usize::MAX);
-        self.announced = Some(Announced { name, components, is_real, is_height: false });
+        self.announced = Some(PendingArray { name, components, is_real, is_height: false });
         true
     }
 
-    fn height_array(&mut self, name: &[u8]) -> bool {
+    fn z_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true);
         // Depths are positive downwards, so they are not third coordinates.
         self.announced.iter_mut().for_each(|array| array.is_height = name == b"z");
@@ -280,7 +280,8 @@ impl Sink for Collector {
     }
 
     fn point_numbers(&mut self, numbers: PointNumbers) {
-        let Some(Announced { name, components, is_real, is_height }) = self.announced.take() else {
+        let Some(PendingArray { name, components, is_real, is_height }) = self.announced.take()
+        else {
             return;
         };
         let PointNumbers { numbers, nodes, .. } = numbers;
@@ -324,7 +325,7 @@ impl Sink for Collector {
     }
 
     fn cell_numbers(&mut self, values: Vec<f64>, tags: Option<Vec<u64>>) {
-        if let Some(Announced { name, components, is_real, .. }) = self.announced.take() {
+        if let Some(PendingArray { name, components, is_real, .. }) = self.announced.take() {
             // Each part of a mesh may have its own values.
             let before = self.by_tag.iter_mut().find(|(data, _)| data.name == name);
             if let (Some((data, Some(known))), Some(tags)) = (before, &tags)
@@ -339,7 +340,7 @@ impl Sink for Collector {
         }
     }
 
-    fn leaves_out(&mut self, what: &str) {
+    fn unsupported(&mut self, what: &str) {
         if !self.content.left_out.iter().any(|known| known == what) {
             self.content.left_out.push(what.to_owned());
         }

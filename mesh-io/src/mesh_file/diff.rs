@@ -1,12 +1,12 @@
 //! Checks whether two files of a mesh differ in nothing but coordinates. This code is not used to write files.
 
-use crate::edit::numbers::{Encoded, Form, Numbers, Places};
+use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding, Offsets};
 use crate::error::Location;
+use crate::mesh_file::locate::Place;
 use crate::mesh_file::mesh::MeshFile;
-use crate::mesh_file::place::Place;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.
@@ -38,9 +38,9 @@ impl MeshFile {
         other: &MeshFile,
         fields: [&[PointField]; 2],
     ) -> Option<Difference> {
-        let (mine, theirs) = (self.parts(), other.parts());
+        let (mine, theirs) = (self.files(), other.files());
         let place = |file: &MeshFile, part: usize, at: usize| {
-            let source = file.parts()[part];
+            let source = file.files()[part];
             let location = match file.is_text(part) {
                 true => Location::Line(source.line_of(at)),
                 false => Location::Byte(at),
@@ -66,7 +66,7 @@ impl MeshFile {
         if self.triangles() != other.triangles() {
             return differ(0, [0; 2], "the triangles are not the same".into());
         }
-        let encoded = [self, other].map(|file| file.encoded().map(Encoded::bytes));
+        let encoded = [self, other].map(|file| file.encoded_points().map(EncodedArrays::bytes));
         if let [Some(mine), Some(theirs)] = encoded {
             let ranges = [0, 1].map(|side| {
                 let (file, bytes) = ([self, other][side], [mine, theirs][side]);
@@ -107,9 +107,9 @@ impl MeshFile {
 
     /// Returns the vertex whose coordinates stand last before a place in the bytes that hold them.
     fn vertex_before(&self, at: usize) -> u32 {
-        let owners = self.owners();
+        let owners = self.offset_vertices();
         let count = owners.map_or(self.points().len(), <[u32]>::len);
-        let x_at = self.x_at();
+        let x_at = self.x_offsets();
         let before = (0..count).filter(|&index| x_at.at(index) <= at);
         let index = before.max_by_key(|&index| x_at.at(index)).unwrap_or(0);
         owners.map_or(index as u32, |owners| owners[index])
@@ -117,21 +117,22 @@ impl MeshFile {
 
     /// Returns the ranges of coordinates in the bytes that hold them, ascending.
     fn coordinates(&self) -> Vec<Range<usize>> {
-        let x_at = self.x_at();
+        let x_at = self.x_offsets();
         // There are as many coordinates as vertices, or as places where they are repeated.
-        let count = self.owners().map_or(self.points().len(), <[u32]>::len);
+        let count = self.offset_vertices().map_or(self.points().len(), <[u32]>::len);
         let mut ranges = Vec::with_capacity(2 * count);
         let places = (0..count).map(|index| x_at.at(index));
-        match self.numbers() {
-            Numbers::Text { .. } | Numbers::Fields { .. } => {
-                let (bytes, form) = (&self.parts()[self.part()].bytes, Form::from(self.numbers()));
+        match self.encoding() {
+            CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. } => {
+                let (bytes, form) =
+                    (&self.files()[self.file_index()].bytes, NumberEncoding::from(self.encoding()));
                 for x in places {
                     let (x_end, _) = form.extent(bytes, x);
                     let y = form.next(bytes, x_end);
                     ranges.extend([x..x_end, y..form.extent(bytes, y).0]);
                 }
             }
-            Numbers::Binary { precision, y_after, .. } => {
+            CoordinateEncoding::Binary { precision, y_after, .. } => {
                 let size = precision.bytes();
                 ranges.extend(
                     places.flat_map(|x| {
@@ -146,31 +147,36 @@ impl MeshFile {
 
     /// Whether places in one of the files are told by lines.
     fn is_text(&self, part: usize) -> bool {
-        match self.numbers() {
-            Numbers::Text { .. } | Numbers::Fields { .. } if part == self.part() => true,
-            Numbers::Binary { .. } if part == self.part() => false,
-            _ => memchr::memchr(0, &self.parts()[part].bytes).is_none(),
+        match self.encoding() {
+            CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. }
+                if part == self.file_index() =>
+            {
+                true
+            }
+            CoordinateEncoding::Binary { .. } if part == self.file_index() => false,
+            _ => memchr::memchr(0, &self.files()[part].bytes).is_none(),
         }
     }
 
     /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
     fn keeps_places(&self, part: usize, fields: &[PointField]) -> bool {
         let of = |field: &PointField| match field.stored()? {
-            Stored { home: Home::Encoded(array), part: own, .. } => {
-                Some(*own == part && array.keeps_places())
+            ArrayLocation { space: ByteSpace::Encoded(array), file_index: own, .. } => {
+                Some(*own == part && array.preserves_offsets())
             }
             _ => None,
         };
-        (part == self.part() && self.encoded().is_some_and(Encoded::keeps_places))
+        (part == self.file_index()
+            && self.encoded_points().is_some_and(EncodedArrays::preserves_offsets))
             || fields.iter().filter_map(of).any(|keeps| keeps)
     }
 
     /// The ranges of a file that may change where vertices move and these data change, ascending.
     fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
-        let bytes = &self.parts()[part].bytes;
-        let encoded = self.encoded().filter(|_| part == self.part());
+        let bytes = &self.files()[part].bytes;
+        let encoded = self.encoded_points().filter(|_| part == self.file_index());
         let mut ranges = match encoded {
-            None if part == self.part() => self.coordinates(),
+            None if part == self.file_index() => self.coordinates(),
             None => Vec::new(),
             Some(points) => points.ranges(),
         };
@@ -179,20 +185,23 @@ impl MeshFile {
             let named_at = self.source().companions.iter().flat_map(|own| &own.named_at);
             ranges.extend(named_at.cloned());
         }
-        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
-        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.home));
+        let own =
+            |field: &&PointField| field.stored().is_some_and(|stored| stored.file_index == part);
+        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.space));
         let arrays = homes().filter_map(|home| match home {
-            Home::Encoded(array) => Some(&**array),
+            ByteSpace::Encoded(array) => Some(&**array),
             _ => None,
         });
-        ranges.extend(arrays.clone().flat_map(Encoded::ranges));
+        ranges.extend(arrays.clone().flat_map(EncodedArrays::ranges));
         // What follows from the length of an array.
         let encoded = || encoded.into_iter().chain(arrays.clone());
-        let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
+        let first = encoded().flat_map(EncodedArrays::ranges).map(|range| range.end).min();
         if let (Some(first), Some(array)) = (first, encoded().next()) {
-            ranges.extend(array.followers(first));
+            ranges.extend(array.dependent_ranges(first));
         }
-        let in_file = |stored: &Stored| stored.part == part && matches!(stored.home, Home::File);
+        let in_file = |stored: &ArrayLocation| {
+            stored.file_index == part && matches!(stored.space, ByteSpace::File)
+        };
         merged(ranges, number_ranges(bytes, fields, in_file))
     }
 }
@@ -217,26 +226,29 @@ fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<us
     })
 }
 
-fn is_beside_points(stored: &Stored) -> bool {
-    matches!(stored.home, Home::Points)
+fn is_beside_points(stored: &ArrayLocation) -> bool {
+    matches!(stored.space, ByteSpace::Points)
 }
 
 /// Returns the ranges of the numbers of fields in the bytes that hold them.
 fn number_ranges(
     bytes: &[u8],
     fields: &[PointField],
-    in_these: impl Fn(&Stored) -> bool,
+    in_these: impl Fn(&ArrayLocation) -> bool,
 ) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     for field in fields {
-        let Some(stored @ Stored { places, form, .. }) = field.stored() else { continue };
+        let Some(stored @ ArrayLocation { offsets: places, encoding: form, .. }) = field.stored()
+        else {
+            continue;
+        };
         if !in_these(stored) {
             continue;
         }
         let range = |at: usize| at..form.extent(bytes, at).0;
         match places {
-            Places::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
-            Places::Regular { start, stride } => {
+            Offsets::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
+            Offsets::Regular { start, stride } => {
                 let count = field.numbers();
                 ranges.extend((0..count).map(|index| range(start + index * stride)));
             }

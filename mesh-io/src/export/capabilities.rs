@@ -1,9 +1,9 @@
 //! What each format holds, and what of a mesh is lost in it.
 
 use super::content::{Content, ContentGroup, Data};
+use super::group_numbers::{Tags, decides};
+use super::name_rules::Spelling;
 use super::sides;
-use super::spelling::Spelling;
-use super::tags::{Tags, decides};
 use crate::content::label::Label;
 use crate::precision::Precision;
 use crate::visit::items::Kind;

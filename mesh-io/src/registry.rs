@@ -1,19 +1,19 @@
 //! The table of formats: how each is recognized, and its reader.
 
-use crate::compress::packed;
+use crate::compress::file::inner_name;
 use crate::disk::source::file_name;
 use crate::format::Format;
 use crate::formats::vtk::{legacy, xml};
 use crate::formats::{
-    abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, mfem, mike,
+    abaqus, adcirc, cgns, exodus, freefem, fvcom, gmsh, hdf5_or_netcdf, jigsaw, med, mfem, mike,
     nastran, obj, off, ply, selafin, sms, stl, triangle, ugrid, xdmf,
 };
 use crate::formats::{medit, su2};
-use crate::visit::reader::{Reader, Walk};
+use crate::visit::reader::{FormatReader, ReaderFunctions};
 use std::path::Path;
 
-const fn reader<W: Walk>() -> Reader {
-    Reader::of::<W>()
+const fn reader<W: FormatReader>() -> ReaderFunctions {
+    ReaderFunctions::of::<W>()
 }
 
 /// A row of the table: formats that one reader reads, or a format that only messages name.
@@ -25,7 +25,7 @@ pub(crate) struct Family {
     /// their first rows of numbers.
     pub(crate) opens: &'static [&'static [u8]],
     /// The reader. `None` for formats that are not read.
-    pub(crate) reader: Option<Reader>,
+    pub(crate) reader: Option<ReaderFunctions>,
     /// What to do with a file of a format that is not read. If empty, the message lists the formats that are read.
     pub(crate) instead: &'static str,
 }
@@ -38,7 +38,7 @@ impl Family {
 
     /// Whether the path ends as files of this format do, compressed or not, in capital or small letters.
     pub(crate) fn has_ending_of(&self, path: &Path) -> bool {
-        let name = packed::inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
+        let name = inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
         self.endings.iter().any(|ending| name.ends_with(ending))
     }
 }
@@ -47,7 +47,7 @@ const fn family(
     name: &'static str,
     endings: &'static [&'static str],
     opens: &'static [&'static [u8]],
-    reader: Reader,
+    reader: ReaderFunctions,
 ) -> Family {
     Family { name, endings, opens, reader: Some(reader), instead: "" }
 }
@@ -193,7 +193,7 @@ families! {
         "HDF5 or netCDF",
         &[".h5", ".hdf5", ".nc", ".nc4"],
         &[b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05"],
-        reader::<container::Container>(),
+        reader::<hdf5_or_netcdf::Container>(),
     );
     EXODUS [Exodus] = family(
         "Exodus II",

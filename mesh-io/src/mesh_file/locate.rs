@@ -2,7 +2,7 @@
 
 use crate::error::Location;
 use crate::mesh_file::mesh::MeshFile;
-use crate::visit::locate::{Found, List, locate};
+use crate::visit::locate::{ItemLocation, List, locate};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
@@ -74,11 +74,11 @@ impl MeshFile {
     fn places<'a>(
         &'a self,
         wanted: &'a [usize],
-        found: Vec<Found>,
+        found: Vec<ItemLocation>,
     ) -> impl Iterator<Item = (usize, Place)> + 'a {
         let source = self.source();
-        wanted.iter().zip(found).map(move |(&index, Found { location, label, part })| {
-            let path = source.parts().nth(part).unwrap_or(source).path.clone();
+        wanted.iter().zip(found).map(move |(&index, ItemLocation { location, label, part })| {
+            let path = source.files().nth(part).unwrap_or(source).path.clone();
             (index, Place { path, location, label })
         })
     }
@@ -97,10 +97,10 @@ mod tests {
     use crate::detect;
     use crate::disk::source::Source;
     use crate::error::ReadError;
-    use crate::visit::assemble;
-    use crate::visit::reader::Reader;
-    use crate::visit::sink::Sink;
-    use crate::visit::storage::Layout;
+    use crate::visit::mesh_builder;
+    use crate::visit::reader::ReaderFunctions;
+    use crate::visit::storage::CoordinateStorage;
+    use crate::visit::visitor::MeshVisitor;
     use std::panic::AssertUnwindSafe;
     use std::path::Path;
     use std::sync::atomic::{AtomicBool, Ordering};
@@ -109,8 +109,8 @@ mod tests {
     /// even so.
     #[test]
     fn items_that_a_second_walk_does_not_find_have_a_place_without_a_line() {
-        static READER: Reader = Reader {
-            walk: |source, _| Err(source.error("no second walk", "")),
+        static READER: ReaderFunctions = ReaderFunctions {
+            visit: |source, _| Err(source.error("no second walk", "")),
             load_companions: Ok,
             require_single: |_| Ok(()),
             destinations: |_, path| Ok(vec![path.to_owned()]),
@@ -120,7 +120,7 @@ mod tests {
         let text = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
         let source = Source::new(Path::new("a.off"), text.to_vec()).unwrap();
         let reader = detect::reader(&source).unwrap();
-        let parsed = assemble::parse(reader, &source).unwrap();
+        let parsed = mesh_builder::parse(reader, &source).unwrap();
         let file = MeshFile::new(parsed, &READER, source).unwrap();
         assert_eq!(file.vertex_place(2).to_string(), "a.off");
         assert_eq!(file.vertex_places([0, 2, 3]).into_keys().collect::<Vec<_>>(), [0, 2]);
@@ -134,14 +134,17 @@ mod tests {
     #[test]
     fn a_coordinate_beyond_single_precision_is_an_error_even_if_its_place_is_not_found() {
         static WALKED: AtomicBool = AtomicBool::new(false);
-        fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+        fn walk(
+            source: &Source,
+            visitor: &mut dyn MeshVisitor,
+        ) -> Result<CoordinateStorage, ReadError> {
             if WALKED.swap(true, Ordering::SeqCst) {
                 return Err(source.error("no second walk", ""));
             }
-            (detect::reader(source)?.walk)(source, sink)
+            (detect::reader(source)?.visit)(source, visitor)
         }
-        static READER: Reader = Reader {
-            walk,
+        static READER: ReaderFunctions = ReaderFunctions {
+            visit: walk,
             load_companions: Ok,
             require_single: |_| Ok(()),
             destinations: |_, path| Ok(vec![path.to_owned()]),
@@ -151,7 +154,7 @@ mod tests {
         let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
             element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1e39 0 0\n0 1 0\n3 0 1 2\n";
         let source = Source::new(Path::new("a.ply"), text.into()).unwrap();
-        let error = assemble::parse(&READER, &source).err().unwrap().to_string();
+        let error = mesh_builder::parse(&READER, &source).err().unwrap().to_string();
         assert!(error.starts_with("a.ply: a coordinate of vertex 1 is too large"), "{error}");
     }
 }

@@ -1,39 +1,45 @@
 //! Makes a mesh from a file's nodes and elements.
 
 use crate::content::constraints::{Constraints, PeriodicPairs};
+use crate::content::id_index::TagIndex;
 use crate::content::regions::{Numbering, Regions};
 use crate::content::remark::Remark;
-use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
-use crate::edit::numbers::{FoundPlaces, Places};
+use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::{Element, Kind, Pairs};
-use crate::visit::locate::{Found, List, locate};
-use crate::visit::parsed::Parsed;
-use crate::visit::reader::Reader;
+use crate::visit::items::{Element, Kind, PeriodicNodes};
+use crate::visit::locate::{ItemLocation, List, locate};
+use crate::visit::parsed_mesh::ParsedMesh;
+use crate::visit::reader::ReaderFunctions;
 use crate::visit::records::{NodeRecords, TriangleRecords};
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Copies, Layout};
+use crate::visit::storage::{CoordinateStorage, RepeatedVertices};
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashSet;
 
 /// Reads a mesh, long lists on all threads.
-pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
+pub(crate) fn parse(reader: &ReaderFunctions, source: &Source) -> Result<ParsedMesh, ReadError> {
     parse_by(reader, source, true)
 }
 
 /// Reads a mesh: long lists on all threads if `takes_ahead`, else all of it item by item.
 pub(crate) fn parse_by(
-    reader: &Reader,
+    reader: &ReaderFunctions,
     source: &Source,
     takes_ahead: bool,
-) -> Result<Parsed, ReadError> {
+) -> Result<ParsedMesh, ReadError> {
     let vertices_of = reader.vertices;
-    let mut assembler = Assembler { vertices_of, takes_ahead, ..Assembler::default() };
-    let Layout { format, numbers, encoded, copies, part } = (reader.walk)(source, &mut assembler)?;
+    let mut assembler = MeshBuilder { vertices_of, takes_ahead, ..MeshBuilder::default() };
+    let CoordinateStorage {
+        format,
+        encoding: numbers,
+        encoded,
+        repeated_vertices: copies,
+        file_index: part,
+    } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
-    let Assembler { mut points, triangles, x_at, regions, constraints, .. } = assembler;
-    let Assembler { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
+    let MeshBuilder { mut points, triangles, x_at, regions, constraints, .. } = assembler;
+    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
     if quadrilaterals > 0 {
         remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
     }
@@ -44,8 +50,9 @@ pub(crate) fn parse_by(
     for (vertex, point) in points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let Found { location, label, part } = locate(reader, source, List::Nodes, &[vertex])[0];
-            let source = source.parts().nth(part).unwrap_or(source);
+            let ItemLocation { location, label, part } =
+                locate(reader, source, List::Nodes, &[vertex])[0];
+            let source = source.files().nth(part).unwrap_or(source);
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
             return Err(source.error_at(location, problem, CORRECT));
@@ -54,16 +61,16 @@ pub(crate) fn parse_by(
     let regions = regions.finish();
     let (x_at, owners) = match copies {
         None => (x_at.finish(), None),
-        Some(Copies { x_at, vertices }) => (Places::List(x_at), Some(vertices)),
+        Some(RepeatedVertices { x_at, vertices }) => (Offsets::List(x_at), Some(vertices)),
     };
-    Ok(Parsed {
+    Ok(ParsedMesh {
         format,
         points,
         triangles,
         x_at,
         owners,
-        numbers,
-        part,
+        encoding: numbers,
+        file_index: part,
         encoded,
         regions,
         constraints,
@@ -75,12 +82,12 @@ pub(crate) fn parse_by(
 }
 
 #[derive(Default)]
-struct Assembler {
+struct MeshBuilder {
     /// Whether items that were read on all threads are taken.
     takes_ahead: bool,
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
-    x_at: FoundPlaces,
+    x_at: OffsetsBuilder,
     tags: TagIndex,
     region_names: Numbering<[i64; 2]>,
     regions: Regions,
@@ -100,7 +107,7 @@ struct Assembler {
     on_lower: usize,
 }
 
-impl Assembler {
+impl MeshBuilder {
     /// Returns the index of a node of an element, or an error that names the element.
     #[inline]
     fn index(
@@ -118,8 +125,8 @@ impl Assembler {
     }
 }
 
-impl Sink for Assembler {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for MeshBuilder {
+    fn allows_parallel(&self) -> bool {
         self.takes_ahead
     }
 
@@ -166,16 +173,16 @@ impl Sink for Assembler {
         Ok(())
     }
 
-    fn asks_for_pairs(&self) -> bool {
+    fn asks_for_periodic_pairs(&self) -> bool {
         true
     }
 
-    fn pairs(&mut self, pairs: Option<Vec<Pairs>>) {
+    fn periodic_pairs(&mut self, pairs: Option<Vec<PeriodicNodes>>) {
         let Constraints { anchored, periodic, motions, has_unread_pairs, .. } =
             &mut self.constraints;
         *has_unread_pairs |= pairs.is_none();
         let mut unlisted = 0;
-        for Pairs { motion, nodes } in pairs.into_iter().flatten() {
+        for PeriodicNodes { motion, nodes } in pairs.into_iter().flatten() {
             motions.extend(motion.filter(|_| nodes.is_empty()));
             let mut pairs = Vec::with_capacity(nodes.len());
             for [a, b] in nodes {

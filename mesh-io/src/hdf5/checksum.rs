@@ -1,7 +1,7 @@
 //! Checksums of metadata: Jenkins' lookup3.
 
 use super::bytes::{Bytes, Fault};
-use crate::edit::numbers::Splice;
+use crate::edit::numbers::ByteEdit;
 use std::ops::Range;
 
 /// A range of a file with a checksum, the four bytes after it.
@@ -32,20 +32,20 @@ impl Sum {
     pub(super) fn again<'s>(
         &self,
         file: &[u8],
-        splices: impl Iterator<Item = &'s Splice>,
-    ) -> Option<Splice> {
-        let own = |splice: &&Splice| {
-            splice.range.start >= self.range.start && splice.range.end <= self.range.end
+        edits: impl Iterator<Item = &'s ByteEdit>,
+    ) -> Option<ByteEdit> {
+        let own = |edit: &&ByteEdit| {
+            edit.range.start >= self.range.start && edit.range.end <= self.range.end
         };
         let mut bytes = file.get(self.range.clone())?.to_vec();
         let mut is_touched = false;
-        for splice in splices.filter(own) {
-            let at = splice.range.start - self.range.start;
-            bytes.get_mut(at..at + splice.bytes.len())?.copy_from_slice(&splice.bytes);
+        for edit in edits.filter(own) {
+            let at = edit.range.start - self.range.start;
+            bytes.get_mut(at..at + edit.bytes.len())?.copy_from_slice(&edit.bytes);
             is_touched = true;
         }
         let bytes = lookup3(&bytes).to_le_bytes().to_vec();
-        is_touched.then(|| Splice { range: self.place(), bytes })
+        is_touched.then(|| ByteEdit { range: self.place(), bytes })
     }
 }
 

@@ -1,12 +1,12 @@
 //! Groups of elements and single vertices that a user can name in a mesh file.
 
 use crate::content::group::Groups;
-use crate::content::tags::TagMap;
+use crate::content::id_index::TagMap;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
-use crate::visit::gather;
+use crate::visit::group_visitor;
 use std::path::Path;
 
 impl MeshFile {
@@ -38,7 +38,7 @@ impl MeshFile {
     /// [`ReadError`] if the names of groups, such as gmsh's `$Entities`, are damaged. Reading the mesh does not need
     /// them.
     pub fn groups(&self) -> Result<Groups, ReadError> {
-        let table = gather::groups(self.reader(), self.source())?;
+        let table = group_visitor::groups(self.reader(), self.source())?;
         Ok(table.finish(self.triangles(), self.points().len()))
     }
 
@@ -73,6 +73,6 @@ impl MeshFile {
     }
 
     fn vertex_labels(&self) -> Result<Vec<u64>, ReadError> {
-        gather::labels(self.reader(), self.source())
+        group_visitor::labels(self.reader(), self.source())
     }
 }

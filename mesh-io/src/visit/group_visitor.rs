@@ -1,36 +1,36 @@
 //! Walks again through a file for what the reading of the mesh leaves out: groups, and the labels of vertices.
 
+use crate::content::id_index::TagIndex;
 use crate::content::label::Label;
 use crate::content::regions::Numbering;
-use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::group_table::GroupTable;
-use crate::visit::items::{Column, Element, Kind, Within};
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::items::{Element, GroupScope, Kind, RegionAttribute};
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 
 /// Gathers the groups of a file.
-pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {
-    let mut gatherer = Gatherer::default();
-    (reader.walk)(source, &mut gatherer)?;
+pub(crate) fn groups(reader: &ReaderFunctions, source: &Source) -> Result<GroupTable, ReadError> {
+    let mut gatherer = GroupVisitor::default();
+    (reader.visit)(source, &mut gatherer)?;
     Ok(gatherer.table)
 }
 
 /// Returns the file's number or tag of each vertex.
-pub(crate) fn labels(reader: &Reader, source: &Source) -> Result<Vec<u64>, ReadError> {
-    let mut labels = Labels::default();
-    (reader.walk)(source, &mut labels)?;
+pub(crate) fn labels(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u64>, ReadError> {
+    let mut labels = VertexIdVisitor::default();
+    (reader.visit)(source, &mut labels)?;
     Ok(labels.tags)
 }
 
 #[derive(Default)]
-struct Gatherer {
+struct GroupVisitor {
     table: GroupTable,
     tags: TagIndex,
     triangles: u32,
-    columns: Vec<Column>,
+    columns: Vec<RegionAttribute>,
     /// For each column, the numbers that were met, by dimension.
     met: Vec<Numbering<(u8, i64)>>,
     /// For each column, the group of each number that was met, if it has one.
@@ -43,7 +43,7 @@ struct Gatherer {
     of_element: Vec<usize>,
 }
 
-impl Gatherer {
+impl GroupVisitor {
     /// Finds the groups of an element and puts them into `of_element`.
     fn find(&mut self, dimension: u8, region: [i64; 2]) {
         let Self { table, columns, met, groups, within, within_groups, of_element, .. } = self;
@@ -74,8 +74,8 @@ impl Gatherer {
     }
 }
 
-impl Sink for Gatherer {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for GroupVisitor {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
@@ -105,36 +105,36 @@ impl Sink for Gatherer {
         true
     }
 
-    fn columns(&mut self, columns: Vec<Column>) {
+    fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
         self.met = columns.iter().map(|_| Numbering::default()).collect();
         self.groups = columns.iter().map(|_| Vec::new()).collect();
         self.columns = columns;
     }
 
-    fn within(&mut self, groups: &[Within<'_>]) {
+    fn group_scopes(&mut self, groups: &[GroupScope<'_>]) {
         let owned =
-            |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+            |group: &GroupScope<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
         self.within = groups.iter().map(owned).collect();
         self.within_groups = [None, None, None];
     }
 
-    fn node_within(&mut self, node: u32, what: &str, label: &Label) {
+    fn node_group(&mut self, node: u32, what: &str, label: &Label) {
         let group = self.table.number(what, 0, label);
         self.table.add_vertex(group, node);
     }
 
-    fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+    fn group_name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         self.table.name(what, dimension, tag, name);
     }
 }
 
 #[derive(Default)]
-struct Labels {
+struct VertexIdVisitor {
     tags: Vec<u64>,
 }
 
-impl Sink for Labels {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for VertexIdVisitor {
+    fn allows_parallel(&self) -> bool {
         true
     }
 

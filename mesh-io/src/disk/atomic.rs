@@ -1,8 +1,8 @@
 //! Replaces files as a whole: whatever happens, the old content is there or the new one, and several files are
 //! replaced together or not at all.
 
+use crate::disk::file_system::{Disk, NewFile, System};
 use crate::disk::paths::{directory_of, resolve};
-use crate::disk::system::{Disk, NewFile, System};
 use crate::error::WriteError;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};

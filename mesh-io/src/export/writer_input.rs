@@ -1,8 +1,8 @@
 //! The mesh that a writer is given.
 
+use super::capabilities::Holds;
 use super::content::{Content, ContentGroup, Data};
-use super::holds::Holds;
-use super::tags::Tags;
+use super::group_numbers::Tags;
 use crate::content::label::Label;
 use crate::visit::items::Kind;
 

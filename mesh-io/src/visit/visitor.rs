@@ -4,17 +4,19 @@ use crate::content::label::Label;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Centers, Column, Element, Kind, Pairs, PointNumbers, Within};
+use crate::visit::items::{
+    Centers, Element, GroupScope, Kind, PeriodicNodes, PointNumbers, RegionAttribute,
+};
 use crate::visit::records::{NodeRecords, TriangleRecords};
 
 /// Takes the items of a file: first all nodes, then all elements, each in the order of the file.
-pub(crate) trait Sink {
-    /// Whether the sink uses the cursor only for errors. Then items that were read in parallel may come with another
-    /// cursor, and a call that returns an error must leave the sink unchanged.
-    fn takes_ahead(&self) -> bool {
+pub(crate) trait MeshVisitor {
+    /// Whether the visitor uses the cursor only for errors. Then items that were read in parallel may come with another
+    /// cursor, and a call that returns an error must leave the visitor unchanged.
+    fn allows_parallel(&self) -> bool {
         false
     }
-    /// Whether the sink takes nodes. If not, readers may leave out calls of [`node`](Self::node).
+    /// Whether the visitor takes nodes. If not, readers may leave out calls of [`node`](Self::node).
     fn asks_for_nodes(&self) -> bool {
         true
     }
@@ -69,68 +71,68 @@ pub(crate) trait Sink {
             self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
         })
     }
-    /// Whether the sink asks for periodic pairs of vertices. If not, readers may leave out calls of
+    /// Whether the visitor asks for periodic pairs of vertices. If not, readers may leave out calls of
     /// [`pairs`](Self::pairs).
-    fn asks_for_pairs(&self) -> bool {
+    fn asks_for_periodic_pairs(&self) -> bool {
         false
     }
     /// Takes the periodic pairs of the file; `None` if they could not be read.
-    fn pairs(&mut self, _pairs: Option<Vec<Pairs>>) {}
+    fn periodic_pairs(&mut self, _pairs: Option<Vec<PeriodicNodes>>) {}
     /// Takes a remark for the user.
     fn remark(&mut self, _remark: Remark) {}
 
-    /// Whether the sink asks for groups. If not, readers may leave out the calls on groups below.
+    /// Whether the visitor asks for groups. If not, readers may leave out the calls on groups below.
     fn asks_for_groups(&self) -> bool {
         false
     }
     /// Takes the meaning of the numbers in [`Element::region`], before the first element.
-    fn columns(&mut self, _columns: Vec<Column>) {}
+    fn region_attributes(&mut self, _columns: Vec<RegionAttribute>) {}
     /// Takes the groups that the elements after this call belong to besides those of their regions, until the next
     /// call.
-    fn within(&mut self, _groups: &[Within<'_>]) {}
+    fn group_scopes(&mut self, _groups: &[GroupScope<'_>]) {}
     /// Takes the label of a group that a node belongs to. `node` is the index of the node in the order of the file.
-    fn node_within(&mut self, _node: u32, _what: &str, _label: &Label) {}
+    fn node_group(&mut self, _node: u32, _what: &str, _label: &Label) {}
     /// Takes the name of the groups with a tag, in one dimension or (for `None`) in all.
-    fn name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
+    fn group_name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 
-    /// Whether the sink asks for data that a plain reading may leave out: third coordinates that are all the same, and
+    /// Whether the visitor asks for data that a plain reading may leave out: third coordinates that are all the same, and
     /// lists after the elements.
     fn asks_for_data(&self) -> bool {
         false
     }
     /// Takes the name of an array of point data, its numbers per point, and whether these are real, not whole. Third
-    /// coordinates are such an array too. Returns whether the sink wants the numbers.
+    /// coordinates are such an array too. Returns whether the visitor wants the numbers.
     fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
-    /// Takes notice that nodes have parameters on a surface of the model. Returns whether the sink wants them, two
+    /// Takes notice that nodes have parameters on a surface of the model. Returns whether the visitor wants them, two
     /// numbers for each node.
     fn parameters(&mut self, _surface: i64) -> bool {
         false
     }
-    /// Takes the parameters that were announced last, if the sink wants them.
+    /// Takes the parameters that were announced last, if the visitor wants them.
     fn parameter_numbers(&mut self, _numbers: PointNumbers) {}
     /// Takes the name of an array that has a coordinate of the center of each of some elements: x for the axis 0, y for 1.
-    /// Returns whether the sink wants the numbers.
+    /// Returns whether the visitor wants the numbers.
     fn center_array(&mut self, _name: &[u8], _axis: usize) -> bool {
         false
     }
-    /// Takes the centers that were announced last, if the sink wants them.
+    /// Takes the centers that were announced last, if the visitor wants them.
     fn center_numbers(&mut self, _centers: Centers) {}
-    /// Announces third coordinates or depths as an array of point data. Returns whether the sink wants the numbers.
-    fn height_array(&mut self, name: &[u8]) -> bool {
+    /// Announces third coordinates or depths as an array of point data. Returns whether the visitor wants the numbers.
+    fn z_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true)
     }
     /// Takes the name of an array of cell data, with the same arguments and result as
-    /// [`point_array`](Self::point_array). Called only if the sink asks for data.
+    /// [`point_array`](Self::point_array). Called only if the visitor asks for data.
     fn cell_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
-    /// Takes the numbers of the cell data that were announced last, if the sink wants them. `tags` are those of the
+    /// Takes the numbers of the cell data that were announced last, if the visitor wants them. `tags` are those of the
     /// elements that the numbers belong to; `None` if they belong to all.
     fn cell_numbers(&mut self, _numbers: Vec<f64>, _tags: Option<Vec<u64>>) {}
     /// Takes a few words on a part of the file that is not handed on. Sinks that do not ask for data ignore it.
-    fn leaves_out(&mut self, _what: &str) {}
-    /// Takes the numbers of the point data that were announced last, if the sink wants them.
+    fn unsupported(&mut self, _what: &str) {}
+    /// Takes the numbers of the point data that were announced last, if the visitor wants them.
     fn point_numbers(&mut self, _numbers: PointNumbers) {}
 }
