@@ -7,7 +7,7 @@ use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
-use crate::registry::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE, XDMF};
+use crate::registry::{ADCIRC, FREEFEM, FormatEntry, MIKE, NASTRAN, REGISTRY, STL, TRIANGLE, XDMF};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
@@ -21,11 +21,11 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
         return Err(source.error("the file is empty", "Write the mesh again"));
     }
     // The title of such a grid may start with anything.
-    if ADCIRC.has_ending_of(&source.path) {
+    if ADCIRC.matches_extension(&source.path) {
         return of(source, &ADCIRC);
     }
-    let promised = |family: &&&Family| family.has_ending_of(&source.path);
-    let by_content = || by_first_words(&source.bytes);
+    let promised = |family: &&&FormatEntry| family.matches_extension(&source.path);
+    let by_content = || detect_by_magic(&source.bytes);
     let known = by_content().find(promised).or_else(|| by_content().next());
     // Nastran's may start with anything, such as a title.
     if known.is_none_or(|family| !family.is_read()) && nastran::opens(source) {
@@ -39,24 +39,24 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     if mike::opens(&first, &second) {
         return of(source, &MIKE);
     }
-    if TRIANGLE.has_ending_of(&source.path) {
+    if TRIANGLE.matches_extension(&source.path) {
         return of(source, &TRIANGLE);
     }
     // Formats without first words are told by their ending if it is theirs alone. An STL in text must start with its
     // first word.
     let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
-    let by_ending = |family: &&&Family| {
+    let by_ending = |family: &&&FormatEntry| {
         let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
-        promised(family) && family.endings != FREEFEM.endings && !is_told_otherwise
+        promised(family) && family.extensions != FREEFEM.extensions && !is_told_otherwise
     };
-    match FAMILIES.iter().filter(|family| family.reader.is_some()).find(by_ending) {
+    match REGISTRY.iter().filter(|family| family.reader.is_some()).find(by_ending) {
         Some(family) => of(source, family),
-        None => by_rows(source),
+        None => detect_by_rows(source),
     }
 }
 
 /// Tells apart formats of plain rows of numbers, by how many numbers the first rows have.
-fn by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
+fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
         |row: &[&[u8]]| row.iter().map(|token| integer(token)).collect::<Option<Vec<_>>>();
@@ -96,7 +96,8 @@ fn by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
         return of(source, &ADCIRC);
     }
     // Formats that are not read may start with anything.
-    match FAMILIES.iter().find(|family| !family.is_read() && family.has_ending_of(&source.path)) {
+    match REGISTRY.iter().find(|family| !family.is_read() && family.matches_extension(&source.path))
+    {
         Some(family) => of(source, family),
         None => {
             let remedy = format!("{}. Convert it, with meshio or gmsh for example", formats_read());
@@ -106,26 +107,26 @@ fn by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
 }
 
 /// Returns the name of the format whose files end as this path does, whether it is read or not.
-pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
-    let family = FAMILIES.iter().find(|family| family.has_ending_of(path));
+pub(crate) fn format_name_of_extension(path: &Path) -> Option<&'static str> {
+    let family = REGISTRY.iter().find(|family| family.matches_extension(path));
     family.map(|family| family.name)
 }
 
 impl Format {
     /// Returns the endings of the names of files in this format, the usual one first. Some endings are whole names, such as `fort.14`.
     pub fn endings(self) -> &'static [&'static str] {
-        Family::of(self).endings
+        FormatEntry::of(self).extensions
     }
 
     /// Returns a name of the formats that are read alike: `gmsh` for all of its versions, as text and in binary.
     pub fn family(self) -> &'static str {
-        Family::of(self).name
+        FormatEntry::of(self).name
     }
 
     /// Returns the name of a format whose files end as `path` does, compressed or not, in capital or small letters. The format
     /// need not be one that is read. `None` if the ending is that of no mesh.
     pub fn name_of_ending(path: &Path) -> Option<&'static str> {
-        owner_of_ending(path)
+        format_name_of_extension(path)
     }
 
     /// Lists the files of the mesh that has a file of this name, as far as names tell: `.node`, `.ele` and `.poly` of Triangle,
@@ -134,7 +135,7 @@ impl Format {
         if let Some(Names { node, ele, poly }) = Names::of_file(path) {
             return vec![node, ele, poly];
         }
-        match XDMF.has_ending_of(path) {
+        match XDMF.matches_extension(path) {
             true => vec![path.to_owned(), path.with_extension("h5")],
             false => vec![path.to_owned()],
         }
@@ -143,25 +144,28 @@ impl Format {
     /// Returns the name of a format whose files begin with the first words or bytes of `head`, which may be the beginning of a
     /// file. The format need not be one that is read. `None` also for formats that only begin with numbers, such as Triangle.
     pub fn name_of_content(head: &[u8]) -> Option<&'static str> {
-        by_first_words(head).next().map(|family| family.name)
+        detect_by_magic(head).next().map(|family| family.name)
     }
 }
 
 /// Finds the formats whose files begin with the first words of some bytes.
-fn by_first_words(bytes: &[u8]) -> impl Iterator<Item = &'static &'static Family> {
+fn detect_by_magic(bytes: &[u8]) -> impl Iterator<Item = &'static &'static FormatEntry> {
     let head = head(bytes, b"%");
     // Comment lines that start with `#` may come before the format's first words, but `# vtk` is itself the first line
     // of VTK.
     let heads = [head, bytes, self::head(head, b"%#"), after_prolog(head)];
     let opens = move |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
-    FAMILIES.iter().filter(move |family| family.opens.iter().any(opens))
+    REGISTRY.iter().filter(move |family| family.magic.iter().any(opens))
 }
 
-fn of(source: &Source, family: &'static Family) -> Result<&'static ReaderFunctions, ReadError> {
+fn of(
+    source: &Source,
+    family: &'static FormatEntry,
+) -> Result<&'static ReaderFunctions, ReadError> {
     match &family.reader {
         Some(reader) => Ok(reader),
         None => {
-            let remedy = match family.instead {
+            let remedy = match family.hint {
                 "" => formats_read(),
                 instead => instead.to_owned(),
             };
@@ -171,7 +175,7 @@ fn of(source: &Source, family: &'static Family) -> Result<&'static ReaderFunctio
 }
 
 fn formats_read() -> String {
-    let read = FAMILIES.iter().filter(|family| family.is_read());
+    let read = REGISTRY.iter().filter(|family| family.is_read());
     let names: Vec<_> = read.map(|family| family.name).collect();
     format!("Formats read: {}", names.join(", "))
 }
@@ -225,8 +229,9 @@ mod tests {
         };
         match reader(&source) {
             Ok(reader) => {
-                let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
-                FAMILIES.iter().find(of).unwrap().name.into()
+                let of =
+                    |f: &&&FormatEntry| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
+                REGISTRY.iter().find(of).unwrap().name.into()
             }
             Err(ReadError::Format { problem, .. }) => problem,
             Err(error) => error.to_string(),
@@ -293,7 +298,7 @@ mod tests {
 
     #[test]
     fn a_file_ending_belongs_to_one_format() {
-        let owner = |name: &str| owner_of_ending(Path::new(name));
+        let owner = |name: &str| format_name_of_extension(Path::new(name));
         assert_eq!(owner("a/B.VTK"), Some("legacy VTK"));
         assert_eq!(owner("la.1.ele"), Some("Triangle .node/.ele"));
         assert_eq!(owner("fort.14"), Some("ADCIRC or SCHISM grid"));

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::collections::HashMap;
 
 /// A map from tags to indices.
-pub(crate) enum TagMap {
+pub(crate) enum IdIndex {
     /// Consecutive tags, which most files have.
     Run { first: u64, count: u64 },
     /// Tags with few gaps: the index for each tag from `first` on, and [`ABSENT`] in the gaps.
@@ -16,15 +16,15 @@ pub(crate) enum TagMap {
 /// Marks a tag without a vertex. All indices are smaller, as there are at most `u32::MAX` vertices.
 const ABSENT: u32 = u32::MAX;
 
-impl TagMap {
+impl IdIndex {
     /// Maps each tag to its position. There may be at most `u32::MAX` tags. The error is the position of the first tag
     /// that repeats an earlier one.
-    pub(crate) fn new(tags: &[u64]) -> Result<TagMap, usize> {
+    pub(crate) fn new(tags: &[u64]) -> Result<IdIndex, usize> {
         let first = tags.iter().copied().min().unwrap_or(0);
         let last = tags.iter().copied().max().unwrap_or(0);
         let count = tags.len() as u64;
         if tags.iter().enumerate().all(|(position, &tag)| tag - first == position as u64) {
-            return Ok(TagMap::Run { first, count });
+            return Ok(IdIndex::Run { first, count });
         }
         // The table is at most four times as long as the list of tags, whatever their values.
         if last - first < 4 * count {
@@ -36,7 +36,7 @@ impl TagMap {
                 }
                 *index = position as u32;
             }
-            return Ok(TagMap::Dense { first, indices });
+            return Ok(IdIndex::Dense { first, indices });
         }
         let mut map = HashMap::with_capacity(tags.len());
         for (position, &tag) in tags.iter().enumerate() {
@@ -44,27 +44,27 @@ impl TagMap {
                 return Err(position);
             }
         }
-        Ok(TagMap::Sparse(map))
+        Ok(IdIndex::Sparse(map))
     }
 
     #[inline]
     pub(crate) fn index(&self, tag: u64) -> Option<u32> {
         match self {
-            TagMap::Run { first, count } => {
+            IdIndex::Run { first, count } => {
                 tag.checked_sub(*first).filter(|index| index < count).map(|index| index as u32)
             }
-            TagMap::Dense { first, indices } => {
+            IdIndex::Dense { first, indices } => {
                 let slot = usize::try_from(tag.checked_sub(*first)?).ok()?;
                 indices.get(slot).copied().filter(|&index| index != ABSENT)
             }
-            TagMap::Sparse(map) => map.get(&tag).copied(),
+            IdIndex::Sparse(map) => map.get(&tag).copied(),
         }
     }
 }
 
 /// Collects tags as they are found. It needs memory only if they are not consecutive.
 #[derive(Default)]
-pub(crate) struct FoundTags {
+pub(crate) struct IdList {
     first: u64,
     count: u64,
     /// All tags, if they are not consecutive.
@@ -73,7 +73,7 @@ pub(crate) struct FoundTags {
     expected: usize,
 }
 
-impl FoundTags {
+impl IdList {
     pub(crate) fn expect(&mut self, more: usize) {
         self.expected = self.count as usize + more;
     }
@@ -112,24 +112,24 @@ impl FoundTags {
     }
 
     /// Maps the tags to their positions, as [`TagMap::new`] does.
-    pub(crate) fn map(&self) -> Result<TagMap, usize> {
+    pub(crate) fn map(&self) -> Result<IdIndex, usize> {
         match self.list.is_empty() {
-            true => Ok(TagMap::Run { first: self.first, count: self.count }),
-            false => TagMap::new(&self.list),
+            true => Ok(IdIndex::Run { first: self.first, count: self.count }),
+            false => IdIndex::new(&self.list),
         }
     }
 }
 
 /// The tags of nodes in the order of the file, and the index of a node by its tag.
 #[derive(Default)]
-pub(crate) struct TagIndex {
-    found: FoundTags,
-    map: OnceCell<TagMap>,
+pub(crate) struct IdIndexBuilder {
+    found: IdList,
+    map: OnceCell<IdIndex>,
 }
 
-impl TagIndex {
+impl IdIndexBuilder {
     /// Returns the list of tags, to which more can be added until [`index`](Self::index) is called.
-    pub(crate) fn found(&mut self) -> &mut FoundTags {
+    pub(crate) fn ids(&mut self) -> &mut IdList {
         &mut self.found
     }
 
@@ -145,14 +145,14 @@ impl TagIndex {
 
     /// Makes the map after all tags are found, and drops the list. The error is the tag that is repeated first, with the
     /// position of its second node.
-    pub(crate) fn finish(&mut self) -> Result<&TagMap, (u64, usize)> {
+    pub(crate) fn finish(&mut self) -> Result<&IdIndex, (u64, usize)> {
         let map = self.found.map().map_err(|second| (self.found.of(second), second))?;
         self.found.list = Vec::new();
         Ok(self.map.get_or_init(|| map))
     }
 
     /// Returns the map; `None` before [`finish`](Self::finish).
-    pub(crate) fn map(&self) -> Option<&TagMap> {
+    pub(crate) fn map(&self) -> Option<&IdIndex> {
         self.map.get()
     }
 
@@ -167,8 +167,8 @@ impl TagIndex {
     }
 
     #[cold]
-    fn map_now(&self) -> &TagMap {
-        let none = TagMap::Run { first: 0, count: 0 };
+    fn map_now(&self) -> &IdIndex {
+        let none = IdIndex::Run { first: 0, count: 0 };
         self.map.get_or_init(|| self.found.map().unwrap_or(none))
     }
 }
@@ -188,7 +188,7 @@ mod tests {
             &[u64::MAX - 1, u64::MAX],
         ];
         for tags in kinds {
-            let map = TagMap::new(tags).unwrap();
+            let map = IdIndex::new(tags).unwrap();
             for (position, &tag) in tags.iter().enumerate() {
                 assert_eq!(map.index(tag), Some(position as u32), "{tags:?}");
             }
@@ -209,7 +209,7 @@ mod tests {
             (&[(5, 1), (5, 1)], false),
         ];
         for (runs, is_run) in cases {
-            let mut found = FoundTags::default();
+            let mut found = IdList::default();
             runs.iter().for_each(|&(first, count)| found.extend(first, count));
             let expected: Vec<u64> = runs
                 .iter()
@@ -218,9 +218,9 @@ mod tests {
             let all: Vec<u64> = (0..expected.len()).map(|position| found.of(position)).collect();
             assert_eq!(all, expected, "{runs:?}");
             assert_eq!(found.list.is_empty(), is_run, "{runs:?}");
-            match (found.map(), TagMap::new(&expected)) {
+            match (found.map(), IdIndex::new(&expected)) {
                 (Ok(map), Ok(other)) => {
-                    let of = |map: &TagMap| [0, 5, 6, 7, 12, u64::MAX].map(|tag| map.index(tag));
+                    let of = |map: &IdIndex| [0, 5, 6, 7, 12, u64::MAX].map(|tag| map.index(tag));
                     assert_eq!(of(&map), of(&other), "{runs:?}");
                 }
                 (found, expected) => assert_eq!(found.err(), expected.err(), "{runs:?}"),
@@ -230,8 +230,8 @@ mod tests {
 
     #[test]
     fn a_repeated_tag_is_refused_by_its_second_position() {
-        assert_eq!(TagMap::new(&[5, 5]).err(), Some(1));
-        assert_eq!(TagMap::new(&[3, 1, 2, 1]).err(), Some(3));
-        assert_eq!(TagMap::new(&[1, 1 << 50, 1 << 50]).err(), Some(2));
+        assert_eq!(IdIndex::new(&[5, 5]).err(), Some(1));
+        assert_eq!(IdIndex::new(&[3, 1, 2, 1]).err(), Some(3));
+        assert_eq!(IdIndex::new(&[1, 1 << 50, 1 << 50]).err(), Some(2));
     }
 }

@@ -1,19 +1,19 @@
 //! Writes a mesh in another format than it was read in.
 
 use super::names;
-use super::targets::{TARGETS, Target, Write};
+use super::targets::{TARGETS, Target, WriteFunction};
 use crate::compress::file::Compression;
 use crate::detect;
 use crate::disk::atomic;
-use crate::disk::atomic::Job as Replacement;
+use crate::disk::atomic::FileWrite as Replacement;
 use crate::error::{ReadError, WriteError};
 use crate::export::content::Content;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::triangle::names::Names;
 use crate::formats::write_grids;
 use crate::mesh_file::mesh::MeshFile;
-use crate::registry::Family;
+use crate::registry::FormatEntry;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -48,7 +48,7 @@ impl Conversion {
     /// Returns the format of [`targets`](Self::targets) whose files end as this path does. An ending of compressed
     /// files is ignored. `None` if no format ends so.
     pub fn target_of(path: &Path) -> Option<Format> {
-        let ends_so = |target: &&Target| Family::of(target.format).has_ending_of(path);
+        let ends_so = |target: &&Target| FormatEntry::of(target.format).matches_extension(path);
         TARGETS.iter().find(ends_so).map(|target| target.format)
     }
 
@@ -63,8 +63,8 @@ impl Conversion {
         };
         let mut content = file.content()?;
         write_grids::match_depths(&mut content, file.format(), to);
-        let lost = target.holds.lost(&content);
-        let renamed = names::fit(&target.holds, &mut content);
+        let lost = target.capabilities.losses(&content);
+        let renamed = names::fit(&target.capabilities, &mut content);
         let creator = "mesh-io".to_owned();
         Ok(Some(Conversion { content, target, lost, renamed, creator }))
     }
@@ -91,8 +91,8 @@ impl Conversion {
     /// which is listed all the same.
     pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
         match self.target.write {
-            Write::One(_) | Write::Binary(_) => vec![path.to_owned()],
-            Write::Several(_) => {
+            WriteFunction::One(_) | WriteFunction::Binary(_) => vec![path.to_owned()],
+            WriteFunction::Several(_) => {
                 let Names { node, ele, poly } = Names::of(path);
                 vec![node, ele, poly]
             }
@@ -112,13 +112,13 @@ impl Conversion {
             let (path, remedy) = (path.to_owned(), remedy.to_owned());
             Err(WriteError::Format { path, problem, remedy })
         };
-        let family = Family::of(self.target.format);
-        if let Some(owner) = detect::owner_of_ending(path)
-            && !family.has_ending_of(path)
+        let family = FormatEntry::of(self.target.format);
+        if let Some(owner) = detect::format_name_of_extension(path)
+            && !family.matches_extension(path)
         {
             let problem =
                 format!("its ending is that of {owner}, and not of {}", self.target.format);
-            return refused(problem, &format!("End the name in {}", family.endings[0]));
+            return refused(problem, &format!("End the name in {}", family.extensions[0]));
         }
         if packs.is_some() && destinations.len() > 1 {
             let problem = "a Triangle mesh is of several files, which are not written compressed";
@@ -143,31 +143,31 @@ impl Conversion {
     /// several files.
     pub fn text(&self) -> Option<String> {
         match self.target.write {
-            Write::One(write) => Some(write(&self.job())),
-            Write::Binary(_) | Write::Several(_) => None,
+            WriteFunction::One(write) => Some(write(&self.job())),
+            WriteFunction::Binary(_) | WriteFunction::Several(_) => None,
         }
     }
 
     /// Returns the content of the file, text or binary. `None` for a Triangle mesh, which has several files.
     pub fn bytes(&self) -> Option<Vec<u8>> {
         match self.target.write {
-            Write::One(_) | Write::Binary(_) => self.contents().pop(),
-            Write::Several(_) => None,
+            WriteFunction::One(_) | WriteFunction::Binary(_) => self.contents().pop(),
+            WriteFunction::Several(_) => None,
         }
     }
 
     fn contents(&self) -> Vec<Vec<u8>> {
         match self.target.write {
-            Write::One(write) => vec![write(&self.job()).into_bytes()],
-            Write::Binary(write) => vec![write(&self.job())],
-            Write::Several(write) => {
+            WriteFunction::One(write) => vec![write(&self.job()).into_bytes()],
+            WriteFunction::Binary(write) => vec![write(&self.job())],
+            WriteFunction::Several(write) => {
                 write(&self.job()).into_iter().map(String::into_bytes).collect()
             }
         }
     }
 
-    fn job(&self) -> Job<'_> {
-        Job::new(&self.content, self.target.holds, &self.creator)
+    fn job(&self) -> WriterInput<'_> {
+        WriterInput::new(&self.content, self.target.capabilities, &self.creator)
     }
 }
 

@@ -6,7 +6,7 @@ use super::tables;
 use super::targets::TARGETS;
 use crate::compress::file::Compression;
 use crate::format::Format;
-use crate::registry::{FAMILIES, Family};
+use crate::registry::{FormatEntry, REGISTRY};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -289,7 +289,7 @@ fn formats() -> String {
     for Row { formats, layouts, fixed, region, named, limits } in ROWS {
         let names: Vec<String> = formats.iter().map(ToString::to_string).collect();
         let mut endings: Vec<String> = Vec::new();
-        for ending in formats.iter().flat_map(|&format| Family::of(format).endings) {
+        for ending in formats.iter().flat_map(|&format| FormatEntry::of(format).extensions) {
             let ending = format!("`{ending}`");
             if !endings.contains(&ending) {
                 endings.push(ending);
@@ -309,7 +309,7 @@ fn formats() -> String {
 
 /// Lists the formats that are recognized but not read.
 fn not_read() -> String {
-    let unread = FAMILIES.iter().filter(|family| !family.is_read());
+    let unread = REGISTRY.iter().filter(|family| !family.is_read());
     let names: Vec<&str> = unread.map(|family| family.name).collect();
     format!("**Not read,** but known by name: {}.\n", names.join(", "))
 }
@@ -368,13 +368,13 @@ fn part<'d>(document: &'d str, mark: &str, end: &str) -> &'d str {
 fn the_lists_of_formats_in_both_readme_files_have_every_format() {
     let readme = document("README.md");
     let of_library = document("mesh-io/README.md");
-    let families = || FAMILIES.iter().filter(|family| family.is_read());
+    let families = || REGISTRY.iter().filter(|family| family.is_read());
     for (name, list) in [
         ("the paragraph **Formats.** of README.md", part(&readme, "**Formats.**", "\n\n")),
         ("the table of mesh-io/README.md", part(&of_library, "## Formats", "\n\n[")),
     ] {
         for family in families().filter(|family| !HOLDS_OTHERS.contains(&family.name)) {
-            let ending = format!("`{}`", family.endings[0]);
+            let ending = format!("`{}`", family.extensions[0]);
             let has = list.contains(&ending) || list.contains(family.name);
             assert!(has, "{name} must name {} by its ending {ending}", family.name);
         }

@@ -11,7 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A file to be written: its path, and what writes its content.
-pub(crate) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
+pub(crate) type FileWrite<'a> =
+    (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
 
 /// Writes a file so that it has either its old content or all of the new one, whatever happens meanwhile.
 ///
@@ -30,7 +31,7 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 /// process is killed between, a file that was not there before is then not there yet, and of a mesh that is replaced by
 /// the same with other coordinates, every moment is the old or the new one. Where other files change as well, the first is
 /// out of its place until they have: no moment is a mixture.
-pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
+pub(crate) fn replace_all(jobs: &[FileWrite<'_>]) -> Result<(), WriteError> {
     replace_all_if(&System, jobs, &|| Ok(()))
 }
 
@@ -41,7 +42,7 @@ pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
 /// Those of [`replace_all`], and the error of `check`.
 pub(crate) fn replace_all_if(
     disk: &dyn Disk,
-    jobs: &[Job<'_>],
+    jobs: &[FileWrite<'_>],
     check: &dyn Fn() -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
     let staged = jobs.iter().map(|(path, content)| stage(disk, path, content));
@@ -309,7 +310,7 @@ impl Drop for Temporary<'_> {
 mod tests {
     use super::*;
 
-    fn job(path: PathBuf, text: &'static str) -> Job<'static> {
+    fn job(path: PathBuf, text: &'static str) -> FileWrite<'static> {
         (path, Box::new(move |out| out.write_all(text.as_bytes())))
     }
 
@@ -322,7 +323,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [a, b] = ["a", "b"].map(|name| directory.path().join(name));
         fs::write(&a, "old").unwrap();
-        let failing: Job<'_> = (
+        let failing: FileWrite<'_> = (
             b,
             Box::new(|out| {
                 out.write_all(b"half")?;

@@ -1,6 +1,6 @@
 //! Tests of writing on disks that fail: each request fails once, and each pair of requests.
 
-use crate::disk::atomic::{Job, replace_all_if};
+use crate::disk::atomic::{FileWrite, replace_all_if};
 use crate::disk::file_system::{Disk, NewFile, System};
 use std::fs::{self, Permissions};
 use std::io::{self, ErrorKind, Write};
@@ -114,7 +114,7 @@ fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
     for (path, _) in paths.iter().zip(old).filter(|(_, old)| *old) {
         fs::write(path, old_content(path)).unwrap();
     }
-    let job = |path: &Path| -> Job<'_> {
+    let job = |path: &Path| -> FileWrite<'_> {
         let text = content(path);
         (path.to_owned(), Box::new(move |out| out.write_all(text.as_bytes())))
     };

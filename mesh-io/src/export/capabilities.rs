@@ -1,8 +1,8 @@
 //! What each format holds, and what of a mesh is lost in it.
 
 use super::content::{Content, ContentGroup, Data};
-use super::group_numbers::{Tags, decides};
-use super::name_rules::Spelling;
+use super::group_numbers::{GroupNumbers, determines};
+use super::name_rules::NameRules;
 use super::sides;
 use crate::content::label::Label;
 use crate::precision::Precision;
@@ -10,37 +10,37 @@ use crate::visit::items::Kind;
 
 /// What a format can hold of a mesh.
 #[derive(Clone, Copy)]
-pub(crate) struct Holds {
-    pub(crate) points: Elements,
-    pub(crate) lines: Elements,
+pub(crate) struct Capabilities {
+    pub(crate) points: ElementSupport,
+    pub(crate) lines: ElementSupport,
     pub(crate) quadrilaterals: bool,
     pub(crate) polygons: bool,
-    pub(crate) heights: bool,
+    pub(crate) z: bool,
     /// Whether vertices keep their own numbers, whatever these are.
-    pub(crate) labels: bool,
+    pub(crate) keeps_vertex_ids: bool,
     /// Which groups an element can belong to.
-    pub(crate) groups: Groups,
+    pub(crate) groups: GroupSupport,
     /// Whether groups of points, lines and surfaces have names.
     pub(crate) names: [bool; 3],
     /// How names of groups and data are spelled.
-    pub(crate) spelling: Spelling,
+    pub(crate) name_rules: NameRules,
     /// A kind of groups whose names belong to the format itself, such as Medit's lists; empty if there is none.
-    pub(crate) own: &'static str,
+    pub(crate) builtin_group_kind: &'static str,
     /// Whether the numbers of groups may be negative.
-    pub(crate) negative: bool,
+    pub(crate) allows_negative_numbers: bool,
     /// Whether each vertex has the number of a group.
     pub(crate) vertex_groups: bool,
     /// Whether vertices are in sets with names instead.
     pub(crate) vertex_sets: bool,
     /// The precision of coordinates.
     pub(crate) precision: Precision,
-    pub(crate) point_data: Numbers,
-    pub(crate) cell_data: Numbers,
+    pub(crate) point_data: DataSupport,
+    pub(crate) cell_data: DataSupport,
 }
 
 /// Which elements of a dimension a format holds.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Elements {
+pub(crate) enum ElementSupport {
     None,
     All,
     /// Only elements that belong to a group.
@@ -49,7 +49,7 @@ pub(crate) enum Elements {
 
 /// Which groups of elements a format holds.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Groups {
+pub(crate) enum GroupSupport {
     None,
     /// One group for each element. All elements of a dimension have the same kind of group.
     One,
@@ -65,7 +65,7 @@ pub(crate) enum Groups {
 
 /// Which data a format holds.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Numbers {
+pub(crate) enum DataSupport {
     None,
     All,
     /// Data of one number.
@@ -76,44 +76,44 @@ pub(crate) enum Numbers {
     Only(&'static str),
 }
 
-impl Holds {
+impl Capabilities {
     /// A format that holds nothing but triangles.
-    pub(crate) const TRIANGLES: Holds = Holds {
-        points: Elements::None,
-        lines: Elements::None,
+    pub(crate) const TRIANGLES: Capabilities = Capabilities {
+        points: ElementSupport::None,
+        lines: ElementSupport::None,
         quadrilaterals: false,
         polygons: false,
-        heights: false,
-        labels: false,
-        groups: Groups::None,
+        z: false,
+        keeps_vertex_ids: false,
+        groups: GroupSupport::None,
         names: [false; 3],
-        spelling: Spelling::Any,
-        own: "",
-        negative: true,
+        name_rules: NameRules::Any,
+        builtin_group_kind: "",
+        allows_negative_numbers: true,
         vertex_groups: false,
         vertex_sets: false,
         precision: Precision::Double,
-        point_data: Numbers::None,
-        cell_data: Numbers::None,
+        point_data: DataSupport::None,
+        cell_data: DataSupport::None,
     };
 
     /// Lists what of a mesh is lost, one line each.
-    pub(crate) fn lost(&self, content: &Content) -> Vec<String> {
+    pub(crate) fn losses(&self, content: &Content) -> Vec<String> {
         let mut lost = Vec::new();
-        self.lost_elements(content, &mut lost);
-        if !self.heights && !content.heights.is_empty() {
+        self.element_losses(content, &mut lost);
+        if !self.z && !content.z_values.is_empty() {
             lost.push("third coordinates".into());
         }
-        let starts = content.first_label().is_some_and(|first| first <= 1);
-        let mut numbers = content.points.as_flattened().iter().chain(&content.heights);
+        let starts = content.first_vertex_id().is_some_and(|first| first <= 1);
+        let mut numbers = content.points.as_flattened().iter().chain(&content.z_values);
         if numbers.any(|&x| self.precision.rounded(x).to_bits() != x.to_bits()) {
             lost.push("digits of coordinates, of which 20 characters are written".into());
         }
-        if !self.labels && !starts {
+        if !self.keeps_vertex_ids && !starts {
             lost.push("the vertices' own numbers, which are not consecutive".into());
         }
-        self.lost_groups(content, &mut lost);
-        if self.groups == Groups::Blocks {
+        self.group_losses(content, &mut lost);
+        if self.groups == GroupSupport::Blocks {
             sides::lost_in_blocks(content, &mut lost);
         } else {
             let names: Vec<_> = content.vertex_groups.iter().map(|(group, _)| group).collect();
@@ -124,7 +124,7 @@ impl Holds {
             }
         }
         let is_negative = |group: &&ContentGroup| matches!(group.label, Label::Tag(..0));
-        if !self.negative && content.groups.iter().any(|group| is_negative(&group)) {
+        if !self.allows_negative_numbers && content.groups.iter().any(|group| is_negative(&group)) {
             let groups = listed(content.groups.iter().filter(is_negative));
             lost.push(format!("negative numbers of groups, which become others: {groups}"));
         }
@@ -132,18 +132,23 @@ impl Holds {
             let groups = content.vertex_groups.iter().map(|(group, _)| group);
             lost.push(format!("groups of vertices: {}", listed(groups)));
         }
-        self.point_data.lost("data of vertices", &content.point_data, &mut lost);
-        self.cell_data.lost("data of elements", &content.cell_data, &mut lost);
+        self.point_data.losses("data of vertices", &content.point_data, &mut lost);
+        self.cell_data.losses("data of elements", &content.cell_data, &mut lost);
         lost.extend(content.left_out.iter().cloned());
         lost
     }
 
     /// Whether the format holds a cell.
-    pub(crate) fn holds(&self, content: &Content, tags: &Tags, cell: usize) -> bool {
-        let of = |elements: Elements| match elements {
-            Elements::None => false,
-            Elements::All => true,
-            Elements::OfGroups => tags.group(content, cell).is_some(),
+    pub(crate) fn supports_cell(
+        &self,
+        content: &Content,
+        tags: &GroupNumbers,
+        cell: usize,
+    ) -> bool {
+        let of = |elements: ElementSupport| match elements {
+            ElementSupport::None => false,
+            ElementSupport::All => true,
+            ElementSupport::OfGroups => tags.group(content, cell).is_some(),
         };
         match content.cells.kinds[cell] {
             Kind::Point => of(self.points),
@@ -154,19 +159,19 @@ impl Holds {
         }
     }
 
-    fn lost_elements(&self, content: &Content, lost: &mut Vec<String>) {
-        let tags = Tags::new(content, self.negative);
+    fn element_losses(&self, content: &Content, lost: &mut Vec<String>) {
+        let tags = GroupNumbers::new(content, self.allows_negative_numbers);
         for (kind, what) in [
             (Kind::Point, "point"),
             (Kind::Line, "line"),
             (Kind::Quadrilateral, "quadrilateral"),
             (Kind::Corner, "polygon of more than four corners"),
         ] {
-            let dropped = |&cell: &usize| !self.holds(content, &tags, cell);
+            let dropped = |&cell: &usize| !self.supports_cell(content, &tags, cell);
             let count = content.cells.all(kind).filter(dropped).count();
             let elements = if kind == Kind::Point { self.points } else { self.lines };
             let of_none = match kind {
-                Kind::Point | Kind::Line if elements == Elements::OfGroups => " of no group",
+                Kind::Point | Kind::Line if elements == ElementSupport::OfGroups => " of no group",
                 _ => "",
             };
             match count {
@@ -182,12 +187,12 @@ impl Holds {
         }
     }
 
-    fn lost_groups(&self, content: &Content, lost: &mut Vec<String>) {
+    fn group_losses(&self, content: &Content, lost: &mut Vec<String>) {
         let several = content.sets.iter().any(|set| {
             let what = |group: &u32| &content.groups[*group as usize].what;
             set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| what(b) == what(group)))
         });
-        if several && self.groups != Groups::None {
+        if several && self.groups != GroupSupport::None {
             lost.push(
                 "that elements are of several groups of a kind: the first one is kept".into(),
             );
@@ -196,17 +201,19 @@ impl Holds {
             let whats = content.whats(dimension);
             let Some(&main) = whats.first() else { continue };
             let dropped = |what: &&str| match self.groups {
-                Groups::None => true,
-                Groups::One => *what != main && !decides(content, dimension, main, what),
-                Groups::OneOfLines => {
-                    dimension != 1 || (*what != main && !decides(content, 1, main, what))
+                GroupSupport::None => true,
+                GroupSupport::One => *what != main && !determines(content, dimension, main, what),
+                GroupSupport::OneOfLines => {
+                    dimension != 1 || (*what != main && !determines(content, 1, main, what))
                 }
-                Groups::PhysicalAndEntity => {
-                    *what != main && *what != "entity" && !decides(content, dimension, main, what)
+                GroupSupport::PhysicalAndEntity => {
+                    *what != main
+                        && *what != "entity"
+                        && !determines(content, dimension, main, what)
                 }
-                Groups::Each => false,
-                Groups::Blocks => {
-                    *what != main && *what != "block" && !decides(content, dimension, main, what)
+                GroupSupport::Each => false,
+                GroupSupport::Blocks => {
+                    *what != main && *what != "block" && !determines(content, dimension, main, what)
                 }
             };
             let one = |what: &str| {
@@ -219,8 +226,8 @@ impl Holds {
                     || content.groups.iter().filter(|g| g.dimension == dimension && g.what == what);
                 // If there is one group without a name, only its number is lost.
                 let keeps_none = match self.groups {
-                    Groups::None => true,
-                    Groups::OneOfLines => dimension != 1,
+                    GroupSupport::None => true,
+                    GroupSupport::OneOfLines => dimension != 1,
                     _ => false,
                 };
                 if keeps_none && one(what) && groups().all(|group| group.name().is_none()) {
@@ -232,7 +239,7 @@ impl Holds {
             let kept: Vec<&str> = kept.collect();
             let named = |group: &&ContentGroup| {
                 let is_kept = kept.contains(&group.what.as_str());
-                let is_told = is_kept && group.what != self.own;
+                let is_told = is_kept && group.what != self.builtin_group_kind;
                 group.dimension == dimension && is_told && group.name().is_some()
             };
             let named: Vec<&ContentGroup> = content.groups.iter().filter(named).collect();
@@ -244,20 +251,20 @@ impl Holds {
     }
 }
 
-impl Numbers {
+impl DataSupport {
     /// Whether the format holds these data.
-    pub(crate) fn holds(self, data: &Data) -> bool {
+    pub(crate) fn supports(self, data: &Data) -> bool {
         match self {
-            Numbers::None => false,
-            Numbers::All => true,
-            Numbers::Scalars | Numbers::Unnamed => data.components == 1,
-            Numbers::Only(name) => data.name == name && data.components == 1,
+            DataSupport::None => false,
+            DataSupport::All => true,
+            DataSupport::Scalars | DataSupport::Unnamed => data.components == 1,
+            DataSupport::Only(name) => data.name == name && data.components == 1,
         }
     }
 
-    fn lost(self, what: &str, data: &[Data], lost: &mut Vec<String>) {
+    fn losses(self, what: &str, data: &[Data], lost: &mut Vec<String>) {
         let names = |kept: bool| -> Vec<&str> {
-            let of = data.iter().filter(|data| self.holds(data) == kept);
+            let of = data.iter().filter(|data| self.supports(data) == kept);
             let mut names: Vec<&str> = of.map(|data| data.name.as_str()).collect();
             names.dedup();
             names
@@ -269,7 +276,7 @@ impl Numbers {
         let mut kept = names(true);
         // Names such as `attribute1` are the format's own.
         kept.retain(|name| !name.starts_with("attribute"));
-        if self == Numbers::Unnamed && !kept.is_empty() {
+        if self == DataSupport::Unnamed && !kept.is_empty() {
             lost.push(format!("names of {what}: {}", first(&kept)));
         }
     }

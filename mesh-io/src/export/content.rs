@@ -22,10 +22,10 @@ pub struct Content {
     /// x and y of each vertex.
     pub(crate) points: Vec<[f64; 2]>,
     /// The third coordinate of each vertex; empty if all are the same, which is then `height`.
-    pub(crate) heights: Vec<f64>,
-    pub(crate) height: f64,
+    pub(crate) z_values: Vec<f64>,
+    pub(crate) common_z: f64,
     /// The file's number or tag of each vertex.
-    pub(crate) labels: Vec<u64>,
+    pub(crate) vertex_ids: Vec<u64>,
     pub(crate) cells: Cells,
     pub(crate) groups: Vec<ContentGroup>,
     /// Sets of groups. Cells that belong to the same groups have the same index, in [`Cells::sets`].
@@ -49,7 +49,7 @@ pub(crate) struct Cells {
     /// The index of each cell's groups in [`Content::sets`].
     pub(crate) sets: Vec<u32>,
     /// The tag of each cell's element, by which cell data are given.
-    pub(crate) tags: Vec<u64>,
+    pub(crate) ids: Vec<u64>,
 }
 
 /// A cell of a [`Content`].
@@ -176,7 +176,7 @@ impl Cells {
         self.vertices.extend_from_slice(vertices);
         self.ends.push(self.vertices.len());
         self.sets.push(set);
-        self.tags.push(tag);
+        self.ids.push(tag);
     }
 
     /// Lists the cells of a kind, in the order of the file.
@@ -193,7 +193,7 @@ impl Content {
 
     /// Returns the number that the file gives each vertex; without numbers in the file, the position in the file's list.
     pub fn vertex_ids(&self) -> &[u64] {
-        &self.labels
+        &self.vertex_ids
     }
 
     /// Lists the cells in the order of the file.
@@ -206,7 +206,7 @@ impl Content {
                 Kind::Quadrilateral => CellKind::Quadrilateral,
                 Kind::Corner => CellKind::Polygon,
             },
-            id: self.cells.tags[cell],
+            id: self.cells.ids[cell],
             vertices: self.cells.of(cell),
             content: self,
             set: self.cells.sets[cell],
@@ -236,13 +236,14 @@ impl Content {
 
     /// Returns the third coordinate of a vertex, 0 if the file has none.
     pub fn z(&self, vertex: usize) -> f64 {
-        self.heights.get(vertex).copied().unwrap_or(self.height)
+        self.z_values.get(vertex).copied().unwrap_or(self.common_z)
     }
 
     /// Returns the number of the first vertex, if the vertices are numbered consecutively.
-    pub(crate) fn first_label(&self) -> Option<u64> {
-        let first = *self.labels.first()?;
-        let follow = self.labels.iter().zip(first..).all(|(&label, expected)| label == expected);
+    pub(crate) fn first_vertex_id(&self) -> Option<u64> {
+        let first = *self.vertex_ids.first()?;
+        let follow =
+            self.vertex_ids.iter().zip(first..).all(|(&label, expected)| label == expected);
         follow.then_some(first)
     }
 

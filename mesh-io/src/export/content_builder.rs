@@ -2,7 +2,7 @@
 
 use super::content::{Content, ContentGroup, Data};
 use crate::content::group_keys::GroupKeys;
-use crate::content::id_index::TagIndex;
+use crate::content::id_index::IdIndexBuilder;
 use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -24,7 +24,7 @@ pub(crate) fn content(reader: &ReaderFunctions, source: &Source) -> Result<Conte
 #[derive(Default)]
 struct ContentBuilder {
     content: Content,
-    tags: TagIndex,
+    tags: IdIndexBuilder,
     columns: Vec<RegionAttribute>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
     within: Vec<(String, Label, Option<u8>)>,
@@ -74,10 +74,10 @@ impl ContentBuilder {
         for group in content.groups.iter_mut().chain(of_vertices) {
             group.name = keys.name_of(&group.what, group.dimension, &group.label);
         }
-        let first = content.heights.first().copied();
-        if content.heights.iter().all(|&z| Some(z) == first) {
-            content.height = first.unwrap_or(0.0);
-            content.heights.clear();
+        let first = content.z_values.first().copied();
+        if content.z_values.iter().all(|&z| Some(z) == first) {
+            content.common_z = first.unwrap_or(0.0);
+            content.z_values.clear();
         }
         let (count, left_out) = (content.points.len(), &mut content.left_out);
         content.point_data.retain(|data| {
@@ -96,7 +96,7 @@ impl ContentBuilder {
             };
             let each = data.components;
             let mut values = Vec::with_capacity(content.cells.len() * each);
-            for tag in &content.cells.tags {
+            for tag in &content.cells.ids {
                 match rows.get(tag).and_then(|row| data.values.get(row * each..(row + 1) * each)) {
                     Some(own) => values.extend_from_slice(own),
                     None => values.resize(values.len() + each, f64::NAN),
@@ -160,7 +160,7 @@ impl MeshVisitor for ContentBuilder {
 
     fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, at: [f64; 2]) {
         self.tags.push(tag);
-        self.content.labels.push(tag);
+        self.content.vertex_ids.push(tag);
         self.content.points.push(at);
     }
 
@@ -286,7 +286,7 @@ impl MeshVisitor for ContentBuilder {
         };
         let PointNumbers { numbers, nodes, .. } = numbers;
         if is_height {
-            self.content.heights = numbers;
+            self.content.z_values = numbers;
             return;
         }
         let values = match nodes {

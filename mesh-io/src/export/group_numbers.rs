@@ -5,21 +5,21 @@ use crate::content::label::Label;
 use std::collections::{HashMap, HashSet};
 
 /// The most important group of each element, and a number for each group.
-pub(crate) struct Tags {
+pub(crate) struct GroupNumbers {
     /// For each dimension, the most important group of each cell.
     columns: [Vec<Option<u32>>; 3],
     /// The number of each group. Only a group that has number 0 itself gets it.
     numbers: Vec<i64>,
 }
 
-impl Tags {
+impl GroupNumbers {
     /// Chooses the groups and numbers. `negative` says whether numbers may be negative.
-    pub(crate) fn new(content: &Content, negative: bool) -> Tags {
+    pub(crate) fn new(content: &Content, negative: bool) -> GroupNumbers {
         let column = |dimension| match content.whats(dimension).first() {
             Some(what) => content.column(what),
             None => Vec::new(),
         };
-        Tags { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
+        GroupNumbers { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
     }
 
     /// Returns the most important group of a cell.
@@ -29,7 +29,7 @@ impl Tags {
     }
 
     /// Returns the number of the most important group of a cell, or 0.
-    pub(crate) fn tag(&self, content: &Content, cell: usize) -> i64 {
+    pub(crate) fn number_of_cell(&self, content: &Content, cell: usize) -> i64 {
         self.group(content, cell).map_or(0, |group| self.numbers[group as usize])
     }
 
@@ -73,7 +73,7 @@ fn groups_what<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str 
 
 /// Whether an element's group of the kind `main` determines its group of the kind `other`. Then only numbers are lost
 /// if `other` is not written.
-pub(crate) fn decides(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
+pub(crate) fn determines(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
     let named = |group: &ContentGroup| group.dimension == dimension && group.name().is_some();
     if content.groups.iter().any(|group| group.what == other && named(group)) {
         return false;

@@ -1,7 +1,7 @@
 //! Finds lines that are sides of elements, and what is lost of a mesh whose elements stand in blocks.
 
 use super::content::{Content, Data};
-use super::group_numbers::Tags;
+use super::group_numbers::GroupNumbers;
 use crate::visit::items::Kind;
 use std::collections::HashSet;
 
@@ -30,7 +30,7 @@ pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
 
 /// Lists what is lost if elements stand in blocks, one line each.
 pub(crate) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
-    let tags = Tags::new(content, false);
+    let tags = GroupNumbers::new(content, false);
     let group = |cell: usize| tags.group(content, cell);
     let mut last = None;
     let mut seen: HashSet<Option<u32>> = HashSet::new();

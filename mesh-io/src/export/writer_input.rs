@@ -1,32 +1,43 @@
 //! The mesh that a writer is given.
 
-use super::capabilities::Holds;
+use super::capabilities::Capabilities;
 use super::content::{Content, ContentGroup, Data};
-use super::group_numbers::Tags;
+use super::group_numbers::GroupNumbers;
 use crate::content::label::Label;
 use crate::visit::items::Kind;
 
 /// A mesh to be written, with what the format holds of it.
-pub(crate) struct Job<'a> {
+pub(crate) struct WriterInput<'a> {
     pub(crate) content: &'a Content,
     /// The name of the program, for titles of files.
     pub(crate) creator: &'a str,
-    pub(crate) holds: Holds,
-    pub(crate) tags: Tags,
+    pub(crate) capabilities: Capabilities,
+    pub(crate) group_numbers: GroupNumbers,
     /// The number of each vertex, if none is 0.
     numbers: Option<&'a [u64]>,
 }
 
-impl<'a> Job<'a> {
-    pub(crate) fn new(content: &'a Content, holds: Holds, creator: &'a str) -> Job<'a> {
-        let numbers = (!content.labels.contains(&0)).then_some(content.labels.as_slice());
-        Job { content, creator, holds, tags: Tags::new(content, holds.negative), numbers }
+impl<'a> WriterInput<'a> {
+    pub(crate) fn new(
+        content: &'a Content,
+        holds: Capabilities,
+        creator: &'a str,
+    ) -> WriterInput<'a> {
+        let numbers = (!content.vertex_ids.contains(&0)).then_some(content.vertex_ids.as_slice());
+        WriterInput {
+            content,
+            creator,
+            capabilities: holds,
+            group_numbers: GroupNumbers::new(content, holds.allows_negative_numbers),
+            numbers,
+        }
     }
 
     /// Lists the cells that the format holds, in the order of the file.
     pub(crate) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
         let content = self.content;
-        (0..content.cells.len()).filter(|&cell| self.holds.holds(content, &self.tags, cell))
+        (0..content.cells.len())
+            .filter(|&cell| self.capabilities.supports_cell(content, &self.group_numbers, cell))
     }
 
     /// Lists the cells of a kind that the format holds.
@@ -39,17 +50,17 @@ impl<'a> Job<'a> {
     }
 
     /// Returns the file's number of a vertex. If some vertex has number 0, returns its position counted from 1.
-    pub(crate) fn number(&self, vertex: usize) -> u64 {
+    pub(crate) fn vertex_id(&self, vertex: usize) -> u64 {
         self.numbers.map_or(vertex as u64 + 1, |numbers| numbers[vertex])
     }
 
     /// Returns the [numbers](Self::number) of a cell's vertices, separated by blanks.
-    pub(crate) fn numbers(&self, cell: usize) -> String {
-        self.joined(cell, |vertex| self.number(vertex))
+    pub(crate) fn vertex_ids(&self, cell: usize) -> String {
+        self.joined(cell, |vertex| self.vertex_id(vertex))
     }
 
     /// Returns the positions of a cell's vertices, counted from `first` and separated by blanks.
-    pub(crate) fn places(&self, cell: usize, first: u64) -> String {
+    pub(crate) fn positions(&self, cell: usize, first: u64) -> String {
         self.joined(cell, |vertex| vertex as u64 + first)
     }
 
@@ -60,35 +71,35 @@ impl<'a> Job<'a> {
     }
 
     /// Returns x and y of a vertex as text.
-    pub(crate) fn plane(&self, vertex: usize) -> String {
+    pub(crate) fn xy(&self, vertex: usize) -> String {
         let [x, y] = self.content.points[vertex];
         format!("{x:?} {y:?}")
     }
 
     /// Returns x, y and z of a vertex as text.
-    pub(crate) fn space(&self, vertex: usize) -> String {
-        format!("{} {:?}", self.plane(vertex), self.content.z(vertex))
+    pub(crate) fn xyz(&self, vertex: usize) -> String {
+        format!("{} {:?}", self.xy(vertex), self.content.z(vertex))
     }
 
     /// Returns the number of the most important group of a cell, or 0.
-    pub(crate) fn tag(&self, cell: usize) -> i64 {
-        self.tags.tag(self.content, cell)
+    pub(crate) fn group_number(&self, cell: usize) -> i64 {
+        self.group_numbers.number_of_cell(self.content, cell)
     }
 
     /// Returns the most important group of a cell.
     pub(crate) fn group(&self, cell: usize) -> Option<&'a ContentGroup> {
-        let group = self.tags.group(self.content, cell)?;
+        let group = self.group_numbers.group(self.content, cell)?;
         Some(&self.content.groups[group as usize])
     }
 
     /// Returns the name of a group, or its number.
-    pub(crate) fn word(&self, group: u32) -> String {
+    pub(crate) fn name_or_number(&self, group: u32) -> String {
         let name = self.content.groups[group as usize].name().map(str::to_owned);
-        name.unwrap_or_else(|| self.tags.number(group).to_string())
+        name.unwrap_or_else(|| self.group_numbers.number(group).to_string())
     }
 
     /// Returns for each vertex the number of its group of vertices, or 0.
-    pub(crate) fn vertex_tags(&self) -> Vec<i64> {
+    pub(crate) fn vertex_group_numbers(&self) -> Vec<i64> {
         let mut tags = vec![0; self.content.points.len()];
         for (group, vertices) in self.content.vertex_groups.iter().rev() {
             if let Label::Tag(tag) = group.label {
@@ -100,12 +111,12 @@ impl<'a> Job<'a> {
 
     /// Lists the data of vertices that the format holds.
     pub(crate) fn point_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
-        self.content.point_data.iter().filter(|data| self.holds.point_data.holds(data))
+        self.content.point_data.iter().filter(|data| self.capabilities.point_data.supports(data))
     }
 
     /// Lists the data of elements that the format holds.
     pub(crate) fn cell_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
-        self.content.cell_data.iter().filter(|data| self.holds.cell_data.holds(data))
+        self.content.cell_data.iter().filter(|data| self.capabilities.cell_data.supports(data))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::hdf5::{Array, Encoding, Hdf5};
+use crate::hdf5::{Array, Hdf5, Hdf5Arrays};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::visit::records::{NodeRecords, Tags};
@@ -29,7 +29,7 @@ pub(crate) struct Axes<'a> {
     form: BinaryReals,
     /// Where those of each axis are, in the file or among those that are encoded.
     ranges: Vec<Range<usize>>,
-    encoded: Option<Encoding>,
+    encoded: Option<Hdf5Arrays>,
 }
 
 impl<'a> Axes<'a> {
@@ -65,7 +65,7 @@ impl<'a> Axes<'a> {
             return Axes::in_place(source, form, &starts, count);
         }
         let ranges = (0..axes).map(|axis| axis * length..(axis + 1) * length).collect();
-        Axes { source, form, ranges, encoded: Some(Encoding::new(file, arrays)) }
+        Axes { source, form, ranges, encoded: Some(Hdf5Arrays::new(file, arrays)) }
     }
 
     /// Hands on the nodes, of which there are `count`, numbered from `first` on. Returns how the format has them.
@@ -79,7 +79,7 @@ impl<'a> Axes<'a> {
         let Axes { source, form: BinaryReals { order, precision }, ranges, encoded } = self;
         let [x, y] = [0, 1].map(|axis| ranges.get(axis).cloned().unwrap_or_default());
         let size = precision.bytes();
-        let bytes = encoded.as_ref().map_or(&source.bytes[..], Encoding::bytes);
+        let bytes = encoded.as_ref().map_or(&source.bytes[..], Hdf5Arrays::bytes);
         // Numbers that are encoded have no place of their own.
         let place = |at: usize| match &encoded {
             None => Cursor::at_byte_of(source, at),

@@ -13,9 +13,9 @@ use crate::visit::reader::FormatReader;
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 
-pub(crate) struct Container;
+pub(crate) struct Hdf5OrNetcdf;
 
-impl FormatReader for Container {
+impl FormatReader for Hdf5OrNetcdf {
     const VERTICES: &'static str = "the list of nodes";
 
     fn visit(

@@ -1,7 +1,7 @@
 //! Data of nodes: variables whose numbers are handed on record by record.
 
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
-use crate::hdf5::Encoding;
+use crate::hdf5::Hdf5Arrays;
 use crate::netcdf::{Header, Items, Number, Variable};
 use crate::visit::items::PointNumbers;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
@@ -27,7 +27,7 @@ impl Parts {
 /// Reads data of nodes or faces, and hands those of nodes on. What is encoded of a variable is shared by all of its parts and records.
 pub(crate) struct PointData<'h, 'a> {
     header: &'h Header<'a>,
-    encoded: Vec<(&'h [u8], Arc<Encoding>)>,
+    encoded: Vec<(&'h [u8], Arc<Hdf5Arrays>)>,
     /// The content of the variable that was read last.
     last: Option<(&'h [u8], Items<'a>)>,
 }
@@ -103,7 +103,7 @@ impl<'h, 'a> PointData<'h, 'a> {
         Some(PointNumbers { numbers, nodes: None, location: stored })
     }
 
-    fn encoding(&self, variable: &Variable) -> Option<&Arc<Encoding>> {
+    fn encoding(&self, variable: &Variable) -> Option<&Arc<Hdf5Arrays>> {
         let known = self.encoded.iter().find(|(known, _)| *known == variable.name);
         known.map(|(_, encoding)| encoding)
     }
@@ -115,7 +115,7 @@ impl<'h, 'a> PointData<'h, 'a> {
             && self.encoding(variable).is_none()
             && let (Some(file), Some(array)) = (&self.header.hdf5, items.take_array())
         {
-            let encoding = Arc::new(Encoding::new(file, vec![array]));
+            let encoding = Arc::new(Hdf5Arrays::new(file, vec![array]));
             self.encoded.push((&variable.name, encoding));
         }
         Some(items)

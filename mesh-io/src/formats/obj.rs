@@ -5,7 +5,7 @@
 //! are not read.
 
 use crate::content::label::Label;
-use crate::content::regions::Numbering;
+use crate::content::regions::Interner;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -93,14 +93,14 @@ impl FormatReader for Obj {
         heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
         let cursor = &mut start.clone();
         let (mut before, mut faces) = (0, 0);
-        let mut names = Numbering::default();
+        let mut names = Interner::default();
         let mut region = [0; 2];
         let mut named = Named::default();
         all_rows(cursor, visitor, element, |cursor, visitor, row| {
             match row {
                 Row::Vertex(..) => before += 1,
                 Row::Name(name) => {
-                    let number = i64::from(names.number(name.to_vec())) + 1;
+                    let number = i64::from(names.intern(name.to_vec())) + 1;
                     region[usize::from(!name.starts_with(b"usemtl"))] = number;
                     if visitor.asks_for_groups() {
                         named.enter(name);

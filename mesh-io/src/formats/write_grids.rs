@@ -2,7 +2,7 @@
 
 use crate::export::content::{Content, Data};
 use crate::export::put;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::visit::items::Kind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -18,19 +18,19 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
         (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => {
             if let Some(at) = content.point_data.iter().position(|data| data.name == "depth") {
                 let depths = content.point_data.remove(at).values;
-                content.heights = depths.into_iter().map(minus).collect();
+                content.z_values = depths.into_iter().map(minus).collect();
             }
         }
         (Format::Sms2dm | Format::Mike, Format::Adcirc) => {
             let vertices = 0..content.points.len();
             let values = vertices.map(|vertex| minus(content.z(vertex))).collect();
-            (content.heights, content.height) = (Vec::new(), 0.0);
+            (content.z_values, content.common_z) = (Vec::new(), 0.0);
             content.point_data.push(of_vertices("depth", values));
         }
         (Format::Ugrid, Format::Sms2dm) => {
             if let Some((heights, is_depth)) = take_heights(content) {
                 let upwards = |number| if is_depth { minus(number) } else { number };
-                content.heights = heights.into_iter().map(upwards).collect();
+                content.z_values = heights.into_iter().map(upwards).collect();
             }
         }
         (Format::Ugrid, Format::Adcirc) => {
@@ -40,8 +40,8 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
                 content.point_data.push(of_vertices("depth", values));
             }
         }
-        (_, Format::Ugrid) if !content.heights.is_empty() => {
-            let values = std::mem::take(&mut content.heights);
+        (_, Format::Ugrid) if !content.z_values.is_empty() => {
+            let values = std::mem::take(&mut content.z_values);
             content.point_data.push(of_vertices("z", values));
         }
         _ => {}
@@ -64,7 +64,7 @@ fn take_heights(content: &mut Content) -> Option<(Vec<f64>, bool)> {
     Some((content.point_data.remove(at).values, is_depth))
 }
 
-pub(crate) fn write_sms(job: &Job<'_>) -> String {
+pub(crate) fn write_sms(job: &WriterInput<'_>) -> String {
     let content = job.content;
     let mut out = "MESH2D\n".to_owned();
     let mut element = 0;
@@ -76,24 +76,24 @@ pub(crate) fn write_sms(job: &Job<'_>) -> String {
             _ => continue,
         };
         element += 1;
-        put!(out, "{kind} {element} {} {}\n", job.numbers(cell), job.tag(cell));
+        put!(out, "{kind} {element} {} {}\n", job.vertex_ids(cell), job.group_number(cell));
     }
     for vertex in 0..content.points.len() {
-        put!(out, "ND {} {}\n", job.number(vertex), job.space(vertex));
+        put!(out, "ND {} {}\n", job.vertex_id(vertex), job.xyz(vertex));
     }
     let mut materials = BTreeMap::new();
     for cell in job.cells() {
-        let Some(group) = job.tags.group(content, cell) else { continue };
+        let Some(group) = job.group_numbers.group(content, cell) else { continue };
         let is_line = content.cells.kinds[cell] == Kind::Line;
         if let Some(name) = content.groups[group as usize].name().filter(|_| !is_line) {
-            materials.insert(job.tags.number(group), name);
+            materials.insert(job.group_numbers.number(group), name);
         }
     }
     for (group, string) in strings(job) {
         let Some((last, before)) = string.split_last() else { continue };
         out.push_str("NS");
-        before.iter().for_each(|&vertex| put!(out, " {}", job.number(vertex as usize)));
-        put!(out, " -{}", job.number(*last as usize));
+        before.iter().for_each(|&vertex| put!(out, " {}", job.vertex_id(vertex as usize)));
+        put!(out, " -{}", job.vertex_id(*last as usize));
         match content.groups[group as usize].name() {
             Some(name) => put!(out, " \"{name}\"\n"),
             None => out.push('\n'),
@@ -140,7 +140,7 @@ fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
     chains
 }
 
-pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
+pub(crate) fn write_adcirc(job: &WriterInput<'_>) -> String {
     let content = job.content;
     let depth = job.point_data().next();
     let is_inside = |cell: &usize| content.cells.kinds[*cell] != Kind::Line;
@@ -148,10 +148,10 @@ pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
     let mut out = format!("grid\n{} {}\n", elements().count(), content.points.len());
     for vertex in 0..content.points.len() {
         let value = depth.map_or(0.0, |depth| depth.values[vertex]);
-        put!(out, "{} {} {value:?}\n", job.number(vertex), job.plane(vertex));
+        put!(out, "{} {} {value:?}\n", job.vertex_id(vertex), job.xy(vertex));
     }
     for (cell, element) in elements().zip(1..) {
-        put!(out, "{element} {} {}\n", content.cells.of(cell).len(), job.numbers(cell));
+        put!(out, "{element} {} {}\n", content.cells.of(cell).len(), job.vertex_ids(cell));
     }
     // Boundaries whose names start with `open` are open; all others are land.
     let strings = strings(job);
@@ -168,23 +168,23 @@ pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
                 put!(out, " {}", u8::from(name(*group).starts_with("island")));
             }
             put!(out, " = Number of nodes for {what} boundary\n");
-            string.iter().for_each(|&vertex| put!(out, "{}\n", job.number(vertex as usize)));
+            string.iter().for_each(|&vertex| put!(out, "{}\n", job.vertex_id(vertex as usize)));
         }
     }
     out
 }
 
 /// Whether a line belongs to a node string, not to an element of a material.
-fn is_of_string(job: &Job<'_>, line: usize) -> bool {
+fn is_of_string(job: &WriterInput<'_>, line: usize) -> bool {
     job.group(line).is_some_and(|group| group.what != "material")
 }
 
 /// Returns the lines of each group as chains of vertices.
-fn strings(job: &Job<'_>) -> Vec<(u32, Vec<u32>)> {
+fn strings(job: &WriterInput<'_>) -> Vec<(u32, Vec<u32>)> {
     let mut lines: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
     for cell in job.all(Kind::Line).filter(|&cell| is_of_string(job, cell)) {
         if let (Some(group), &[a, b]) =
-            (job.tags.group(job.content, cell), job.content.cells.of(cell))
+            (job.group_numbers.group(job.content, cell), job.content.cells.of(cell))
         {
             lines.entry(group).or_default().push([a, b]);
         }

@@ -1,35 +1,35 @@
 //! Checksums of metadata: Jenkins' lookup3.
 
-use super::bytes::{Bytes, Fault};
+use super::bytes::{ByteReader, Hdf5Error};
 use crate::edit::numbers::ByteEdit;
 use std::ops::Range;
 
 /// A range of a file with a checksum, the four bytes after it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Sum {
+pub(super) struct Checksum {
     pub(super) range: Range<usize>,
 }
 
-impl Sum {
+impl Checksum {
     /// Where the checksum stands.
-    pub(super) fn place(&self) -> Range<usize> {
+    pub(super) fn range(&self) -> Range<usize> {
         self.range.end..self.range.end + 4
     }
 
     /// Takes the checksum of what was taken since `start`, which has to be right. Fuzzers do not get beyond checksums by chance, so
     /// they are spared.
-    pub(super) fn take(start: usize, bytes: &mut Bytes<'_>) -> Result<Sum, Fault> {
+    pub(super) fn take(start: usize, bytes: &mut ByteReader<'_>) -> Result<Checksum, Hdf5Error> {
         let range = start..bytes.at();
         let own = bytes.within(range.clone()).take(range.len())?;
         let stored = bytes.number(4)?;
         match cfg!(any(fuzzing, test)) || u64::from(lookup3(own)) == stored {
-            true => Ok(Sum { range }),
+            true => Ok(Checksum { range }),
             false => Err(bytes.damaged()),
         }
     }
 
     /// The checksum once these ranges are replaced by as many bytes, if one of them is covered by it.
-    pub(super) fn again<'s>(
+    pub(super) fn edit<'s>(
         &self,
         file: &[u8],
         edits: impl Iterator<Item = &'s ByteEdit>,
@@ -45,7 +45,7 @@ impl Sum {
             is_touched = true;
         }
         let bytes = lookup3(&bytes).to_le_bytes().to_vec();
-        is_touched.then(|| ByteEdit { range: self.place(), bytes })
+        is_touched.then(|| ByteEdit { range: self.range(), bytes })
     }
 }
 

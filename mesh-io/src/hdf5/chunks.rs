@@ -1,17 +1,17 @@
 //! The chunks of a dataset: where each stands, and which of the items it has.
 
 use super::btree::Tree;
-use super::bytes::Fault;
-use super::checksum::Sum;
+use super::bytes::Hdf5Error;
+use super::checksum::Checksum;
 use super::entry::{Chunk, Entry};
-use super::file_bytes::Raw;
+use super::file_bytes::FileBytes;
 use super::filters::Filter;
-use super::fixed_array::{self, Slot};
+use super::fixed_array::{self, FixedArrayElement};
 use super::layout::Index;
 
 /// A dataset as a lattice of chunks. One that is not in chunks is a single one.
 #[derive(Clone, Debug)]
-pub(super) struct Lattice {
+pub(super) struct ChunkGrid {
     /// How many items there are in each dimension, at least one of which there is, and how many in each of a chunk.
     shape: Vec<usize>,
     lengths: Vec<usize>,
@@ -22,14 +22,14 @@ pub(super) struct Lattice {
     rooms: Vec<usize>,
 }
 
-impl Lattice {
+impl ChunkGrid {
     /// None if its sizes are no numbers. `most` are the lengths that the dataset may grow to.
     pub(super) fn new(
         shape: &[u64],
         most: &[u64],
         lengths: &[u64],
         item: usize,
-    ) -> Option<Lattice> {
+    ) -> Option<ChunkGrid> {
         let sizes = |numbers: &[u64]| {
             numbers.iter().map(|&n| usize::try_from(n).ok()).collect::<Option<Vec<usize>>>()
         };
@@ -41,7 +41,7 @@ impl Lattice {
         }
         let counts: Vec<usize> = shape.iter().zip(&lengths).map(|(n, l)| n.div_ceil(*l)).collect();
         let rooms: Vec<usize> = most.iter().zip(&lengths).map(|(n, l)| n.div_ceil(*l)).collect();
-        let lattice = Lattice { shape, lengths, item, counts, rooms };
+        let lattice = ChunkGrid { shape, lengths, item, counts, rooms };
         let product =
             |of: &[usize]| of.iter().try_fold(item.max(1), |all: usize, &n| all.checked_mul(n));
         // Both sizes are numbers, and so is the number of chunks.
@@ -130,14 +130,14 @@ impl Lattice {
     /// Finds the chunks of an index, in the order of their numbers. All have to be there.
     pub(super) fn chunks(
         &self,
-        raw: &Raw<'_>,
+        raw: &FileBytes<'_>,
         index: &Index,
         address: usize,
         filters: &[Filter],
-        sum: Option<&Sum>,
+        sum: Option<&Checksum>,
         at: usize,
-    ) -> Result<Vec<Chunk>, Fault> {
-        let damaged = || Fault::damaged(at, "a dataset of the HDF5 file");
+    ) -> Result<Vec<Chunk>, Hdf5Error> {
+        let damaged = || Hdf5Error::damaged(at, "a dataset of the HDF5 file");
         let whole = self.chunk_bytes();
         let mut chunks = Vec::new();
         match index {
@@ -184,7 +184,9 @@ impl Lattice {
                 let slots = fixed_array::read(raw, address, rooms, !filters.is_empty())?;
                 for number in 0..self.count().min(slots.count()) {
                     let room = self.room(number).ok_or_else(damaged)?;
-                    if let Some(Slot { address, length, mask, entry }) = slots.slot(raw, room)? {
+                    if let Some(FixedArrayElement { address, length, mask, entry }) =
+                        slots.slot(raw, room)?
+                    {
                         let range = address..address.saturating_add(length.unwrap_or(whole));
                         chunks.push(Chunk { number, range, mask, entry: Some(entry) });
                     }
@@ -195,14 +197,14 @@ impl Lattice {
         let numbers = chunks.iter().map(|chunk| chunk.number);
         if !numbers.eq(0..self.count()) {
             let problem = "a dataset of which parts were never written, or twice";
-            return Err(Fault::unread(at, problem));
+            return Err(Hdf5Error::unread(at, problem));
         }
         self.check(raw, &chunks, filters).ok_or_else(damaged)?;
         Ok(chunks)
     }
 
     /// Chunks lie in the file, and no two of them are the same bytes.
-    fn check(&self, raw: &Raw<'_>, chunks: &[Chunk], filters: &[Filter]) -> Option<()> {
+    fn check(&self, raw: &FileBytes<'_>, chunks: &[Chunk], filters: &[Filter]) -> Option<()> {
         let mut left = raw.bytes.len();
         for chunk in chunks {
             let is_inside = chunk.range.end <= raw.bytes.len();

@@ -1,15 +1,15 @@
 //! Datasets: what their headers say, and their numbers.
 
-use super::bytes::{DAMAGED, Fault};
-use super::checksum::Sum;
-use super::chunks::Lattice;
+use super::bytes::{DAMAGED, Hdf5Error};
+use super::checksum::Checksum;
+use super::chunks::ChunkGrid;
 use super::entry::Chunk;
 use super::file::{Hdf5, Object};
-use super::file_bytes::Raw;
+use super::file_bytes::FileBytes;
 use super::filters::{self, Filter};
 use super::header::{FILTERS, Header, LAYOUT, SPACE, TYPE};
 use super::layout::{Index, Layout};
-use super::types::{Number, Space};
+use super::types::{Dataspace, Datatype};
 use crate::error::ReadError;
 use crate::parallel::map_parts;
 use std::borrow::Cow;
@@ -19,33 +19,33 @@ use std::ops::Range;
 pub(crate) struct Dataset {
     /// Where its header stands.
     pub(crate) at: usize,
-    pub(crate) number: Number,
-    space: Space,
+    pub(crate) number: Datatype,
+    space: Dataspace,
     layout: Layout,
     filters: Vec<Filter>,
     /// The checksum that covers the layout.
-    sum: Option<Sum>,
+    sum: Option<Checksum>,
 }
 
 /// The items of a dataset, and where they stand.
 pub(crate) struct Array<'a> {
     /// One item after another, the last dimension first.
     pub(crate) bytes: Cow<'a, [u8]>,
-    pub(super) pieces: Pieces,
+    pub(super) pieces: ChunkedStorage,
 }
 
 /// Where the items of a dataset stand.
 #[derive(Clone, Debug)]
-pub(super) struct Pieces {
-    pub(super) lattice: Option<Lattice>,
+pub(super) struct ChunkedStorage {
+    pub(super) lattice: Option<ChunkGrid>,
     pub(super) chunks: Vec<Chunk>,
     pub(super) filters: Vec<Filter>,
     /// The checksum that covers the items themselves, where they stand in the header.
-    pub(super) sum: Option<Sum>,
+    pub(super) sum: Option<Checksum>,
 }
 
 /// How many chunks are unpacked at a time.
-const WAVE: usize = 64;
+const CHUNKS_PER_BATCH: usize = 64;
 
 impl Dataset {
     /// How many items there are in each dimension; none for a single item.
@@ -55,17 +55,17 @@ impl Dataset {
 
     /// Whether it may grow without limit in its first dimension.
     pub(crate) fn grows(&self) -> bool {
-        self.space.most.first() == Some(&u64::MAX)
+        self.space.max_shape.first() == Some(&u64::MAX)
     }
 }
 
 /// A message of the object, wherever it stands, and the checksum that covers it.
-fn type_of(raw: &Raw<'_>, header: &Header, at: usize) -> Result<Number, Fault> {
-    let damaged = || Fault::damaged(at, "the type of a dataset");
+fn type_of(raw: &FileBytes<'_>, header: &Header, at: usize) -> Result<Datatype, Hdf5Error> {
+    let damaged = || Hdf5Error::damaged(at, "the type of a dataset");
     let message = header.of(TYPE).next().ok_or_else(damaged)?;
     let mut bytes = raw.at(message.content.start, "the type of a dataset");
     if !message.is_shared {
-        return Number::read(bytes.within(message.content.clone()));
+        return Datatype::read(bytes.within(message.content.clone()));
     }
     // A named type, in the header of an object of its own.
     let (version, kind) = (bytes.byte()?, bytes.byte()?);
@@ -75,7 +75,7 @@ fn type_of(raw: &Raw<'_>, header: &Header, at: usize) -> Result<Number, Fault> {
     }
     let header = Header::read(raw, bytes.address()?.ok_or_else(damaged)?)?;
     let message = header.of(TYPE).find(|message| !message.is_shared).ok_or_else(damaged)?;
-    Number::read(bytes.within(message.content.clone()))
+    Datatype::read(bytes.within(message.content.clone()))
 }
 
 impl<'a> Hdf5<'a> {
@@ -87,8 +87,8 @@ impl<'a> Hdf5<'a> {
         self.dataset_of(object).map_err(|fault| self.error(fault))
     }
 
-    fn dataset_of(&self, object: &Object) -> Result<Option<Dataset>, Fault> {
-        let header = object.header.as_ref().map_err(Fault::clone)?;
+    fn dataset_of(&self, object: &Object) -> Result<Option<Dataset>, Hdf5Error> {
+        let header = object.header.as_ref().map_err(Hdf5Error::clone)?;
         let (raw, at) = (&self.raw, object.at);
         let (Some(space), Some(layout)) = (header.of(SPACE).next(), header.of(LAYOUT).next())
         else {
@@ -98,7 +98,7 @@ impl<'a> Hdf5<'a> {
             raw.at(content.start, "a dataset of the HDF5 file").within(content.clone())
         };
         let own = &space.content;
-        let space = Space::read(within(own))?;
+        let space = Dataspace::read(within(own))?;
         let number = type_of(raw, header, at)?;
         let filters =
             header.of(FILTERS).next().map(|message| filters::read(within(&message.content)));
@@ -111,7 +111,7 @@ impl<'a> Hdf5<'a> {
     /// The whole numbers of the dataset that an object is; none if it has none that can be read.
     pub(crate) fn integers(&self, object: &Object) -> Option<Vec<i64>> {
         let dataset = self.dataset(object).ok()??;
-        let Number::Whole(size, order) = dataset.number else { return None };
+        let Datatype::Whole(size, order) = dataset.number else { return None };
         let array = self.array(&dataset).ok()?;
         Some(array.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
     }
@@ -125,7 +125,7 @@ impl<'a> Hdf5<'a> {
             // What stands in the header was read with it.
             if !matches!(dataset.layout, Layout::Compact(_)) {
                 let ranges = pieces.chunks.iter().map(|chunk| chunk.range.clone());
-                self.raw.take_data(ranges, dataset.at);
+                self.raw.claim_data(ranges, dataset.at);
             }
             let bytes = pieces.items(self.raw.bytes, dataset.at)?;
             Ok(Array { bytes, pieces })
@@ -136,17 +136,17 @@ impl<'a> Hdf5<'a> {
 
 impl Dataset {
     /// Finds where the items stand.
-    fn pieces(&self, raw: &Raw<'_>) -> Result<Pieces, Fault> {
+    fn pieces(&self, raw: &FileBytes<'_>) -> Result<ChunkedStorage, Hdf5Error> {
         let Dataset { space, filters, at, .. } = self;
-        let damaged = || Fault::damaged(*at, "a dataset of the HDF5 file");
-        let absent = || Fault {
+        let damaged = || Hdf5Error::damaged(*at, "a dataset of the HDF5 file");
+        let absent = || Hdf5Error {
             at: *at,
             problem: "a dataset without its numbers, which were never written".into(),
             remedy: "Write the mesh again",
         };
         let size = self.number.bytes();
         let mut pieces =
-            Pieces { lattice: None, chunks: Vec::new(), filters: Vec::new(), sum: None };
+            ChunkedStorage { lattice: None, chunks: Vec::new(), filters: Vec::new(), sum: None };
         if space.count() == Some(0) {
             return Ok(pieces);
         }
@@ -154,7 +154,8 @@ impl Dataset {
             Layout::Chunked { lengths, .. } => lengths,
             _ => &space.shape,
         };
-        let lattice = Lattice::new(&space.shape, &space.most, lengths, size).ok_or_else(damaged)?;
+        let lattice =
+            ChunkGrid::new(&space.shape, &space.max_shape, lengths, size).ok_or_else(damaged)?;
         let one = |start: usize, length: usize| {
             let range = start..start.saturating_add(length);
             let is_inside = range.end <= raw.bytes.len();
@@ -183,20 +184,20 @@ impl Dataset {
     }
 }
 
-impl Pieces {
+impl ChunkedStorage {
     /// The items, from the bytes of the file.
-    fn items<'a>(&self, file: &'a [u8], at: usize) -> Result<Cow<'a, [u8]>, Fault> {
+    fn items<'a>(&self, file: &'a [u8], at: usize) -> Result<Cow<'a, [u8]>, Hdf5Error> {
         let Some(lattice) = &self.lattice else { return Ok(Cow::default()) };
         if let Some(range) = self.whole() {
             return Ok(Cow::Borrowed(&file[range]));
         }
-        let damaged = || Fault {
+        let damaged = || Hdf5Error {
             at,
             problem: "a dataset with a chunk that is damaged".into(),
             remedy: DAMAGED,
         };
         let mut all: Vec<u8> = Vec::new();
-        for (wave, chunks) in self.chunks.chunks(WAVE).enumerate() {
+        for (wave, chunks) in self.chunks.chunks(CHUNKS_PER_BATCH).enumerate() {
             let unpacked = map_parts(chunks, |_, chunk| self.chunk(file, chunk));
             if wave == 0 {
                 // Only once some of them are what they are said to be.

@@ -1,10 +1,10 @@
 //! What becomes of a file when numbers of its datasets change.
 
-use super::checksum::Sum;
-use super::dataset::{Array, Pieces};
+use super::checksum::Checksum;
+use super::dataset::{Array, ChunkedStorage};
 use super::entry::{Chunk, Entry};
 use super::file::Hdf5;
-use super::file_bytes::End;
+use super::file_bytes::EndAddress;
 use super::filters;
 use crate::edit::numbers::{ByteEdit, EncodedArrays};
 use std::ops::Range;
@@ -12,24 +12,24 @@ use std::ops::Range;
 /// Datasets whose numbers may change, one after another. A chunk that is compressed anew and is no longer than before takes the
 /// place it had, else it goes to the end of the file. Chunks of these datasets that lie at the end of the file already are put
 /// there one after another again, so that a file that is written in place many times does not grow without bound.
-pub(crate) struct Encoding {
-    parts: Vec<Part>,
+pub(crate) struct Hdf5Arrays {
+    parts: Vec<DatasetBytes>,
     /// The numbers of all of them.
     bytes: Vec<u8>,
-    end: End,
+    end: EndAddress,
     /// How many bytes an address has.
     address: usize,
 }
 
-struct Part {
-    pieces: Pieces,
+struct DatasetBytes {
+    pieces: ChunkedStorage,
     /// Its bytes among those of all.
     own: Range<usize>,
 }
 
-impl Encoding {
+impl Hdf5Arrays {
     /// Of some datasets of a file.
-    pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<Array<'_>>) -> Encoding {
+    pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<Array<'_>>) -> Hdf5Arrays {
         let mut bytes = Vec::new();
         let mut parts = Vec::new();
         for array in arrays {
@@ -38,9 +38,9 @@ impl Encoding {
                 true => bytes = array.bytes.into_owned(),
                 false => bytes.extend_from_slice(&array.bytes),
             }
-            parts.push(Part { pieces: array.pieces, own: start..bytes.len() });
+            parts.push(DatasetBytes { pieces: array.pieces, own: start..bytes.len() });
         }
-        Encoding { parts, bytes, end: file.raw.end.clone(), address: file.raw.widths.address }
+        Hdf5Arrays { parts, bytes, end: file.raw.end.clone(), address: file.raw.widths.address }
     }
 
     /// The byte of the file near which one of the bytes stands, for messages.
@@ -59,7 +59,7 @@ impl Encoding {
     }
 
     /// The checksums that may change with what they cover.
-    fn sums(&self) -> impl Iterator<Item = &Sum> {
+    fn sums(&self) -> impl Iterator<Item = &Checksum> {
         let entries = self.chunks().filter_map(|chunk| chunk.entry.as_ref()?.sum.as_ref());
         let items = self.parts.iter().filter_map(|part| part.pieces.sum.as_ref());
         entries.chain(items).chain(&self.end.sum)
@@ -71,7 +71,7 @@ impl Encoding {
 
     /// Puts the chunks that follow each other up to the end of the file there again, from the first one on that gets another
     /// length, and takes their new bytes from `changed`. Does nothing if something else was put to the end before.
-    fn relay(
+    fn move_all_chunks(
         &self,
         changed: &mut [(&Chunk, Option<Vec<u8>>)],
         file: &[u8],
@@ -108,7 +108,7 @@ impl Encoding {
         for &(chunk, at) in &chunks[first..] {
             let new = at.and_then(|at| changed[at].1.take());
             let own = new.as_deref().unwrap_or(&file[chunk.range.clone()]);
-            self.enter(chunk, start + bytes.len(), own.len(), edits);
+            self.update_index(chunk, start + bytes.len(), own.len(), edits);
             bytes.extend_from_slice(own);
         }
         *end = start + bytes.len();
@@ -130,12 +130,12 @@ impl Encoding {
             (start, place) = (*end, file.len()..file.len());
             *end += length;
         }
-        self.enter(chunk, start, length, edits);
+        self.update_index(chunk, start, length, edits);
         edits.push(ByteEdit { range: place, bytes });
     }
 
     /// Changes what the index says of a chunk that gets another place or length.
-    fn enter(&self, chunk: &Chunk, start: usize, length: usize, edits: &mut Vec<ByteEdit>) {
+    fn update_index(&self, chunk: &Chunk, start: usize, length: usize, edits: &mut Vec<ByteEdit>) {
         let Chunk { range, entry, .. } = chunk;
         if let Some(Entry { address, size, .. }) = entry {
             if start != range.start {
@@ -150,7 +150,7 @@ impl Encoding {
     }
 }
 
-impl EncodedArrays for Encoding {
+impl EncodedArrays for Hdf5Arrays {
     fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -163,13 +163,13 @@ impl EncodedArrays for Encoding {
             ranges.extend(entry.size.clone());
         }
         ranges.push(self.end.place.clone());
-        ranges.extend(self.sums().map(Sum::place));
+        ranges.extend(self.sums().map(Checksum::range));
         ranges
     }
 
     fn edits(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<ByteEdit> {
         let mut changed: Vec<(&Chunk, Option<Vec<u8>>)> = Vec::new();
-        for Part { pieces, own } in &self.parts {
+        for DatasetBytes { pieces, own } in &self.parts {
             let (old, new) = (&self.bytes[own.clone()], &new[own.clone()]);
             let Some(lattice) = pieces.lattice.as_ref().filter(|_| old != new) else { continue };
             for chunk in &pieces.chunks {
@@ -190,7 +190,7 @@ impl EncodedArrays for Encoding {
             }
         }
         let mut edits = Vec::new();
-        self.relay(&mut changed, file, end, &mut edits);
+        self.move_all_chunks(&mut changed, file, end, &mut edits);
         for (chunk, stored) in changed {
             if let Some(stored) = stored {
                 self.stored(chunk, stored, file, end, &mut edits);
@@ -204,11 +204,11 @@ impl EncodedArrays for Encoding {
         if end != file.len() {
             more.push(ByteEdit { range: self.end.place.clone(), bytes: self.address_of(end) });
         }
-        let mut sums: Vec<&Sum> = self.sums().collect();
+        let mut sums: Vec<&Checksum> = self.sums().collect();
         sums.dedup();
         for sum in sums {
-            if more.iter().all(|edit| edit.range != sum.place()) {
-                more.extend(sum.again(file, edits.iter().chain(&more)));
+            if more.iter().all(|edit| edit.range != sum.range()) {
+                more.extend(sum.edit(file, edits.iter().chain(&more)));
             }
         }
         more

@@ -1,7 +1,7 @@
 //! The bytes of a file, and how much of them was read.
 
-use super::bytes::{Bytes, Fault, Widths};
-use super::checksum::Sum;
+use super::bytes::{ByteReader, FieldWidths, Hdf5Error};
+use super::checksum::Checksum;
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
@@ -9,10 +9,10 @@ use std::ops::Range;
 pub(crate) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1A\n";
 
 /// The bytes of a file, and what its superblock says of them.
-pub(super) struct Raw<'a> {
+pub(super) struct FileBytes<'a> {
     pub(super) bytes: &'a [u8],
-    pub(super) widths: Widths,
-    pub(super) end: End,
+    pub(super) widths: FieldWidths,
+    pub(super) end: EndAddress,
     /// What has been read, each part of which is of one thing alone, with where that starts.
     taken: RefCell<Vec<(Range<usize>, usize)>>,
     /// How many bytes of metadata may still be read. Where parts of a file lead to each other in circles, they would be read
@@ -22,21 +22,21 @@ pub(super) struct Raw<'a> {
 
 /// How many times the length of the file is read of metadata at most, once the tree is known: those of a dataset are read anew
 /// each time it is asked for.
-const AGAIN: usize = 64;
+const MAX_REREADS: usize = 64;
 
 /// Where the superblock says how long the file is.
 #[derive(Clone, Debug)]
-pub(super) struct End {
+pub(super) struct EndAddress {
     pub(super) place: Range<usize>,
-    pub(super) sum: Option<Sum>,
+    pub(super) sum: Option<Checksum>,
 }
 
-impl<'a> Raw<'a> {
+impl<'a> FileBytes<'a> {
     /// Reads the superblock. Returns where the header of the root group stands, too.
-    pub(super) fn new(bytes: &'a [u8]) -> Result<(Raw<'a>, usize), Fault> {
+    pub(super) fn new(bytes: &'a [u8]) -> Result<(FileBytes<'a>, usize), Hdf5Error> {
         let what = "the superblock of the HDF5 file";
-        let none = Widths { address: 8, length: 8 };
-        let mut own = Bytes::new(bytes, 0, none, what);
+        let none = FieldWidths { address: 8, length: 8 };
+        let mut own = ByteReader::new(bytes, 0, none, what);
         own.expect(SIGNATURE)?;
         let version = own.byte()?;
         own.skip(match version {
@@ -44,7 +44,7 @@ impl<'a> Raw<'a> {
             2 | 3 => 0,
             _ => return Err(own.unread(format!("HDF5 with a superblock of version {version}"))),
         })?;
-        let widths = Widths { address: own.byte()?.into(), length: own.byte()?.into() };
+        let widths = FieldWidths { address: own.byte()?.into(), length: own.byte()?.into() };
         if ![widths.address, widths.length].iter().all(|width| [2, 4, 8].contains(width)) {
             return Err(own.damaged());
         }
@@ -54,7 +54,7 @@ impl<'a> Raw<'a> {
             1 => 1 + 4 + 4 + 4,
             _ => 1,
         })?;
-        let mut own = Bytes::new(bytes, own.at(), widths, what);
+        let mut own = ByteReader::new(bytes, own.at(), widths, what);
         if own.address()? != Some(0) {
             return Err(own.unread("HDF5 that does not start with the file"));
         }
@@ -69,48 +69,52 @@ impl<'a> Raw<'a> {
             (root, sum) = (own.address()?, None);
         } else {
             root = own.address()?;
-            sum = Some(Sum::take(0, &mut own)?);
+            sum = Some(Checksum::take(0, &mut own)?);
         }
         let root = root.ok_or_else(|| own.damaged())?;
         let taken = RefCell::new(vec![(0..own.at(), 0)]);
         let left = Cell::new(bytes.len());
-        Ok((Raw { bytes, widths, end: End { place, sum }, taken, left }, root))
+        Ok((FileBytes { bytes, widths, end: EndAddress { place, sum }, taken, left }, root))
     }
 
     /// Stands at a place of the file.
-    pub(super) fn at(&self, at: usize, what: &'static str) -> Bytes<'a> {
-        Bytes::new(self.bytes, at, self.widths, what)
+    pub(super) fn at(&self, at: usize, what: &'static str) -> ByteReader<'a> {
+        ByteReader::new(self.bytes, at, self.widths, what)
     }
 
     /// Notes that a range of metadata was read, which has to lie in the file.
-    pub(super) fn take(&self, range: Range<usize>, of: &Bytes<'_>) -> Result<(), Fault> {
+    pub(super) fn claim(&self, range: Range<usize>, of: &ByteReader<'_>) -> Result<(), Hdf5Error> {
         if range.end > self.bytes.len() {
             return Err(of.damaged());
         }
-        self.spend(range.len(), of)?;
+        self.count_metadata(range.len(), of)?;
         self.taken.borrow_mut().push((range.clone(), range.start));
         Ok(())
     }
 
     /// Notes that so many bytes of metadata were read, so that a file cannot have the same ones read forever.
-    pub(super) fn spend(&self, bytes: usize, of: &Bytes<'_>) -> Result<(), Fault> {
+    pub(super) fn count_metadata(
+        &self,
+        bytes: usize,
+        of: &ByteReader<'_>,
+    ) -> Result<(), Hdf5Error> {
         let left = self.left.get().checked_sub(bytes);
         self.left.set(left.ok_or_else(|| of.damaged())?);
         Ok(())
     }
 
     /// Notes that the data of an object were read.
-    pub(super) fn take_data(&self, ranges: impl Iterator<Item = Range<usize>>, object: usize) {
+    pub(super) fn claim_data(&self, ranges: impl Iterator<Item = Range<usize>>, object: usize) {
         self.taken.borrow_mut().extend(ranges.map(|range| (range, object)));
     }
 
     /// Lets metadata be read again, once the tree is known.
-    pub(super) fn read_again(&self) {
-        self.left.set(self.bytes.len().saturating_mul(AGAIN));
+    pub(super) fn allow_rereads(&self) {
+        self.left.set(self.bytes.len().saturating_mul(MAX_REREADS));
     }
 
     /// A byte that two of the things that were read share, if there is one.
-    pub(super) fn shared(&self) -> Option<usize> {
+    pub(super) fn first_overlap(&self) -> Option<usize> {
         let mut taken = self.taken.borrow_mut();
         taken.retain(|(range, _)| !range.is_empty());
         taken.sort_by_key(|(range, owner)| (range.start, range.end, *owner));

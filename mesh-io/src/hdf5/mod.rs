@@ -25,7 +25,7 @@ mod tests;
 mod types;
 
 pub(crate) use dataset::{Array, Dataset};
-pub(crate) use encoding::Encoding;
+pub(crate) use encoding::Hdf5Arrays;
 pub(crate) use file::{Hdf5, Object};
 pub(crate) use file_bytes::SIGNATURE;
-pub(crate) use types::Number;
+pub(crate) use types::Datatype;

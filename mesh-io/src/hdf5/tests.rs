@@ -1,6 +1,6 @@
 //! Files that other programs made, in `tests/formats/h5`.
 
-use super::{Encoding, Hdf5, Number};
+use super::{Datatype, Hdf5, Hdf5Arrays};
 use crate::disk::source::Source;
 use crate::edit::numbers::EncodedArrays;
 use crate::edit::rewrite::Rewrite;
@@ -38,7 +38,9 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
             let path = [&group[..], b"/", name].concat();
             match file.dataset(child) {
                 Ok(None) if path.len() < 200 => groups.push(path),
-                Ok(Some(dataset)) if matches!(dataset.number, Number::Real(..)) => found.push(path),
+                Ok(Some(dataset)) if matches!(dataset.number, Datatype::Real(..)) => {
+                    found.push(path)
+                }
                 _ => {}
             }
         }
@@ -46,7 +48,7 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
     found
 }
 
-fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::Array<'a>, Number)> {
+fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::Array<'a>, Datatype)> {
     let dataset = file.dataset(file.find(path)?).ok()??;
     Some((file.array(&dataset).ok()?, dataset.number))
 }
@@ -56,7 +58,7 @@ fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     let file = Hdf5::open(source).unwrap();
     let (array, number) = array(&file, path).unwrap();
     let size = number.bytes();
-    let encoding = Encoding::new(&file, vec![array]);
+    let encoding = Hdf5Arrays::new(&file, vec![array]);
     let mut new = EncodedArrays::bytes(&encoding).to_vec();
     for (k, number) in new.chunks_exact_mut(size).enumerate() {
         // Digits that no compressor makes shorter.
@@ -104,7 +106,7 @@ fn numbers_of_every_layout_are_replaced() {
                 assert!(before.bytes == after.bytes || is_own, "{shown}");
             }
             assert!(array(&after, path).is_some_and(|(array, _)| array.bytes == new), "{shown}");
-            after.check_apart().unwrap();
+            after.check_no_overlaps().unwrap();
             replaced += 1;
         }
     }
@@ -136,7 +138,7 @@ fn use_all(source: &Source) {
             changed(source, &path);
         }
     }
-    let _ = file.check_apart();
+    let _ = file.check_no_overlaps();
 }
 
 /// Checksums are not looked at in these tests, so that damage gets beyond them.

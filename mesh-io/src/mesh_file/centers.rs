@@ -1,6 +1,6 @@
 //! Centers of faces and edges, which UGRID's files may have.
 
-use crate::content::id_index::TagMap;
+use crate::content::id_index::IdIndex;
 use crate::error::FieldError;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
@@ -45,7 +45,7 @@ impl MeshFile {
             // Reading the file again cannot fail, as it was read before.
             _ = (self.reader().visit)(self.source(), &mut visitor);
         }
-        let map = TagMap::new(&visitor.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
+        let map = IdIndex::new(&visitor.tags).unwrap_or(IdIndex::Run { first: 0, count: 0 });
         let (mut fields, mut others) = (Vec::new(), Vec::new());
         for Array { name, axis, centers } in visitor.found {
             let new = Elements::of(&centers, &map).and_then(|elements| {
@@ -75,7 +75,7 @@ struct Elements<'c> {
 
 impl<'c> Elements<'c> {
     /// `None` if a node is no vertex of the mesh.
-    fn of(centers: &'c Centers, map: &TagMap) -> Option<Elements<'c>> {
+    fn of(centers: &'c Centers, map: &IdIndex) -> Option<Elements<'c>> {
         let vertices = centers.nodes.iter().map(|&node| map.index(node)).collect::<Option<_>>()?;
         (centers.ends.len() == centers.numbers.numbers.len())
             .then_some(Elements { vertices, ends: &centers.ends })

@@ -1,7 +1,7 @@
 //! Groups of elements and single vertices that a user can name in a mesh file.
 
 use crate::content::group::Groups;
-use crate::content::id_index::TagMap;
+use crate::content::id_index::IdIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::mesh_file::mesh::MeshFile;
@@ -52,7 +52,7 @@ impl MeshFile {
         let list = &Source::load(list)?;
         let labels = self.vertex_labels()?;
         // Each label belongs to one vertex, as files with repeated labels are refused.
-        let map = TagMap::new(&labels).ok();
+        let map = IdIndex::new(&labels).ok();
         let cursor = &mut Cursor::new(list);
         let mut vertices = Vec::new();
         while cursor.next_word() {

@@ -1,6 +1,6 @@
 //! Walks again through a file for the parameters of vertices on surfaces of a model.
 
-use crate::content::id_index::TagMap;
+use crate::content::id_index::IdIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -17,7 +17,7 @@ pub(crate) fn parameters(
     let mut visitor = ParameterVisitor::default();
     (reader.visit)(source, &mut visitor)?;
     // There is no error to report, as the file was read before without one.
-    let map = TagMap::new(&visitor.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
+    let map = IdIndex::new(&visitor.tags).unwrap_or(IdIndex::Run { first: 0, count: 0 });
     let field = |(surface, numbers): (i64, PointNumbers)| {
         let nodes = numbers.nodes.as_deref().unwrap_or_default();
         let vertices = nodes.iter().map(|&node| map.index(node).unwrap_or(u32::MAX)).collect();

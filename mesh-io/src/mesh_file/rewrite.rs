@@ -3,7 +3,7 @@
 use crate::compress::file::Compression;
 use crate::detect;
 use crate::disk::atomic;
-use crate::disk::atomic::Job;
+use crate::disk::atomic::FileWrite;
 use crate::disk::file_system::System;
 use crate::disk::paths::same_file;
 use crate::disk::source::Source;
@@ -12,7 +12,7 @@ use crate::edit::numbers::{ByteEdit, EncodedArrays};
 use crate::edit::rewrite::Rewrite;
 use crate::error::WriteError;
 use crate::mesh_file::mesh::MeshFile;
-use crate::registry::Family;
+use crate::registry::FormatEntry;
 use crate::visit::field::PointField;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::io::{self, Write};
@@ -61,7 +61,7 @@ impl MeshFile {
         self.check_destination(path)?;
         let packs = self.packs(path);
         let renamed = &(self.reader().renames)(self.source(), path);
-        let job = |(part, destination)| -> Job<'_> {
+        let job = |(part, destination)| -> FileWrite<'_> {
             let edits = Edits { points, fields };
             (
                 destination,
@@ -279,7 +279,7 @@ impl MeshFile {
     /// [`WriteError::Format`] if `path` is not the name of a file, if its ending belongs to another format, or if a
     /// file in the way would be read in place of or with a Triangle mesh.
     pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
-        let usual = Family::of(self.format()).endings[0];
+        let usual = FormatEntry::of(self.format()).extensions[0];
         let refused = |problem: String, remedy: String| {
             Err(WriteError::Format { path: path.to_owned(), problem, remedy })
         };
@@ -290,8 +290,8 @@ impl MeshFile {
         if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
             return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
         }
-        if let Some(owner) = detect::owner_of_ending(path)
-            && !Family::of(self.format()).has_ending_of(path)
+        if let Some(owner) = detect::format_name_of_extension(path)
+            && !FormatEntry::of(self.format()).matches_extension(path)
         {
             let problem =
                 format!("its ending is that of {owner}, but the mesh is {}", self.format());

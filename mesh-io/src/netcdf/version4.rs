@@ -43,7 +43,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
             shape.remove(0);
         }
         let (number, order) = match dataset.number {
-            hdf5::Number::Text(1) => (Number::Text, ByteOrder::Big),
+            hdf5::Datatype::Text(1) => (Number::Text, ByteOrder::Big),
             other => number_of(other),
         };
         let size = shape.iter().try_fold(number.bytes() as u64, |size, &n| size.checked_mul(n));
@@ -51,7 +51,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         let attributes = file.attributes(object).into_iter().map(|(name, attribute)| {
             // A text of an attribute is a single item.
             let (number, order) = match attribute.number {
-                hdf5::Number::Text(_) => (Number::Text, ByteOrder::Big),
+                hdf5::Datatype::Text(_) => (Number::Text, ByteOrder::Big),
                 other => number_of(other),
             };
             Attribute { name: name.to_vec(), number, order, bytes: attribute.bytes.to_vec() }
@@ -75,12 +75,12 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
 }
 
 /// What numbers are called here, and the order of their bytes.
-fn number_of(number: hdf5::Number) -> (Number, ByteOrder) {
+fn number_of(number: hdf5::Datatype) -> (Number, ByteOrder) {
     match number {
-        hdf5::Number::Whole(bytes, order) => (Number::Whole(bytes), order),
-        hdf5::Number::Real(precision, order) => (Number::Real(precision), order),
-        hdf5::Number::Text(bytes)
-        | hdf5::Number::TextElsewhere(bytes)
-        | hdf5::Number::Other(bytes) => (Number::Other(bytes), ByteOrder::Big),
+        hdf5::Datatype::Whole(bytes, order) => (Number::Whole(bytes), order),
+        hdf5::Datatype::Real(precision, order) => (Number::Real(precision), order),
+        hdf5::Datatype::Text(bytes)
+        | hdf5::Datatype::VariableText(bytes)
+        | hdf5::Datatype::Other(bytes) => (Number::Other(bytes), ByteOrder::Big),
     }
 }

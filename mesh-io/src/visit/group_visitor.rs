@@ -1,8 +1,8 @@
 //! Walks again through a file for what the reading of the mesh leaves out: groups, and the labels of vertices.
 
-use crate::content::id_index::TagIndex;
+use crate::content::id_index::IdIndexBuilder;
 use crate::content::label::Label;
-use crate::content::regions::Numbering;
+use crate::content::regions::Interner;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -28,11 +28,11 @@ pub(crate) fn labels(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u6
 #[derive(Default)]
 struct GroupVisitor {
     table: GroupTable,
-    tags: TagIndex,
+    tags: IdIndexBuilder,
     triangles: u32,
     columns: Vec<RegionAttribute>,
     /// For each column, the numbers that were met, by dimension.
-    met: Vec<Numbering<(u8, i64)>>,
+    met: Vec<Interner<(u8, i64)>>,
     /// For each column, the group of each number that was met, if it has one.
     groups: Vec<Vec<Option<usize>>>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
@@ -53,7 +53,7 @@ impl GroupVisitor {
             if dimension < column.from_dimension {
                 continue;
             }
-            let name = met.number((dimension, number)) as usize;
+            let name = met.intern((dimension, number)) as usize;
             if name == groups.len() {
                 let label = (column.label)(number);
                 let group = label.map(|label| table.number(&column.what, dimension, &label));
@@ -106,7 +106,7 @@ impl MeshVisitor for GroupVisitor {
     }
 
     fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
-        self.met = columns.iter().map(|_| Numbering::default()).collect();
+        self.met = columns.iter().map(|_| Interner::default()).collect();
         self.groups = columns.iter().map(|_| Vec::new()).collect();
         self.columns = columns;
     }

@@ -1,8 +1,8 @@
 //! Makes a mesh from a file's nodes and elements.
 
 use crate::content::constraints::{Constraints, PeriodicPairs};
-use crate::content::id_index::TagIndex;
-use crate::content::regions::{Numbering, Regions};
+use crate::content::id_index::IdIndexBuilder;
+use crate::content::regions::{Interner, TriangleRegions};
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Offsets, OffsetsBuilder};
@@ -88,9 +88,9 @@ struct MeshBuilder {
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
     x_at: OffsetsBuilder,
-    tags: TagIndex,
-    region_names: Numbering<[i64; 2]>,
-    regions: Regions,
+    tags: IdIndexBuilder,
+    region_names: Interner<[i64; 2]>,
+    regions: TriangleRegions,
     constraints: Constraints,
     quadrilaterals: u64,
     remarks: Vec<Remark>,
@@ -133,7 +133,7 @@ impl MeshVisitor for MeshBuilder {
     fn expect_nodes(&mut self, count: usize) {
         self.points.reserve_exact(count);
         self.x_at.expect(count);
-        self.tags.found().expect(count);
+        self.tags.ids().expect(count);
     }
 
     #[inline]
@@ -156,7 +156,7 @@ impl MeshVisitor for MeshBuilder {
         if !self.takes_ahead {
             return 0;
         }
-        records.read(&mut self.points, self.tags.found(), &mut self.x_at)
+        records.read(&mut self.points, self.tags.ids(), &mut self.x_at)
     }
 
     fn polyline(
@@ -246,7 +246,7 @@ impl MeshVisitor for MeshBuilder {
         };
         let Some(map) = tags.map() else { return 0 };
         records.read(map, triangles, |region, count| {
-            let number = region_names.number(region);
+            let number = region_names.intern(region);
             (0..count).for_each(|_| regions.push(number));
         })
     }
@@ -268,7 +268,7 @@ impl MeshVisitor for MeshBuilder {
             }
             Kind::Triangle => {
                 self.triangles.push([a, b, c]);
-                self.regions.push(self.region_names.number(region));
+                self.regions.push(self.region_names.intern(region));
                 Ok(())
             }
             Kind::Point | Kind::Corner | Kind::Line | Kind::Quadrilateral => {

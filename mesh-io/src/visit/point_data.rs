@@ -1,6 +1,6 @@
 //! Walks again through a file for arrays of point data.
 
-use crate::content::id_index::TagIndex;
+use crate::content::id_index::IdIndexBuilder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -34,7 +34,7 @@ pub(crate) fn point_data(
     source: &Source,
     wanted: FieldSelection<'_>,
 ) -> Result<PointData, ReadError> {
-    let (last, tags, found) = (Default::default(), TagIndex::default(), PointData::default());
+    let (last, tags, found) = (Default::default(), IdIndexBuilder::default(), PointData::default());
     let mut visitor = PointDataVisitor { wanted, last, tags, found, named: HashSet::new() };
     (reader.visit)(source, &mut visitor)?;
     Ok(visitor.found)
@@ -44,7 +44,7 @@ struct PointDataVisitor<'n> {
     wanted: FieldSelection<'n>,
     /// The name of the array that was announced last, and its number of components.
     last: (String, usize),
-    tags: TagIndex,
+    tags: IdIndexBuilder,
     found: PointData,
     /// The names in `found.known`. A damaged file may announce any number of them.
     named: HashSet<String>,

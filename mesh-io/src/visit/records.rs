@@ -4,7 +4,7 @@
 //! only one that returns errors.
 
 use crate::binary::number_field::NumberField;
-use crate::content::id_index::{FoundTags, TagMap};
+use crate::content::id_index::{IdIndex, IdList};
 use crate::edit::numbers::OffsetsBuilder;
 use crate::parallel::{map_parts, map_ranges};
 use std::ops::Range;
@@ -48,7 +48,7 @@ impl NodeRecords<'_> {
     pub(crate) fn read(
         &self,
         points: &mut Vec<[f64; 2]>,
-        tags: &mut FoundTags,
+        tags: &mut IdList,
         places: &mut OffsetsBuilder,
     ) -> usize {
         let &NodeRecords { count, x, y, .. } = self;
@@ -83,7 +83,7 @@ impl NodeRecords<'_> {
     }
 }
 
-fn add_tags(field: NumberField<'_>, count: usize, tags: &mut FoundTags) {
+fn add_tags(field: NumberField<'_>, count: usize, tags: &mut IdList) {
     let first = field.whole(0..count.min(1)).next().unwrap_or(0);
     let are_consecutive = |records: Range<usize>| {
         let expected = records.clone().map(|record| first.checked_add(record as u64));
@@ -145,7 +145,7 @@ impl TriangleRecords<'_> {
     /// triangles have each. Returns how many triangles were read.
     pub(crate) fn read(
         &self,
-        map: &TagMap,
+        map: &IdIndex,
         triangles: &mut Vec<[u32; 3]>,
         mut region: impl FnMut([i64; 2], usize),
     ) -> usize {
@@ -162,7 +162,7 @@ impl TriangleRecords<'_> {
         }
         let (taken, same) = append(triangles, count, |records, triangles| {
             let is_plain = match *map {
-                TagMap::Run { first, count } => self.fill(records.clone(), triangles, |tag| {
+                IdIndex::Run { first, count } => self.fill(records.clone(), triangles, |tag| {
                     tag.checked_sub(first).filter(|&index| index < count).map(|index| index as u32)
                 }),
                 _ => self.fill(records.clone(), triangles, |tag| map.index(tag)),

@@ -1,9 +1,9 @@
 //! Writes input files of Abaqus and CalculiX, `.inp`, with the mesh alone.
 
 use crate::content::label::Label;
-use crate::export::name_rules::{Spelling, distinct};
+use crate::export::name_rules::{NameRules, distinct};
 use crate::export::put;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::precision::short_text;
 use crate::visit::items::Kind;
 use std::fmt::Write;
@@ -11,13 +11,13 @@ use std::fmt::Write;
 /// How many numbers a row of a set has.
 const ROW: usize = 16;
 
-pub(crate) fn write_inp(job: &Job<'_>) -> String {
+pub(crate) fn write_inp(job: &WriterInput<'_>) -> String {
     let content = job.content;
     // Elements of the plane have no third coordinate.
-    let is_flat = content.heights.is_empty();
+    let is_flat = content.z_values.is_empty();
     let mut out = "*HEADING\nmesh\n*NODE\n".to_owned();
     for (vertex, [x, y]) in content.points.iter().enumerate() {
-        put!(out, "{}, {}, {}", job.number(vertex), short_text(*x), short_text(*y));
+        put!(out, "{}, {}, {}", job.vertex_id(vertex), short_text(*x), short_text(*y));
         if !is_flat {
             put!(out, ", {}", short_text(content.z(vertex)));
         }
@@ -33,13 +33,13 @@ pub(crate) fn write_inp(job: &Job<'_>) -> String {
     };
     let mut last = None;
     for (cell, element) in job.cells().zip(1..) {
-        let own = (kind_of(cell), job.tags.group(content, cell));
+        let own = (kind_of(cell), job.group_numbers.group(content, cell));
         if last.replace(own) != Some(own) {
             put!(out, "*ELEMENT, TYPE={}", own.0);
-            let set = own.1.map(|group| format!(", ELSET={}", job.word(group)));
+            let set = own.1.map(|group| format!(", ELSET={}", job.name_or_number(group)));
             put!(out, "{}\n", set.unwrap_or_default());
         }
-        put!(out, "{element}, {}\n", job.numbers(cell).replace(' ', ", "));
+        put!(out, "{element}, {}\n", job.vertex_ids(cell).replace(' ', ", "));
     }
     let names: Vec<&str> =
         content.vertex_groups.iter().map(|(group, _)| group.name().unwrap_or_default()).collect();
@@ -50,11 +50,13 @@ pub(crate) fn write_inp(job: &Job<'_>) -> String {
             Label::Name(name) => name.clone(),
         }
     };
-    let names = distinct(&names, Spelling::Label, &[], |place| Spelling::Label.of(&number(place)));
+    let names =
+        distinct(&names, NameRules::Label, &[], |place| NameRules::Label.of(&number(place)));
     for ((_, vertices), name) in content.vertex_groups.iter().zip(names) {
         put!(out, "*NSET, NSET={name}\n");
         for row in vertices.chunks(ROW) {
-            let numbers: Vec<_> = row.iter().map(|&v| job.number(v as usize).to_string()).collect();
+            let numbers: Vec<_> =
+                row.iter().map(|&v| job.vertex_id(v as usize).to_string()).collect();
             put!(out, "{}\n", numbers.join(", "));
         }
     }

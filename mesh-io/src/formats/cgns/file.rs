@@ -2,7 +2,7 @@
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::hdf5::{Array, Dataset, Hdf5, Number, Object};
+use crate::hdf5::{Array, Dataset, Datatype, Hdf5, Object};
 use crate::text::cursor::Cursor;
 
 /// A file with its base and its one zone.
@@ -64,7 +64,7 @@ impl<'a> File<'a> {
         node: &'a Object,
     ) -> Result<Option<(Dataset, Array<'a>)>, ReadError> {
         let dataset = self.data(node).map(|data| self.hdf5.dataset(data)).transpose()?.flatten();
-        let dataset = dataset.filter(|dataset| matches!(dataset.number, Number::Real(..)));
+        let dataset = dataset.filter(|dataset| matches!(dataset.number, Datatype::Real(..)));
         dataset
             .map(|dataset| Ok((self.hdf5.array(&dataset)?, dataset)).map(|(a, d)| (d, a)))
             .transpose()

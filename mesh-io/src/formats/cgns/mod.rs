@@ -13,7 +13,7 @@ use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
-use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, SIGNATURE};
+use crate::hdf5::{Array, Dataset, Datatype, Hdf5, Hdf5Arrays, SIGNATURE};
 use crate::visit::items::PointNumbers;
 use crate::visit::reader::FormatReader;
 use crate::visit::storage::{ArrayLocation, ByteSpace, CoordinateStorage};
@@ -68,7 +68,7 @@ impl<'a> File<'a> {
         let is_same = |(dataset, array): &(Dataset, Array<'_>)| {
             Some((dataset.number, array.bytes.len())) == first
         };
-        let (Some((Number::Real(precision, order), length)), 2..=3, true) =
+        let (Some((Datatype::Real(precision, order), length)), 2..=3, true) =
             (first, read.len(), read.iter().all(is_same))
         else {
             let problem = "the zone has no CoordinateX and CoordinateY of one type and length";
@@ -94,7 +94,7 @@ impl<'a> File<'a> {
             }
             for (name, node) in labeled(self.hdf5, solution, b"DataArray_t") {
                 let dataset = self.data(node).and_then(|data| self.hdf5.dataset(data).ok()?);
-                let Some(Number::Real(precision, order)) = dataset.map(|own| own.number) else {
+                let Some(Datatype::Real(precision, order)) = dataset.map(|own| own.number) else {
                     continue;
                 };
                 if !visitor.point_array(name, 1, true) {
@@ -107,7 +107,7 @@ impl<'a> File<'a> {
                 let (start, home) = match array.place() {
                     Some(start) => (start, ByteSpace::File),
                     None => {
-                        let encoding = Encoding::new(self.hdf5, vec![array]);
+                        let encoding = Hdf5Arrays::new(self.hdf5, vec![array]);
                         (0, ByteSpace::Encoded(Arc::new(encoding) as Arc<dyn EncodedArrays>))
                     }
                 };

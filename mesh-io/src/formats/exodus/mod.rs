@@ -73,7 +73,7 @@ impl FormatReader for Exodus {
             file.node_sets(visitor)?;
         }
         file.data(&blocks, visitor);
-        file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_no_overlaps)?;
         Ok(layout)
     }
 }

@@ -5,7 +5,7 @@
 use crate::content::label::Label;
 use crate::export::content::ContentGroup;
 use crate::export::sides::{pair, sides};
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::netcdf::write::{NetCdf, Values};
 use crate::visit::items::Kind;
 use std::collections::{HashMap, HashSet};
@@ -39,17 +39,17 @@ fn type_of(kind: Kind) -> (&'static str, usize) {
 }
 
 /// Returns the group that names the block or side set of a cell.
-fn group_of(job: &Job<'_>, cell: usize) -> Option<u32> {
+fn group_of(job: &WriterInput<'_>, cell: usize) -> Option<u32> {
     let of_any = || {
         let set = &job.content.sets[job.content.cells.sets[cell] as usize];
         set.iter().copied().find(|&group| job.content.groups[group as usize].what == "block")
     };
-    job.tags.group(job.content, cell).or_else(of_any)
+    job.group_numbers.group(job.content, cell).or_else(of_any)
 }
 
-pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
+pub(crate) fn write_exodus(job: &WriterInput<'_>) -> Vec<u8> {
     let content = job.content;
-    let sides = sides(content, |cell| job.tags.group(content, cell));
+    let sides = sides(content, |cell| job.group_numbers.group(content, cell));
     let blocks = blocks(job, &sides);
     let side_sets = side_sets(job, &blocks, &sides);
     let names = || {
@@ -81,7 +81,7 @@ pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
 
 /// Makes the blocks, in the order in which the file first has an element of each: first triangles and quadrilaterals,
 /// then lines, then points.
-fn blocks(job: &Job<'_>, sides: &HashSet<usize>) -> Vec<Block> {
+fn blocks(job: &WriterInput<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut places: HashMap<(u8, Option<u32>), usize> = HashMap::new();
     for cell in job.cells().filter(|cell| !sides.contains(cell)) {
@@ -96,7 +96,7 @@ fn blocks(job: &Job<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     blocks
 }
 
-fn side_sets(job: &Job<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
+fn side_sets(job: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
     let content = job.content;
     let mut wanted: HashMap<(u32, u32), (i32, i32)> = HashMap::new();
     for &line in sides {
@@ -123,7 +123,9 @@ fn side_sets(job: &Job<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<Sid
     let mut sets: Vec<SideSet> = Vec::new();
     let mut places: HashMap<u32, usize> = HashMap::new();
     for line in content.cells.all(Kind::Line).filter(|line| sides.contains(line)) {
-        let (Some(group), &[a, b]) = (job.tags.group(content, line), content.cells.of(line)) else {
+        let (Some(group), &[a, b]) =
+            (job.group_numbers.group(content, line), content.cells.of(line))
+        else {
             continue;
         };
         let place = *places.entry(group).or_insert(sets.len());
@@ -142,7 +144,7 @@ fn text(name: &'static str, content: &str) -> (&'static str, Values) {
     (name, Values::Text(content.as_bytes().to_vec()))
 }
 
-fn points(out: &mut NetCdf, job: &Job<'_>, width: usize) {
+fn points(out: &mut NetCdf, job: &WriterInput<'_>, width: usize) {
     let content = job.content;
     let count = content.points.len();
     let is_flat = (0..count).all(|vertex| content.z(vertex) == 0.0);
@@ -197,10 +199,10 @@ fn named(
     );
 }
 
-fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
+fn elements(out: &mut NetCdf, job: &WriterInput<'_>, blocks: &[Block], width: usize) {
     let content = job.content;
     out.dimension("num_elem", blocks.iter().map(|block| block.cells.len()).sum());
-    let number = |block: &Block| block.group.map(|group| job.tags.number(group));
+    let number = |block: &Block| block.group.map(|group| job.group_numbers.number(group));
     let name = |block: &Block| content.groups[block.group? as usize].name();
     let names: Vec<&str> = blocks.iter().map(|block| name(block).unwrap_or("")).collect();
     let told = ["num_el_blk", "eb_status", "eb_prop1", "eb_names"];
@@ -217,10 +219,10 @@ fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
     }
 }
 
-fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
+fn sets(out: &mut NetCdf, job: &WriterInput<'_>, side_sets: &[SideSet], width: usize) {
     let content = job.content;
     if !side_sets.is_empty() {
-        let own = numbers(side_sets.iter().map(|set| Some(job.tags.number(set.group))));
+        let own = numbers(side_sets.iter().map(|set| Some(job.group_numbers.number(set.group))));
         let name = |set: &SideSet| content.groups[set.group as usize].name().unwrap_or("");
         let told = ["num_side_sets", "ss_status", "ss_prop1", "ss_names"];
         let names: Vec<&str> = side_sets.iter().map(name).collect();
@@ -252,7 +254,7 @@ fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
     }
 }
 
-fn data(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
+fn data(out: &mut NetCdf, job: &WriterInput<'_>, blocks: &[Block], width: usize) {
     let of_points: Vec<_> = job.point_data().collect();
     if !of_points.is_empty() {
         out.dimension("num_nod_var", of_points.len());

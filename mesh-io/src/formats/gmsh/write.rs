@@ -2,7 +2,7 @@
 
 use crate::export::content::Data;
 use crate::export::put;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::visit::items::Kind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -17,40 +17,40 @@ fn kind_of(kind: Kind) -> u32 {
     }
 }
 
-pub(crate) fn write_22(job: &Job<'_>) -> String {
+pub(crate) fn write_22(job: &WriterInput<'_>) -> String {
     let mut out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_owned();
     names(job, &mut out);
     let points = job.content.points.len();
     put!(out, "$Nodes\n{points}\n");
     for vertex in 0..points {
-        put!(out, "{} {}\n", job.number(vertex), job.space(vertex));
+        put!(out, "{} {}\n", job.vertex_id(vertex), job.xyz(vertex));
     }
     put!(out, "$EndNodes\n$Elements\n{}\n", job.cells().count());
     let entities = Entities::new(job);
     for (cell, element) in job.cells().zip(1..) {
         let kind = job.content.cells.kinds[cell];
         let (physical, entity) = (physical(job, cell), entities.of(job, cell));
-        put!(out, "{element} {} 2 {physical} {entity} {}\n", kind_of(kind), job.numbers(cell));
+        put!(out, "{element} {} 2 {physical} {entity} {}\n", kind_of(kind), job.vertex_ids(cell));
     }
     out.push_str("$EndElements\n");
     data(job, &mut out);
     out
 }
 
-pub(crate) fn write_41(job: &Job<'_>) -> String {
+pub(crate) fn write_41(job: &WriterInput<'_>) -> String {
     let mut out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".to_owned();
     names(job, &mut out);
     let entities = Entities::new(job);
     entities.write(job, &mut out);
     let content = job.content;
     let points = content.points.len();
-    let numbers = || (0..points).map(|vertex| job.number(vertex));
+    let numbers = || (0..points).map(|vertex| job.vertex_id(vertex));
     let (least, most) = (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0));
     // All nodes are written as nodes of a surface. The line elements tell which nodes lie on curves.
     let surface = entities.first_surface();
     put!(out, "$Nodes\n1 {points} {least} {most}\n2 {surface} 0 {points}\n");
     numbers().for_each(|number| put!(out, "{number}\n"));
-    (0..points).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    (0..points).for_each(|vertex| put!(out, "{}\n", job.xyz(vertex)));
     let cells: Vec<usize> = job.cells().collect();
     let block = |cell: usize| (content.cells.kinds[cell], entities.of(job, cell));
     let blocks: Vec<&[usize]> = cells.chunk_by(|&a, &b| block(a) == block(b)).collect();
@@ -61,7 +61,7 @@ pub(crate) fn write_41(job: &Job<'_>) -> String {
         put!(out, "{} {entity} {} {}\n", kind.dimension(), kind_of(kind), cells.len());
         for &cell in cells {
             element += 1;
-            put!(out, "{element} {}\n", job.numbers(cell));
+            put!(out, "{element} {}\n", job.vertex_ids(cell));
         }
     }
     out.push_str("$EndElements\n");
@@ -70,20 +70,20 @@ pub(crate) fn write_41(job: &Job<'_>) -> String {
 }
 
 /// Returns the physical group of a cell, or 0.
-fn physical(job: &Job<'_>, cell: usize) -> i64 {
+fn physical(job: &WriterInput<'_>, cell: usize) -> i64 {
     match job.group(cell) {
-        Some(group) if group.what != "entity" => job.tag(cell),
+        Some(group) if group.what != "entity" => job.group_number(cell),
         _ => 0,
     }
 }
 
-fn names(job: &Job<'_>, out: &mut String) {
+fn names(job: &WriterInput<'_>, out: &mut String) {
     let mut named: HashMap<u32, i64> = HashMap::new();
     for cell in job.cells() {
-        if let Some(group) = job.tags.group(job.content, cell)
+        if let Some(group) = job.group_numbers.group(job.content, cell)
             && job.content.groups[group as usize].what != "entity"
         {
-            named.insert(group, job.tags.number(group));
+            named.insert(group, job.group_numbers.number(group));
         }
     }
     let mut rows: Vec<(u8, i64, &str)> = named
@@ -112,7 +112,7 @@ struct Entities {
 }
 
 impl Entities {
-    fn new(job: &Job<'_>) -> Entities {
+    fn new(job: &WriterInput<'_>) -> Entities {
         let column = job.content.column("entity");
         let key = |cell: usize| {
             let dimension = job.content.cells.kinds[cell].dimension();
@@ -127,7 +127,7 @@ impl Entities {
                 continue;
             }
             // The entity keeps its own number, or gets that of its physical group.
-            let wanted = entity.map_or(physical, |entity| job.tags.number(entity));
+            let wanted = entity.map_or(physical, |entity| job.group_numbers.number(entity));
             let number = if wanted > 0 && taken.insert((dimension, wanted)) { wanted } else { 0 };
             numbers.insert((dimension, entity, physical), number);
             if number == 0 {
@@ -144,7 +144,7 @@ impl Entities {
         Entities { column, numbers }
     }
 
-    fn of(&self, job: &Job<'_>, cell: usize) -> i64 {
+    fn of(&self, job: &WriterInput<'_>, cell: usize) -> i64 {
         let dimension = job.content.cells.kinds[cell].dimension();
         let key = (dimension, self.column[cell], physical(job, cell));
         self.numbers.get(&key).copied().unwrap_or(1)
@@ -155,7 +155,7 @@ impl Entities {
         surfaces.map(|(_, &number)| number).min().unwrap_or(1)
     }
 
-    fn write(&self, job: &Job<'_>, out: &mut String) {
+    fn write(&self, job: &WriterInput<'_>, out: &mut String) {
         let mut rows: Vec<(u8, i64, i64)> = self
             .numbers
             .iter()
@@ -190,9 +190,9 @@ impl Entities {
 }
 
 /// Writes `$NodeData` and `$ElementData`.
-fn data(job: &Job<'_>, out: &mut String) {
+fn data(job: &WriterInput<'_>, out: &mut String) {
     for data in job.point_data() {
-        let numbers = (0..job.content.points.len()).map(|vertex| job.number(vertex));
+        let numbers = (0..job.content.points.len()).map(|vertex| job.vertex_id(vertex));
         section(data, "NodeData", numbers, (0..job.content.points.len()).collect(), out);
     }
     for data in job.cell_data() {

@@ -13,7 +13,7 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
-use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
+use crate::hdf5::{Datatype, Hdf5, Object, SIGNATURE};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
 use crate::visit::items::{Kind, RegionAttribute};
@@ -151,7 +151,7 @@ impl<'a> File<'a> {
                 .error("the mesh has no nodes", "Save the mesh again"));
         };
         let cursor = self.cursor(object);
-        let Number::Real(precision, order) = dataset.number else {
+        let Datatype::Real(precision, order) = dataset.number else {
             return Err(cursor.error("the coordinates are not real numbers", "Save the mesh again"));
         };
         let axes = self.hdf5.attribute(self.mesh, b"ESP").and_then(|axes| axes.whole());
@@ -203,7 +203,7 @@ impl<'a> File<'a> {
         let of_families = of_families.unwrap_or_default();
         let own = self.hdf5.child(object, b"NOD");
         let dataset = own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten();
-        let Some((dataset, Number::Whole(size, order))) = dataset.map(|own| {
+        let Some((dataset, Datatype::Whole(size, order))) = dataset.map(|own| {
             let number = own.number;
             (own, number)
         }) else {

@@ -1,7 +1,7 @@
 //! Writes Medit's `.mesh` and `.meshb`, and FreeFem's `.msh`.
 
 use crate::export::put;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::visit::items::Kind;
 use std::fmt::Write;
 
@@ -22,14 +22,14 @@ struct Medit {
 }
 
 impl Medit {
-    fn new(job: &Job<'_>) -> Medit {
+    fn new(job: &WriterInput<'_>) -> Medit {
         let content = job.content;
-        let flat = content.heights.is_empty() && content.height == 0.0;
-        let mut references = job.vertex_tags();
+        let flat = content.z_values.is_empty() && content.common_z == 0.0;
+        let mut references = job.vertex_group_numbers();
         // Points are written as references of their vertices, except those of the format's own lists.
         let is_listed = |cell: usize| job.group(cell).is_some_and(|group| group.what == "list");
         for cell in job.all(Kind::Point).filter(|&cell| !is_listed(cell)) {
-            references[content.cells.of(cell)[0] as usize] = job.tag(cell);
+            references[content.cells.of(cell)[0] as usize] = job.group_number(cell);
         }
         let places =
             |cell: usize| content.cells.of(cell).iter().map(|&vertex| i64::from(vertex) + 1);
@@ -47,7 +47,8 @@ impl Medit {
             (Kind::Triangle, "Triangles", 6),
             (Kind::Quadrilateral, "Quadrilaterals", 7),
         ] {
-            let numbers = job.all(kind).flat_map(|cell| places(cell).chain([job.tag(cell)]));
+            let numbers =
+                job.all(kind).flat_map(|cell| places(cell).chain([job.group_number(cell)]));
             let (width, numbers) = (kind.nodes() + 1, numbers.collect());
             lists.push(List { name, keyword, width, numbers });
         }
@@ -56,12 +57,12 @@ impl Medit {
     }
 }
 
-pub(crate) fn write_medit(job: &Job<'_>) -> String {
+pub(crate) fn write_medit(job: &WriterInput<'_>) -> String {
     let Medit { dimension, references, lists } = Medit::new(job);
     let mut out = format!("MeshVersionFormatted 2\nDimension {dimension}\n");
     put!(out, "Vertices\n{}\n", references.len());
     for (vertex, reference) in references.iter().enumerate() {
-        let at = if dimension == 2 { job.plane(vertex) } else { job.space(vertex) };
+        let at = if dimension == 2 { job.xy(vertex) } else { job.xyz(vertex) };
         put!(out, "{at} {reference}\n");
     }
     for List { name, width, numbers, .. } in lists {
@@ -78,13 +79,13 @@ pub(crate) fn write_medit(job: &Job<'_>) -> String {
 /// Offsets in files of version 2 have 4 bytes. Longer files are written as version 3, with 8 bytes.
 const LARGE: usize = 1 << 31;
 
-pub(crate) fn write_meshb(job: &Job<'_>) -> Vec<u8> {
+pub(crate) fn write_meshb(job: &WriterInput<'_>) -> Vec<u8> {
     let medit = Medit::new(job);
     let small = meshb(job, &medit, 2);
     if small.len() < LARGE { small } else { meshb(job, &medit, 3) }
 }
 
-fn meshb(job: &Job<'_>, medit: &Medit, version: i32) -> Vec<u8> {
+fn meshb(job: &WriterInput<'_>, medit: &Medit, version: i32) -> Vec<u8> {
     let mut out = Vec::new();
     let ints = |numbers: &[i64]| -> Vec<u8> {
         numbers.iter().flat_map(|&number| (number as i32).to_le_bytes()).collect()
@@ -117,16 +118,16 @@ fn meshb(job: &Job<'_>, medit: &Medit, version: i32) -> Vec<u8> {
     out
 }
 
-pub(crate) fn write_freefem(job: &Job<'_>) -> String {
+pub(crate) fn write_freefem(job: &WriterInput<'_>) -> String {
     let points = job.content.points.len();
     let counts = [points, job.count(Kind::Triangle), job.count(Kind::Line)];
     let mut out = format!("{} {} {}\n", counts[0], counts[1], counts[2]);
-    for (vertex, label) in job.vertex_tags().into_iter().enumerate() {
-        put!(out, "{} {label}\n", job.plane(vertex));
+    for (vertex, label) in job.vertex_group_numbers().into_iter().enumerate() {
+        put!(out, "{} {label}\n", job.xy(vertex));
     }
     for kind in [Kind::Triangle, Kind::Line] {
         for cell in job.all(kind) {
-            put!(out, "{} {}\n", job.places(cell, 1), job.tag(cell));
+            put!(out, "{} {}\n", job.positions(cell, 1), job.group_number(cell));
         }
     }
     out

@@ -2,12 +2,12 @@
 
 use crate::export::content::Data;
 use crate::export::put;
-use crate::export::writer_input::{Job, text_of};
+use crate::export::writer_input::{WriterInput, text_of};
 use crate::visit::items::Kind;
 use std::fmt::Write;
 
 /// Writes PLY as text, with data of one number among the properties of vertices.
-pub(crate) fn write_ply(job: &Job<'_>) -> String {
+pub(crate) fn write_ply(job: &WriterInput<'_>) -> String {
     let content = job.content;
     let data: Vec<&Data> = job.point_data().collect();
     let mut out = "ply\nformat ascii 1.0\n".to_owned();
@@ -29,13 +29,13 @@ pub(crate) fn write_ply(job: &Job<'_>) -> String {
     }
     out.push_str("end_header\n");
     for vertex in 0..content.points.len() {
-        out.push_str(&job.space(vertex));
+        out.push_str(&job.xyz(vertex));
         data.iter().for_each(|data| put!(out, " {}", text_of(data, data.values[vertex])));
         out.push('\n');
     }
     for cell in faces() {
-        put!(out, "{} {}\n", content.cells.of(cell).len(), job.places(cell, 0));
+        put!(out, "{} {}\n", content.cells.of(cell).len(), job.positions(cell, 0));
     }
-    job.all(Kind::Line).for_each(|cell| put!(out, "{}\n", job.places(cell, 0)));
+    job.all(Kind::Line).for_each(|cell| put!(out, "{}\n", job.positions(cell, 0)));
     out
 }

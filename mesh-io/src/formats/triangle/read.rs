@@ -4,7 +4,7 @@
 //! announced rows and columns.
 
 use crate::content::label::Label;
-use crate::content::regions::Numbering;
+use crate::content::regions::Interner;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers;
@@ -219,10 +219,10 @@ fn triangle<'a>(
 struct Attributes<'a> {
     /// The number of attributes of each triangle.
     columns: u64,
-    texts: Numbering<&'a [u8]>,
+    texts: Interner<&'a [u8]>,
     /// The region of each text.
     regions: Vec<u32>,
-    names: Numbering<String>,
+    names: Interner<String>,
     /// The text whose groups the visitor has, and its region.
     last: Option<(&'a [u8], u32)>,
 }
@@ -248,9 +248,9 @@ impl<'a> Attributes<'a> {
 
     #[inline]
     fn number(&mut self, text: &'a [u8]) -> u32 {
-        let number = self.texts.number(text) as usize;
+        let number = self.texts.intern(text) as usize;
         if number == self.regions.len() {
-            self.regions.push(self.names.number(normalized(text)));
+            self.regions.push(self.names.intern(normalized(text)));
         }
         self.regions[number]
     }

@@ -45,7 +45,7 @@ impl FormatReader for Ugrid {
         let layout = mesh.axes()?.send(Format::Ugrid, mesh.nodes, faces.first, visitor)?;
         faces::send(&faces, visitor)?;
         mesh.data(&mesh.tables(faces), visitor);
-        header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_no_overlaps)?;
         Ok(layout)
     }
 }

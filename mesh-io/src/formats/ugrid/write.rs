@@ -4,7 +4,7 @@
 //! give the variables of their mesh; numbers of nodes start at one.
 
 use crate::export::content::Data;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::netcdf::write::{NetCdf, Values};
 
 /// The names of variables that a mesh consists of, which no data may have.
@@ -22,7 +22,7 @@ const CORNERS: &str = "mesh2d_nMax_face_nodes";
 /// What stands in the place of a corner that a face does not have.
 const MISSING: i32 = -999;
 
-pub(crate) fn write_ugrid(job: &Job<'_>) -> Vec<u8> {
+pub(crate) fn write_ugrid(job: &WriterInput<'_>) -> Vec<u8> {
     let content = job.content;
     let cells: Vec<usize> = job.cells().collect();
     let corners = cells.iter().map(|&cell| content.cells.of(cell).len()).max().unwrap_or(3);

@@ -94,13 +94,13 @@ impl Triangles<'_> {
 }
 
 /// Decides when to try to hand on many triangles at once: rarely if they are few among other cells.
-pub(crate) struct Tries {
+pub(crate) struct BulkBackoff {
     left: usize,
     next: usize,
 }
 
-impl Tries {
-    pub(crate) const NEW: Tries = Tries { left: 10, next: 0 };
+impl BulkBackoff {
+    pub(crate) const NEW: BulkBackoff = BulkBackoff { left: 10, next: 0 };
 
     pub(crate) fn is_due(&self, cell: usize) -> bool {
         self.left > 0 && cell >= self.next

@@ -2,7 +2,7 @@
 
 use crate::export::content::Data;
 use crate::export::put;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::formats::vtk::types::number_of;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -58,17 +58,17 @@ impl Array {
 }
 
 /// Makes the arrays of the vertices.
-pub(crate) fn of_points(job: &Job<'_>) -> Vec<Array> {
+pub(crate) fn of_points(job: &WriterInput<'_>) -> Vec<Array> {
     let mut arrays: Vec<Array> = job.point_data().map(|data| Array::of(data, None)).collect();
     if !job.content.vertex_groups.is_empty() {
         let what = &job.content.vertex_groups[0].0.what;
-        arrays.push(Array::whole(array_name(what), job.vertex_tags()));
+        arrays.push(Array::whole(array_name(what), job.vertex_group_numbers()));
     }
     arrays
 }
 
 /// Makes the arrays of the cells: one for each kind of group, and the data.
-pub(crate) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
+pub(crate) fn of_cells(job: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
     let mut whats: Vec<&str> = Vec::new();
     for what in (0..3).rev().flat_map(|dimension| job.content.whats(dimension)) {
         if !whats.contains(&what) {
@@ -84,7 +84,7 @@ pub(crate) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
     let mut arrays: Vec<Array> = Vec::new();
     for what in whats {
         let column = job.content.column(what);
-        let tag = |&cell: &usize| column[cell].map_or(0, |group| job.tags.number(group));
+        let tag = |&cell: &usize| column[cell].map_or(0, |group| job.group_numbers.number(group));
         let usual = array_name(what);
         let is_taken = arrays.iter().any(|array| array.name == usual);
         let name = if is_taken { what } else { usual };
@@ -94,7 +94,7 @@ pub(crate) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
     arrays
 }
 
-pub(crate) fn write_legacy(job: &Job<'_>) -> String {
+pub(crate) fn write_legacy(job: &WriterInput<'_>) -> String {
     let content = job.content;
     let cells: Vec<usize> = job.cells().collect();
     let mut out = format!(
@@ -102,11 +102,11 @@ pub(crate) fn write_legacy(job: &Job<'_>) -> String {
         job.creator
     );
     put!(out, "POINTS {} double\n", content.points.len());
-    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", job.xyz(vertex)));
     let numbers: usize = cells.iter().map(|&cell| 1 + content.cells.of(cell).len()).sum();
     put!(out, "CELLS {} {numbers}\n", cells.len());
     for &cell in &cells {
-        put!(out, "{} {}\n", content.cells.of(cell).len(), job.places(cell, 0));
+        put!(out, "{} {}\n", content.cells.of(cell).len(), job.positions(cell, 0));
     }
     put!(out, "CELL_TYPES {}\n", cells.len());
     cells.iter().for_each(|&cell| put!(out, "{}\n", number_of(content.cells.kinds[cell])));
@@ -150,7 +150,7 @@ fn encoded(name: &str) -> String {
     encoded
 }
 
-pub(crate) fn write_xml(job: &Job<'_>) -> String {
+pub(crate) fn write_xml(job: &WriterInput<'_>) -> String {
     let content = job.content;
     let cells: Vec<usize> = job.cells().collect();
     let mut out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \

@@ -4,7 +4,7 @@ use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::formats::xdmf::companions::Reference;
-use crate::hdf5::Number;
+use crate::hdf5::Datatype;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF};
 use crate::text::token::quoted;
@@ -18,7 +18,7 @@ pub(super) enum Content {
     /// In HDF5: the name of the file and the path in it.
     Hdf5 { file: String, path: String, named_at: Range<usize> },
     /// In a file of the name, from a byte on.
-    Raw { file: String, seek: u64, number: Number, named_at: Range<usize> },
+    Raw { file: String, seek: u64, number: Datatype, named_at: Range<usize> },
 }
 
 /// A `DataItem` with numbers.
@@ -140,11 +140,11 @@ fn item(source: &Source, xml: &Tag<'_>, tag: &Section, of: &Section) -> Result<I
                 _ => ByteOrder::Little,
             };
             let number = match (is_real.as_str(), precision) {
-                ("" | "float", 4) => Number::Real(Precision::Single, order),
-                ("" | "float", 8) => Number::Real(Precision::Double, order),
-                ("char" | "uchar", _) => Number::Whole(1, order),
-                ("short" | "ushort", _) => Number::Whole(2, order),
-                ("int" | "uint", 1 | 2 | 4 | 8) => Number::Whole(precision as usize, order),
+                ("" | "float", 4) => Datatype::Real(Precision::Single, order),
+                ("" | "float", 8) => Datatype::Real(Precision::Double, order),
+                ("char" | "uchar", _) => Datatype::Whole(1, order),
+                ("short" | "ushort", _) => Datatype::Whole(2, order),
+                ("int" | "uint", 1 | 2 | 4 | 8) => Datatype::Whole(precision as usize, order),
                 _ => {
                     let problem = format!("numbers of {precision} bytes are not read");
                     return Err(xml.error(problem, SAVE));

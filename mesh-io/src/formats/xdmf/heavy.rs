@@ -5,7 +5,7 @@ use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::{Companion, Source};
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
-use crate::hdf5::{Array, Encoding, Hdf5, Number};
+use crate::hdf5::{Array, Datatype, Hdf5, Hdf5Arrays};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
@@ -24,7 +24,7 @@ pub(super) struct Numbers<'a> {
     /// The file that they stand in, and which of the files of the mesh that is.
     pub(super) source: &'a Source,
     pub(super) part: usize,
-    pub(super) number: Number,
+    pub(super) number: Datatype,
     pub(super) bytes: Cow<'a, [u8]>,
     /// Where they start in the file, if they stand there as they are.
     pub(super) start: Option<usize>,
@@ -50,7 +50,7 @@ impl<'a> Heavy<'a> {
     }
 
     /// The type of the numbers of an item that does not stand in the XML. None if it is not known.
-    pub(super) fn number(&self, item: &Item) -> Option<Number> {
+    pub(super) fn number(&self, item: &Item) -> Option<Datatype> {
         match &item.content {
             Content::Text(_) => None,
             Content::Raw { number, .. } => Some(*number),
@@ -158,20 +158,23 @@ impl<'a> Heavy<'a> {
     }
 
     /// What becomes of the files when numbers that are not where they could be replaced as they are change.
-    pub(super) fn encoding(&self, numbers: &mut Numbers<'_>) -> Option<Encoding> {
+    pub(super) fn encoding(&self, numbers: &mut Numbers<'_>) -> Option<Hdf5Arrays> {
         let mut array = numbers.array.take()?;
         array.bytes = std::mem::take(&mut numbers.bytes);
         let tree = self.files[numbers.file].1.as_ref()?;
-        Some(Encoding::new(tree, vec![array]))
+        Some(Hdf5Arrays::new(tree, vec![array]))
     }
 
     /// Checks that no parts of a file overlap.
     pub(super) fn check_apart(&self) -> Result<(), ReadError> {
-        self.files.iter().filter_map(|(_, tree)| tree.as_ref()).try_for_each(Hdf5::check_apart)
+        self.files
+            .iter()
+            .filter_map(|(_, tree)| tree.as_ref())
+            .try_for_each(Hdf5::check_no_overlaps)
     }
 }
 
-fn number_size(number: Number) -> usize {
+fn number_size(number: Datatype) -> usize {
     number.bytes().max(1)
 }
 
@@ -185,7 +188,7 @@ impl<'a> Numbers<'a> {
     /// All of them, real or whole.
     pub(super) fn reals(&self) -> Option<Vec<f64>> {
         match self.number {
-            Number::Real(precision, order) => {
+            Datatype::Real(precision, order) => {
                 let each = self.bytes.chunks_exact(precision.bytes());
                 Some(each.map(|number| order.real(precision, number)).collect())
             }
@@ -202,7 +205,7 @@ impl<'a> Numbers<'a> {
     /// How many bytes each has, and in which order, if they are whole.
     pub(super) fn whole(&self) -> Option<(usize, ByteOrder)> {
         match self.number {
-            Number::Whole(size, order) => Some((size, order)),
+            Datatype::Whole(size, order) => Some((size, order)),
             _ => None,
         }
     }
@@ -210,7 +213,7 @@ impl<'a> Numbers<'a> {
 
 /// Where real numbers of data stand, so that they can be replaced.
 pub(super) fn stored(numbers: &mut Numbers<'_>, heavy: &Heavy<'_>) -> Option<ArrayLocation> {
-    let Number::Real(precision, order) = numbers.number else { return None };
+    let Datatype::Real(precision, order) = numbers.number else { return None };
     let (form, part, stride) =
         (NumberEncoding::Binary(order, precision), numbers.part, precision.bytes());
     let (start, home) = match numbers.start {

@@ -13,7 +13,7 @@ pub(crate) mod write;
 use crate::disk::source::Source;
 use crate::edit::numbers::ByteEdit;
 use crate::error::{ReadError, WriteError};
-use crate::hdf5::Number;
+use crate::hdf5::Datatype;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
@@ -124,7 +124,7 @@ impl<'a> File<'a> {
     /// Whether the numbers of an item are real ones, not whole.
     fn is_real(&self, item: &Item) -> bool {
         match self.heavy.number(item) {
-            Some(number) => matches!(number, Number::Real(..)),
+            Some(number) => matches!(number, Datatype::Real(..)),
             None => item.precision.is_some(),
         }
     }

@@ -7,7 +7,7 @@ use crate::binary::number_field::NumberField;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::hdf5::{Encoding, Number};
+use crate::hdf5::{Datatype, Hdf5Arrays};
 use crate::precision::Precision;
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
@@ -104,7 +104,7 @@ impl File<'_> {
         axes: usize,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(CoordinateStorage, u64), ReadError> {
-        let Number::Real(precision, order) = numbers.number else {
+        let Datatype::Real(precision, order) = numbers.number else {
             let problem = "the points are not floating-point numbers of 32 or 64 bits";
             return Err(self.cursor(item).error(problem, "Save them as Float"));
         };
@@ -121,11 +121,11 @@ impl File<'_> {
         self.cursor(item).check_vertex_count(count as u64)?;
         // Numbers that stand in the file are replaced there, all others encoded again.
         let (start, part) = (numbers.start.unwrap_or(0), numbers.part);
-        let encoded: Option<Encoding> = match numbers.start {
+        let encoded: Option<Hdf5Arrays> = match numbers.start {
             Some(_) => None,
             None => self.heavy.encoding(&mut numbers),
         };
-        let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Encoding::bytes);
+        let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Hdf5Arrays::bytes);
         let mut heights = ZValues::new(visitor);
         let field = |axis: usize| NumberField::new(bytes.get(axis * size..), stride, size, order);
         let (x, y, tags) = (field(0), field(1), Tags::From(0));

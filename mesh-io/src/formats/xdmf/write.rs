@@ -1,12 +1,12 @@
 //! Writes XDMF with the numbers in the XML.
 
 use crate::export::put;
-use crate::export::writer_input::Job;
+use crate::export::writer_input::WriterInput;
 use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
 use crate::visit::items::Kind;
 use std::fmt::Write;
 
-pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
+pub(crate) fn write_xdmf(job: &WriterInput<'_>) -> String {
     let content = job.content;
     let cells: Vec<usize> = job.cells().collect();
     let (points, count) = (content.points.len(), cells.len());
@@ -17,7 +17,7 @@ pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
         "<Geometry GeometryType=\"XYZ\">\n<DataItem DataType=\"Float\" Dimensions=\"{points} 3\" Format=\"XML\" \
          Precision=\"8\">\n"
     );
-    (0..points).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    (0..points).for_each(|vertex| put!(out, "{}\n", job.xyz(vertex)));
     out.push_str("</DataItem>\n</Geometry>\n");
     let rows: Vec<String> = cells.iter().map(|&cell| row(job, cell)).collect();
     let words: usize = rows.iter().map(|row| row.split(' ').count()).sum();
@@ -35,8 +35,8 @@ pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
 }
 
 /// Writes a cell: XDMF's number of its type, its number of vertices if the type does not tell, and its vertices.
-fn row(job: &Job<'_>, cell: usize) -> String {
-    let vertices = job.places(cell, 0);
+fn row(job: &WriterInput<'_>, cell: usize) -> String {
+    let vertices = job.positions(cell, 0);
     match job.content.cells.kinds[cell] {
         Kind::Point => format!("1 1 {vertices}"),
         Kind::Line => format!("2 2 {vertices}"),

@@ -4,7 +4,7 @@ use super::skip::take;
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
-use crate::formats::vtk::cells::{Cell, Triangles, Tries};
+use crate::formats::vtk::cells::{BulkBackoff, Cell, Triangles};
 use crate::formats::vtk::regions::RegionNumbers;
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
@@ -181,7 +181,7 @@ impl Cells<'_> {
         }
         // The location of a cell is found only for a visitor that uses it.
         let mut place = self.first.clone();
-        let mut tries = Tries::NEW;
+        let mut tries = BulkBackoff::NEW;
         let (mut index, mut end) = (0, 0);
         let mut points = Vec::new();
         let first = *tag;

@@ -1,8 +1,8 @@
 //! Reads arrays of a VTK XML file as numbers.
 
-use super::blocks::{Unwrapped, Wrapping};
-use super::document::{Array, Coding, Document};
-use super::encoding::Encoding;
+use super::blocks::{BlockEncoding, DecodedBlocks};
+use super::document::{Array, ArrayFormat, Document};
+use super::encoding::XmlArrays;
 use crate::binary::int_array::IntArray;
 use crate::disk::source::Source;
 use crate::edit::numbers::{AppendedOffset, NumberEncoding, Offsets};
@@ -53,9 +53,9 @@ impl File<'_> {
     pub(super) fn unwrap(
         &self,
         array: &Array,
-    ) -> Result<(Wrapping, Unwrapped<'_>, Range<usize>), ReadError> {
+    ) -> Result<(BlockEncoding, DecodedBlocks<'_>, Range<usize>), ReadError> {
         let Document { order, header, compressor, appended, .. } = self.document;
-        let wrapping = |base64| Wrapping { order, header, compressor, base64 };
+        let wrapping = |base64| BlockEncoding { order, header, compressor, base64 };
         let (wrapping, start, end) = match (&array.offset, appended) {
             (Some((offset, _)), Some(appended)) => {
                 let start = appended.start.saturating_add(*offset);
@@ -76,7 +76,7 @@ impl File<'_> {
 
     /// Reads the whole numbers of an array as unsigned.
     pub(super) fn integers(&self, array: &Array) -> Result<IntArray<'_>, ReadError> {
-        if array.format == Coding::Ascii {
+        if array.format == ArrayFormat::Ascii {
             let mut numbers = IntArray::with_capacity(array.content.len() / 8);
             let cursor = &mut Cursor::within(self.source, array.content.clone());
             while cursor.next_word() {
@@ -91,7 +91,7 @@ impl File<'_> {
 
     /// Reads the whole numbers of an array as signed.
     pub(super) fn signed_integers(&self, array: &Array) -> Result<Vec<i64>, ReadError> {
-        if array.format == Coding::Ascii {
+        if array.format == ArrayFormat::Ascii {
             return self.words(array, |cursor| cursor.signed("a number"));
         }
         if array.number.starts_with('U') {
@@ -106,7 +106,7 @@ impl File<'_> {
     /// Reads the numbers of an array of any type.
     pub(super) fn numbers(&self, array: &Array) -> Result<PointNumbers, ReadError> {
         let precision = precision_of(array);
-        if array.format == Coding::Ascii {
+        if array.format == ArrayFormat::Ascii {
             let cursor = &mut Cursor::within(self.source, array.content.clone());
             let mut numbers = TextNumbers::default();
             while cursor.next_word() {
@@ -140,7 +140,7 @@ impl File<'_> {
                 let offsets = Arc::clone(&self.offsets);
                 (
                     0,
-                    ByteSpace::Encoded(Arc::new(Encoding::new(
+                    ByteSpace::Encoded(Arc::new(XmlArrays::new(
                         vec![(wrapping, old, range)],
                         offsets,
                     ))),

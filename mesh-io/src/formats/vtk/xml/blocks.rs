@@ -16,7 +16,7 @@ pub(super) enum Compressor {
 
 /// How the bytes of an array are encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Wrapping {
+pub(super) struct BlockEncoding {
     pub(super) order: ByteOrder,
     /// The bytes of a number in the header.
     pub(super) header: usize,
@@ -25,7 +25,7 @@ pub(super) struct Wrapping {
 }
 
 /// A decoded array, with what is needed to encode it again.
-pub(super) struct Unwrapped<'a> {
+pub(super) struct DecodedBlocks<'a> {
     /// The decoded bytes; those of the file itself, if they are not encoded.
     pub(super) bytes: Cow<'a, [u8]>,
     /// How many bytes of the file the array takes.
@@ -36,29 +36,29 @@ pub(super) struct Unwrapped<'a> {
     header_apart: bool,
 }
 
-impl<'a> Unwrapped<'a> {
+impl<'a> DecodedBlocks<'a> {
     /// Separates the bytes from the rest.
-    pub(super) fn split(self) -> (Cow<'a, [u8]>, Unwrapped<'static>) {
-        let Unwrapped { bytes, taken, block, header_apart } = self;
-        (bytes, Unwrapped { bytes: Cow::default(), taken, block, header_apart })
+    pub(super) fn split(self) -> (Cow<'a, [u8]>, DecodedBlocks<'static>) {
+        let DecodedBlocks { bytes, taken, block, header_apart } = self;
+        (bytes, DecodedBlocks { bytes: Cow::default(), taken, block, header_apart })
     }
 }
 
-impl Wrapping {
+impl BlockEncoding {
     /// Decodes the array at the start of `input`. `None` if it is damaged or ends too early.
-    pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
+    pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<DecodedBlocks<'a>> {
         match self.compressor {
             None => self.unwrap_plain(input),
             Some(compressor) => self.unwrap_compressed(compressor, input),
         }
     }
 
-    fn unwrap_plain<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
+    fn unwrap_plain<'a>(&self, input: &'a [u8]) -> Option<DecodedBlocks<'a>> {
         if !self.base64 {
             let length = self.number(input.get(..self.header)?)?;
             let bytes = input.get(self.header..)?.get(..length)?.into();
             let taken = self.header + length;
-            return Some(Unwrapped { bytes, taken, block: 0, header_apart: false });
+            return Some(DecodedBlocks { bytes, taken, block: 0, header_apart: false });
         }
         let apart = encoded(self.header);
         // The padding of a header that is encoded alone. With a few bytes after it, there is less padding.
@@ -74,14 +74,14 @@ impl Wrapping {
             }
         };
         bytes.truncate(length);
-        Some(Unwrapped { bytes: bytes.into(), taken, block: 0, header_apart })
+        Some(DecodedBlocks { bytes: bytes.into(), taken, block: 0, header_apart })
     }
 
     fn unwrap_compressed(
         &self,
         compressor: Compressor,
         input: &[u8],
-    ) -> Option<Unwrapped<'static>> {
+    ) -> Option<DecodedBlocks<'static>> {
         let counts = self.numbers(input, 3)?;
         let [blocks, size, last] = [counts[0], counts[1], counts[2]];
         // The header has another number for each block.
@@ -114,11 +114,11 @@ impl Wrapping {
             (bytes.len() == expected).then_some(bytes)
         });
         let bytes = unpacked.into_iter().collect::<Option<Vec<_>>>()?.concat();
-        Some(Unwrapped { bytes: bytes.into(), taken, block: size, header_apart: true })
+        Some(DecodedBlocks { bytes: bytes.into(), taken, block: size, header_apart: true })
     }
 
     /// Encodes new bytes as those of `old` were encoded.
-    pub(super) fn wrap(&self, old: &Unwrapped<'_>, bytes: &[u8]) -> Vec<u8> {
+    pub(super) fn wrap(&self, old: &DecodedBlocks<'_>, bytes: &[u8]) -> Vec<u8> {
         let Some(compressor) = self.compressor else {
             let header = self.bytes_of(bytes.len());
             return match (self.base64, old.header_apart) {
@@ -202,8 +202,8 @@ mod tests {
                 for base64 in [false, true] {
                     for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
                         for header_apart in [false, true] {
-                            let wrapping = Wrapping { order, header, compressor, base64 };
-                            let old = Unwrapped {
+                            let wrapping = BlockEncoding { order, header, compressor, base64 };
+                            let old = DecodedBlocks {
                                 bytes: Cow::default(),
                                 taken: 0,
                                 block: 1000,
@@ -229,7 +229,8 @@ mod tests {
     fn wrong_lengths_in_a_file_allocate_no_memory() {
         for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
             for base64 in [false, true] {
-                let wrapping = Wrapping { order: ByteOrder::Little, header: 8, compressor, base64 };
+                let wrapping =
+                    BlockEncoding { order: ByteOrder::Little, header: 8, compressor, base64 };
                 for byte in [b'/', b'A', 0xFF, 1] {
                     assert!(
                         wrapping.unwrap(&[byte; 64]).is_none_or(|found| found.bytes.len() < 64)

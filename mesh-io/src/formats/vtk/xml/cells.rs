@@ -4,7 +4,7 @@ use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
-use crate::formats::vtk::cells::{Cell, Triangles, Tries};
+use crate::formats::vtk::cells::{BulkBackoff, Cell, Triangles};
 use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
@@ -50,7 +50,7 @@ impl File<'_> {
             for List { connectivity, offsets, types, at } in &lists {
                 let cursor = &Cursor::standing_at(self.source, *at);
                 let (mut start, mut own) = (0, 0);
-                let mut tries = Tries::NEW;
+                let mut tries = BulkBackoff::NEW;
                 while own < offsets.len() {
                     let end = offsets.at(own) as usize;
                     let of_triangles = match types {

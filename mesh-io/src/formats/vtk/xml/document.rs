@@ -46,7 +46,7 @@ pub(super) struct Array {
     pub(super) name: String,
     pub(super) number: String,
     pub(super) components: u64,
-    pub(super) format: Coding,
+    pub(super) format: ArrayFormat,
     /// The range of the array's text; empty if it is appended.
     pub(super) content: Range<usize>,
     /// For an appended array, its offset in the appended data, and the range of the file that gives the offset.
@@ -57,7 +57,7 @@ pub(super) struct Array {
 
 /// How an array is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Coding {
+pub(super) enum ArrayFormat {
     Ascii,
     Base64,
     Appended,
@@ -176,9 +176,9 @@ impl Document {
 
 fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadError> {
     let format = match tag.attribute("format")?.as_deref() {
-        Some("binary") => Coding::Base64,
-        Some("appended") => Coding::Appended,
-        None | Some("ascii") => Coding::Ascii,
+        Some("binary") => ArrayFormat::Base64,
+        Some("appended") => ArrayFormat::Appended,
+        None | Some("ascii") => ArrayFormat::Ascii,
         Some(other) => {
             let problem =
                 format!("an array of the format {} is not read", quoted(other.as_bytes()));
@@ -190,7 +190,7 @@ fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadErro
         false => tag.text().ok_or_else(|| tag.error("the file ends within an array", CUT_OFF))?,
     };
     let offset = match format {
-        Coding::Appended => {
+        ArrayFormat::Appended => {
             let value = tag.number("offset")?;
             let offset = usize::try_from(value).unwrap_or(usize::MAX);
             Some((offset, tag.place_of_value("offset")?))

@@ -1,33 +1,33 @@
 //! Encoded arrays (base64 or compressed), and their encoding with new numbers.
 
-use super::blocks::{Unwrapped, Wrapping};
+use super::blocks::{BlockEncoding, DecodedBlocks};
 use crate::edit::numbers::{AppendedOffset, ByteEdit, EncodedArrays};
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Arrays of points or of their data that are encoded, one for each piece of the mesh.
-pub(super) struct Encoding {
-    parts: Vec<Part>,
+pub(super) struct XmlArrays {
+    parts: Vec<ArrayBytes>,
     /// The decoded bytes of all arrays, one after the other.
     bytes: Vec<u8>,
     offsets: Arc<[AppendedOffset]>,
 }
 
-struct Part {
-    wrapping: Wrapping,
+struct ArrayBytes {
+    wrapping: BlockEncoding,
     /// How the array was encoded, without its bytes.
-    old: Unwrapped<'static>,
+    old: DecodedBlocks<'static>,
     /// The range of the array in the file.
     range: Range<usize>,
     /// The range of this array in the decoded bytes of all arrays.
     own: Range<usize>,
 }
 
-impl Encoding {
+impl XmlArrays {
     pub(super) fn new(
-        arrays: Vec<(Wrapping, Unwrapped<'_>, Range<usize>)>,
+        arrays: Vec<(BlockEncoding, DecodedBlocks<'_>, Range<usize>)>,
         offsets: Arc<[AppendedOffset]>,
-    ) -> Encoding {
+    ) -> XmlArrays {
         let mut bytes = Vec::new();
         let mut parts = Vec::new();
         for (wrapping, old, range) in arrays {
@@ -37,13 +37,13 @@ impl Encoding {
                 true => bytes = own.into_owned(),
                 false => bytes.extend_from_slice(&own),
             }
-            parts.push(Part { wrapping, old, range, own: start..bytes.len() });
+            parts.push(ArrayBytes { wrapping, old, range, own: start..bytes.len() });
         }
-        Encoding { parts, bytes, offsets }
+        XmlArrays { parts, bytes, offsets }
     }
 }
 
-impl EncodedArrays for Encoding {
+impl EncodedArrays for XmlArrays {
     fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -57,7 +57,7 @@ impl EncodedArrays for Encoding {
             let own = part.own.clone();
             new[own.clone()] != self.bytes[own]
         });
-        let edit = |part: &Part| {
+        let edit = |part: &ArrayBytes| {
             let bytes = part.wrapping.wrap(&part.old, &new[part.own.clone()]);
             ByteEdit { range: part.range.clone(), bytes }
         };

@@ -32,7 +32,7 @@ impl FormatReader for Vtu {
         let document = Document::read(source)?;
         let offsets = document.offsets().into();
         let file = File { source, document, offsets };
-        let points::Stored { numbers, encoded } = points::read(&file, visitor)?;
+        let points::PointStorage { numbers, encoded } = points::read(&file, visitor)?;
         file.cells(visitor)?;
         file.point_arrays(visitor);
         let format = match file.document.content {

@@ -1,9 +1,9 @@
 //! Reads the points of a VTK XML file, piece by piece.
 
 use super::arrays::File;
-use super::blocks::{Unwrapped, Wrapping};
-use super::document::{Array, Coding};
-use super::encoding::Encoding;
+use super::blocks::{BlockEncoding, DecodedBlocks};
+use super::document::{Array, ArrayFormat};
+use super::encoding::XmlArrays;
 use crate::binary::number_field::NumberField;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays};
 use crate::error::ReadError;
@@ -19,7 +19,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// How the points of all pieces are stored in the file.
-pub(super) struct Stored {
+pub(super) struct PointStorage {
     pub(super) numbers: CoordinateEncoding,
     pub(super) encoded: Option<Box<dyn EncodedArrays>>,
 }
@@ -30,7 +30,7 @@ struct Points<'s, 'f> {
     heights: ZValues,
     /// How the numbers are stored, and whether they are encoded. It must be the same in all pieces.
     numbers: Option<(CoordinateEncoding, bool)>,
-    encoded: Vec<(Wrapping, Unwrapped<'f>, Range<usize>)>,
+    encoded: Vec<(BlockEncoding, DecodedBlocks<'f>, Range<usize>)>,
     /// The bytes of all encoded arrays, decoded.
     bytes: usize,
     /// The number of points.
@@ -40,7 +40,10 @@ struct Points<'s, 'f> {
 }
 
 /// Hands on the points of all pieces.
-pub(super) fn read(file: &File<'_>, visitor: &mut dyn MeshVisitor) -> Result<Stored, ReadError> {
+pub(super) fn read(
+    file: &File<'_>,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<PointStorage, ReadError> {
     let heights = ZValues::new(visitor);
     let mut points =
         Points { visitor, heights, numbers: None, encoded: Vec::new(), bytes: 0, count: 0, end: 0 };
@@ -56,11 +59,11 @@ pub(super) fn read(file: &File<'_>, visitor: &mut dyn MeshVisitor) -> Result<Sto
     let home = if is_encoded { ByteSpace::Points } else { ByteSpace::File };
     let encoded = is_encoded.then(|| {
         let offsets = Arc::clone(&file.offsets);
-        Box::new(Encoding::new(encoded, offsets)) as Box<dyn EncodedArrays>
+        Box::new(XmlArrays::new(encoded, offsets)) as Box<dyn EncodedArrays>
     });
     visitor.end_nodes(&Cursor::new(file.source))?;
     heights.send_from("z", numbers.into(), home, 0, visitor);
-    Ok(Stored { numbers, encoded })
+    Ok(PointStorage { numbers, encoded })
 }
 
 impl<'f> Points<'_, 'f> {
@@ -81,7 +84,7 @@ impl<'f> Points<'_, 'f> {
             }
         };
         let (start, numbers, is_encoded) = match points.format {
-            Coding::Ascii => {
+            ArrayFormat::Ascii => {
                 self.text(file, points, count)?;
                 (points.content.start, CoordinateEncoding::Text { precision }, false)
             }
