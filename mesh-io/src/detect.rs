@@ -55,7 +55,7 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     }
 }
 
-/// Tells apart formats of plain rows of numbers, by how many numbers the first rows have.
+/// Finds the format of a file of plain numbers by the counts of numbers in its first rows.
 fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
@@ -106,15 +106,17 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
     }
 }
 
-/// Returns the name of the format whose files end as this path does, whether it is read or not.
+/// Returns the name of the format with the extension of `path`, whether the format is read or not; `None` if no
+/// format has the extension.
 pub(crate) fn format_name_of_extension(path: &Path) -> Option<&'static str> {
     let family = REGISTRY.iter().find(|family| family.matches_extension(path));
     family.map(|family| family.name)
 }
 
 impl Format {
-    /// Returns the endings of the names of files in this format, the usual one first. Some endings are whole names, such as `fort.14`.
-    pub fn endings(self) -> &'static [&'static str] {
+    /// Returns the endings of file names of the format, the usual one first. Some endings are whole names, such as
+    /// `fort.14`.
+    pub fn extensions(self) -> &'static [&'static str] {
         FormatEntry::of(self).extensions
     }
 
@@ -123,9 +125,9 @@ impl Format {
         FormatEntry::of(self).name
     }
 
-    /// Returns the name of a format whose files end as `path` does, compressed or not, in capital or small letters. The format
-    /// need not be one that is read. `None` if the ending is that of no mesh.
-    pub fn name_of_ending(path: &Path) -> Option<&'static str> {
+    /// Returns the name of the format with the extension of `path`, before the extension of a compression, in capital
+    /// or small letters. The format need not be one that is read. `None` if no format has the extension.
+    pub fn name_of_extension(path: &Path) -> Option<&'static str> {
         format_name_of_extension(path)
     }
 
@@ -205,7 +207,7 @@ fn after_prolog(bytes: &[u8]) -> &[u8] {
 fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
     // No format that is told apart here has longer rows.
     const TOKENS: usize = 8;
-    let mut cursor = Cursor::new(source).of(syntax);
+    let mut cursor = Cursor::new(source).with_syntax(syntax);
     std::array::from_fn(|_| {
         let row = cursor.next_row();
         std::iter::from_fn(|| if row { cursor.token() } else { None }).take(TOKENS).collect()
@@ -312,7 +314,7 @@ mod tests {
         assert_eq!(name(b"$MeshFormat\n4.1 0 8\n"), Some("gmsh"));
         assert_eq!(name(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Unst"), Some("VTK XML"));
         assert_eq!(name(b"# made by hand\n*NODE\n"), Some("Abaqus"));
-        assert_eq!(Format::name_of_ending(Path::new("a.vtu.gz")), Some("VTK XML"));
+        assert_eq!(Format::name_of_extension(Path::new("a.vtu.gz")), Some("VTK XML"));
         for head in
             [&b"{ \"engine\": 1 }"[..], b"\x89PNG\r\n", b"<svg xmlns", b"<!DOCTYPE html><html>"]
         {

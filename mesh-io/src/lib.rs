@@ -43,19 +43,19 @@ pub use crate::content::remark::Remark;
 pub use crate::convert::Conversion;
 pub use crate::disk::source::ReadOptions;
 pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
-pub use crate::export::content::{Cell, CellKind, Content, ContentGroup, Data};
+pub use crate::export::content::{Cell, CellKind, Content, ContentGroup, DataArray};
 pub use crate::format::Format;
-pub use crate::formats::side::gmsh_view::View;
-pub use crate::formats::side::medit_solution::Solution;
+pub use crate::formats::side::gmsh_view::GmshView;
+pub use crate::formats::side::medit_solution::MeditSolution;
 pub use crate::mesh_file::diff::Difference;
-pub use crate::mesh_file::locate::Place;
+pub use crate::mesh_file::locate::SourceLocation;
 pub use crate::mesh_file::mesh::MeshFile;
 pub use crate::precision::Precision;
 pub use crate::visit::field::PointField;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {
-    pub use crate::disk::atomic::{AbandonedWrites, abandon_writes, check, replace};
+    pub use crate::disk::atomic::{BlockedWrites, discard_pending_writes, ensure_writable, write};
     pub use crate::disk::paths::same_file;
 }
 

@@ -16,17 +16,18 @@ const fn reader<W: FormatReader>() -> ReaderFunctions {
     ReaderFunctions::of::<W>()
 }
 
-/// A row of the table: formats that one reader reads, or a format that only messages name.
+/// Entry of the registry: a reader with the formats it reads, or a format that is recognized only to be named in an
+/// error.
 pub(crate) struct FormatEntry {
     pub(crate) name: &'static str,
-    /// Endings of file names that belong to this format, the usual one first.
+    /// Endings of file names of the format, the usual one first.
     pub(crate) extensions: &'static [&'static str],
-    /// The first bytes of a file of this format, after blanks and comment lines. Empty for formats that are told by
-    /// their first rows of numbers.
+    /// The first bytes of a file of the format, after blanks and comment lines. Empty for formats that are recognized
+    /// by their first rows of numbers.
     pub(crate) magic: &'static [&'static [u8]],
     /// The reader. `None` for formats that are not read.
     pub(crate) reader: Option<ReaderFunctions>,
-    /// What to do with a file of a format that is not read. If empty, the message lists the formats that are read.
+    /// Remedy for a file of a format that is not read. If empty, the message lists the formats that are read.
     pub(crate) hint: &'static str,
 }
 
@@ -36,7 +37,8 @@ impl FormatEntry {
         self.reader.is_some()
     }
 
-    /// Whether the path ends as files of this format do, compressed or not, in capital or small letters.
+    /// Returns whether the path ends in one of the extensions, before the extension of a compression, in capital or
+    /// small letters.
     pub(crate) fn matches_extension(&self, path: &Path) -> bool {
         let name = inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
         self.extensions.iter().any(|ending| name.ends_with(ending))
@@ -52,7 +54,7 @@ const fn entry(
     FormatEntry { name, extensions: endings, magic: opens, reader: Some(reader), hint: "" }
 }
 
-/// Makes a row for a format that is not read.
+/// Makes an entry for a format that is not read.
 const fn unsupported(
     name: &'static str,
     endings: &'static [&'static str],
@@ -67,16 +69,17 @@ const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for ex
 /// The remedy for a format that no common converter reads.
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
-/// Makes a static for each row, their list [`FAMILIES`], and [`Family::of`], which does not compile if a format is in no row.
+/// Makes a static for each entry, their list [`REGISTRY`], and [`FormatEntry::of`], which does not compile if a
+/// format is in no entry.
 macro_rules! families {
     ($($(#[$doc:meta])* $row:ident [$($format:ident),*] = $family:expr;)*) => {
         $($(#[$doc])* pub(crate) static $row: FormatEntry = $family;)*
 
-        /// Every family, in the order in which contents are compared with them.
+        /// All entries, in the order in which contents are compared with their magic bytes.
         pub(crate) static REGISTRY: &[&FormatEntry] = &[$(&$row),*];
 
         impl FormatEntry {
-            /// Returns the row of a format.
+            /// Returns the entry of a format.
             pub(crate) fn of(format: Format) -> &'static FormatEntry {
                 match format {
                     $($(Format::$format => &$row,)*)*

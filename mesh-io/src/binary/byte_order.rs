@@ -2,7 +2,7 @@
 
 use crate::precision::Precision;
 
-/// The byte order of a number.
+/// The order of the bytes of a binary number: little-endian or big-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ByteOrder {
     /// The lowest byte comes first.

@@ -10,7 +10,8 @@ use std::ops::Range;
 /// Numbers that one thread compares at a time.
 const CHUNK: usize = 1 << 14;
 
-/// A list of unsigned whole numbers. Numbers from text are kept in as little memory as binary ones.
+/// Unsigned integers of one width: those of a binary file, or collected ones, which take 4 bytes each, or 8 if one of
+/// them needs more.
 pub(crate) struct IntArray<'a> {
     bytes: Cow<'a, [u8]>,
     /// The bytes of a number.

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Records that one thread reads at a time.
 const CHUNK: usize = 1 << 13;
 
-/// A number, or several side by side, at the same place in each record of a list.
+/// A number at the same offset in each record of a binary list, or several adjacent numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct NumberField<'a> {
     /// The bytes from the first record's number on.

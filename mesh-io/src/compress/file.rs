@@ -7,26 +7,26 @@ use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// The most bytes that one compressed byte may unpack to. Regular lattices unpack to 5 to 20 bytes; gzip can reach a
-/// thousand.
+/// Limit on the decompressed size, in multiples of the compressed size. Meshes of regular grids reach 5 to 20; gzip
+/// allows a thousand.
 const MAX_RATIO: usize = 200;
-/// This many bytes may be decompressed from a file of any size.
+/// Number of bytes to which a file of any size may be decompressed.
 const MIN_LIMIT: usize = 1 << 20;
 
-/// How a file is compressed.
+/// The compression of a whole file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Compression {
     Gzip,
     Zstd,
 }
 
-/// A compressed file as it was read.
+/// The bytes of a compressed file as they were read, and their compression.
 pub(crate) struct CompressedFile {
     pub(crate) compression: Compression,
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Why a compressed file is not read, and what to do.
+/// A problem that prevents decompression, and a remedy.
 #[derive(Debug)]
 pub(crate) struct DecompressError {
     pub(crate) problem: String,
@@ -36,7 +36,7 @@ pub(crate) struct DecompressError {
 impl Compression {
     const ALL: [Compression; 2] = [Compression::Gzip, Compression::Zstd];
 
-    /// Returns the ending of file names for this compression, without the dot.
+    /// Returns the extension of file names for the compression, without the dot.
     fn extension(self) -> &'static str {
         match self {
             Compression::Gzip => "gz",
@@ -51,7 +51,7 @@ impl Compression {
         }
     }
 
-    /// Returns the first bytes of files with this compression.
+    /// Returns the first bytes of files with the compression.
     fn magic(self) -> &'static [u8] {
         match self {
             Compression::Gzip => b"\x1F\x8B",
@@ -67,7 +67,7 @@ impl Compression {
             .find(|compression| ending.eq_ignore_ascii_case(compression.extension()))
     }
 
-    /// Compresses what `write` writes.
+    /// Compresses the bytes that `write` writes, and writes them to `out`.
     pub(crate) fn compress(
         self,
         out: &mut (dyn Write + Send),
@@ -95,7 +95,8 @@ pub(crate) fn inner_name(name: &str) -> &str {
     Compression::ALL.into_iter().find_map(inner).unwrap_or(name)
 }
 
-/// Unpacks a file if it is compressed. Returns its compression and content; `None` if it is not compressed.
+/// Decompresses a file if its first bytes are those of gzip or zstd. Returns the compression and the content; `None`
+/// if the file is not compressed.
 pub(crate) fn decompress(bytes: &[u8]) -> Result<Option<(Compression, Vec<u8>)>, DecompressError> {
     /// The first bytes of files that other programs have compressed.
     const OTHERS: [(&[u8], &str, &str); 3] = [
@@ -131,14 +132,14 @@ pub(crate) fn decompress(bytes: &[u8]) -> Result<Option<(Compression, Vec<u8>)>,
     Ok(Some((compression, content)))
 }
 
-/// Unpacks at most one byte more than `most`.
+/// Decompresses to at most one byte more than `most`.
 fn decompress_gzip(bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
     let limit = u64::try_from(most).unwrap_or(u64::MAX - 1) + 1;
     let read = MultiGzDecoder::new(bytes).take(limit).read_to_end(content);
     read.map(drop).map_err(|error| error.to_string())
 }
 
-/// Unpacks frame after frame, until the content has more than `most` bytes.
+/// Decompresses frame after frame, until the content has more than `most` bytes.
 fn decompress_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
     /// Bytes that are decompressed at a time.
     const STEP: usize = 1 << 20;

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-/// A map from tags to indices.
+/// Map from the id of a node in the file to the index of the vertex.
 pub(crate) enum IdIndex {
     /// Consecutive tags, which most files have.
     Run { first: u64, count: u64 },
@@ -13,7 +13,7 @@ pub(crate) enum IdIndex {
     Sparse(HashMap<u64, u32>),
 }
 
-/// Marks a tag without a vertex. All indices are smaller, as there are at most `u32::MAX` vertices.
+/// Marks an id without a vertex. All indices are smaller, as there are at most `u32::MAX` vertices.
 const ABSENT: u32 = u32::MAX;
 
 impl IdIndex {
@@ -62,7 +62,7 @@ impl IdIndex {
     }
 }
 
-/// Collects tags as they are found. It needs memory only if they are not consecutive.
+/// The ids of the nodes in file order. Consecutive ids are stored as first and count, others as a list.
 #[derive(Default)]
 pub(crate) struct IdList {
     first: u64,
@@ -111,7 +111,7 @@ impl IdList {
         }
     }
 
-    /// Maps the tags to their positions, as [`TagMap::new`] does.
+    /// Maps the ids to their positions, as [`IdIndex::new`] does.
     pub(crate) fn map(&self) -> Result<IdIndex, usize> {
         match self.list.is_empty() {
             true => Ok(IdIndex::Run { first: self.first, count: self.count }),
@@ -120,7 +120,7 @@ impl IdList {
     }
 }
 
-/// The tags of nodes in the order of the file, and the index of a node by its tag.
+/// The ids of the nodes, and the map that is made of them once all are known.
 #[derive(Default)]
 pub(crate) struct IdIndexBuilder {
     found: IdList,

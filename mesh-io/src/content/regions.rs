@@ -1,12 +1,12 @@
 //! The region of each triangle, and the vertices between regions.
 //!
-//! A reader names the region of each triangle by what its format has: a tag, a group, attributes. [`Regions`] takes
+//! A reader names the region of each triangle by what its format has: a tag, a group, attributes. [`TriangleRegions`] takes
 //! these names, and the rest is the same for all formats.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// Numbers names from 0, in the order in which they are first met.
+/// Numbers distinct values by first occurrence, counted from 0.
 #[derive(Default)]
 pub(crate) struct Interner<N> {
     numbers: HashMap<N, u32>,
@@ -32,7 +32,7 @@ impl<N: Clone + Eq + Hash> Interner<N> {
     }
 }
 
-/// The regions of the triangles read so far. It needs memory only if there are several regions.
+/// The region of each triangle, stored only if there are several regions.
 #[derive(Default)]
 pub(crate) struct TriangleRegions {
     triangles: usize,

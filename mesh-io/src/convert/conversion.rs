@@ -5,7 +5,7 @@ use super::targets::{TARGETS, Target, WriteFunction};
 use crate::compress::file::Compression;
 use crate::detect;
 use crate::disk::atomic;
-use crate::disk::atomic::FileWrite as Replacement;
+use crate::disk::atomic::FileWrite;
 use crate::error::{ReadError, WriteError};
 use crate::export::content::Content;
 use crate::export::writer_input::WriterInput;
@@ -33,8 +33,8 @@ use std::path::{Path, PathBuf};
 pub struct Conversion {
     content: Content,
     target: &'static Target,
-    lost: Vec<String>,
-    renamed: Vec<String>,
+    losses: Vec<String>,
+    renamings: Vec<String>,
     creator: String,
 }
 
@@ -66,7 +66,7 @@ impl Conversion {
         let lost = target.capabilities.losses(&content);
         let renamed = names::fit(&target.capabilities, &mut content);
         let creator = "mesh-io".to_owned();
-        Ok(Some(Conversion { content, target, lost, renamed, creator }))
+        Ok(Some(Conversion { content, target, losses: lost, renamings: renamed, creator }))
     }
 
     /// Sets the name of the program that titles of written files give: `written by NAME`. Without this call, the name is
@@ -77,14 +77,14 @@ impl Conversion {
 
     /// Lists what the format does not hold of the mesh, one line each. Comments, titles and the numbers of elements are
     /// always lost, and not listed.
-    pub fn lost(&self) -> &[String] {
-        &self.lost
+    pub fn losses(&self) -> &[String] {
+        &self.losses
     }
 
     /// Lists the names that change, as the format cannot hold them, or cannot tell them from others: one line for the
     /// groups of each dimension and for each kind of data. Groups and data that were different stay so.
-    pub fn renamed(&self) -> &[String] {
-        &self.renamed
+    pub fn renamings(&self) -> &[String] {
+        &self.renamings
     }
 
     /// Lists the files that [`write`](Self::write) to `path` writes. A Triangle mesh without lines has no `.poly`,
@@ -131,19 +131,19 @@ impl Conversion {
             );
             return refused(problem, "Remove it, or take another name");
         }
-        destinations.iter().try_for_each(|path| atomic::check(path))?;
-        let mut jobs: Vec<Replacement<'_>> = Vec::new();
+        destinations.iter().try_for_each(|path| atomic::ensure_writable(path))?;
+        let mut writes: Vec<FileWrite<'_>> = Vec::new();
         for (path, content) in destinations.into_iter().zip(&contents) {
-            jobs.push((path, Box::new(move |out| put(content, packs, out))));
+            writes.push((path, Box::new(move |out| put(content, packs, out))));
         }
-        atomic::replace_all(&jobs)
+        atomic::write_all(&writes)
     }
 
     /// Returns the content of the file if it is text. `None` for binary formats, and for a Triangle mesh, which has
     /// several files.
     pub fn text(&self) -> Option<String> {
         match self.target.write {
-            WriteFunction::One(write) => Some(write(&self.job())),
+            WriteFunction::One(write) => Some(write(&self.input())),
             WriteFunction::Binary(_) | WriteFunction::Several(_) => None,
         }
     }
@@ -158,15 +158,15 @@ impl Conversion {
 
     fn contents(&self) -> Vec<Vec<u8>> {
         match self.target.write {
-            WriteFunction::One(write) => vec![write(&self.job()).into_bytes()],
-            WriteFunction::Binary(write) => vec![write(&self.job())],
+            WriteFunction::One(write) => vec![write(&self.input()).into_bytes()],
+            WriteFunction::Binary(write) => vec![write(&self.input())],
             WriteFunction::Several(write) => {
-                write(&self.job()).into_iter().map(String::into_bytes).collect()
+                write(&self.input()).into_iter().map(String::into_bytes).collect()
             }
         }
     }
 
-    fn job(&self) -> WriterInput<'_> {
+    fn input(&self) -> WriterInput<'_> {
         WriterInput::new(&self.content, self.target.capabilities, &self.creator)
     }
 }

@@ -1,7 +1,7 @@
 //! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
 
 use crate::content::label::Label;
-use crate::export::capabilities::{Capabilities, first};
+use crate::export::capabilities::{Capabilities, join_first};
 use crate::export::content::{Content, ContentGroup};
 use crate::export::group_numbers::GroupNumbers;
 use crate::export::name_rules::{NameRules, distinct};
@@ -24,7 +24,7 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     // Where names are words, a group without one is called by its number.
     let name = |(place, group): (usize, &ContentGroup)| {
         let dimension = usize::from(group.dimension);
-        let is_held = holds.names[dimension] && main[dimension] == Some(&group.what);
+        let is_held = holds.names[dimension] && main[dimension] == Some(&group.kind);
         let number = || tags.number(place as u32).to_string();
         let by_number = || holds.name_rules.is_word().then(number);
         group.name().map(str::to_owned).or_else(by_number).filter(|_| is_held)
@@ -37,7 +37,7 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     let mut place_of = vec![None; names.len()];
     for (owner, (group, name)) in content.groups.iter().zip(&names).enumerate() {
         let Some(name) = name else { continue };
-        let place = *places.entry((&group.what, &group.label, name)).or_insert(old.len());
+        let place = *places.entry((&group.kind, &group.label, name)).or_insert(old.len());
         if place == old.len() {
             old.push(name);
             owners.push(owner);
@@ -98,5 +98,5 @@ fn data(holds: &Capabilities, content: &mut Content) -> Vec<String> {
 /// Makes a line of the first changes, and counts the rest.
 fn line(what: &str, told: &[String]) -> Vec<String> {
     let told: Vec<&str> = told.iter().map(String::as_str).collect();
-    if told.is_empty() { Vec::new() } else { vec![format!("{what}: {}", first(&told))] }
+    if told.is_empty() { Vec::new() } else { vec![format!("{what}: {}", join_first(&told))] }
 }

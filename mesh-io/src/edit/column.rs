@@ -3,7 +3,7 @@
 use crate::edit::numbers::{CoordinateEncoding, NumberEncoding, Offsets};
 use std::ops::Range;
 
-/// A list of numbers in the order in which they stand in the file, with their old and new values.
+/// Old and new values of numbers that a file stores at ascending offsets.
 pub(crate) struct EditableColumn<'a> {
     at: ItemOffsets<'a>,
     form: NumberEncoding,
@@ -16,7 +16,7 @@ pub(crate) struct EditableColumn<'a> {
     owners: Option<&'a [u32]>,
 }
 
-/// Where the items of a column start.
+/// Offsets of the items of a column.
 enum ItemOffsets<'a> {
     /// Each item starts this many bytes after one of these places; before it, if that is negative.
     After(&'a Offsets, isize),
@@ -24,7 +24,7 @@ enum ItemOffsets<'a> {
     Pairs(&'a Offsets),
 }
 
-/// A number to be replaced.
+/// A number to be replaced, with its range in the file.
 pub(crate) struct NumberEdit {
     pub(crate) range: Range<usize>,
     pub(crate) value: f64,

@@ -3,12 +3,12 @@
 use crate::binary::byte_order::ByteOrder;
 use crate::precision::{Precision, short_text};
 use crate::text::card;
-use crate::text::field_text::{ALL, field_text};
+use crate::text::field_text::{MAX_LENGTH, field_text};
 use crate::text::token::{number_end, skip_to_number};
 use std::io::Write;
 use std::ops::Range;
 
-/// How the coordinates of a vertex are stored in its file, from the offset of x on.
+/// Encoding of the two coordinates of a vertex, relative to the offset of x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CoordinateEncoding {
     /// As text. y is the token after x. Programs that read the format may know only single precision.
@@ -38,7 +38,7 @@ impl CoordinateEncoding {
     }
 }
 
-/// How a single number is stored in a file.
+/// Encoding of a single number in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberEncoding {
     /// As a token of text. Programs that read the format may know only single precision.
@@ -82,7 +82,7 @@ impl NumberEncoding {
                 let most = match precision {
                     Precision::Text8 => 8,
                     Precision::Text16 => 16,
-                    _ => ALL,
+                    _ => MAX_LENGTH,
                 };
                 out.extend_from_slice(field_text(value, most).as_bytes());
             }
@@ -115,7 +115,7 @@ impl From<CoordinateEncoding> for NumberEncoding {
     }
 }
 
-/// The offsets of an array's numbers, ascending.
+/// Byte offsets of the numbers of an array, ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Offsets {
     /// An offset for each number.
@@ -135,7 +135,8 @@ impl Offsets {
     }
 }
 
-/// Collects the offsets of numbers as they are found. It needs memory only if they are not evenly spaced.
+/// Builder of [`Offsets`]. Stores start, stride and count while offsets are evenly spaced, and a list of all offsets
+/// from the first one that is not.
 #[derive(Default)]
 pub(crate) struct OffsetsBuilder {
     start: usize,
@@ -207,38 +208,40 @@ impl OffsetsBuilder {
     }
 }
 
-/// Bytes that replace a range of a file.
+/// A range of a file and the bytes that replace the range.
 #[derive(Clone)]
 pub(crate) struct ByteEdit {
     pub(crate) range: Range<usize>,
     pub(crate) bytes: Vec<u8>,
 }
 
-/// A number in a file that says how far from the start of the appended data an array stands.
+/// A number in a VTK XML file that gives the distance of an array from the start of the appended data, in bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct AppendedOffset {
     pub(crate) value: usize,
     /// The offset of the array in the file.
     pub(crate) array_start: usize,
-    /// Where the number stands in the file.
+    /// The bytes of the number in the file.
     pub(crate) range: Range<usize>,
 }
 
-/// Arrays of numbers that are encoded in their file: in base64, or compressed.
+/// Arrays of numbers that a file stores in base64, or compressed, or both.
 pub(crate) trait EncodedArrays: Send + Sync {
     /// Returns the decoded numbers in binary, as they were read.
     fn bytes(&self) -> &[u8];
     /// Returns the ranges of the file that hold the encoded arrays.
     fn ranges(&self) -> Vec<Range<usize>>;
-    /// What of the file is replaced if these become the numbers. `end` is where the file ends, with what was put behind it so far; what
-    /// is put there is a edit at its end as it was read.
+    /// Returns the edits that store the decoded bytes `new`. `end` is the length of the file with all bytes appended
+    /// so far; appended bytes are an edit at the end of the original file, and increase `end`.
     fn edits(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<ByteEdit>;
-    /// What else is replaced in a file, once all is known that its arrays replace and where it ends then. What several arrays say
-    /// of one range is the same.
+    /// Returns the edits that follow from `edits`: offsets of appended arrays (VTK XML), or the end address and
+    /// checksums (HDF5). `end` is the length of the file with all edits applied. Arrays that share such a range
+    /// return equal bytes for the range.
     fn dependent_edits(&self, file: &[u8], edits: &[ByteEdit], end: usize) -> Vec<ByteEdit>;
-    /// Where that may be in a file of which nothing changes before this byte.
+    /// Returns the ranges that [`dependent_edits`](Self::dependent_edits) may edit if no array before byte `first`
+    /// changes its length.
     fn dependent_ranges(&self, first: usize) -> Vec<Range<usize>>;
-    /// Whether everything else stays at its place in the file, whatever the lengths of the arrays.
+    /// Returns whether bytes outside of the arrays keep their offsets, whatever the lengths of the arrays.
     fn preserves_offsets(&self) -> bool;
 }
 

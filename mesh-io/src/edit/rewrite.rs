@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 
 /// Bytes that one thread rewrites at a time.
-const BLOCK: usize = 1 << 17;
+const BLOCK_BYTES: usize = 1 << 17;
 
 /// A file's content, with the numbers that may be replaced.
 pub(crate) struct Rewrite<'a> {
@@ -35,8 +35,8 @@ impl Rewrite<'_> {
         if self.columns.is_empty() {
             return out.write_all(&self.bytes[range]);
         }
-        let count = range.len().div_ceil(BLOCK);
-        let cut = |block: usize| range.end.min(self.cut(range.start + block * BLOCK));
+        let count = range.len().div_ceil(BLOCK_BYTES);
+        let cut = |block: usize| range.end.min(self.cut(range.start + block * BLOCK_BYTES));
         write_blocks(out, count, |block| {
             // The first block starts where the range starts, even within a number.
             let start = if block == 0 { range.start } else { cut(block) };

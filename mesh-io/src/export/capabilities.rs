@@ -1,6 +1,6 @@
 //! What each format holds, and what of a mesh is lost in it.
 
-use super::content::{Content, ContentGroup, Data};
+use super::content::{Content, ContentGroup, DataArray};
 use super::group_numbers::{GroupNumbers, determines};
 use super::name_rules::NameRules;
 use super::sides;
@@ -8,23 +8,25 @@ use crate::content::label::Label;
 use crate::precision::Precision;
 use crate::visit::items::Kind;
 
-/// What a format can hold of a mesh.
+/// The parts of a mesh that a format can store.
 #[derive(Clone, Copy)]
 pub(crate) struct Capabilities {
     pub(crate) points: ElementSupport,
     pub(crate) lines: ElementSupport,
     pub(crate) quadrilaterals: bool,
     pub(crate) polygons: bool,
+    /// Whether vertices have third coordinates.
     pub(crate) z: bool,
-    /// Whether vertices keep their own numbers, whatever these are.
+    /// Whether vertices keep their ids, whatever these are.
     pub(crate) keeps_vertex_ids: bool,
     /// Which groups an element can belong to.
     pub(crate) groups: GroupSupport,
     /// Whether groups of points, lines and surfaces have names.
     pub(crate) names: [bool; 3],
-    /// How names of groups and data are spelled.
+    /// The rules for names of groups and data.
     pub(crate) name_rules: NameRules,
-    /// A kind of groups whose names belong to the format itself, such as Medit's lists; empty if there is none.
+    /// A kind of group whose names belong to the format itself, such as the lists of Medit; empty if the format has
+    /// no such kind.
     pub(crate) builtin_group_kind: &'static str,
     /// Whether the numbers of groups may be negative.
     pub(crate) allows_negative_numbers: bool,
@@ -38,7 +40,7 @@ pub(crate) struct Capabilities {
     pub(crate) cell_data: DataSupport,
 }
 
-/// Which elements of a dimension a format holds.
+/// The elements of a dimension that a format can store.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum ElementSupport {
     None,
@@ -47,7 +49,7 @@ pub(crate) enum ElementSupport {
     OfGroups,
 }
 
-/// Which groups of elements a format holds.
+/// The groups of elements that a format can store.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum GroupSupport {
     None,
@@ -63,7 +65,7 @@ pub(crate) enum GroupSupport {
     Blocks,
 }
 
-/// Which data a format holds.
+/// The data arrays that a format can store.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum DataSupport {
     None,
@@ -77,7 +79,7 @@ pub(crate) enum DataSupport {
 }
 
 impl Capabilities {
-    /// A format that holds nothing but triangles.
+    /// A format that stores nothing but triangles.
     pub(crate) const TRIANGLES: Capabilities = Capabilities {
         points: ElementSupport::None,
         lines: ElementSupport::None,
@@ -97,7 +99,7 @@ impl Capabilities {
         cell_data: DataSupport::None,
     };
 
-    /// Lists what of a mesh is lost, one line each.
+    /// Lists the parts of a mesh that the format cannot store, one line each.
     pub(crate) fn losses(&self, content: &Content) -> Vec<String> {
         let mut lost = Vec::new();
         self.element_losses(content, &mut lost);
@@ -119,26 +121,26 @@ impl Capabilities {
             let names: Vec<_> = content.vertex_groups.iter().map(|(group, _)| group).collect();
             let names: Vec<_> = names.into_iter().filter(|group| group.name().is_some()).collect();
             if self.vertex_groups && !names.is_empty() {
-                let names = listed(names.into_iter());
+                let names = group_names(names.into_iter());
                 lost.push(format!("names of groups of vertices, which become numbers: {names}"));
             }
         }
         let is_negative = |group: &&ContentGroup| matches!(group.label, Label::Tag(..0));
         if !self.allows_negative_numbers && content.groups.iter().any(|group| is_negative(&group)) {
-            let groups = listed(content.groups.iter().filter(is_negative));
+            let groups = group_names(content.groups.iter().filter(is_negative));
             lost.push(format!("negative numbers of groups, which become others: {groups}"));
         }
         if !self.vertex_groups && !self.vertex_sets && !content.vertex_groups.is_empty() {
             let groups = content.vertex_groups.iter().map(|(group, _)| group);
-            lost.push(format!("groups of vertices: {}", listed(groups)));
+            lost.push(format!("groups of vertices: {}", group_names(groups)));
         }
         self.point_data.losses("data of vertices", &content.point_data, &mut lost);
         self.cell_data.losses("data of elements", &content.cell_data, &mut lost);
-        lost.extend(content.left_out.iter().cloned());
+        lost.extend(content.unsupported.iter().cloned());
         lost
     }
 
-    /// Whether the format holds a cell.
+    /// Returns whether the format can store a cell.
     pub(crate) fn supports_cell(
         &self,
         content: &Content,
@@ -189,7 +191,7 @@ impl Capabilities {
 
     fn group_losses(&self, content: &Content, lost: &mut Vec<String>) {
         let several = content.sets.iter().any(|set| {
-            let what = |group: &u32| &content.groups[*group as usize].what;
+            let what = |group: &u32| &content.groups[*group as usize].kind;
             set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| what(b) == what(group)))
         });
         if several && self.groups != GroupSupport::None {
@@ -218,12 +220,12 @@ impl Capabilities {
             };
             let one = |what: &str| {
                 let groups = content.groups.iter();
-                groups.filter(|group| group.dimension == dimension && group.what == what).count()
+                groups.filter(|group| group.dimension == dimension && group.kind == what).count()
                     == 1
             };
             for what in whats.iter().copied().filter(dropped) {
                 let groups =
-                    || content.groups.iter().filter(|g| g.dimension == dimension && g.what == what);
+                    || content.groups.iter().filter(|g| g.dimension == dimension && g.kind == what);
                 // If there is one group without a name, only its number is lost.
                 let keeps_none = match self.groups {
                     GroupSupport::None => true,
@@ -233,18 +235,18 @@ impl Capabilities {
                 if keeps_none && one(what) && groups().all(|group| group.name().is_none()) {
                     continue;
                 }
-                lost.push(format!("groups of {of} ({what}): {}", listed(groups())));
+                lost.push(format!("groups of {of} ({what}): {}", group_names(groups())));
             }
             let kept = whats.iter().copied().filter(|what| !dropped(what));
             let kept: Vec<&str> = kept.collect();
             let named = |group: &&ContentGroup| {
-                let is_kept = kept.contains(&group.what.as_str());
-                let is_told = is_kept && group.what != self.builtin_group_kind;
+                let is_kept = kept.contains(&group.kind.as_str());
+                let is_told = is_kept && group.kind != self.builtin_group_kind;
                 group.dimension == dimension && is_told && group.name().is_some()
             };
             let named: Vec<&ContentGroup> = content.groups.iter().filter(named).collect();
             if !self.names[usize::from(dimension)] && !named.is_empty() {
-                let names = listed(named.into_iter());
+                let names = group_names(named.into_iter());
                 lost.push(format!("names of groups of {of}, which become numbers: {names}"));
             }
         }
@@ -252,8 +254,8 @@ impl Capabilities {
 }
 
 impl DataSupport {
-    /// Whether the format holds these data.
-    pub(crate) fn supports(self, data: &Data) -> bool {
+    /// Returns whether the format can store a data array.
+    pub(crate) fn supports(self, data: &DataArray) -> bool {
         match self {
             DataSupport::None => false,
             DataSupport::All => true,
@@ -262,7 +264,7 @@ impl DataSupport {
         }
     }
 
-    fn losses(self, what: &str, data: &[Data], lost: &mut Vec<String>) {
+    fn losses(self, what: &str, data: &[DataArray], lost: &mut Vec<String>) {
         let names = |kept: bool| -> Vec<&str> {
             let of = data.iter().filter(|data| self.supports(data) == kept);
             let mut names: Vec<&str> = of.map(|data| data.name.as_str()).collect();
@@ -271,19 +273,19 @@ impl DataSupport {
         };
         let dropped = names(false);
         if !dropped.is_empty() {
-            lost.push(format!("{what}: {}", first(&dropped)));
+            lost.push(format!("{what}: {}", join_first(&dropped)));
         }
         let mut kept = names(true);
         // Names such as `attribute1` are the format's own.
         kept.retain(|name| !name.starts_with("attribute"));
         if self == DataSupport::Unnamed && !kept.is_empty() {
-            lost.push(format!("names of {what}: {}", first(&kept)));
+            lost.push(format!("names of {what}: {}", join_first(&kept)));
         }
     }
 }
 
 /// Lists the names or numbers of the first groups, and counts the rest.
-fn listed<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
+fn group_names<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
     let names: Vec<String> = groups
         .map(|group| match (group.name(), &group.label) {
             (Some(name), _) => name.to_owned(),
@@ -293,14 +295,14 @@ fn listed<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
             },
         })
         .collect();
-    first(&names.iter().map(String::as_str).collect::<Vec<_>>())
+    join_first(&names.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// Lists the first names, and counts the rest.
-pub(crate) fn first(names: &[&str]) -> String {
-    const TOLD: usize = 8;
-    let told = names[..names.len().min(TOLD)].join(", ");
-    match names.len().saturating_sub(TOLD) {
+/// Joins the first 8 names by commas, and counts the rest.
+pub(crate) fn join_first(names: &[&str]) -> String {
+    const MAX_NAMES: usize = 8;
+    let told = names[..names.len().min(MAX_NAMES)].join(", ");
+    match names.len().saturating_sub(MAX_NAMES) {
         0 => told,
         more => format!("{told} and {more} more"),
     }

@@ -21,10 +21,11 @@ use crate::visit::items::Kind;
 pub struct Content {
     /// x and y of each vertex.
     pub(crate) points: Vec<[f64; 2]>,
-    /// The third coordinate of each vertex; empty if all are the same, which is then `height`.
+    /// The third coordinate of each vertex; empty if all are `common_z`.
     pub(crate) z_values: Vec<f64>,
+    /// The third coordinate of all vertices, if `z_values` is empty.
     pub(crate) common_z: f64,
-    /// The file's number or tag of each vertex.
+    /// The id of each vertex in the file.
     pub(crate) vertex_ids: Vec<u64>,
     pub(crate) cells: Cells,
     pub(crate) groups: Vec<ContentGroup>,
@@ -32,10 +33,10 @@ pub struct Content {
     pub(crate) sets: Vec<Vec<u32>>,
     /// Groups of vertices, each with its vertices.
     pub(crate) vertex_groups: Vec<(ContentGroup, Vec<u32>)>,
-    pub(crate) point_data: Vec<Data>,
-    pub(crate) cell_data: Vec<Data>,
-    /// Other things that the file has, in a few words each.
-    pub(crate) left_out: Vec<String>,
+    pub(crate) point_data: Vec<DataArray>,
+    pub(crate) cell_data: Vec<DataArray>,
+    /// Short descriptions of other parts of the file.
+    pub(crate) unsupported: Vec<String>,
 }
 
 /// Elements of all kinds in the order of the file.
@@ -48,7 +49,7 @@ pub(crate) struct Cells {
     pub(crate) vertices: Vec<u32>,
     /// The index of each cell's groups in [`Content::sets`].
     pub(crate) sets: Vec<u32>,
-    /// The tag of each cell's element, by which cell data are given.
+    /// The id of each cell in the file, to which cell data refer.
     pub(crate) ids: Vec<u64>,
 }
 
@@ -85,7 +86,7 @@ pub enum CellKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContentGroup {
     /// The kind of group, such as `physical`. It is the same for formats that mean the same.
-    pub(crate) what: String,
+    pub(crate) kind: String,
     pub(crate) dimension: u8,
     pub(crate) label: Label,
     pub(crate) name: Option<String>,
@@ -95,7 +96,7 @@ impl ContentGroup {
     /// Returns the kind of group, such as `physical`, `reference` or `nodeset`. Formats that mean the same have the same
     /// kind.
     pub fn kind(&self) -> &str {
-        &self.what
+        &self.kind
     }
 
     /// Returns the dimension of the cells of the group: 0 for points and vertices, 1 for lines, 2 for surfaces.
@@ -120,8 +121,8 @@ impl ContentGroup {
     }
 }
 
-/// Numbers for each vertex or cell of a [`Content`].
-pub struct Data {
+/// Numbers of the vertices or cells of a mesh, with a name.
+pub struct DataArray {
     pub(crate) name: String,
     pub(crate) components: usize,
     /// Whether the values are real numbers, not whole ones.
@@ -130,7 +131,7 @@ pub struct Data {
     pub(crate) values: Vec<f64>,
 }
 
-impl Data {
+impl DataArray {
     /// Returns the name. Later time steps of a result have a number after their name.
     pub fn name(&self) -> &str {
         &self.name
@@ -219,19 +220,19 @@ impl Content {
     }
 
     /// Returns the data of vertices. Third coordinates are not among them: see [`z`](Self::z).
-    pub fn point_data(&self) -> &[Data] {
+    pub fn point_data(&self) -> &[DataArray] {
         &self.point_data
     }
 
     /// Returns the data of cells, with numbers in the order of [`cells`](Self::cells). Data that tell groups are groups
     /// instead.
-    pub fn cell_data(&self) -> &[Data] {
+    pub fn cell_data(&self) -> &[DataArray] {
         &self.cell_data
     }
 
     /// Lists the parts of the file that are not in the content, in a few words each.
-    pub fn left_out(&self) -> &[String] {
-        &self.left_out
+    pub fn unsupported(&self) -> &[String] {
+        &self.unsupported
     }
 
     /// Returns the third coordinate of a vertex, 0 if the file has none.
@@ -250,7 +251,7 @@ impl Content {
     /// Returns for each cell its first group of this kind, if it has one.
     pub(crate) fn column(&self, what: &str) -> Vec<Option<u32>> {
         let of_set = |set: &Vec<u32>| {
-            set.iter().copied().find(|&group| self.groups[group as usize].what == what)
+            set.iter().copied().find(|&group| self.groups[group as usize].kind == what)
         };
         let found: Vec<_> = self.sets.iter().map(of_set).collect();
         self.cells.sets.iter().map(|&set| found[set as usize]).collect()
@@ -261,14 +262,14 @@ impl Content {
         // What users give names to comes before what programs number.
         const LAST: [&str; 6] = ["reference", "block", "section", "family", "entity", "zone"];
         let is_number = |what: &str| {
-            let mut own = self.groups.iter().filter(|group| group.what == what);
+            let mut own = self.groups.iter().filter(|group| group.kind == what);
             own.any(|group| matches!(group.label, Label::Tag(_)))
         };
         let last = |what: &str| LAST.iter().position(|last| *last == what && is_number(what));
         let mut whats: Vec<&str> = Vec::new();
         for group in self.groups.iter().filter(|group| group.dimension == dimension) {
-            if !whats.contains(&group.what.as_str()) {
-                whats.push(&group.what);
+            if !whats.contains(&group.kind.as_str()) {
+                whats.push(&group.kind);
             }
         }
         whats.sort_by_key(|what| last(what).map_or(0, |at| at + 1));

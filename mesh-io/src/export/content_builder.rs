@@ -1,6 +1,6 @@
 //! Makes a description of a mesh from what a reader hands on.
 
-use super::content::{Content, ContentGroup, Data};
+use super::content::{Content, ContentGroup, DataArray};
 use crate::content::group_keys::GroupKeys;
 use crate::content::id_index::IdIndexBuilder;
 use crate::content::label::Label;
@@ -20,7 +20,7 @@ pub(crate) fn content(reader: &ReaderFunctions, source: &Source) -> Result<Conte
     Ok(collector.finish())
 }
 
-/// Collects all that a reader hands on.
+/// Visitor that builds a [`Content`].
 #[derive(Default)]
 struct ContentBuilder {
     content: Content,
@@ -40,12 +40,13 @@ struct ContentBuilder {
     /// The last vertex of a line that may be continued.
     open_end: Option<u32>,
     /// Data of cells, with the tags of their elements.
-    by_tag: Vec<(Data, Option<Vec<u64>>)>,
+    by_tag: Vec<(DataArray, Option<Vec<u64>>)>,
 }
 
 /// What data are called that have no name.
 const UNNAMED: &str = "unnamed";
 
+/// An array of data that the reader announced and whose numbers come next.
 struct PendingArray {
     name: String,
     components: usize,
@@ -72,14 +73,14 @@ impl ContentBuilder {
         let Self { mut content, keys, by_tag, .. } = self;
         let of_vertices = content.vertex_groups.iter_mut().map(|(group, _)| group);
         for group in content.groups.iter_mut().chain(of_vertices) {
-            group.name = keys.name_of(&group.what, group.dimension, &group.label);
+            group.name = keys.name_of(&group.kind, group.dimension, &group.label);
         }
         let first = content.z_values.first().copied();
         if content.z_values.iter().all(|&z| Some(z) == first) {
             content.common_z = first.unwrap_or(0.0);
             content.z_values.clear();
         }
-        let (count, left_out) = (content.points.len(), &mut content.left_out);
+        let (count, left_out) = (content.points.len(), &mut content.unsupported);
         content.point_data.retain(|data| {
             let fits = data.components > 0
                 && Some(data.values.len()) == count.checked_mul(data.components);
@@ -102,11 +103,12 @@ impl ContentBuilder {
                     None => values.resize(values.len() + each, f64::NAN),
                 }
             }
-            content.cell_data.push(Data { values, ..data });
+            content.cell_data.push(DataArray { values, ..data });
         }
         // Data that tell regions are kept as groups.
         let groups = &content.groups;
-        let is_group = |data: &Data| groups.iter().any(|group| group.what == common(&data.name));
+        let is_group =
+            |data: &DataArray| groups.iter().any(|group| group.kind == common(&data.name));
         content.cell_data.retain(|data| !is_group(data));
         content
     }
@@ -115,7 +117,7 @@ impl ContentBuilder {
         let what = common(what);
         let (number, is_new) = self.keys.number(&what, dimension, &label);
         if is_new {
-            self.content.groups.push(ContentGroup { what, dimension, label, name: None });
+            self.content.groups.push(ContentGroup { kind: what, dimension, label, name: None });
         }
         number as u32
     }
@@ -235,7 +237,7 @@ impl MeshVisitor for ContentBuilder {
                     let group = &self.content.groups[group as usize];
                     within
                         .iter()
-                        .any(|(what, label, _)| common(what) == group.what && *label == group.label)
+                        .any(|(what, label, _)| common(what) == group.kind && *label == group.label)
                 })
             });
             if !same {
@@ -251,7 +253,7 @@ impl MeshVisitor for ContentBuilder {
         let (number, is_new) = self.vertex_keys.number(what, 0, label);
         if is_new {
             let (what, label) = (common(what), label.clone());
-            groups.push((ContentGroup { what, dimension: 0, label, name: None }, Vec::new()));
+            groups.push((ContentGroup { kind: what, dimension: 0, label, name: None }, Vec::new()));
         }
         groups[number].1.push(node);
     }
@@ -297,7 +299,7 @@ impl MeshVisitor for ContentBuilder {
             }
         };
         // Each part of a mesh may have its own values.
-        let same = |data: &&mut Data| data.name == name && data.components == components;
+        let same = |data: &&mut DataArray| data.name == name && data.components == components;
         if let Some(data) = self.content.point_data.iter_mut().find(same)
             && data.values.len() == values.len()
             && data.values.iter().zip(&values).all(|(a, b)| a.is_nan() || b.is_nan())
@@ -317,7 +319,7 @@ impl MeshVisitor for ContentBuilder {
                 format!("{name} {step}")
             }
         };
-        self.content.point_data.push(Data { name, components, is_real, values });
+        self.content.point_data.push(DataArray { name, components, is_real, values });
     }
 
     fn cell_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
@@ -336,13 +338,13 @@ impl MeshVisitor for ContentBuilder {
                 known.extend(tags);
                 return;
             }
-            self.by_tag.push((Data { name, components, is_real, values }, tags));
+            self.by_tag.push((DataArray { name, components, is_real, values }, tags));
         }
     }
 
     fn unsupported(&mut self, what: &str) {
-        if !self.content.left_out.iter().any(|known| known == what) {
-            self.content.left_out.push(what.to_owned());
+        if !self.content.unsupported.iter().any(|known| known == what) {
+            self.content.unsupported.push(what.to_owned());
         }
     }
 }

@@ -4,7 +4,7 @@ use super::content::{Content, ContentGroup};
 use crate::content::label::Label;
 use std::collections::{HashMap, HashSet};
 
-/// The most important group of each element, and a number for each group.
+/// The number that a writer gives to each group.
 pub(crate) struct GroupNumbers {
     /// For each dimension, the most important group of each cell.
     columns: [Vec<Option<u32>>; 3],
@@ -46,7 +46,7 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();
     for group in groups {
         if let Label::Tag(tag) = group.label {
-            taken.insert((&group.what, group.dimension, tag));
+            taken.insert((&group.kind, group.dimension, tag));
         }
     }
     let mut next: HashMap<(&str, u8), i64> = HashMap::new();
@@ -68,14 +68,14 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
 }
 
 fn groups_what<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
-    groups.iter().find(|own| own.what == group.what).map_or("", |own| &own.what)
+    groups.iter().find(|own| own.kind == group.kind).map_or("", |own| &own.kind)
 }
 
-/// Whether an element's group of the kind `main` determines its group of the kind `other`. Then only numbers are lost
-/// if `other` is not written.
+/// Returns whether elements of the dimension with equal `main` groups have equal `other` groups, and no `other` group
+/// has a name. Leaving out `other` then loses only its numbers.
 pub(crate) fn determines(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
     let named = |group: &ContentGroup| group.dimension == dimension && group.name().is_some();
-    if content.groups.iter().any(|group| group.what == other && named(group)) {
+    if content.groups.iter().any(|group| group.kind == other && named(group)) {
         return false;
     }
     let (main, other) = (content.column(main), content.column(other));

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-/// How a format spells names.
+/// Rules of a format for the names of groups and data.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum NameRules {
     /// As they are.

@@ -1,6 +1,6 @@
 //! Finds lines that are sides of elements, and what is lost of a mesh whose elements stand in blocks.
 
-use super::content::{Content, Data};
+use super::content::{Content, DataArray};
 use super::group_numbers::GroupNumbers;
 use crate::visit::items::Kind;
 use std::collections::HashSet;
@@ -20,7 +20,7 @@ pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
         }
     }
     // Lines that the file has in a block stay in it.
-    let is_of_block = |group: u32| content.groups[group as usize].what == "block";
+    let is_of_block = |group: u32| content.groups[group as usize].kind == "block";
     let is_side = |&line: &usize| match (group(line), content.cells.of(line)) {
         (Some(group), &[a, b]) => !is_of_block(group) && of_elements.contains(&pair(a, b)),
         _ => false,
@@ -46,7 +46,7 @@ pub(crate) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
         lost.push("that groups have triangles and quadrilaterals, which become blocks each".into());
     }
     let sides = sides(content, group);
-    let has_value = |data: &&Data| {
+    let has_value = |data: &&DataArray| {
         let each = data.components.max(1);
         let own = |&line: &usize| data.values[line * each..(line + 1) * each].iter();
         sides.iter().flat_map(own).any(|value| !value.is_nan())

@@ -1,12 +1,12 @@
 //! The mesh that a writer is given.
 
 use super::capabilities::Capabilities;
-use super::content::{Content, ContentGroup, Data};
+use super::content::{Content, ContentGroup, DataArray};
 use super::group_numbers::GroupNumbers;
 use crate::content::label::Label;
 use crate::visit::items::Kind;
 
-/// A mesh to be written, with what the format holds of it.
+/// A mesh to be written in a format, with the capabilities of the format and the numbers of groups.
 pub(crate) struct WriterInput<'a> {
     pub(crate) content: &'a Content,
     /// The name of the program, for titles of files.
@@ -49,17 +49,18 @@ impl<'a> WriterInput<'a> {
         self.all(kind).count()
     }
 
-    /// Returns the file's number of a vertex. If some vertex has number 0, returns its position counted from 1.
+    /// Returns the id of a vertex in the file that was read. If some vertex has the id 0, returns the position of the
+    /// vertex, counted from 1.
     pub(crate) fn vertex_id(&self, vertex: usize) -> u64 {
         self.numbers.map_or(vertex as u64 + 1, |numbers| numbers[vertex])
     }
 
-    /// Returns the [numbers](Self::number) of a cell's vertices, separated by blanks.
+    /// Returns the [ids](Self::vertex_id) of the vertices of a cell, separated by blanks.
     pub(crate) fn vertex_ids(&self, cell: usize) -> String {
         self.joined(cell, |vertex| self.vertex_id(vertex))
     }
 
-    /// Returns the positions of a cell's vertices, counted from `first` and separated by blanks.
+    /// Returns the positions of the vertices of a cell, counted from `first` and separated by blanks.
     pub(crate) fn positions(&self, cell: usize, first: u64) -> String {
         self.joined(cell, |vertex| vertex as u64 + first)
     }
@@ -92,7 +93,7 @@ impl<'a> WriterInput<'a> {
         Some(&self.content.groups[group as usize])
     }
 
-    /// Returns the name of a group, or its number.
+    /// Returns the name of a group, or its number if the group has no name.
     pub(crate) fn name_or_number(&self, group: u32) -> String {
         let name = self.content.groups[group as usize].name().map(str::to_owned);
         name.unwrap_or_else(|| self.group_numbers.number(group).to_string())
@@ -110,18 +111,18 @@ impl<'a> WriterInput<'a> {
     }
 
     /// Lists the data of vertices that the format holds.
-    pub(crate) fn point_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
+    pub(crate) fn point_data(&self) -> impl Iterator<Item = &'a DataArray> + '_ {
         self.content.point_data.iter().filter(|data| self.capabilities.point_data.supports(data))
     }
 
     /// Lists the data of elements that the format holds.
-    pub(crate) fn cell_data(&self) -> impl Iterator<Item = &'a Data> + '_ {
+    pub(crate) fn cell_data(&self) -> impl Iterator<Item = &'a DataArray> + '_ {
         self.content.cell_data.iter().filter(|data| self.capabilities.cell_data.supports(data))
     }
 }
 
 /// Formats a value of some data, without a fraction if the data are whole numbers.
-pub(crate) fn text_of(data: &Data, value: f64) -> String {
+pub(crate) fn text_of(data: &DataArray, value: f64) -> String {
     match data.is_real {
         true => format!("{value:?}"),
         false => format!("{}", value as i64),

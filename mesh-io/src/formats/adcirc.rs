@@ -28,7 +28,7 @@ impl FormatReader for Adcirc {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::FORTRAN);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::FORTRAN);
         // The first line is a title of any text, or of none.
         cursor.line();
         cursor.row(0, 1, "lines of counts")?;

@@ -6,10 +6,10 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::hdf5::{Array, Hdf5, Hdf5Arrays};
+use crate::hdf5::{DatasetArray, Hdf5, Hdf5Arrays};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
-use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::records::{NodeIds, NodeRecords};
 use crate::visit::send::REWRITE;
 use crate::visit::storage::{ByteSpace, CoordinateStorage};
 use crate::visit::visitor::MeshVisitor;
@@ -50,7 +50,7 @@ impl<'a> Axes<'a> {
     pub(crate) fn of_arrays(
         file: &Hdf5<'a>,
         form: BinaryReals,
-        arrays: Vec<Array<'_>>,
+        arrays: Vec<DatasetArray<'_>>,
         axes: usize,
         count: usize,
     ) -> Axes<'a> {
@@ -58,7 +58,7 @@ impl<'a> Axes<'a> {
         let length = count * form.precision.bytes();
         let of_each = axes / arrays.len().max(1);
         // In the file itself, if they stand there as they are; else as what is written anew.
-        let places: Option<Vec<usize>> = arrays.iter().map(Array::place).collect();
+        let places: Option<Vec<usize>> = arrays.iter().map(DatasetArray::place).collect();
         if let Some(places) = places {
             let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
             let starts: Vec<usize> = places.into_iter().flat_map(of).collect();
@@ -82,15 +82,15 @@ impl<'a> Axes<'a> {
         let bytes = encoded.as_ref().map_or(&source.bytes[..], Hdf5Arrays::bytes);
         // Numbers that are encoded have no place of their own.
         let place = |at: usize| match &encoded {
-            None => Cursor::at_byte_of(source, at),
-            Some(encoding) => Cursor::at_byte_of(source, encoding.byte_of(at)),
+            None => Cursor::at_byte_offset(source, at),
+            Some(encoding) => Cursor::at_byte_offset(source, encoding.byte_of(at)),
         };
         let y_after = y.start as isize - x.start as isize;
         let field =
             |axis: &Range<usize>| NumberField::new(bytes.get(axis.clone()), size, size, order);
-        let (x_at, tags) = (x.start, Tags::From(first));
+        let (x_at, tags) = (x.start, NodeIds::Consecutive(first));
         let place_of = |index: usize| place(x.start + index * size);
-        NodeRecords { count, x: field(&x), y: field(&y), x_at, tags }.send(
+        NodeRecords { count, x: field(&x), y: field(&y), x_offset: x_at, ids: tags }.send(
             visitor,
             place_of,
             |index| {

@@ -25,7 +25,7 @@ impl FormatReader for FreeFem {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         cursor.row(0, 1, "lines of counts")?;
         let vertices = cursor.vertex_count()?;
         let triangles = cursor.integer("the number of triangles")?;

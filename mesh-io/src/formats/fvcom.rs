@@ -27,7 +27,7 @@ impl FormatReader for Fvcom {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::FORTRAN);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::FORTRAN);
         let count = number_of(cursor, "Node Number")?;
         cursor.check_vertex_count(count)?;
         let cells = number_of(cursor, "Cell Number")?;

@@ -13,6 +13,7 @@ use crate::visit::reader::FormatReader;
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 
+/// Reader of HDF5 and netCDF files: chooses among MED, CGNS, UGRID and Exodus by the content.
 pub(crate) struct Hdf5OrNetcdf;
 
 impl FormatReader for Hdf5OrNetcdf {

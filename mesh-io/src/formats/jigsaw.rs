@@ -9,7 +9,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::numbered_nodes::{Names, counted_nodes};
+use crate::formats::numbered_nodes::{NodeNames, counted_nodes};
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
@@ -44,7 +44,7 @@ impl FormatReader for Jigsaw {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::SEMICOLONS);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::SEMICOLONS);
         let mut lists = Lists::default();
         let (mut dimensions, mut points) = (2, None);
         while cursor.next_row() {
@@ -68,7 +68,7 @@ impl FormatReader for Jigsaw {
                     let count = number(cursor, &key, first)?;
                     cursor.check_vertex_count(count)?;
                     let start = cursor.clone();
-                    let names = Names { one: "a point", all: "points" };
+                    let names = NodeNames { one: "a point", all: "points" };
                     let heights = counted_nodes(cursor, count, dimensions, names, visitor)?;
                     points = Some((List { cursor: start, count }, heights));
                 }

@@ -7,7 +7,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::numbered_nodes::{Names, counted_nodes};
+use crate::formats::numbered_nodes::{NodeNames, counted_nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
@@ -32,7 +32,7 @@ impl FormatReader for Mfem {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         // The name of the format and its version.
         cursor.next_row();
         cursor.rest();
@@ -100,7 +100,7 @@ fn vertices(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<()
         return Err(cursor.error(problem, "Save it as VTK: Mesh::PrintVTK of MFEM"));
     }
     let dimensions = cursor.integer("the number of coordinates")?;
-    let names = Names { one: "a vertex", all: "vertices" };
+    let names = NodeNames { one: "a vertex", all: "vertices" };
     let heights = counted_nodes(cursor, count, dimensions, names, visitor)?;
     visitor.end_nodes(cursor)?;
     heights.send("z", CoordinateEncoding::TEXT.into(), visitor);

@@ -2,7 +2,7 @@
 
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::hdf5::Hdf5Arrays;
-use crate::netcdf::{Header, Items, Number, Variable};
+use crate::netcdf::{Header, Items, NumberType, Variable};
 use crate::visit::items::PointNumbers;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
 use crate::visit::visitor::MeshVisitor;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Which parts of each record of a variable are handed on, each with numbers for all nodes.
 #[derive(Clone)]
-pub(crate) struct Parts {
+pub(crate) struct ComponentSlice {
     pub(crate) wanted: Range<usize>,
     /// How many equal parts a record consists of.
     pub(crate) all: usize,
@@ -19,9 +19,9 @@ pub(crate) struct Parts {
     pub(crate) components: u64,
 }
 
-impl Parts {
+impl ComponentSlice {
     /// A record has one number for each node.
-    pub(crate) const WHOLE: Parts = Parts { wanted: 0..1, all: 1, components: 1 };
+    pub(crate) const WHOLE: ComponentSlice = ComponentSlice { wanted: 0..1, all: 1, components: 1 };
 }
 
 /// Reads data of nodes or faces, and hands those of nodes on. What is encoded of a variable is shared by all of its parts and records.
@@ -43,11 +43,11 @@ impl<'h, 'a> PointData<'h, 'a> {
         &mut self,
         name: &[u8],
         variable: &'h Variable,
-        parts: &Parts,
+        parts: &ComponentSlice,
         missing: Option<f64>,
         visitor: &mut dyn MeshVisitor,
     ) {
-        let is_real = matches!(variable.number, Number::Real(_));
+        let is_real = matches!(variable.number, NumberType::Real(_));
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
                 if visitor.point_array(name, parts.components, is_real)
@@ -65,13 +65,13 @@ impl<'h, 'a> PointData<'h, 'a> {
         variable: &'h Variable,
         record: usize,
         part: usize,
-        parts: &Parts,
+        parts: &ComponentSlice,
         missing: Option<f64>,
     ) -> Option<PointNumbers> {
         let precision = match variable.number {
-            Number::Real(precision) => Some(precision),
-            Number::Whole(_) => None,
-            Number::Text | Number::Other(_) => return None,
+            NumberType::Real(precision) => Some(precision),
+            NumberType::Whole(_) => None,
+            NumberType::Text | NumberType::Other(_) => return None,
         };
         if self.last.as_ref().is_none_or(|(name, _)| *name != variable.name) {
             self.last = Some((&variable.name, self.items(variable)?));

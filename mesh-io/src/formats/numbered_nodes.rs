@@ -42,7 +42,7 @@ pub(crate) fn numbered_nodes(
 
 /// What nodes are called in messages.
 #[derive(Clone, Copy)]
-pub(crate) struct Names {
+pub(crate) struct NodeNames {
     /// A single node, with its article.
     pub(crate) one: &'static str,
     pub(crate) all: &'static str,
@@ -54,10 +54,10 @@ pub(crate) fn counted_nodes(
     cursor: &mut Cursor<'_>,
     count: u64,
     dimensions: u64,
-    names: Names,
+    names: NodeNames,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<ZValues, ReadError> {
-    let Names { one, all } = names;
+    let NodeNames { one, all } = names;
     if !(2..=3).contains(&dimensions) {
         let problem = format!("the {all} have {dimensions} coordinates");
         return Err(cursor.error(problem, "Those of 2 and 3 coordinates are read"));

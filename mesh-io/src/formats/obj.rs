@@ -95,7 +95,7 @@ impl FormatReader for Obj {
         let (mut before, mut faces) = (0, 0);
         let mut names = Interner::default();
         let mut region = [0; 2];
-        let mut named = Named::default();
+        let mut named = CurrentGroups::default();
         all_rows(cursor, visitor, element, |cursor, visitor, row| {
             match row {
                 Row::Vertex(..) => before += 1,
@@ -145,21 +145,21 @@ impl FormatReader for Obj {
 fn rows(source: &Source) -> Cursor<'_> {
     let ends_line = |at: usize| matches!(source.bytes[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
     match memchr::memchr_iter(b'\\', &source.bytes).any(ends_line) {
-        true => Cursor::new(source).of(Syntax::JOINED),
+        true => Cursor::new(source).with_syntax(Syntax::JOINED),
         false => Cursor::new(source),
     }
 }
 
 /// The material, object and groups of the current row.
 #[derive(Default)]
-struct Named<'a> {
+struct CurrentGroups<'a> {
     material: Option<&'a [u8]>,
     object: Option<&'a [u8]>,
     /// The groups; a row may name several.
     groups: Vec<&'a [u8]>,
 }
 
-impl<'a> Named<'a> {
+impl<'a> CurrentGroups<'a> {
     /// Takes a row that names the material, the object or the groups of the elements after it.
     fn enter(&mut self, row: &'a [u8]) {
         let split = row.iter().position(|&byte| byte <= b' ').unwrap_or(row.len());

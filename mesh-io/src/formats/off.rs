@@ -60,7 +60,7 @@ impl FormatReader for Off {
         }
         let syntax = layout(cursor, vertices, faces, more);
         let more = if syntax.is_of_words() { more } else { 0 };
-        *cursor = cursor.clone().of(syntax);
+        *cursor = cursor.clone().with_syntax(syntax);
         visitor.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
         let mut heights = ZValues::new(visitor);
         each_row(
@@ -86,7 +86,7 @@ impl FormatReader for Off {
         heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
         visitor.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
         // A color may follow the corners of a face on its row.
-        *cursor = cursor.clone().of(Syntax::RECORDS);
+        *cursor = cursor.clone().with_syntax(Syntax::RECORDS);
         each_row(
             cursor,
             faces,

@@ -13,7 +13,7 @@ use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::items::{Kind, PointNumbers};
 use crate::visit::reader::FormatReader;
-use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::records::{NodeIds, NodeRecords, Region};
 use crate::visit::rows::volume;
 use crate::visit::send::{ElementRecords, REWRITE};
 use crate::visit::storage::{ArrayLocation, CoordinateStorage};
@@ -70,23 +70,25 @@ impl FormatReader for Selafin {
             return Err(cursor.error("a size is negative", "Write the mesh again"));
         };
         let connectivity = record(cursor, order, "the elements", Some(listed))?;
-        let listed_at = cursor.taken();
+        let listed_at = cursor.last_taken();
         record(cursor, order, "the boundary numbers", Some(numbers / precision.bytes() * 4))?;
         let xs = record(cursor, order, "the x of all points", Some(numbers))?;
-        let x_at = cursor.taken();
+        let x_at = cursor.last_taken();
         let ys = record(cursor, order, "the y of all points", Some(numbers))?;
-        let y_after = (cursor.taken() - x_at) as isize;
+        let y_after = (cursor.last_taken() - x_at) as isize;
         let after_mesh = cursor.clone();
         let size = precision.bytes();
         let [x, y] = [xs, ys].map(|bytes| NumberField::new(Some(bytes), size, size, order));
-        NodeRecords { count: points as usize, x, y, x_at, tags: Tags::From(1) }.send(
-            visitor,
-            |index| Cursor::at_byte_of(source, x_at + index * size),
-            |index| {
-                let problem = format!("a coordinate of point {} is not a finite number", index + 1);
-                cursor.error(problem, REWRITE)
-            },
-        )?;
+        NodeRecords { count: points as usize, x, y, x_offset: x_at, ids: NodeIds::Consecutive(1) }
+            .send(
+                visitor,
+                |index| Cursor::at_byte_offset(source, x_at + index * size),
+                |index| {
+                    let problem =
+                        format!("a coordinate of point {} is not a finite number", index + 1);
+                    cursor.error(problem, REWRITE)
+                },
+            )?;
         visitor.end_nodes(cursor)?;
         let stride = 4 * kind.nodes();
         let elements = ElementRecords {
@@ -98,7 +100,7 @@ impl FormatReader for Selafin {
             regions: [Region::Same(0); 2],
         };
         elements
-            .send(visitor, |index, _| Cursor::at_byte_of(source, listed_at + index * stride))?;
+            .send(visitor, |index, _| Cursor::at_byte_offset(source, listed_at + index * stride))?;
         if visitor.asks_for_data() {
             visitor.unsupported("the title, the date, boundary numbers and times of a SELAFIN");
             steps(after_mesh, order, precision, &names, numbers, visitor);
@@ -129,7 +131,7 @@ fn steps(
             if visitor.point_array(name, 1, true) {
                 let size = precision.bytes();
                 let numbers = values.chunks_exact(size).map(|x| order.real(precision, x)).collect();
-                let places = Offsets::Regular { start: cursor.taken(), stride: size };
+                let places = Offsets::Regular { start: cursor.last_taken(), stride: size };
                 let stored =
                     ArrayLocation::in_place(places, NumberEncoding::Binary(order, precision));
                 visitor.point_numbers(PointNumbers { numbers, nodes: None, location: stored });
@@ -138,7 +140,7 @@ fn steps(
     }
 }
 
-/// Takes a record, which must have `expected` bytes if that is known. [`Cursor::taken`] is then the offset of the
+/// Takes a record, which must have `expected` bytes if that is known. [`Cursor::last_taken`] is then the offset of the
 /// record's content.
 fn record<'a>(
     cursor: &mut Cursor<'a>,
@@ -161,7 +163,7 @@ fn record<'a>(
         let problem = format!("the record of {what} ends with another length than it begins with");
         return Err(start.error(problem, "Write the mesh again"));
     }
-    cursor.pass(4);
+    cursor.skip_bytes(4);
     Ok(taken)
 }
 

@@ -27,14 +27,14 @@ const NO_MATERIAL: i64 = i64::MIN;
 enum Row {
     Node(u64, usize, [f64; 2], (usize, f64)),
     Element(Element),
-    String(Vec<u64>, End),
+    String(Vec<u64>, NodestringEnd),
     /// The number and name of a material.
     Material(i64, Vec<u8>),
     Other,
 }
 
 /// How a row of a node string ends.
-enum End {
+enum NodestringEnd {
     /// The string continues in the next row.
     Open,
     /// The string ends here. The rest of the row is its name, if it has one.
@@ -84,7 +84,7 @@ impl FormatReader for Sms {
                     visitor.region_attributes(materials());
                     visitor.group_scopes(&[]);
                     strings.extend(nodes);
-                    if let End::Last(name) = end {
+                    if let NodestringEnd::Last(name) = end {
                         if !name.is_empty() {
                             visitor.group_name("nodestring", Some(1), string, &name);
                         }
@@ -167,11 +167,16 @@ fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         nodes.push(node.unsigned_abs());
         match node {
             0 => return Err(cursor.error("a node string has node 0", CORRECT)),
-            ..0 => return Ok(Row::String(nodes, End::Last(unquoted(cursor.rest()).to_vec()))),
+            ..0 => {
+                return Ok(Row::String(
+                    nodes,
+                    NodestringEnd::Last(unquoted(cursor.rest()).to_vec()),
+                ));
+            }
             _ => {}
         }
     }
-    Ok(Row::String(nodes, End::Open))
+    Ok(Row::String(nodes, NodestringEnd::Open))
 }
 
 /// Reads the number and the name of a material. A row without them is ignored, as the mesh does not depend on it.

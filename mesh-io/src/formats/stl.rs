@@ -31,7 +31,7 @@ const TRIANGLE: usize = 50;
 
 /// The triangles of a file, which share no vertices.
 #[derive(Default)]
-struct Soup<'a> {
+struct TriangleSoup<'a> {
     /// The offset of each triangle, and the number of its solid.
     triangles: Vec<(usize, u32)>,
     /// The offset of each corner's x, ascending, three for each triangle.
@@ -71,7 +71,7 @@ impl FormatReader for Stl {
             }
             false => (text(source, visitor)?, Format::Stl, CoordinateEncoding::TEXT),
         };
-        let copies = hand_on(source, soup, is_binary, visitor)?;
+        let copies = send_mesh(source, soup, is_binary, visitor)?;
         Ok(CoordinateStorage {
             repeated_vertices: Some(copies),
             ..CoordinateStorage::in_place(format, numbers)
@@ -92,10 +92,13 @@ fn announced(bytes: &[u8]) -> Option<usize> {
     usize::try_from(ByteOrder::Little.whole(count)).ok()
 }
 
-fn binary<'a>(source: &'a Source, visitor: &mut dyn MeshVisitor) -> Result<Soup<'a>, ReadError> {
+fn binary<'a>(
+    source: &'a Source,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<TriangleSoup<'a>, ReadError> {
     let order = ByteOrder::Little;
     let bytes = source.bytes.as_slice();
-    let at = |at: usize| Cursor::at_byte_of(source, at);
+    let at = |at: usize| Cursor::at_byte_offset(source, at);
     let Some(count) = announced(bytes) else {
         return Err(at(0).error("the file ends before its count", CUT_OFF));
     };
@@ -104,7 +107,7 @@ fn binary<'a>(source: &'a Source, visitor: &mut dyn MeshVisitor) -> Result<Soup<
         let problem = format!("the file ends before its {count} triangles");
         return Err(at(HEADER).error(problem, CUT_OFF));
     };
-    let mut soup = Soup::default();
+    let mut soup = TriangleSoup::default();
     soup.triangles.reserve_exact(count);
     soup.x_at.reserve_exact(3 * count);
     soup.corners.reserve_exact(3 * count);
@@ -130,9 +133,12 @@ fn binary<'a>(source: &'a Source, visitor: &mut dyn MeshVisitor) -> Result<Soup<
     Ok(soup)
 }
 
-fn text<'a>(source: &'a Source, visitor: &mut dyn MeshVisitor) -> Result<Soup<'a>, ReadError> {
+fn text<'a>(
+    source: &'a Source,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<TriangleSoup<'a>, ReadError> {
     let cursor = &mut Cursor::new(source);
-    let mut soup = Soup::default();
+    let mut soup = TriangleSoup::default();
     let mut is_open = false;
     all_rows(cursor, visitor, row, |cursor, _, row| {
         let missing = 3 * soup.triangles.len() - soup.x_at.len();
@@ -188,7 +194,7 @@ fn row<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     }
 }
 
-impl Soup<'_> {
+impl TriangleSoup<'_> {
     /// Adds the next corner. Returns an error if its z differs from that of earlier corners.
     #[inline]
     fn corner(
@@ -208,7 +214,7 @@ impl Soup<'_> {
 }
 
 /// Returns for each corner the first corner at the same place.
-fn first_there(corners: &[[f64; 2]]) -> Vec<u32> {
+fn first_equal_corners(corners: &[[f64; 2]]) -> Vec<u32> {
     let mut first = HashMap::new();
     // Adding zero makes a negative zero positive, so both are one place.
     let places = corners.iter().map(|corner| corner.map(|x| (x + 0.0).to_bits()));
@@ -217,26 +223,26 @@ fn first_there(corners: &[[f64; 2]]) -> Vec<u32> {
 
 /// Joins corners at the same place, and hands on vertices and triangles. Vertices are in the order in which the file
 /// first has them. Returns where the copies of each vertex stand.
-fn hand_on(
+fn send_mesh(
     source: &Source,
-    soup: Soup<'_>,
+    soup: TriangleSoup<'_>,
     is_binary: bool,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<RepeatedVertices, ReadError> {
-    let Soup { triangles, x_at, corners, z, solids } = soup;
+    let TriangleSoup { triangles, x_at, corners, z, solids } = soup;
     let mut place = match is_binary {
-        true => Cursor::at_byte_of(source, 0),
+        true => Cursor::at_byte_offset(source, 0),
         false => Cursor::new(source),
     };
     place.check_vertex_count(corners.len() as u64)?;
-    let first = first_there(&corners);
+    let first = first_equal_corners(&corners);
     let count = (0..).zip(&first).filter(|&(corner, first)| corner == *first).count();
     visitor.expect_nodes(count);
     let mut vertices: Vec<u32> = Vec::with_capacity(corners.len());
     let mut next = 0;
     for (corner, &first) in first.iter().enumerate() {
         if first as usize == corner {
-            place.go_to(x_at[corner]);
+            place.seek(x_at[corner]);
             vertices.push(next);
             next += 1;
             visitor.node(&place, u64::from(next), 2, x_at[corner], corners[corner]);
@@ -256,7 +262,7 @@ fn hand_on(
         visitor.point_numbers(PointNumbers { numbers, nodes: None, location: None });
     }
     visitor.expect_elements(triangles.len());
-    place.go_to(0);
+    place.seek(0);
     let mut last = None;
     for (index, (&(at, solid), corners)) in triangles.iter().zip(vertices.chunks(3)).enumerate() {
         if visitor.asks_for_groups() && last.replace(solid) != Some(solid) {
@@ -268,7 +274,7 @@ fn hand_on(
             };
             visitor.group_scopes(name.map(group).as_slice());
         }
-        place.go_to(at);
+        place.seek(at);
         let mut nodes = [0; 4];
         nodes.iter_mut().zip(corners).for_each(|(node, &v)| *node = u64::from(v) + 1);
         let (tag, kind) = (index as u64 + 1, Kind::Triangle);

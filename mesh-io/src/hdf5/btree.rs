@@ -5,7 +5,7 @@ use super::checksum::Checksum;
 use super::file_bytes::FileBytes;
 
 /// How deep a tree may be. One of so many levels would have more leaves than there are bytes on any disk.
-const DEPTH: u8 = 32;
+const MAX_DEPTH: u8 = 32;
 
 /// A tree of version 1.
 pub(super) struct Tree<'r, 'a> {
@@ -38,7 +38,7 @@ impl<'r, 'a> Tree<'r, 'a> {
             let mut bytes = self.raw.at(node, "a tree of the HDF5 file");
             bytes.expect(b"TREE")?;
             let (kind, level, count) = (bytes.byte()?, bytes.byte()?, bytes.count(2)?);
-            let is_level = expected.is_none_or(|expected| expected == level) && level < DEPTH;
+            let is_level = expected.is_none_or(|expected| expected == level) && level < MAX_DEPTH;
             if kind != self.kind || !is_level {
                 return Err(bytes.damaged());
             }
@@ -73,7 +73,7 @@ pub(super) fn records<'a>(raw: &FileBytes<'a>, at: usize) -> Result<Vec<&'a [u8]
     bytes.length()?;
     Checksum::take(at, &mut bytes)?;
     raw.claim(at..bytes.at(), &bytes)?;
-    if record == 0 || depth > usize::from(DEPTH) || node > raw.bytes.len() {
+    if record == 0 || depth > usize::from(MAX_DEPTH) || node > raw.bytes.len() {
         return Err(bytes.damaged());
     }
     let Some(root) = root else { return Ok(Vec::new()) };

@@ -28,7 +28,7 @@ pub(crate) struct Dataset {
 }
 
 /// The items of a dataset, and where they stand.
-pub(crate) struct Array<'a> {
+pub(crate) struct DatasetArray<'a> {
     /// One item after another, the last dimension first.
     pub(crate) bytes: Cow<'a, [u8]>,
     pub(super) pieces: ChunkedStorage,
@@ -120,7 +120,7 @@ impl<'a> Hdf5<'a> {
     ///
     /// # Errors
     /// If they do not all stand in the file, or are damaged.
-    pub(crate) fn array(&self, dataset: &Dataset) -> Result<Array<'a>, ReadError> {
+    pub(crate) fn array(&self, dataset: &Dataset) -> Result<DatasetArray<'a>, ReadError> {
         let array = dataset.pieces(&self.raw).and_then(|pieces| {
             // What stands in the header was read with it.
             if !matches!(dataset.layout, Layout::Compact(_)) {
@@ -128,7 +128,7 @@ impl<'a> Hdf5<'a> {
                 self.raw.claim_data(ranges, dataset.at);
             }
             let bytes = pieces.items(self.raw.bytes, dataset.at)?;
-            Ok(Array { bytes, pieces })
+            Ok(DatasetArray { bytes, pieces })
         });
         array.map_err(|fault| self.error(fault))
     }
@@ -234,7 +234,7 @@ impl ChunkedStorage {
     }
 }
 
-impl Array<'_> {
+impl DatasetArray<'_> {
     /// Where in the file the first of its items stands, if all stand there as they are, one after another.
     pub(crate) fn place(&self) -> Option<usize> {
         self.pieces.whole().map(|range| range.start)

@@ -1,7 +1,7 @@
 //! What becomes of a file when numbers of its datasets change.
 
 use super::checksum::Checksum;
-use super::dataset::{Array, ChunkedStorage};
+use super::dataset::{ChunkedStorage, DatasetArray};
 use super::entry::{Chunk, Entry};
 use super::file::Hdf5;
 use super::file_bytes::EndAddress;
@@ -29,7 +29,7 @@ struct DatasetBytes {
 
 impl Hdf5Arrays {
     /// Of some datasets of a file.
-    pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<Array<'_>>) -> Hdf5Arrays {
+    pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<DatasetArray<'_>>) -> Hdf5Arrays {
         let mut bytes = Vec::new();
         let mut parts = Vec::new();
         for array in arrays {

@@ -113,10 +113,10 @@ impl<'a> Hdf5<'a> {
     /// Follows a path over so many links to other paths.
     fn follow<'h>(&'h self, from: &'h Object, path: &[u8], left: &mut u32) -> Option<&'h Object> {
         // Longer paths are no program's work.
-        const NAMES: usize = 64;
+        const MAX_PATH_NAMES: usize = 64;
         let mut object = from;
         for (number, name) in path.split(|&byte| byte == b'/').enumerate() {
-            if number == NAMES {
+            if number == MAX_PATH_NAMES {
                 return None;
             }
             if !name.is_empty() && name != b"." {

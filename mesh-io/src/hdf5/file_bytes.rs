@@ -14,7 +14,7 @@ pub(super) struct FileBytes<'a> {
     pub(super) widths: FieldWidths,
     pub(super) end: EndAddress,
     /// What has been read, each part of which is of one thing alone, with where that starts.
-    taken: RefCell<Vec<(Range<usize>, usize)>>,
+    claimed: RefCell<Vec<(Range<usize>, usize)>>,
     /// How many bytes of metadata may still be read. Where parts of a file lead to each other in circles, they would be read
     /// forever.
     left: Cell<usize>,
@@ -74,7 +74,10 @@ impl<'a> FileBytes<'a> {
         let root = root.ok_or_else(|| own.damaged())?;
         let taken = RefCell::new(vec![(0..own.at(), 0)]);
         let left = Cell::new(bytes.len());
-        Ok((FileBytes { bytes, widths, end: EndAddress { place, sum }, taken, left }, root))
+        Ok((
+            FileBytes { bytes, widths, end: EndAddress { place, sum }, claimed: taken, left },
+            root,
+        ))
     }
 
     /// Stands at a place of the file.
@@ -88,7 +91,7 @@ impl<'a> FileBytes<'a> {
             return Err(of.damaged());
         }
         self.count_metadata(range.len(), of)?;
-        self.taken.borrow_mut().push((range.clone(), range.start));
+        self.claimed.borrow_mut().push((range.clone(), range.start));
         Ok(())
     }
 
@@ -105,7 +108,7 @@ impl<'a> FileBytes<'a> {
 
     /// Notes that the data of an object were read.
     pub(super) fn claim_data(&self, ranges: impl Iterator<Item = Range<usize>>, object: usize) {
-        self.taken.borrow_mut().extend(ranges.map(|range| (range, object)));
+        self.claimed.borrow_mut().extend(ranges.map(|range| (range, object)));
     }
 
     /// Lets metadata be read again, once the tree is known.
@@ -115,7 +118,7 @@ impl<'a> FileBytes<'a> {
 
     /// A byte that two of the things that were read share, if there is one.
     pub(super) fn first_overlap(&self) -> Option<usize> {
-        let mut taken = self.taken.borrow_mut();
+        let mut taken = self.claimed.borrow_mut();
         taken.retain(|(range, _)| !range.is_empty());
         taken.sort_by_key(|(range, owner)| (range.start, range.end, *owner));
         taken.dedup();

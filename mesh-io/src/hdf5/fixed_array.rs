@@ -31,7 +31,7 @@ pub(super) struct FixedArrayElement {
     pub(super) entry: Entry,
 }
 
-const WHAT: &str = "the list of chunks of a dataset";
+const OBJECT_NAME: &str = "the list of chunks of a dataset";
 
 /// Reads the array at an address, of at least so many slots.
 pub(super) fn read(
@@ -40,7 +40,7 @@ pub(super) fn read(
     least: usize,
     has_sizes: bool,
 ) -> Result<FixedArray, Hdf5Error> {
-    let mut bytes = raw.at(at, WHAT);
+    let mut bytes = raw.at(at, OBJECT_NAME);
     bytes.expect(b"FAHD\0")?;
     bytes.expect(&[u8::from(has_sizes)])?;
     let size = bytes.count(1)?;
@@ -55,7 +55,7 @@ pub(super) fn read(
     if count < least || size < own || size > own + 7 || count > raw.bytes.len() {
         return Err(bytes.damaged());
     }
-    let mut bytes = raw.at(address, WHAT);
+    let mut bytes = raw.at(address, OBJECT_NAME);
     bytes.expect(b"FADB\0")?;
     bytes.expect(&[u8::from(has_sizes)])?;
     bytes.address()?;
@@ -96,11 +96,11 @@ impl FixedArray {
             let own = self.page.min(self.count - page * self.page) * self.size;
             // Once for each page.
             match place {
-                0 => sum = Some(self.page_sum(raw, &mut raw.at(start, WHAT), own)?),
+                0 => sum = Some(self.page_sum(raw, &mut raw.at(start, OBJECT_NAME), own)?),
                 _ => sum = Some(Checksum { range: start..start + own }),
             }
         }
-        let mut bytes: ByteReader<'_> = raw.at(start + place * self.size, WHAT);
+        let mut bytes: ByteReader<'_> = raw.at(start + place * self.size, OBJECT_NAME);
         let address_at = bytes.at();
         let Some(address) = bytes.address()? else { return Ok(None) };
         let mut entry = Entry { address: address_at, size: None, sum };

@@ -22,12 +22,12 @@ struct DoublingTable {
     place: usize,
 }
 
-const WHAT: &str = "a heap of the HDF5 file";
+const OBJECT_NAME: &str = "a heap of the HDF5 file";
 
 impl FractalHeap {
     /// Reads where the blocks of a heap stand.
     pub(super) fn read(raw: &FileBytes<'_>, at: usize) -> Result<FractalHeap, Hdf5Error> {
-        let mut bytes = raw.at(at, WHAT);
+        let mut bytes = raw.at(at, OBJECT_NAME);
         bytes.expect(b"FRHP\0")?;
         bytes.skip(2)?;
         let filters = bytes.count(2)?;
@@ -81,7 +81,7 @@ impl FractalHeap {
     ) -> Result<(), Hdf5Error> {
         let mut left = vec![(root, rows, 0)];
         while let Some((at, rows, start)) = left.pop() {
-            let mut bytes = raw.at(at, WHAT);
+            let mut bytes = raw.at(at, OBJECT_NAME);
             if rows > 64 {
                 return Err(bytes.damaged());
             }
@@ -117,8 +117,8 @@ impl FractalHeap {
         raw: &FileBytes<'a>,
         id: &[u8],
     ) -> Result<ByteReader<'a>, Hdf5Error> {
-        let damaged = || Hdf5Error::damaged(self.at, WHAT);
-        let mut own = ByteReader::new(id, 0, raw.widths, WHAT);
+        let damaged = || Hdf5Error::damaged(self.at, OBJECT_NAME);
+        let mut own = ByteReader::new(id, 0, raw.widths, OBJECT_NAME);
         match own.byte().map_err(|_| damaged())? >> 4 & 3 {
             0 => {}
             // Objects beyond the size of a block, and some that stand in their identifiers.

@@ -24,7 +24,7 @@ mod strings;
 mod tests;
 mod types;
 
-pub(crate) use dataset::{Array, Dataset};
+pub(crate) use dataset::{Dataset, DatasetArray};
 pub(crate) use encoding::Hdf5Arrays;
 pub(crate) use file::{Hdf5, Object};
 pub(crate) use file_bytes::SIGNATURE;

@@ -3,7 +3,7 @@
 use super::bytes::{ByteReader, Hdf5Error};
 use super::file_bytes::FileBytes;
 
-const WHAT: &str = "a text in the HDF5 file";
+const OBJECT_NAME: &str = "a text in the HDF5 file";
 
 /// Follows the place of a text: its length, the address of a collection, and its number there. Returns the text.
 pub(super) fn read<'a>(
@@ -23,7 +23,7 @@ pub(super) fn read<'a>(
 
 /// Finds an object of a collection.
 fn object<'a>(raw: &FileBytes<'a>, at: usize, number: usize) -> Result<ByteReader<'a>, Hdf5Error> {
-    let mut bytes = raw.at(at, WHAT);
+    let mut bytes = raw.at(at, OBJECT_NAME);
     bytes.expect(b"GCOL\x01")?;
     bytes.skip(3)?;
     let size = bytes.length()?;

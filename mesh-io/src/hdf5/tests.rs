@@ -48,7 +48,7 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
     found
 }
 
-fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::Array<'a>, Datatype)> {
+fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::DatasetArray<'a>, Datatype)> {
     let dataset = file.dataset(file.find(path)?).ok()??;
     Some((file.array(&dataset).ok()?, dataset.number))
 }

@@ -2,7 +2,7 @@
 
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding, Offsets};
 use crate::error::Location;
-use crate::mesh_file::locate::Place;
+use crate::mesh_file::locate::SourceLocation;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
@@ -13,11 +13,11 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// Where the first file differs. The label is 0.
-    pub place: Place,
+    pub location: SourceLocation,
     /// Where the second file differs. The label is 0.
-    pub other_place: Place,
+    pub other_location: SourceLocation,
     /// A description of the difference.
-    pub what: String,
+    pub description: String,
 }
 
 impl MeshFile {
@@ -28,12 +28,12 @@ impl MeshFile {
     /// themselves compared; so are the offsets of what stands after them. In HDF5, where chunks that are compressed anew may go to the end of
     /// the file, that is what the files have at the places of such chunks in either of them, and where their places stand.
     pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
-        self.difference_besides(other, [&[], &[]])
+        self.difference_ignoring(other, [&[], &[]])
     }
 
     /// Finds the first difference as [`difference`](Self::difference) does, but also leaves out the numbers of some
     /// data: fields of this file, and the same fields of the other.
-    pub fn difference_besides(
+    pub fn difference_ignoring(
         &self,
         other: &MeshFile,
         fields: [&[PointField]; 2],
@@ -45,11 +45,11 @@ impl MeshFile {
                 true => Location::Line(source.line_of(at)),
                 false => Location::Byte(at),
             };
-            Place { path: source.path.clone(), location, label: 0 }
+            SourceLocation { path: source.path.clone(), location, id: 0 }
         };
         let differ = |part: usize, at: [usize; 2], what: String| {
             let (place, other_place) = (place(self, part, at[0]), place(other, part, at[1]));
-            Some(Difference { place, other_place, what })
+            Some(Difference { location: place, other_location: other_place, description: what })
         };
         if self.format() != other.format() {
             let what = format!("the formats are {} and {}", self.format(), other.format());
@@ -74,12 +74,16 @@ impl MeshFile {
             });
             if let Some([at, _]) = unequal([mine, theirs], ranges) {
                 let vertex = self.vertex_before(at);
-                let [place, other_place] = [self, other].map(|file| file.vertex_place(vertex));
+                let [place, other_place] = [self, other].map(|file| file.vertex_location(vertex));
                 let what =
-                    format!("third coordinates are not the same, first of vertex {}", place.label);
-                let unlabeled = |place| Place { label: 0, ..place };
+                    format!("third coordinates are not the same, first of vertex {}", place.id);
+                let unlabeled = |place| SourceLocation { id: 0, ..place };
                 let (place, other_place) = (unlabeled(place), unlabeled(other_place));
-                return Some(Difference { place, other_place, what });
+                return Some(Difference {
+                    location: place,
+                    other_location: other_place,
+                    description: what,
+                });
             }
         }
         for (part, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {

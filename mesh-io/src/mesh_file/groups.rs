@@ -42,7 +42,7 @@ impl MeshFile {
         Ok(table.finish(self.triangles(), self.points().len()))
     }
 
-    /// Reads a list of vertices by the mesh file's own numbers, those of [`Place::label`](crate::Place::label). Numbers
+    /// Reads a list of vertices by the mesh file's own numbers, those of [`SourceLocation::id`](crate::SourceLocation::id). Numbers
     /// are separated by blanks or line ends, and `#` starts a comment. Returns indices in
     /// [`MeshFile::points`](crate::MeshFile::points), in the order of the list.
     ///

@@ -2,71 +2,74 @@
 
 use crate::error::Location;
 use crate::mesh_file::mesh::MeshFile;
-use crate::visit::locate::{ItemLocation, List, locate};
+use crate::visit::locate::{ItemList, ItemLocation, locate};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
-/// Where a vertex or triangle stands in its file. Displayed as `la.1.ele:18`.
+/// Location of a vertex or triangle in a mesh file: path, line or byte, and id. Displayed as `la.1.ele:18`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct SourceLocation {
     /// The file.
     pub path: PathBuf,
     /// The line or byte, or [`Location::Unknown`] if a second search of the file does not find the item.
     pub location: Location,
     /// The file's own number or tag of the vertex or triangle; its zero-based index if the location is unknown.
-    pub label: u64,
+    pub id: u64,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for SourceLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", self.path.display(), self.location)
     }
 }
 
 impl MeshFile {
-    /// Returns where vertex `index` has its coordinates. The index is zero-based, as in
+    /// Returns the location of the coordinates of a vertex in the file. `index` is the 0-based index in
     /// [`MeshFile::points`](crate::MeshFile::points).
     ///
-    /// Meant for messages: it may search the whole file.
+    /// Meant for messages: the method may search the whole file.
     ///
     /// # Panics
-    /// If the mesh has no such vertex.
-    pub fn vertex_place(&self, index: u32) -> Place {
-        let found = self.vertex_places([index]).remove(&index);
+    /// If the mesh has no vertex with the index.
+    pub fn vertex_location(&self, index: u32) -> SourceLocation {
+        let found = self.vertex_locations([index]).remove(&index);
         found.unwrap_or_else(|| panic!("vertex {index} of {}", self.points().len()))
     }
 
     /// Returns where vertices have their coordinates, by their zero-based indices. The file is searched once for all of
     /// them. Indices of vertices that do not exist are left out.
-    pub fn vertex_places(&self, indices: impl IntoIterator<Item = u32>) -> BTreeMap<u32, Place> {
+    pub fn vertex_locations(
+        &self,
+        indices: impl IntoIterator<Item = u32>,
+    ) -> BTreeMap<u32, SourceLocation> {
         let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
         keep_ascending(&mut wanted, self.points().len());
-        let found = locate(self.reader(), self.source(), List::Nodes, &wanted);
+        let found = locate(self.reader(), self.source(), ItemList::Nodes, &wanted);
         self.places(&wanted, found).map(|(v, place)| (v as u32, place)).collect()
     }
 
-    /// Returns where triangle `index` lists its vertices. The index is zero-based, as in
+    /// Returns the location of a triangle's vertices in the file. `index` is the 0-based index in
     /// [`MeshFile::triangles`](crate::MeshFile::triangles).
     ///
-    /// Meant for messages: it may search the whole file.
+    /// Meant for messages: the method may search the whole file.
     ///
     /// # Panics
-    /// If the mesh has no such triangle.
-    pub fn triangle_place(&self, index: usize) -> Place {
-        let found = self.triangle_places([index]).remove(&index);
+    /// If the mesh has no triangle with the index.
+    pub fn triangle_location(&self, index: usize) -> SourceLocation {
+        let found = self.triangle_locations([index]).remove(&index);
         found.unwrap_or_else(|| panic!("triangle {index} of {}", self.triangles().len()))
     }
 
     /// Returns where triangles list their vertices, by their zero-based indices. The file is searched once for all of
     /// them. Indices of triangles that do not exist are left out.
-    pub fn triangle_places(
+    pub fn triangle_locations(
         &self,
         indices: impl IntoIterator<Item = usize>,
-    ) -> BTreeMap<usize, Place> {
+    ) -> BTreeMap<usize, SourceLocation> {
         let mut wanted: Vec<usize> = indices.into_iter().collect();
         keep_ascending(&mut wanted, self.triangles().len());
-        let found = locate(self.reader(), self.source(), List::Triangles, &wanted);
+        let found = locate(self.reader(), self.source(), ItemList::Triangles, &wanted);
         self.places(&wanted, found).collect()
     }
 
@@ -75,11 +78,11 @@ impl MeshFile {
         &'a self,
         wanted: &'a [usize],
         found: Vec<ItemLocation>,
-    ) -> impl Iterator<Item = (usize, Place)> + 'a {
+    ) -> impl Iterator<Item = (usize, SourceLocation)> + 'a {
         let source = self.source();
         wanted.iter().zip(found).map(move |(&index, ItemLocation { location, label, part })| {
             let path = source.files().nth(part).unwrap_or(source).path.clone();
-            (index, Place { path, location, label })
+            (index, SourceLocation { path, location, id: label })
         })
     }
 }
@@ -122,11 +125,11 @@ mod tests {
         let reader = detect::reader(&source).unwrap();
         let parsed = mesh_builder::parse(reader, &source).unwrap();
         let file = MeshFile::new(parsed, &READER, source).unwrap();
-        assert_eq!(file.vertex_place(2).to_string(), "a.off");
-        assert_eq!(file.vertex_places([0, 2, 3]).into_keys().collect::<Vec<_>>(), [0, 2]);
-        let place = Place { path: "a.off".into(), location: Location::Unknown, label: 0 };
-        assert_eq!(file.triangle_place(0), place);
-        let no_triangle = AssertUnwindSafe(|| file.triangle_place(1));
+        assert_eq!(file.vertex_location(2).to_string(), "a.off");
+        assert_eq!(file.vertex_locations([0, 2, 3]).into_keys().collect::<Vec<_>>(), [0, 2]);
+        let place = SourceLocation { path: "a.off".into(), location: Location::Unknown, id: 0 };
+        assert_eq!(file.triangle_location(0), place);
+        let no_triangle = AssertUnwindSafe(|| file.triangle_location(1));
         assert!(std::panic::catch_unwind(no_triangle).is_err());
     }
 

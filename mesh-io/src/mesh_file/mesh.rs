@@ -125,12 +125,12 @@ impl MeshFile {
         &self.source
     }
 
-    /// Returns all files of the mesh, the main file first.
+    /// Returns the files of the mesh, the main file first.
     pub(crate) fn files(&self) -> Vec<&Source> {
         self.source.files().collect()
     }
 
-    /// Returns the index of the file that has the coordinates, in the order of [`parts`](Self::parts).
+    /// Returns the index of the file with the coordinates, in the order of [`files`](Self::files).
     pub(crate) fn file_index(&self) -> usize {
         self.parsed.file_index
     }

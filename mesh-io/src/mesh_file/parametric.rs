@@ -27,6 +27,7 @@ pub(crate) fn parameters(
     Ok(visitor.found.into_iter().map(field).collect())
 }
 
+/// Visitor that collects the parameters of nodes on surfaces of a model.
 #[derive(Default)]
 struct ParameterVisitor {
     tags: Vec<u64>,

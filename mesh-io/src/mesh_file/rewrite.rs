@@ -4,7 +4,7 @@ use crate::compress::file::Compression;
 use crate::detect;
 use crate::disk::atomic;
 use crate::disk::atomic::FileWrite;
-use crate::disk::file_system::System;
+use crate::disk::file_system::OsFileSystem;
 use crate::disk::paths::same_file;
 use crate::disk::source::Source;
 use crate::edit::column::EditableColumn;
@@ -42,7 +42,7 @@ impl MeshFile {
     /// or not one per vertex, if the system refuses, or if a file that was read would be replaced but has another content than
     /// when it was read, or last written here ([`WriteError::Changed`]). Existing files are then unchanged.
     pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
-        self.write_with(path, points, &[])
+        self.write_with_fields(path, points, &[])
     }
 
     /// Writes the file as [`write`](Self::write) does, and also replaces data of vertices by the values of these
@@ -51,7 +51,7 @@ impl MeshFile {
     ///
     /// # Errors
     /// [`WriteError`] for the reasons of [`write`](Self::write).
-    pub fn write_with(
+    pub fn write_with_fields(
         &self,
         path: &Path,
         points: &[[f64; 2]],
@@ -61,7 +61,7 @@ impl MeshFile {
         self.check_destination(path)?;
         let packs = self.packs(path);
         let renamed = &(self.reader().renames)(self.source(), path);
-        let job = |(part, destination)| -> FileWrite<'_> {
+        let file_write = |(part, destination)| -> FileWrite<'_> {
             let edits = Edits { points, fields };
             (
                 destination,
@@ -77,15 +77,15 @@ impl MeshFile {
             .filter(|(part, destination)| same_file(&part.path, destination))
             .map(|(part, _)| part)
             .collect();
-        let mut jobs: Vec<_> = destinations.iter().cloned().enumerate().map(job).collect();
+        let mut writes: Vec<_> = destinations.iter().cloned().enumerate().map(file_write).collect();
         // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
         // leave its place if that is left to the one with the coordinates.
-        if self.file_index() > 0 && self.is_written(&jobs[0].0, renamed) {
-            jobs.swap(0, self.file_index());
+        if self.file_index() > 0 && self.is_written(&writes[0].0, renamed) {
+            writes.swap(0, self.file_index());
         }
-        atomic::replace_all_if(&System, &jobs, &|| match in_place
+        atomic::write_all_if(&OsFileSystem, &writes, &|| match in_place
             .iter()
-            .find(|part| part.known.is_past(&part.path, part.stored()))
+            .find(|part| part.known.has_changed(&part.path, part.stored()))
         {
             Some(changed) => Err(WriteError::Changed { path: changed.path.clone() }),
             None => Ok(()),
@@ -114,15 +114,15 @@ impl MeshFile {
         out: &mut (dyn Write + Send),
         points: &[[f64; 2]],
     ) -> Result<(), WriteError> {
-        self.write_to_with(name, out, points, &[])
+        self.write_to_with_fields(name, out, points, &[])
     }
 
-    /// Writes the file and these fields as [`write_with`](Self::write_with) does, to any writer as
+    /// Writes the file and these fields as [`write_with_fields`](Self::write_with_fields) does, to any writer as
     /// [`write_to`](Self::write_to) does.
     ///
     /// # Errors
     /// [`WriteError`] for the reasons of [`write_to`](Self::write_to).
-    pub fn write_to_with(
+    pub fn write_to_with_fields(
         &self,
         name: &Path,
         out: &mut (dyn Write + Send),
@@ -270,7 +270,9 @@ impl MeshFile {
     /// # Errors
     /// [`WriteError`] if the file cannot be written, with the reason.
     pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
-        self.destinations(path)?.iter().try_for_each(|destination| atomic::check(destination))
+        self.destinations(path)?
+            .iter()
+            .try_for_each(|destination| atomic::ensure_writable(destination))
     }
 
     /// Lists the files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).

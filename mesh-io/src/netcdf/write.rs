@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 /// A file under construction.
 #[derive(Default)]
-pub(crate) struct NetCdf {
+pub(crate) struct NetCdfWriter {
     dimensions: Vec<(String, usize)>,
     /// Where the dimension of a name is: a file of as many blocks as elements has as many dimensions.
     places: HashMap<String, usize>,
@@ -60,7 +60,7 @@ impl Values {
     }
 }
 
-impl NetCdf {
+impl NetCdfWriter {
     pub(crate) fn attribute(&mut self, name: &'static str, values: Values) {
         self.attributes.push((name, values));
     }

@@ -139,7 +139,7 @@ impl<'a> Cursor<'a> {
         Ok((self.at(), self.real(format_args!("z of {owner}"))?))
     }
 
-    /// Reads z if the row has more than x and y. Otherwise returns [`NO_HEIGHT`].
+    /// Reads z if the row has more than x and y. Otherwise returns [`NO_Z`].
     #[inline]
     pub(crate) fn z_if_any(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
         if self.is_at_end() { Ok(NO_Z) } else { self.z(owner) }

@@ -7,7 +7,7 @@ use crate::visit::storage::ArrayLocation;
 
 /// Real numbers that a mesh file gives its vertices: depths, third coordinates, point data.
 /// [`MeshFile::point_fields`](crate::MeshFile::point_fields) reads them. With new values,
-/// [`MeshFile::write_with`](crate::MeshFile::write_with) writes them.
+/// [`MeshFile::write_with_fields`](crate::MeshFile::write_with_fields) writes them.
 pub struct PointField {
     name: String,
     components: usize,

@@ -13,6 +13,7 @@ pub(crate) struct GroupTable {
     keys: GroupKeys,
 }
 
+/// A group, with the vertices of its elements that are not triangles.
 struct GroupMembers {
     group: Group,
     /// Vertices of elements other than triangles, unordered and with repeats.
@@ -29,7 +30,7 @@ impl GroupTable {
                 Label::Name(name) => (Some(name.clone()), None),
             };
             let group = Group {
-                what: what.to_owned(),
+                kind: what.to_owned(),
                 dimension,
                 name,
                 tag,
@@ -81,7 +82,7 @@ impl GroupTable {
         let mut order: HashMap<String, usize> = HashMap::new();
         for GroupMembers { group, .. } in &self.groups {
             let next = order.len();
-            order.entry(group.what.clone()).or_insert(next);
+            order.entry(group.kind.clone()).or_insert(next);
         }
         // For each vertex the last group that it was counted in.
         let mut last = vec![0; vertices];
@@ -96,11 +97,11 @@ impl GroupTable {
         }
         for GroupMembers { group, .. } in &mut self.groups {
             let Some(tag) = group.tag else { continue };
-            group.name = self.keys.name_of(&group.what, group.dimension, &Label::Tag(tag));
+            group.name = self.keys.name_of(&group.kind, group.dimension, &Label::Tag(tag));
         }
         let mut groups: Vec<Group> =
             self.groups.into_iter().map(|gathered| gathered.group).collect();
-        groups.sort_by_key(|group| (order[&group.what], group.dimension, group.tag));
+        groups.sort_by_key(|group| (order[&group.kind], group.dimension, group.tag));
         Groups { groups }
     }
 }

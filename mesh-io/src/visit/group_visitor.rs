@@ -25,6 +25,7 @@ pub(crate) fn labels(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u6
     Ok(labels.tags)
 }
 
+/// Visitor that collects the groups of a file in a [`GroupTable`].
 #[derive(Default)]
 struct GroupVisitor {
     table: GroupTable,
@@ -128,6 +129,7 @@ impl MeshVisitor for GroupVisitor {
     }
 }
 
+/// Visitor that collects the ids of the vertices.
 #[derive(Default)]
 struct VertexIdVisitor {
     tags: Vec<u64>,

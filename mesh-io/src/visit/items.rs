@@ -63,7 +63,7 @@ pub(crate) struct Element {
     pub(crate) nodes: [u64; 4],
 }
 
-/// The meaning of one number of [`Element::region`].
+/// Maps one of the two integers of [`Element::region`] to a group.
 pub(crate) struct RegionAttribute {
     /// The kind of group that the number stands for: `physical`, `reference`, or the name of an array.
     pub(crate) what: String,
@@ -86,7 +86,8 @@ impl RegionAttribute {
     }
 }
 
-/// A group whose elements stand together in the file.
+/// A group of all elements visited until the next call of `group_scopes`, such as the marker of an SU2 list or the
+/// entity of a gmsh block.
 #[derive(Clone, Debug)]
 pub(crate) struct GroupScope<'w> {
     /// The format's word for the kind of group.
@@ -96,7 +97,8 @@ pub(crate) struct GroupScope<'w> {
     pub(crate) dimension: Option<u8>,
 }
 
-/// Nodes that belong together in pairs, as in a periodic model.
+/// Pairs of nodes that a periodic model identifies, with the motion that maps the first node of each pair to the
+/// second.
 #[derive(Debug, PartialEq)]
 pub(crate) struct PeriodicNodes {
     /// The motion that takes the first node of each pair to the second, if the file gives it.
@@ -111,7 +113,7 @@ pub(crate) struct PointNumbers {
     pub(crate) numbers: Vec<f64>,
     /// The tag of each tuple's node; `None` if there is a tuple for each node in order.
     pub(crate) nodes: Option<Vec<u64>>,
-    /// Where the numbers stand; `None` if they cannot be replaced.
+    /// The bytes of the numbers in the file; `None` if the numbers cannot be replaced.
     pub(crate) location: Option<ArrayLocation>,
 }
 

@@ -7,21 +7,21 @@ use crate::visit::items::{Element, Kind};
 use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 
-/// The list in which items are looked for.
+/// The list of a mesh in which items are located.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum List {
+pub(crate) enum ItemList {
     Nodes,
     Triangles,
 }
 
-/// Where an item stands.
+/// Location and id of an item of a file.
 #[derive(Clone, Copy)]
 pub(crate) struct ItemLocation {
     /// [`Location::Unknown`] if the walk does not come to the item.
     pub(crate) location: Location,
     /// The file's number of the item; its index in the list if the location is unknown.
     pub(crate) label: u64,
-    /// The index of the file, in the order of [`Source::parts`].
+    /// The index of the file, in the order of [`Source::files`].
     pub(crate) part: usize,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct ItemLocation {
 pub(crate) fn locate(
     reader: &ReaderFunctions,
     source: &Source,
-    list: List,
+    list: ItemList,
     indices: &[usize],
 ) -> Vec<ItemLocation> {
     let found = Vec::with_capacity(indices.len());
@@ -43,8 +43,9 @@ pub(crate) fn locate(
     found
 }
 
+/// Visitor that finds the locations of some items of a list, in ascending order of their indices.
 struct LocationVisitor<'a> {
-    list: List,
+    list: ItemList,
     /// The indices not found yet, ascending.
     left: &'a [usize],
     /// The index of the next item of the list.
@@ -73,11 +74,11 @@ impl LocationVisitor<'_> {
 
 impl MeshVisitor for LocationVisitor<'_> {
     fn asks_for_nodes(&self) -> bool {
-        self.list == List::Nodes
+        self.list == ItemList::Nodes
     }
 
     fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        if self.list == List::Nodes {
+        if self.list == ItemList::Nodes {
             self.pass(cursor, tag);
         }
     }
@@ -87,7 +88,7 @@ impl MeshVisitor for LocationVisitor<'_> {
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        if self.list == List::Triangles && element.kind == Kind::Triangle {
+        if self.list == ItemList::Triangles && element.kind == Kind::Triangle {
             self.pass(cursor, element.tag);
             return self.end_if_found(cursor);
         }

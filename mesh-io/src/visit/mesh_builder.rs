@@ -9,7 +9,7 @@ use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::items::{Element, Kind, PeriodicNodes};
-use crate::visit::locate::{ItemLocation, List, locate};
+use crate::visit::locate::{ItemList, ItemLocation, locate};
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
 use crate::visit::records::{NodeRecords, TriangleRecords};
@@ -51,7 +51,7 @@ pub(crate) fn parse_by(
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
             let ItemLocation { location, label, part } =
-                locate(reader, source, List::Nodes, &[vertex])[0];
+                locate(reader, source, ItemList::Nodes, &[vertex])[0];
             let source = source.files().nth(part).unwrap_or(source);
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
@@ -81,6 +81,7 @@ pub(crate) fn parse_by(
     })
 }
 
+/// Visitor that builds a [`ParsedMesh`].
 #[derive(Default)]
 struct MeshBuilder {
     /// Whether items that were read on all threads are taken.

@@ -5,7 +5,7 @@ use crate::content::remark::Remark;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, Offsets};
 use crate::format::Format;
 
-/// A mesh, and how its file stores the mesh.
+/// The mesh of a file, with the storage of its coordinates.
 pub(crate) struct ParsedMesh {
     pub(crate) format: Format,
     /// x and y of each vertex.

@@ -10,7 +10,7 @@ use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashSet;
 
-/// Which arrays are looked for.
+/// The arrays of point data to read.
 #[derive(Clone, Copy)]
 pub(crate) enum FieldSelection<'n> {
     /// Arrays with these names, of real or whole numbers.
@@ -40,6 +40,7 @@ pub(crate) fn point_data(
     Ok(visitor.found)
 }
 
+/// Visitor that collects arrays of point data.
 struct PointDataVisitor<'n> {
     wanted: FieldSelection<'n>,
     /// The name of the array that was announced last, and its number of components.

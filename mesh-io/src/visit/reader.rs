@@ -7,7 +7,7 @@ use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use std::path::{Path, PathBuf};
 
-/// The reader of a format.
+/// The reader of one or more formats. The methods besides `visit` handle meshes of several files.
 pub(crate) trait FormatReader {
     /// Names the file's list of vertices in messages.
     const VERTICES: &'static str;
@@ -26,26 +26,26 @@ pub(crate) trait FormatReader {
     fn require_single(_source: &Source) -> Result<(), ReadError> {
         Ok(())
     }
-    /// Returns the files to which the mesh is written for `path`, in the order of [`Source::parts`].
+    /// Returns the files to which the mesh is written for `path`, in the order of [`Source::files`].
     ///
     /// # Errors
     /// If `path` does not suit the format, or if a file of another mesh is in the way.
     fn destinations(_source: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
         Ok(vec![path.to_owned()])
     }
-    /// Returns the edits of the main file that rename its companions for `path`.
+    /// Returns the edits of the main file that rename its companions if the mesh is written to `path`.
     fn renames(_source: &Source, _path: &Path) -> Vec<ByteEdit> {
         Vec::new()
     }
-    /// Feeds the nodes and elements of the mesh to the visitor.
+    /// Calls `visitor` for all items of the mesh. Returns how and where the file stores coordinates.
     fn visit(
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError>;
 }
 
-/// The reader of a format, as a value: the functions of a [`Walk`] under their names. A file is read by this walk alone.
-/// It takes any visitor, so that it is compiled once.
+/// The functions of a [`FormatReader`] as values, for the table of formats. `visit` takes a trait object, so that
+/// each reader is compiled once.
 pub(crate) struct ReaderFunctions {
     pub(crate) visit: fn(&Source, &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError>,
     pub(crate) load_companions: fn(Source) -> Result<Source, ReadError>,

@@ -19,7 +19,7 @@ impl NodeRecords<'_> {
         place: impl Fn(usize) -> Cursor<'c>,
         not_finite: impl Fn(usize) -> ReadError,
     ) -> Result<(), ReadError> {
-        let &NodeRecords { count, x, y, x_at, tags } = self;
+        let &NodeRecords { count, x, y, x_offset: x_at, ids: tags } = self;
         visitor.expect_nodes(count);
         for index in visitor.node_records(self)..count {
             let at = [x, y].map(|field| field.real_at(index));
@@ -59,7 +59,14 @@ impl ElementRecords<'_> {
         if kind == Kind::Triangle {
             visitor.expect_elements(count);
             let (first, below, expected) = (0, u64::MAX, &[][..]);
-            let records = TriangleRecords { count, corners, first, below, regions, expected };
+            let records = TriangleRecords {
+                count,
+                corners,
+                min_node: first,
+                node_end: below,
+                regions,
+                required_fields: expected,
+            };
             taken = visitor.triangle_records(&records);
         }
         if taken == count {

@@ -4,12 +4,12 @@ use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding, Of
 use crate::format::Format;
 use std::sync::Arc;
 
-/// Where the numbers of an array stand.
+/// Offsets and encoding of the numbers of an array, by which the numbers can be replaced.
 pub(crate) struct ArrayLocation {
     pub(crate) offsets: Offsets,
     pub(crate) encoding: NumberEncoding,
     pub(crate) space: ByteSpace,
-    /// Which file of the mesh that is.
+    /// The index of the file with the array, in the order of [`Source::files`](crate::disk::source::Source::files).
     pub(crate) file_index: usize,
 }
 
@@ -25,7 +25,7 @@ impl ArrayLocation {
     }
 }
 
-/// The bytes that the places of numbers refer to.
+/// The bytes to which the offsets of an array refer.
 pub(crate) enum ByteSpace {
     File,
     /// The decoded bytes of the encoded points.
@@ -34,19 +34,20 @@ pub(crate) enum ByteSpace {
     Encoded(Arc<dyn EncodedArrays>),
 }
 
-/// How a file stores its numbers, known after it was read.
+/// Encoding and location of the coordinates of a file, known after the file was read.
 pub(crate) struct CoordinateStorage {
     pub(crate) format: Format,
     pub(crate) encoding: CoordinateEncoding,
     /// The encoded points, if they are encoded. The offsets of coordinates are then those in its decoded bytes.
     pub(crate) encoded: Option<Box<dyn EncodedArrays>>,
-    /// Where the coordinates stand, if a vertex may have them in several places.
+    /// All occurrences of coordinates, if the file may repeat a vertex; else `None`.
     pub(crate) repeated_vertices: Option<RepeatedVertices>,
-    /// The index of the file that has the coordinates, in the order of [`Source::parts`](crate::disk::source::Source::parts).
+    /// The index of the file with the coordinates, in the order of
+    /// [`Source::files`](crate::disk::source::Source::files).
     pub(crate) file_index: usize,
 }
 
-/// All places of coordinates in a file that repeats vertices.
+/// All occurrences of coordinates in a file that repeats vertices, such as an STL.
 pub(crate) struct RepeatedVertices {
     /// The offset of each x, ascending.
     pub(crate) x_at: Vec<usize>,

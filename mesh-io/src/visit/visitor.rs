@@ -9,14 +9,16 @@ use crate::visit::items::{
 };
 use crate::visit::records::{NodeRecords, TriangleRecords};
 
-/// Takes the items of a file: first all nodes, then all elements, each in the order of the file.
+/// Visitor of the items of a mesh file. A reader calls the methods for all nodes first, then for all elements, each
+/// in file order.
 pub(crate) trait MeshVisitor {
-    /// Whether the visitor uses the cursor only for errors. Then items that were read in parallel may come with another
-    /// cursor, and a call that returns an error must leave the visitor unchanged.
+    /// Returns whether a list may be parsed on several threads. Items then arrive in file order, but the cursor
+    /// passed with an item has no valid location. If a call returns an error, the call must have no effect: the item
+    /// is parsed again, alone, to make the final error.
     fn allows_parallel(&self) -> bool {
         false
     }
-    /// Whether the visitor takes nodes. If not, readers may leave out calls of [`node`](Self::node).
+    /// Returns whether the visitor uses nodes. If not, readers may leave out calls of [`node`](Self::node).
     fn asks_for_nodes(&self) -> bool {
         true
     }
@@ -71,28 +73,32 @@ pub(crate) trait MeshVisitor {
             self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
         })
     }
-    /// Whether the visitor asks for periodic pairs of vertices. If not, readers may leave out calls of
-    /// [`pairs`](Self::pairs).
+    /// Returns whether the visitor uses pairs of periodic nodes. If not, readers may leave out calls of
+    /// [`periodic_pairs`](Self::periodic_pairs).
     fn asks_for_periodic_pairs(&self) -> bool {
         false
     }
-    /// Takes the periodic pairs of the file; `None` if they could not be read.
+    /// Visits the pairs of periodic nodes of the file; `None` if the pairs could not be read.
     fn periodic_pairs(&mut self, _pairs: Option<Vec<PeriodicNodes>>) {}
     /// Takes a remark for the user.
     fn remark(&mut self, _remark: Remark) {}
 
-    /// Whether the visitor asks for groups. If not, readers may leave out the calls on groups below.
+    /// Returns whether the visitor uses groups. If not, readers may leave out calls of
+    /// [`region_attributes`](Self::region_attributes), [`group_scopes`](Self::group_scopes),
+    /// [`node_group`](Self::node_group) and [`group_name`](Self::group_name).
     fn asks_for_groups(&self) -> bool {
         false
     }
-    /// Takes the meaning of the numbers in [`Element::region`], before the first element.
+    /// Visits the meaning of the two integers of [`Element::region`], before the first element.
     fn region_attributes(&mut self, _columns: Vec<RegionAttribute>) {}
-    /// Takes the groups that the elements after this call belong to besides those of their regions, until the next
-    /// call.
+    /// Visits the groups of all elements until the next call of `group_scopes`, in addition to the groups of
+    /// [`Element::region`].
     fn group_scopes(&mut self, _groups: &[GroupScope<'_>]) {}
-    /// Takes the label of a group that a node belongs to. `node` is the index of the node in the order of the file.
+    /// Visits a group of one node. `node` is the 0-based index of the node in file order, `kind` and `label` identify
+    /// the group.
     fn node_group(&mut self, _node: u32, _what: &str, _label: &Label) {}
-    /// Takes the name of the groups with a tag, in one dimension or (for `None`) in all.
+    /// Visits the name of the group with a kind and a tag. `dimension` is 0, 1 or 2; `None` if the name holds for all
+    /// dimensions.
     fn group_name(&mut self, _what: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 
     /// Whether the visitor asks for data that a plain reading may leave out: third coordinates that are all the same, and
@@ -119,7 +125,7 @@ pub(crate) trait MeshVisitor {
     }
     /// Takes the centers that were announced last, if the visitor wants them.
     fn center_numbers(&mut self, _centers: Centers) {}
-    /// Announces third coordinates or depths as an array of point data. Returns whether the visitor wants the numbers.
+    /// Announces third coordinates or depths as an array of point data. Returns whether the visitor uses the numbers.
     fn z_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true)
     }
@@ -131,7 +137,7 @@ pub(crate) trait MeshVisitor {
     /// Takes the numbers of the cell data that were announced last, if the visitor wants them. `tags` are those of the
     /// elements that the numbers belong to; `None` if they belong to all.
     fn cell_numbers(&mut self, _numbers: Vec<f64>, _tags: Option<Vec<u64>>) {}
-    /// Takes a few words on a part of the file that is not handed on. Sinks that do not ask for data ignore it.
+    /// Visits a short description of a part of the file that the reader leaves out.
     fn unsupported(&mut self, _what: &str) {}
     /// Takes the numbers of the point data that were announced last, if the visitor wants them.
     fn point_numbers(&mut self, _numbers: PointNumbers) {}

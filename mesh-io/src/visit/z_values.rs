@@ -7,11 +7,11 @@ use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_Z;
 use crate::visit::items::PointNumbers;
-use crate::visit::records::LONG;
+use crate::visit::records::MIN_PARALLEL_RECORDS;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
 use crate::visit::visitor::MeshVisitor;
 
-/// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the visitor asks for
+/// Notes whether the third coordinates of the nodes differ, and collects the coordinates if the visitor asks for
 /// data.
 pub(crate) struct ZValues {
     first: Option<f64>,
@@ -43,7 +43,7 @@ impl ZValues {
 
     /// Takes the third coordinates of all records of a binary list. `at` is the offset of the first.
     pub(crate) fn push_records(&mut self, z: NumberField<'_>, count: usize, at: usize) {
-        if self.collected.is_some() || count < LONG {
+        if self.collected.is_some() || count < MIN_PARALLEL_RECORDS {
             z.real(0..count).enumerate().for_each(|(index, z_of)| {
                 self.push((at + index * z.stride(), z_of));
             });

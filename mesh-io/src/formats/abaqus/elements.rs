@@ -3,7 +3,7 @@
 use super::blocks::Block;
 use super::deck::Deck;
 use super::lists::List;
-use super::sets::{Effort, Numbered, Sets};
+use super::sets::{IdPositions, Sets, WorkBudget};
 use super::{rows, types};
 use crate::content::label::Label;
 use crate::content::remark::Remark;
@@ -17,7 +17,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// What is found out of elements before they are handed on. All lists are empty if they are not needed.
 #[derive(Default)]
-pub(super) struct Found {
+pub(super) struct ElementGroups {
     /// The number of the section of each element, or of the sets that it is in, counted from 1.
     sections: Vec<u32>,
     /// The names of the sets that are groups.
@@ -30,7 +30,7 @@ pub(super) struct Found {
     sides: Vec<(u32, u32, [u8; 2])>,
 }
 
-impl Found {
+impl ElementGroups {
     pub(super) fn new(
         source: &Source,
         deck: &Deck<'_>,
@@ -39,8 +39,8 @@ impl Found {
         mut sets: Sets,
         sections: &[&Block<'_>],
         visitor: &mut dyn MeshVisitor,
-    ) -> Result<Found, ReadError> {
-        let mut found = Found::default();
+    ) -> Result<ElementGroups, ReadError> {
+        let mut found = ElementGroups::default();
         let names = |keyword| -> HashSet<Vec<u8>> {
             let names = deck.of_mesh(keyword).filter_map(|block| block.name("ELSET"));
             names.map(<[u8]>::to_ascii_uppercase).collect()
@@ -69,7 +69,7 @@ impl Found {
         for List { block, kind, .. } in lists {
             let before = tags.len() as u32;
             let Some(kind) = *kind else { continue };
-            let rows = &mut rows::of(&mut cursor, block);
+            let rows = &mut rows::data_rows(&mut cursor, block);
             rows::each_element(rows, kind, visitor.allows_parallel(), |_, tag, _| {
                 tags.push(tag);
                 Ok(())
@@ -79,8 +79,8 @@ impl Found {
             }
         }
         sets.read(source, deck, "ELSET");
-        let all = &Numbered::new(&tags);
-        let effort = &mut Effort::of(source);
+        let all = &IdPositions::new(&tags);
+        let effort = &mut WorkBudget::of(source);
         if by_sets {
             found.sections = vec![0; tags.len()];
             for (block, section) in sections.iter().zip(1..) {
@@ -123,8 +123,8 @@ impl Found {
         source: &Source,
         deck: &Deck<'_>,
         sets: &Sets,
-        all: &Numbered,
-        effort: &mut Effort,
+        all: &IdPositions,
+        effort: &mut WorkBudget,
     ) -> Result<(), ReadError> {
         let own = deck.of_mesh("SURFACE").map(|block| (block, false));
         for (block, of_assembly) in
@@ -175,10 +175,11 @@ impl Found {
         // How many elements hold their nodes, and the types of these.
         let (mut holding, mut types_of) = (0, BTreeSet::new());
         for List { block, of, kind, set, of_assembly } in lists {
-            let rows = &mut rows::of(&mut cursor, block);
+            let rows = &mut rows::data_rows(&mut cursor, block);
             let Some(kind) = *kind else {
-                tell(&self.names, &mut told, &[], visitor);
-                let count = held(rows, Some(deck).filter(|_| *of_assembly), visitor)?;
+                send_scopes(&self.names, &mut told, &[], visitor);
+                let count =
+                    send_constrained_nodes(rows, Some(deck).filter(|_| *of_assembly), visitor)?;
                 if count > 0 {
                     holding += count;
                     types_of.insert(of);
@@ -188,7 +189,7 @@ impl Found {
             let ahead = visitor.allows_parallel();
             rows::each_element(rows, kind, ahead, |cursor, tag, nodes| {
                 let own = within.partition_point(|&(element, _)| element <= place);
-                tell(&self.names, &mut told, &within[..own], visitor);
+                send_scopes(&self.names, &mut told, &within[..own], visitor);
                 let section = self.sections.get(place as usize).copied().unwrap_or(0);
                 let region = [*set, i64::from(section)];
                 visitor.element(cursor, &Element { tag, kind, region, nodes })?;
@@ -219,7 +220,7 @@ impl Found {
         lines.sort_by_key(|&(surface, _)| surface);
         for of_surface in lines.chunk_by(|a, b| a.0 == b.0) {
             let (name, at) = &self.surfaces[of_surface[0].0 as usize];
-            cursor.go_to(*at);
+            cursor.seek(*at);
             visitor.group_scopes(&[GroupScope {
                 what: "surface",
                 label: Label::name(name),
@@ -236,7 +237,7 @@ impl Found {
 }
 
 /// Tells the visitor the groups of the next element, if they differ from those before.
-fn tell<'f>(
+fn send_scopes<'f>(
     names: &[Vec<u8>],
     told: &mut &'f [(u32, u32)],
     now: &'f [(u32, u32)],
@@ -254,13 +255,13 @@ fn tell<'f>(
 }
 
 /// Hands on the nodes of elements that hold them, and counts the elements. `assembly` is given for elements of an assembly.
-fn held(
+fn send_constrained_nodes(
     rows: &mut Cursor<'_>,
     assembly: Option<&Deck<'_>>,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let (mut count, mut last) = (0, None);
-    rows::each_held(rows, assembly, |cursor, tag, node| {
+    rows::each_constrained(rows, assembly, |cursor, tag, node| {
         let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
         visitor.element(cursor, &Element { tag, kind, region: [0; 2], nodes })?;
         count += u64::from(last.replace(tag) != Some(tag));

@@ -52,10 +52,10 @@ pub(super) fn lists<'d, 'a>(
 fn class(source: &Source, block: &Block<'_>, of: &[u8]) -> Result<Option<Kind>, ReadError> {
     let shown = quoted(of);
     match types::class(of) {
-        Some(Class::Is(kind)) => Ok(Some(kind)),
-        Some(Class::Held) => Ok(None),
+        Some(Class::Of(kind)) => Ok(Some(kind)),
+        Some(Class::Constraining) => Ok(None),
         Some(Class::Volume) => {
-            let cursor = Cursor::standing_at(source, block.at);
+            let cursor = Cursor::on_line_of(source, block.at);
             Err(volume(&cursor, &format!("elements of the type {shown}")))
         }
         Some(Class::SecondOrder) => {

@@ -30,9 +30,9 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 use blocks::Block;
 use deck::Deck;
-use elements::Found;
-use rows::Counted;
-use sets::{Effort, Numbered, Sets};
+use elements::ElementGroups;
+use rows::LengthCounts;
+use sets::{IdPositions, Sets, WorkBudget};
 
 pub(crate) struct Abaqus;
 
@@ -49,18 +49,18 @@ impl FormatReader for Abaqus {
             return Err(source.error(problem, "Save the mesh with its nodes and elements"));
         }
         let numbers = CoordinateEncoding::Text { precision: Precision::Text20 };
-        let cursor = &mut Cursor::new(source).of(Syntax::KEYWORDS);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::KEYWORDS);
         let mut nodes = Nodes::default();
         nodes.send(cursor.clone(), deck, numbers, visitor)?;
         deck.notes.drain(..).for_each(|note| visitor.remark(Remark::Text(note)));
         let deck = &*deck;
         if visitor.asks_for_data() {
-            leave_out(deck, visitor);
+            report_unsupported(deck, visitor);
         }
         let mut sets = Sets::default();
         let lists = lists::lists(source, deck, &mut sets)?;
         let sections: Vec<&Block<'_>> = sections(deck).collect();
-        let found = Found::new(source, deck, cursor, &lists, sets, &sections, visitor)?;
+        let found = ElementGroups::new(source, deck, cursor, &lists, sets, &sections, visitor)?;
         found.send(deck, cursor, &lists, visitor)?;
         if visitor.asks_for_groups() {
             nodes.send_sets(source, deck, visitor)?;
@@ -77,8 +77,8 @@ fn sections<'d, 'a>(deck: &'d Deck<'a>) -> impl Iterator<Item = &'d Block<'a>> {
 }
 
 /// Tells of keywords that say more than what a mesh is.
-fn leave_out(deck: &Deck<'_>, visitor: &mut dyn MeshVisitor) {
-    const OF_MESHES: [&str; 13] = [
+fn report_unsupported(deck: &Deck<'_>, visitor: &mut dyn MeshVisitor) {
+    const MESH_KEYWORDS: [&str; 13] = [
         "HEADING",
         "NODE",
         "ELEMENT",
@@ -93,7 +93,7 @@ fn leave_out(deck: &Deck<'_>, visitor: &mut dyn MeshVisitor) {
         "ENDINSTANCE",
         "PREPRINT",
     ];
-    let is_other = |block: &&Block<'_>| !OF_MESHES.iter().any(|keyword| block.is(keyword));
+    let is_other = |block: &&Block<'_>| !MESH_KEYWORDS.iter().any(|keyword| block.is(keyword));
     let mut others = deck.blocks.iter().map(|(block, _)| block).filter(is_other);
     if let Some(first) = others.next() {
         let first = quoted(&first.keyword);
@@ -122,9 +122,9 @@ impl Nodes {
     ) -> Result<(), ReadError> {
         self.tags = visitor.asks_for_groups().then(Vec::new);
         let mut heights = ZValues::new(visitor);
-        let mut counted = Counted::default();
+        let mut counted = LengthCounts::default();
         for block in deck.of_mesh("NODE") {
-            let rows = &mut rows::of(&mut cursor, block);
+            let rows = &mut rows::data_rows(&mut cursor, block);
             let before = counted.all;
             rows::send_nodes(rows, visitor, &mut heights, &mut self.tags, &mut counted)?;
             rows.check_vertex_count(counted.all)?;
@@ -152,8 +152,8 @@ impl Nodes {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         self.sets.read(source, deck, "NSET");
-        let all = Numbered::new(&self.tags.unwrap_or_default());
-        let effort = &mut Effort::of(source);
+        let all = IdPositions::new(&self.tags.unwrap_or_default());
+        let effort = &mut WorkBudget::of(source);
         for (number, name) in self.sets.named() {
             let nodes = self.sets.members(number, &all, source, effort)?;
             let tag = number as i64 + 1;

@@ -12,8 +12,8 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
 /// Moves the cursor on to the lines of data of a block. Returns one that does not read beyond them.
-pub(super) fn of<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
-    cursor.go_to(block.data.start);
+pub(super) fn data_rows<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
+    cursor.seek(block.data.start);
     let mut rows = cursor.clone();
     rows.bytes = &rows.bytes[..block.data.end];
     rows
@@ -21,7 +21,7 @@ pub(super) fn of<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
 
 /// How many nodes there are, and how many of them have a number of more characters than are read of it.
 #[derive(Default)]
-pub(super) struct Counted {
+pub(super) struct LengthCounts {
     pub(super) all: u64,
     pub(super) long: u64,
 }
@@ -32,7 +32,7 @@ pub(super) fn send_nodes(
     visitor: &mut dyn MeshVisitor,
     heights: &mut ZValues,
     tags: &mut Option<Vec<u64>>,
-    counted: &mut Counted,
+    counted: &mut LengthCounts,
 ) -> Result<(), ReadError> {
     all_rows(cursor, visitor, node, |cursor, visitor, (tag, (x_at, is_long), at, z)| {
         visitor.node(cursor, tag, 2, x_at, at);
@@ -48,7 +48,7 @@ pub(super) fn send_nodes(
 type Node = (u64, (usize, bool), [f64; 2], (usize, f64));
 
 /// How many characters of a number are read by Abaqus and CalculiX.
-const MOST: usize = 20;
+const MAX_NUMBER_LENGTH: usize = 20;
 
 #[inline]
 fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
@@ -64,7 +64,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
         }
         let start = cursor.at();
         *x = cursor.coordinate(axis, format_args!("node {tag}"))?;
-        is_long |= cursor.at - start > MOST;
+        is_long |= cursor.at - start > MAX_NUMBER_LENGTH;
     }
     Ok((tag, (x_at, is_long), at, cursor.z_if_any(format_args!("node {tag}"))?))
 }
@@ -82,7 +82,7 @@ pub(super) fn each_element<'a>(
         let plain = |cursor: &mut Cursor<'a>| {
             let tag = cursor.integer(NUMBER)?;
             let nodes = nodes(cursor, kind)?;
-            ended(cursor, kind, tag)?;
+            check_row_end(cursor, kind, tag)?;
             Ok((tag, nodes))
         };
         take_rows(cursor, u64::MAX, plain, |(tag, nodes)| take(nowhere, tag, nodes).is_ok());
@@ -91,10 +91,10 @@ pub(super) fn each_element<'a>(
         let tag = cursor.integer(NUMBER)?;
         let mut nodes = [0; 4];
         for node in &mut nodes[..kind.nodes()] {
-            go_on(cursor);
+            skip_continuation(cursor);
             *node = cursor.integer(format_args!("a vertex of a {}", kind.name()))?;
         }
-        ended(cursor, kind, tag)?;
+        check_row_end(cursor, kind, tag)?;
         take(cursor, tag, nodes)?;
     }
     Ok(())
@@ -102,7 +102,7 @@ pub(super) fn each_element<'a>(
 
 /// Reads elements of any number of nodes, each with its number. In an assembly the nodes of the mesh are those with the name of one
 /// of its instances, `Part-1-1.7`; all others are left out. `assembly` is given for elements of one.
-pub(super) fn each_held<'a>(
+pub(super) fn each_constrained<'a>(
     cursor: &mut Cursor<'a>,
     assembly: Option<&Deck<'_>>,
     mut take: impl FnMut(&Cursor<'a>, u64, u64) -> Result<(), ReadError>,
@@ -110,7 +110,7 @@ pub(super) fn each_held<'a>(
     while cursor.next_row() {
         let tag = cursor.integer(NUMBER)?;
         loop {
-            go_on(cursor);
+            skip_continuation(cursor);
             if cursor.is_at(b',') {
                 // Between two commas stands no node.
                 cursor.at = cursor.at();
@@ -139,7 +139,7 @@ pub(super) fn each_held<'a>(
 const NUMBER: &str = "the number of an element";
 
 /// Moves to the next row if this one has ended in a comma.
-fn go_on(cursor: &mut Cursor<'_>) {
+fn skip_continuation(cursor: &mut Cursor<'_>) {
     let at = cursor.at();
     let is_at_end = cursor.bytes.get(at).is_none_or(|&byte| byte == b'\n');
     if is_at_end && cursor.bytes[..at].trim_ascii_end().ends_with(b",") {
@@ -152,7 +152,7 @@ fn go_on(cursor: &mut Cursor<'_>) {
 
 /// Checks that no node is left in a row. Beams may have another one, which tells their direction.
 #[inline]
-fn ended(cursor: &Cursor<'_>, kind: Kind, tag: u64) -> Result<(), ReadError> {
+fn check_row_end(cursor: &Cursor<'_>, kind: Kind, tag: u64) -> Result<(), ReadError> {
     if kind == Kind::Line || cursor.is_at_end() {
         return Ok(());
     }

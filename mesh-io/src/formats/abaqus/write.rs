@@ -11,13 +11,13 @@ use std::fmt::Write;
 /// How many numbers a row of a set has.
 const ROW: usize = 16;
 
-pub(crate) fn write_inp(job: &WriterInput<'_>) -> String {
-    let content = job.content;
+pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
+    let content = input.content;
     // Elements of the plane have no third coordinate.
     let is_flat = content.z_values.is_empty();
     let mut out = "*HEADING\nmesh\n*NODE\n".to_owned();
     for (vertex, [x, y]) in content.points.iter().enumerate() {
-        put!(out, "{}, {}, {}", job.vertex_id(vertex), short_text(*x), short_text(*y));
+        put!(out, "{}, {}, {}", input.vertex_id(vertex), short_text(*x), short_text(*y));
         if !is_flat {
             put!(out, ", {}", short_text(content.z(vertex)));
         }
@@ -32,14 +32,14 @@ pub(crate) fn write_inp(job: &WriterInput<'_>) -> String {
         (_, false) => "T3D2",
     };
     let mut last = None;
-    for (cell, element) in job.cells().zip(1..) {
-        let own = (kind_of(cell), job.group_numbers.group(content, cell));
+    for (cell, element) in input.cells().zip(1..) {
+        let own = (kind_of(cell), input.group_numbers.group(content, cell));
         if last.replace(own) != Some(own) {
             put!(out, "*ELEMENT, TYPE={}", own.0);
-            let set = own.1.map(|group| format!(", ELSET={}", job.name_or_number(group)));
+            let set = own.1.map(|group| format!(", ELSET={}", input.name_or_number(group)));
             put!(out, "{}\n", set.unwrap_or_default());
         }
-        put!(out, "{element}, {}\n", job.vertex_ids(cell).replace(' ', ", "));
+        put!(out, "{element}, {}\n", input.vertex_ids(cell).replace(' ', ", "));
     }
     let names: Vec<&str> =
         content.vertex_groups.iter().map(|(group, _)| group.name().unwrap_or_default()).collect();
@@ -56,7 +56,7 @@ pub(crate) fn write_inp(job: &WriterInput<'_>) -> String {
         put!(out, "*NSET, NSET={name}\n");
         for row in vertices.chunks(ROW) {
             let numbers: Vec<_> =
-                row.iter().map(|&v| job.vertex_id(v as usize).to_string()).collect();
+                row.iter().map(|&v| input.vertex_id(v as usize).to_string()).collect();
             put!(out, "{}\n", numbers.join(", "));
         }
     }

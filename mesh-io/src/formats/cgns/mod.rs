@@ -13,7 +13,7 @@ use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
-use crate::hdf5::{Array, Dataset, Datatype, Hdf5, Hdf5Arrays, SIGNATURE};
+use crate::hdf5::{Dataset, DatasetArray, Datatype, Hdf5, Hdf5Arrays, SIGNATURE};
 use crate::visit::items::PointNumbers;
 use crate::visit::reader::FormatReader;
 use crate::visit::storage::{ArrayLocation, ByteSpace, CoordinateStorage};
@@ -65,7 +65,7 @@ impl<'a> File<'a> {
             read.extend(self.reals(node)?);
         }
         let first = read.first().map(|(dataset, array)| (dataset.number, array.bytes.len()));
-        let is_same = |(dataset, array): &(Dataset, Array<'_>)| {
+        let is_same = |(dataset, array): &(Dataset, DatasetArray<'_>)| {
             Some((dataset.number, array.bytes.len())) == first
         };
         let (Some((Datatype::Real(precision, order), length)), 2..=3, true) =

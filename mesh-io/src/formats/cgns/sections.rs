@@ -6,7 +6,7 @@ use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
 use crate::content::label::Label;
 use crate::error::ReadError;
-use crate::hdf5::{Array, Datatype, Object};
+use crate::hdf5::{DatasetArray, Datatype, Object};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
 use crate::visit::items::{Element, Kind, RegionAttribute};
@@ -31,7 +31,7 @@ struct Section<'n, 'a> {
 
 /// The list of nodes of a section.
 struct Nodes<'a> {
-    array: Array<'a>,
+    array: DatasetArray<'a>,
     size: usize,
     order: ByteOrder,
 }
@@ -109,7 +109,7 @@ impl<'a> File<'a> {
         let of_all = self.integers(section).and_then(|numbers| numbers.first().copied());
         let of_all = of_all.ok_or_else(damaged)?;
         let length = nodes.array.bytes.len() / size;
-        let place = |at: usize| Cursor::at_byte_of(self.source, nodes.array.byte_of(at * size));
+        let place = |at: usize| Cursor::at_byte_offset(self.source, nodes.array.byte_of(at * size));
         if of_all != MIXED {
             let kind = self.kind(of_all, section)?;
             if count.checked_mul(kind.nodes()) != Some(length) {

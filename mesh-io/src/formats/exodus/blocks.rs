@@ -4,7 +4,7 @@ use super::File;
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
-use crate::netcdf::{Items, Number, Variable};
+use crate::netcdf::{Items, NumberType, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
 use crate::visit::items::Kind;
@@ -71,7 +71,7 @@ impl<'a> File<'a> {
                 regions: [Region::Same(id), Region::Same(0)],
             };
             elements.send(visitor, |index, _| {
-                Cursor::at_byte_of(self.source, block.items.byte_of(start + index * size))
+                Cursor::at_byte_offset(self.source, block.items.byte_of(start + index * size))
             })?;
             before += block.count;
             blocks.push(block);
@@ -86,9 +86,9 @@ impl<'a> File<'a> {
         variable: &Variable,
     ) -> Result<Block<'a>, ReadError> {
         let start = self.header.place(variable);
-        let cursor = Cursor::at_byte_of(self.source, start);
+        let cursor = Cursor::at_byte_offset(self.source, start);
         let found = (&variable.shape[..], variable.number, variable.is_record);
-        let (&[count, corners], Number::Whole(width), false) = found else {
+        let (&[count, corners], NumberType::Whole(width), false) = found else {
             let problem = format!("connect{number} is not a table of whole numbers");
             return Err(cursor.error(problem, CORRECT));
         };

@@ -2,7 +2,7 @@
 
 use super::File;
 use super::blocks::Block;
-use crate::formats::netcdf_points::{Parts, PointData};
+use crate::formats::netcdf_points::{ComponentSlice, PointData};
 use crate::netcdf::Variable;
 use crate::visit::visitor::MeshVisitor;
 
@@ -39,10 +39,13 @@ impl File<'_> {
             let all = self.header.variable("vals_nod_var");
             let all = all.filter(|all| all.shape == [names.len() as u64, nodes]);
             let found = match (own, all) {
-                (Some(&(_, own)), _) => Some((own, Parts::WHOLE)),
+                (Some(&(_, own)), _) => Some((own, ComponentSlice::WHOLE)),
                 (None, Some(all)) => {
-                    let parts =
-                        Parts { wanted: place..place + 1, all: names.len(), ..Parts::WHOLE };
+                    let parts = ComponentSlice {
+                        wanted: place..place + 1,
+                        all: names.len(),
+                        ..ComponentSlice::WHOLE
+                    };
                     Some((all, parts))
                 }
                 (None, None) => None,

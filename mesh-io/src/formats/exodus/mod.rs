@@ -15,7 +15,7 @@ use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
 use crate::formats::netcdf_axes::axes;
 use crate::hdf5::Hdf5;
-use crate::netcdf::{self, Header, Number, Variable};
+use crate::netcdf::{self, Header, NumberType, Variable};
 use crate::text::cursor::Cursor;
 use crate::visit::items::RegionAttribute;
 use crate::visit::reader::FormatReader;
@@ -43,7 +43,7 @@ impl FormatReader for Exodus {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
         let header = netcdf::open(source)?;
-        let start = Cursor::at_byte_of(source, 0);
+        let start = Cursor::at_byte_offset(source, 0);
         let Some(nodes) = header.dimension("num_nodes") else {
             if header.hdf5.is_some() {
                 let problem = "HDF5 that holds no mesh of Exodus II, UGRID, MED or CGNS";
@@ -100,12 +100,12 @@ impl<'a> File<'a> {
         };
         let first = variables.first().map(|first| (first.number, first.order));
         let is_same = |other: &&Variable| Some((other.number, other.order)) == first;
-        let (Some((Number::Real(precision), order)), 2..=3, true) =
+        let (Some((NumberType::Real(precision), order)), 2..=3, true) =
             (first, count, variables.iter().all(is_same))
         else {
             let problem =
                 format!("it has no coordinates in two or three axes of {} nodes", self.nodes);
-            let start = Cursor::at_byte_of(self.source, 0);
+            let start = Cursor::at_byte_offset(self.source, 0);
             return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
         };
         axes(header, &variables, BinaryReals { order, precision }, count, self.nodes)

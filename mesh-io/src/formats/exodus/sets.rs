@@ -19,7 +19,7 @@ impl File<'_> {
         for (number, elements) in self.header.numbered("elem_ss") {
             let sides = self.header.variable(&format!("side_ss{number}"));
             let start = self.header.place(elements);
-            let cursor = Cursor::at_byte_of(self.source, start);
+            let cursor = Cursor::at_byte_offset(self.source, start);
             let found = sides.filter(|sides| !sides.is_record && !elements.is_record);
             let lists = found.and_then(|sides| {
                 Some((self.header.integers(elements)?, self.header.integers(sides)?))
@@ -78,7 +78,7 @@ impl File<'_> {
             for node in nodes.unwrap_or_default() {
                 let index = u32::try_from(node - 1).ok().filter(|&i| (i as usize) < self.nodes);
                 let Some(index) = index else {
-                    let cursor = Cursor::at_byte_of(self.source, header.place(variable));
+                    let cursor = Cursor::at_byte_offset(self.source, header.place(variable));
                     let problem = format!("node set {number} has node {node}");
                     return Err(cursor.error(problem, "There is no such node: correct the set"));
                 };

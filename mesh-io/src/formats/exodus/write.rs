@@ -6,7 +6,7 @@ use crate::content::label::Label;
 use crate::export::content::ContentGroup;
 use crate::export::sides::{pair, sides};
 use crate::export::writer_input::WriterInput;
-use crate::netcdf::write::{NetCdf, Values};
+use crate::netcdf::write::{NetCdfWriter, Values};
 use crate::visit::items::Kind;
 use std::collections::{HashMap, HashSet};
 
@@ -39,53 +39,53 @@ fn type_of(kind: Kind) -> (&'static str, usize) {
 }
 
 /// Returns the group that names the block or side set of a cell.
-fn group_of(job: &WriterInput<'_>, cell: usize) -> Option<u32> {
+fn group_of(input: &WriterInput<'_>, cell: usize) -> Option<u32> {
     let of_any = || {
-        let set = &job.content.sets[job.content.cells.sets[cell] as usize];
-        set.iter().copied().find(|&group| job.content.groups[group as usize].what == "block")
+        let set = &input.content.sets[input.content.cells.sets[cell] as usize];
+        set.iter().copied().find(|&group| input.content.groups[group as usize].kind == "block")
     };
-    job.group_numbers.group(job.content, cell).or_else(of_any)
+    input.group_numbers.group(input.content, cell).or_else(of_any)
 }
 
-pub(crate) fn write_exodus(job: &WriterInput<'_>) -> Vec<u8> {
-    let content = job.content;
-    let sides = sides(content, |cell| job.group_numbers.group(content, cell));
-    let blocks = blocks(job, &sides);
-    let side_sets = side_sets(job, &blocks, &sides);
+pub(crate) fn write_exodus(input: &WriterInput<'_>) -> Vec<u8> {
+    let content = input.content;
+    let sides = sides(content, |cell| input.group_numbers.group(content, cell));
+    let blocks = blocks(input, &sides);
+    let side_sets = side_sets(input, &blocks, &sides);
     let names = || {
         let groups = content.groups.iter().chain(content.vertex_groups.iter().map(|(g, _)| g));
-        let data = job.point_data().chain(job.cell_data());
+        let data = input.point_data().chain(input.cell_data());
         groups.filter_map(ContentGroup::name).chain(data.map(|data| data.name.as_str()))
     };
     let longest = names().map(str::len).max().unwrap_or(0).max(32);
-    let mut out = NetCdf::default();
+    let mut out = NetCdfWriter::default();
     out.dimension(RECORDS, 0);
     out.attribute("api_version", Values::Single(5.1));
     out.attribute("version", Values::Single(5.1));
     out.attribute("floating_point_word_size", Values::Whole(vec![8]));
     out.attribute("file_size", Values::Whole(vec![1]));
     out.attribute("maximum_name_length", Values::Whole(vec![longest as i32]));
-    out.attribute("title", Values::Text(format!("written by {}", job.creator).into_bytes()));
+    out.attribute("title", Values::Text(format!("written by {}", input.creator).into_bytes()));
     out.dimension("len_string", 33);
     out.dimension("len_name", longest + 1);
     out.dimension("four", 4);
-    let has_data = job.point_data().chain(job.cell_data()).next().is_some();
+    let has_data = input.point_data().chain(input.cell_data()).next().is_some();
     let times = if has_data { vec![0.0] } else { Vec::new() };
     out.variable("time_whole", &[RECORDS], Vec::new(), Values::Real(times));
-    points(&mut out, job, longest + 1);
-    elements(&mut out, job, &blocks, longest + 1);
-    sets(&mut out, job, &side_sets, longest + 1);
-    data(&mut out, job, &blocks, longest + 1);
+    points(&mut out, input, longest + 1);
+    elements(&mut out, input, &blocks, longest + 1);
+    sets(&mut out, input, &side_sets, longest + 1);
+    data(&mut out, input, &blocks, longest + 1);
     out.bytes()
 }
 
 /// Makes the blocks, in the order in which the file first has an element of each: first triangles and quadrilaterals,
 /// then lines, then points.
-fn blocks(job: &WriterInput<'_>, sides: &HashSet<usize>) -> Vec<Block> {
+fn blocks(input: &WriterInput<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut places: HashMap<(u8, Option<u32>), usize> = HashMap::new();
-    for cell in job.cells().filter(|cell| !sides.contains(cell)) {
-        let (kind, group) = (job.content.cells.kinds[cell], group_of(job, cell));
+    for cell in input.cells().filter(|cell| !sides.contains(cell)) {
+        let (kind, group) = (input.content.cells.kinds[cell], group_of(input, cell));
         let place = *places.entry((kind as u8, group)).or_insert(blocks.len());
         if place == blocks.len() {
             blocks.push(Block { kind, group, cells: Vec::new() });
@@ -96,8 +96,8 @@ fn blocks(job: &WriterInput<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     blocks
 }
 
-fn side_sets(job: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
-    let content = job.content;
+fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
+    let content = input.content;
     let mut wanted: HashMap<(u32, u32), (i32, i32)> = HashMap::new();
     for &line in sides {
         if let &[a, b] = content.cells.of(line) {
@@ -124,7 +124,7 @@ fn side_sets(job: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) ->
     let mut places: HashMap<u32, usize> = HashMap::new();
     for line in content.cells.all(Kind::Line).filter(|line| sides.contains(line)) {
         let (Some(group), &[a, b]) =
-            (job.group_numbers.group(content, line), content.cells.of(line))
+            (input.group_numbers.group(content, line), content.cells.of(line))
         else {
             continue;
         };
@@ -144,8 +144,8 @@ fn text(name: &'static str, content: &str) -> (&'static str, Values) {
     (name, Values::Text(content.as_bytes().to_vec()))
 }
 
-fn points(out: &mut NetCdf, job: &WriterInput<'_>, width: usize) {
-    let content = job.content;
+fn points(out: &mut NetCdfWriter, input: &WriterInput<'_>, width: usize) {
+    let content = input.content;
     let count = content.points.len();
     let is_flat = (0..count).all(|vertex| content.z(vertex) == 0.0);
     let axes = if is_flat { 2 } else { 3 };
@@ -182,7 +182,7 @@ fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
 
 /// Adds the status, numbers and names of blocks or sets.
 fn named(
-    out: &mut NetCdf,
+    out: &mut NetCdfWriter,
     [count, status, property, names]: [&str; 4],
     numbers: Vec<i32>,
     texts: &[&str],
@@ -199,10 +199,10 @@ fn named(
     );
 }
 
-fn elements(out: &mut NetCdf, job: &WriterInput<'_>, blocks: &[Block], width: usize) {
-    let content = job.content;
+fn elements(out: &mut NetCdfWriter, input: &WriterInput<'_>, blocks: &[Block], width: usize) {
+    let content = input.content;
     out.dimension("num_elem", blocks.iter().map(|block| block.cells.len()).sum());
-    let number = |block: &Block| block.group.map(|group| job.group_numbers.number(group));
+    let number = |block: &Block| block.group.map(|group| input.group_numbers.number(group));
     let name = |block: &Block| content.groups[block.group? as usize].name();
     let names: Vec<&str> = blocks.iter().map(|block| name(block).unwrap_or("")).collect();
     let told = ["num_el_blk", "eb_status", "eb_prop1", "eb_names"];
@@ -219,10 +219,10 @@ fn elements(out: &mut NetCdf, job: &WriterInput<'_>, blocks: &[Block], width: us
     }
 }
 
-fn sets(out: &mut NetCdf, job: &WriterInput<'_>, side_sets: &[SideSet], width: usize) {
-    let content = job.content;
+fn sets(out: &mut NetCdfWriter, input: &WriterInput<'_>, side_sets: &[SideSet], width: usize) {
+    let content = input.content;
     if !side_sets.is_empty() {
-        let own = numbers(side_sets.iter().map(|set| Some(job.group_numbers.number(set.group))));
+        let own = numbers(side_sets.iter().map(|set| Some(input.group_numbers.number(set.group))));
         let name = |set: &SideSet| content.groups[set.group as usize].name().unwrap_or("");
         let told = ["num_side_sets", "ss_status", "ss_prop1", "ss_names"];
         let names: Vec<&str> = side_sets.iter().map(name).collect();
@@ -254,8 +254,8 @@ fn sets(out: &mut NetCdf, job: &WriterInput<'_>, side_sets: &[SideSet], width: u
     }
 }
 
-fn data(out: &mut NetCdf, job: &WriterInput<'_>, blocks: &[Block], width: usize) {
-    let of_points: Vec<_> = job.point_data().collect();
+fn data(out: &mut NetCdfWriter, input: &WriterInput<'_>, blocks: &[Block], width: usize) {
+    let of_points: Vec<_> = input.point_data().collect();
     if !of_points.is_empty() {
         out.dimension("num_nod_var", of_points.len());
         let names = Values::names(of_points.iter().map(|data| data.name.as_str()), width);
@@ -266,7 +266,7 @@ fn data(out: &mut NetCdf, job: &WriterInput<'_>, blocks: &[Block], width: usize)
             out.variable(name, &[RECORDS, "num_nodes"], Vec::new(), values);
         }
     }
-    let of_cells: Vec<_> = job.cell_data().collect();
+    let of_cells: Vec<_> = input.cell_data().collect();
     if !of_cells.is_empty() {
         out.dimension("num_elem_var", of_cells.len());
         let names = Values::names(of_cells.iter().map(|data| data.name.as_str()), width);

@@ -10,7 +10,7 @@ use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::items::{Element, Kind};
-use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
@@ -28,13 +28,13 @@ pub(super) fn nodes(
     let count = cursor.vertex_count()?;
     visitor.expect_nodes(cursor.capacity(count, NODE));
     let mut taken = 0;
-    if let (false, Some((bytes, start))) = (parametric, cursor.ahead(count, NODE)) {
+    if let (false, Some((bytes, start))) = (parametric, cursor.peek(count, NODE)) {
         let field = |at: usize, width| NumberField::new(bytes.get(at..), NODE, width, order);
         let [x, y, z] = [0, 8, 16].map(|axis| field(TAG + axis, 8));
-        let (tags, x_at) = (Tags::Listed(field(0, 4)), start + TAG);
+        let (tags, x_at) = (NodeIds::Field(field(0, 4)), start + TAG);
         let count = count as usize;
         if z.all_real(count, f64::is_finite) {
-            taken = visitor.node_records(&NodeRecords { count, x, y, x_at, tags });
+            taken = visitor.node_records(&NodeRecords { count, x, y, x_offset: x_at, ids: tags });
             heights.push_records(z, taken, start + TAG + 16);
             cursor.take(taken * NODE);
         }
@@ -44,8 +44,8 @@ pub(super) fn nodes(
         let words = &mut Words::take(cursor, order, NODE, progress)?;
         let tag = words.natural(cursor, "a node tag")?;
         let [x, y, z] = words.point(cursor, tag)?;
-        visitor.node(cursor, tag, 2, cursor.taken() + TAG, [x, y]);
-        heights.push((cursor.taken() + TAG + 16, z));
+        visitor.node(cursor, tag, 2, cursor.last_taken() + TAG, [x, y]);
+        heights.push((cursor.last_taken() + TAG + 16, z));
         if parametric {
             // The dimension of the node's entity, the entity's tag, and one parameter for each dimension.
             let entity = &mut Words::take(cursor, order, 8, progress)?;
@@ -82,7 +82,7 @@ pub(super) fn elements(
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;
         let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
         let mut taken = 0;
-        if let (Kind::Triangle, Some((block, _))) = (kind, cursor.ahead(size, bytes)) {
+        if let (Kind::Triangle, Some((block, _))) = (kind, cursor.peek(size, bytes)) {
             let field = |at: usize| NumberField::new(block.get(4 * at..), bytes, 4, order);
             let region = |column: usize| match column < groups {
                 true => Region::Field(field(1 + column)),
@@ -91,10 +91,10 @@ pub(super) fn elements(
             taken = visitor.triangle_records(&TriangleRecords {
                 count: size as usize,
                 corners: field(1 + groups),
-                first: 0,
-                below: u64::MAX,
+                min_node: 0,
+                node_end: u64::MAX,
                 regions: [region(0), region(1)],
-                expected: &[(field(0), Expected::Natural)],
+                required_fields: &[(field(0), FieldRule::Natural)],
             });
             cursor.take(taken * bytes);
         }

@@ -11,7 +11,7 @@ use crate::edit::numbers::Offsets;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::items::{Element, Kind, PointNumbers};
-use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
 use crate::visit::storage::ArrayLocation;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
@@ -26,7 +26,7 @@ pub(super) fn nodes(
     heights: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
-    let [blocks, count] = counts(cursor, Version::V4, order)?;
+    let [blocks, count] = counts(cursor, Version::V41, order)?;
     cursor.check_vertex_count(count)?;
     visitor.expect_nodes(cursor.capacity(count, 32));
     let mut done = 0;
@@ -45,13 +45,14 @@ pub(super) fn nodes(
         let (mut own, mut places, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         let record = 8 * (3 + parameters);
         let mut taken = 0;
-        if let (2.., false, Some((bytes, x_at))) = (dimension, wanted, cursor.ahead(size, record)) {
+        if let (2.., false, Some((bytes, x_at))) = (dimension, wanted, cursor.peek(size, record)) {
             let [x, y, z] =
                 [0, 8, 16].map(|at| NumberField::new(bytes.get(at..), record, 8, order));
             let count = size as usize;
             if z.all_real(count, f64::is_finite) {
-                let tags = Tags::Listed(NumberField::new(Some(tags.left()), 8, 8, order));
-                taken = visitor.node_records(&NodeRecords { count, x, y, x_at, tags });
+                let tags = NodeIds::Field(NumberField::new(Some(tags.left()), 8, 8, order));
+                taken =
+                    visitor.node_records(&NodeRecords { count, x, y, x_offset: x_at, ids: tags });
                 heights.push_records(z, taken, x_at + 16);
             }
             tags.skip(8 * taken);
@@ -62,11 +63,11 @@ pub(super) fn nodes(
             let words = &mut Words::take(cursor, order, record, progress)?;
             let tag = tags.size();
             let [x, y, z] = words.point(cursor, tag)?;
-            visitor.node(cursor, tag, dimension, cursor.taken(), [x, y]);
-            heights.push((cursor.taken() + 16, z));
+            visitor.node(cursor, tag, dimension, cursor.last_taken(), [x, y]);
+            heights.push((cursor.last_taken() + 16, z));
             if wanted {
                 own.push(tag);
-                places.extend([24, 32].map(|after| cursor.taken() + after));
+                places.extend([24, 32].map(|after| cursor.last_taken() + after));
                 numbers.extend([words.double(), words.double()]);
             }
         }
@@ -106,16 +107,16 @@ pub(super) fn elements(
         block_fits(cursor, size, count - done, "elements")?;
         let row = tag_bytes * (1 + kind.nodes());
         let mut taken = 0;
-        if let (Kind::Triangle, Some((bytes, _))) = (kind, cursor.ahead(size, row)) {
+        if let (Kind::Triangle, Some((bytes, _))) = (kind, cursor.peek(size, row)) {
             let field = |at: usize| NumberField::new(bytes.get(at..), row, tag_bytes, order);
-            let natural = [(field(0), Expected::Natural)];
+            let natural = [(field(0), FieldRule::Natural)];
             taken = visitor.triangle_records(&TriangleRecords {
                 count: size as usize,
                 corners: field(tag_bytes),
-                first: 0,
-                below: u64::MAX,
+                min_node: 0,
+                node_end: u64::MAX,
                 regions: region.map(Region::Same),
-                expected: if version == Version::V40 { &natural } else { &[] },
+                required_fields: if version == Version::V40 { &natural } else { &[] },
             });
             cursor.take(taken * row);
         }

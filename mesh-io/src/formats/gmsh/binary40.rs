@@ -43,7 +43,7 @@ pub(super) fn nodes(
             let words = &mut Words::take(cursor, order, TAG + 8 * (3 + parameters), progress)?;
             let tag = words.natural(cursor, "a node tag")?;
             let [x, y, z] = words.point(cursor, tag)?;
-            let x_at = cursor.taken() + TAG;
+            let x_at = cursor.last_taken() + TAG;
             visitor.node(cursor, tag, dimension, x_at, [x, y]);
             heights.push((x_at + 16, z));
         }

@@ -12,7 +12,7 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
 
 /// Data of nodes are skipped if fewer than one in this many nodes has them.
-const FEW: u64 = 16;
+const MIN_NODE_SHARE: u64 = 16;
 
 /// Announces the data of a section after its first line, and reads them if the visitor wants them. The cursor does not
 /// move. `nodes` is the number of nodes, for data of nodes. Damaged data are skipped, as the mesh does not depend on
@@ -25,7 +25,7 @@ pub(super) fn read(
 ) {
     let cursor = &mut cursor.clone();
     let Some((name, components, count)) = head(cursor) else { return };
-    if nodes.is_some_and(|nodes| count.saturating_mul(FEW) < nodes) {
+    if nodes.is_some_and(|nodes| count.saturating_mul(MIN_NODE_SHARE) < nodes) {
         visitor.unsupported("data of few nodes");
         return;
     }
@@ -101,7 +101,7 @@ fn binary(
     let each = usize::try_from(components).ok()?;
     let row = each.checked_mul(8)?.checked_add(TAG)?;
     let bytes = cursor.take(row.checked_mul(usize::try_from(count).ok()?)?)?;
-    let start = cursor.taken();
+    let start = cursor.last_taken();
     let (mut nodes, mut numbers, mut places) = (Vec::new(), Vec::new(), Vec::new());
     for (index, row_bytes) in bytes.chunks_exact(row).enumerate() {
         nodes.push(order.whole(&row_bytes[..TAG]));

@@ -9,12 +9,12 @@ use crate::precision::Precision;
 pub(super) enum Version {
     V2,
     V40,
-    V4,
+    V41,
 }
 
 /// The version and byte order that `$MeshFormat` gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Encoding {
+pub(super) struct FileEncoding {
     pub(super) version: Version,
     /// The byte order of binary numbers; `None` for text.
     pub(super) order: Option<ByteOrder>,

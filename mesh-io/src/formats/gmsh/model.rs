@@ -1,6 +1,6 @@
 //! The names of physical groups, and the entities of the model with their physical groups.
 
-use super::encoding::{Encoding, Version};
+use super::encoding::{FileEncoding, Version};
 use super::lists::row;
 use super::words::{Progress, Words};
 use crate::binary::byte_order::ByteOrder;
@@ -71,12 +71,12 @@ impl Model {
     pub(super) fn read(
         &mut self,
         cursor: &mut Cursor<'_>,
-        Encoding { version, order }: Encoding,
+        FileEncoding { version, order }: FileEncoding,
         partitioned: bool,
     ) -> Result<(), ReadError> {
         // A point has three coordinates in 4.1. All other entities, and points in 4.0, have a bounding box.
         let numbers = |dimension| match (version, dimension) {
-            (Version::V4, 0) => 3,
+            (Version::V41, 0) => 3,
             _ => 6,
         };
         let counts = match order {

@@ -1,6 +1,6 @@
 //! The nodes that belong together in pairs, from the section `$Periodic`.
 
-use super::encoding::{Encoding, Version};
+use super::encoding::{FileEncoding, Version};
 use crate::binary::byte_order::ByteOrder;
 use crate::content::constraints::Affine;
 use crate::precision::Precision;
@@ -15,7 +15,7 @@ const AFFINE: usize = 16;
 /// mesh does not depend on it.
 pub(super) fn read(
     cursor: &Cursor<'_>,
-    Encoding { version, order }: Encoding,
+    FileEncoding { version, order }: FileEncoding,
 ) -> Option<Vec<PeriodicNodes>> {
     let cursor = &mut cursor.clone();
     let found = match (version, order) {
@@ -52,7 +52,7 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>>
         let first = cursor.token()?;
         // From 4.1 on, a row has the count of the motion's numbers and the numbers. Before, the row starts with
         // `Affine`, or there is none.
-        let has_row = version == Version::V4 || first == b"Affine";
+        let has_row = version == Version::V41 || first == b"Affine";
         let mut numbers = Vec::new();
         if has_row {
             while let Some(token) = cursor.token() {
@@ -124,7 +124,7 @@ mod tests {
         let source = Source::new("m.msh".as_ref(), bytes.to_vec()).unwrap();
         let mut cursor = Cursor::new(&source);
         assert!(cursor.next_row());
-        read(&cursor, Encoding { version, order })
+        read(&cursor, FileEncoding { version, order })
     }
 
     /// Version 4.0 in binary has narrower numbers than 4.1, and marks a motion by a negative count.

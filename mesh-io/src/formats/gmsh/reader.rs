@@ -1,6 +1,6 @@
 //! The sections of a file, one after another, and the version that tells how they are read.
 
-use super::encoding::{Encoding, Version, form};
+use super::encoding::{FileEncoding, Version, form};
 use super::lists::{note_parameters, row};
 use super::model::Model;
 use super::{binary2, binary4, binary40, data, model, periodic, text2, text4, text40, words};
@@ -27,14 +27,14 @@ impl FormatReader for Gmsh {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let Encoding { version, order } = walk(source, visitor)?;
+        let FileEncoding { version, order } = walk(source, visitor)?;
         let format = match (version, order) {
             (Version::V2, None) => Format::Gmsh22,
             (Version::V2, Some(_)) => Format::Gmsh22Binary,
             (Version::V40, None) => Format::Gmsh40,
             (Version::V40, Some(_)) => Format::Gmsh40Binary,
-            (Version::V4, None) => Format::Gmsh41,
-            (Version::V4, Some(_)) => Format::Gmsh41Binary,
+            (Version::V41, None) => Format::Gmsh41,
+            (Version::V41, Some(_)) => Format::Gmsh41Binary,
         };
         let numbers = match order {
             None => CoordinateEncoding::TEXT,
@@ -45,7 +45,7 @@ impl FormatReader for Gmsh {
 }
 
 /// Hands a file's nodes and elements to the visitor.
-fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<Encoding, ReadError> {
+fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<FileEncoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);
@@ -64,7 +64,7 @@ fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<Encoding, Read
             }
             b"Nodes" | b"ParametricNodes" => {
                 once(cursor, &mut nodes, "Nodes")?;
-                let Encoding { version, order } = known(cursor, encoding)?;
+                let FileEncoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
                     note_parameters(visitor);
@@ -77,11 +77,11 @@ fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<Encoding, Read
                     (Version::V40, Some(order)) => {
                         binary40::nodes(cursor, order, heights, visitor)?
                     }
-                    (Version::V4, None) => text4::nodes(cursor, heights, visitor)?,
+                    (Version::V41, None) => text4::nodes(cursor, heights, visitor)?,
                     (Version::V2, Some(order)) => {
                         binary2::nodes(cursor, order, parametric, heights, visitor)?
                     }
-                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, visitor)?,
+                    (Version::V41, Some(order)) => binary4::nodes(cursor, order, heights, visitor)?,
                 };
                 node_count = count;
                 let name = str::from_utf8(name).unwrap_or_default();
@@ -96,14 +96,14 @@ fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<Encoding, Read
                     let problem = "$Elements stands before $Nodes";
                     return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
                 }
-                let Encoding { version, order } = known(cursor, encoding)?;
+                let FileEncoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
                     (Version::V2, None) => text2::elements(cursor, visitor)?,
-                    (Version::V40 | Version::V4, None) => {
+                    (Version::V40 | Version::V41, None) => {
                         text4::elements(cursor, version, &model, visitor)?
                     }
                     (Version::V2, Some(order)) => binary2::elements(cursor, order, visitor)?,
-                    (Version::V40 | Version::V4, Some(order)) => {
+                    (Version::V40 | Version::V41, Some(order)) => {
                         binary4::elements(cursor, version, order, &model, visitor)?
                     }
                 };
@@ -154,13 +154,13 @@ fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<Encoding, Read
     }
 }
 
-fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
+fn mesh_format(cursor: &mut Cursor<'_>) -> Result<FileEncoding, ReadError> {
     row(cursor, 0, 1, "format lines")?;
     let name = cursor.token().unwrap_or_default();
     let version = match name {
         b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
         b"4" | b"4.0" => Version::V40,
-        b"4.1" => Version::V4,
+        b"4.1" => Version::V41,
         _ => {
             let problem = format!("gmsh's format version {} is not read", quoted(name));
             let remedy = "Save as version 4.1 or 2.2 (gmsh old.msh -save -format msh41 -o new.msh)";
@@ -168,9 +168,9 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
         }
     };
     match cursor.integer("the file type")? {
-        0 => Ok(Encoding { version, order: None }),
+        0 => Ok(FileEncoding { version, order: None }),
         1 => match cursor.integer("the size of a number")? {
-            8 => Ok(Encoding { version, order: Some(words::byte_order(cursor)?) }),
+            8 => Ok(FileEncoding { version, order: Some(words::byte_order(cursor)?) }),
             size => {
                 let problem =
                     format!("its numbers have {size} bytes, and only those of 8 are read");
@@ -184,7 +184,7 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     }
 }
 
-fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {
+fn known(cursor: &Cursor<'_>, encoding: Option<FileEncoding>) -> Result<FileEncoding, ReadError> {
     let problem = "no $MeshFormat section stands before this one";
     encoding.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
 }

@@ -23,7 +23,7 @@ pub(super) fn nodes(
     let read = |cursor: &mut Cursor<'_>| {
         let blocks = cursor.integer("the number of node blocks")?;
         let count = cursor.vertex_count()?;
-        pass_least_and_greatest(cursor);
+        skip_min_and_max(cursor);
         Ok((blocks, count))
     };
     let rows = |(blocks, count): (u64, u64)| blocks.saturating_add(2 * count);
@@ -87,7 +87,7 @@ pub(super) fn nodes(
 }
 
 /// Skips the least and the greatest tag of a section, which are not needed.
-fn pass_least_and_greatest(cursor: &mut Cursor<'_>) {
+fn skip_min_and_max(cursor: &mut Cursor<'_>) {
     cursor.token();
     cursor.token();
 }
@@ -122,8 +122,8 @@ pub(super) fn elements(
     let read = |cursor: &mut Cursor<'_>| {
         let blocks = cursor.integer("the number of element blocks")?;
         let count = cursor.integer("the number of elements")?;
-        if version == Version::V4 {
-            pass_least_and_greatest(cursor);
+        if version == Version::V41 {
+            skip_min_and_max(cursor);
         }
         Ok((blocks, count))
     };
@@ -134,7 +134,7 @@ pub(super) fn elements(
     for block in 0..blocks {
         let read = |cursor: &mut Cursor<'_>| {
             // The entity's dimension is not needed. It stands before the tag in 4.1, and after it in 4.0.
-            if version == Version::V4 {
+            if version == Version::V41 {
                 cursor.token();
             }
             let entity = cursor.signed("the entity of an element block")?;

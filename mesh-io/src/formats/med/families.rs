@@ -15,7 +15,7 @@ pub(super) struct Families {
 }
 
 /// How many letters a name has.
-const LETTERS: usize = 80;
+const NAME_LENGTH: usize = 80;
 
 impl Families {
     /// Reads those of a mesh. What is damaged is left out.
@@ -37,7 +37,7 @@ impl Families {
         let names = file.child(family, b"GRO/NOM").and_then(|names| file.dataset(names).ok()?);
         let array = names.and_then(|names| file.array(&names).ok());
         let (Some(number), Some(array)) = (number, array) else { return };
-        for name in array.bytes.chunks_exact(LETTERS) {
+        for name in array.bytes.chunks_exact(NAME_LENGTH) {
             let name = name.split(|&byte| byte == 0).next().unwrap_or_default().trim_ascii();
             let known = self.names.iter().position(|own| own == name);
             let group = known.unwrap_or_else(|| {

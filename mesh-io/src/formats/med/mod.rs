@@ -57,7 +57,7 @@ impl FormatReader for Med {
 
 impl<'a> File<'a> {
     fn open(source: &'a Source, hdf5: &'a Hdf5<'a>) -> Result<File<'a>, ReadError> {
-        let start = || Cursor::at_byte_of(source, 0);
+        let start = || Cursor::at_byte_offset(source, 0);
         let meshes = hdf5.find(MESHES).map(|all| hdf5.children(all).collect::<Vec<_>>());
         let (name, mesh) = match meshes.as_deref() {
             Some(&[one]) => one,
@@ -71,7 +71,7 @@ impl<'a> File<'a> {
         };
         let whole = |name: &[u8]| hdf5.attribute(mesh, name).and_then(|a| a.whole());
         let refused = |problem: &str, remedy| {
-            Err(Cursor::at_byte_of(source, mesh.at).error(problem.to_owned(), remedy))
+            Err(Cursor::at_byte_offset(source, mesh.at).error(problem.to_owned(), remedy))
         };
         if whole(b"TYP").is_some_and(|kind| kind != 0) {
             return refused("a structured mesh is not read", "Save an unstructured mesh");
@@ -138,7 +138,7 @@ impl<'a> File<'a> {
     }
 
     fn cursor(&self, object: &Object) -> Cursor<'a> {
-        Cursor::at_byte_of(self.source, object.at)
+        Cursor::at_byte_offset(self.source, object.at)
     }
 
     /// The coordinates, and how many nodes there are.
@@ -240,7 +240,7 @@ impl<'a> File<'a> {
                 families.of_elements(family, visitor);
                 last = Some(family);
             }
-            Cursor::at_byte_of(self.source, array.byte_of(element * size))
+            Cursor::at_byte_offset(self.source, array.byte_of(element * size))
         })
     }
 }

@@ -11,12 +11,12 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::medit::required::hold_required;
+use crate::formats::medit::required::send_required_vertices;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::items::{GroupScope, Kind, RegionAttribute};
 use crate::visit::reader::FormatReader;
-use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::records::{NodeIds, NodeRecords, Region};
 use crate::visit::rows::volume;
 use crate::visit::send::{ElementRecords, REWRITE};
 use crate::visit::storage::CoordinateStorage;
@@ -148,7 +148,7 @@ impl FormatReader for MeditBinary {
             match place {
                 Some(place) if place <= source.bytes.len() => {
                     *cursor = list;
-                    cursor.pass(place - cursor.at_byte());
+                    cursor.skip_bytes(place - cursor.at_byte());
                 }
                 _ => {
                     let problem = format!(
@@ -169,13 +169,13 @@ impl FormatReader for MeditBinary {
         lists.retain(|list| list.kind == Kind::Triangle);
         let size = 4 * widths.integer;
         let counts: Vec<u64> = lists.iter().map(|list| (list.bytes.len() / size) as u64).collect();
-        hold_required(required, &counts, visitor, |list, index| {
+        send_required_vertices(required, &counts, visitor, |list, index| {
             let List { cursor, bytes, .. } = &lists[list];
             let at = index as usize * size;
             let mut numbers = bytes[at..at + size].chunks_exact(widths.integer);
             let numbers =
                 [(); 4].map(|()| numbers.next().map_or(0, |own| widths.order.signed(own)));
-            let place = Cursor::at_byte_of(cursor.source, cursor.taken() + at);
+            let place = Cursor::at_byte_offset(cursor.source, cursor.last_taken() + at);
             Ok((place, numbers.map(|number| u64::try_from(number).unwrap_or(0)), numbers[3]))
         })?;
         let numbers = CoordinateEncoding::adjacent(order, widths.precision);
@@ -223,13 +223,13 @@ fn vertices(
     let size = widths.precision.bytes();
     let item = dimension as usize * size + widths.integer;
     let bytes = items(cursor, count, item, "vertices")?;
-    let start = cursor.taken();
+    let start = cursor.last_taken();
     let field = |at: usize| NumberField::new(bytes.get(at..), item, size, widths.order);
     let count = bytes.len() / item;
-    let (x, y, tags) = (field(0), field(size), Tags::From(1));
-    NodeRecords { count, x, y, x_at: start, tags }.send(
+    let (x, y, tags) = (field(0), field(size), NodeIds::Consecutive(1));
+    NodeRecords { count, x, y, x_offset: start, ids: tags }.send(
         visitor,
-        |index| Cursor::at_byte_of(cursor.source, start + index * item),
+        |index| Cursor::at_byte_offset(cursor.source, start + index * item),
         |index| {
             let problem = format!("a coordinate of vertex {} is not a finite number", index + 1);
             cursor.error(problem, REWRITE)
@@ -274,6 +274,7 @@ fn elements(
         is_signed: true,
         regions: [reference, Region::Same(0)],
     };
-    records
-        .send(visitor, |index, _| Cursor::at_byte_of(cursor.source, cursor.taken() + index * item))
+    records.send(visitor, |index, _| {
+        Cursor::at_byte_offset(cursor.source, cursor.last_taken() + index * item)
+    })
 }

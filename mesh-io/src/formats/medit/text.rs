@@ -9,7 +9,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::medit::required::hold_required;
+use crate::formats::medit::required::send_required_vertices;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
@@ -67,7 +67,7 @@ impl FormatReader for Medit {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         let mut lists: Vec<List<'_>> = Vec::new();
         let mut required = Vec::new();
         let mut dimension = 2;
@@ -142,7 +142,7 @@ impl FormatReader for Medit {
         let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
         // The list and the index in it of the next triangle.
         let mut next = (0, 0);
-        hold_required(required, &counts, visitor, |list, index| {
+        send_required_vertices(required, &counts, visitor, |list, index| {
             if next.0 != list {
                 next = (list, 0);
             }

@@ -1,11 +1,11 @@
 //! The elements, and the nodes that they hold.
 
 use super::nodes::whole;
-use super::types::{Class, Listed, class};
+use super::types::{Class, RigidFields, class};
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::card;
-use crate::text::card::{Line, Name, letters};
+use crate::text::card::{CardLine, Name, name_bytes};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
 use crate::visit::items::{Element, Kind, RegionAttribute};
@@ -17,7 +17,7 @@ use std::collections::{BTreeSet, HashSet};
 enum Card {
     Element(Element),
     /// The nodes that an element holds, and what it is called.
-    Holds(Name, Vec<u64>),
+    Constrains(Name, Vec<u64>),
     Node(u64),
     Other(Name),
 }
@@ -32,7 +32,7 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
     all_rows(&mut cursor, visitor, card, |cursor, visitor, card| {
         match card {
             Card::Element(element) => visitor.element(cursor, &element)?,
-            Card::Holds(name, nodes) => {
+            Card::Constrains(name, nodes) => {
                 held.extend(nodes);
                 holding += 1;
                 names.insert(name);
@@ -47,22 +47,26 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
         visitor.remark(Remark::elements(
             holding,
             "element",
-            &format!(" {word} {}", quoted(letters(first))),
+            &format!(" {word} {}", quoted(name_bytes(first))),
         ));
     }
-    others.retain(|name| !matches!(letters(name), b"" | b"GRDSET"));
+    others.retain(|name| !matches!(name_bytes(name), b"" | b"GRDSET"));
     if let Some(first) = others.first() {
-        let first = quoted(letters(first));
+        let first = quoted(name_bytes(first));
         visitor.unsupported(&match others.len() - 1 {
             0 => format!("what {first} says"),
             more => format!("what {first} and {more} more kinds of cards say"),
         });
     }
-    hold(rows, held, visitor)
+    send_constrained_nodes(rows, held, visitor)
 }
 
 /// Hands on the nodes that elements hold. Some may be scalar points, which are no part of the mesh.
-fn hold(rows: &Cursor<'_>, held: Vec<u64>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
+fn send_constrained_nodes(
+    rows: &Cursor<'_>,
+    held: Vec<u64>,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     if held.is_empty() {
         return Ok(());
     }
@@ -85,9 +89,9 @@ fn hold(rows: &Cursor<'_>, held: Vec<u64>, visitor: &mut dyn MeshVisitor) -> Res
 
 /// Reads the number of a node.
 fn node(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
-    let line = Line::starting_at(cursor.bytes, cursor.row_range().start);
+    let line = CardLine::starting_at(cursor.bytes, cursor.row_range().start);
     let name = line.name();
-    let tag = line.fields().next().filter(|_| letters(&name) == b"GRID");
+    let tag = line.fields().next().filter(|_| name_bytes(&name) == b"GRID");
     let tag = tag.and_then(|field| integer(cursor.bytes[field].trim_ascii()));
     Ok(tag.map_or(Card::Other(name), Card::Node))
 }
@@ -96,23 +100,23 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
 #[inline]
 fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let row = cursor.row_range();
-    let name = Line::starting_at(cursor.bytes, row.start).name();
-    if letters(&name) == b"GRID" {
+    let name = CardLine::starting_at(cursor.bytes, row.start).name();
+    if name_bytes(&name) == b"GRID" {
         return Ok(Card::Node(0));
     }
     let Some(class) = class(&name) else { return Ok(Card::Other(name)) };
-    let shown = || quoted(letters(&name));
+    let shown = || quoted(name_bytes(&name));
     let mut words = card::words(cursor.bytes, row);
     let mut next = || words.next().unwrap_or_default();
     let (kind, has_property) = match class {
         Class::Of(kind) => (kind, true),
         Class::Line => (Kind::Line, false),
-        Class::Held(fields) => {
+        Class::Constraining(fields) => {
             let words: Vec<&[u8]> = words.take(1 + fields[fields.len() - 1]).collect();
             let node = |&field: &usize| words.get(field).and_then(|word| integer(word));
-            return Ok(Card::Holds(name, fields.iter().filter_map(node).collect()));
+            return Ok(Card::Constrains(name, fields.iter().filter_map(node).collect()));
         }
-        Class::Rigid(listed) => return Ok(Card::Holds(name, rigid(words, listed))),
+        Class::Rigid(listed) => return Ok(Card::Constrains(name, rigid(words, listed))),
         Class::Volume => return Err(volume(cursor, &format!("{} elements", shown()))),
         Class::SecondOrder => {
             let problem =
@@ -136,7 +140,7 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
 
 /// Lists the nodes of a rigid element.
 #[cold]
-fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: Listed) -> Vec<u64> {
+fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: RigidFields) -> Vec<u64> {
     let _number_of_element = words.next();
     // The name of a part, such as `UM`, stands before it. At the end of RBE2 may be a real number.
     let given = words.filter(|word| !word.is_empty());
@@ -149,17 +153,17 @@ fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: Listed) -> Vec<u
             (Some(node), _) if until == 0 => {
                 nodes.push(node);
                 until = match listed {
-                    Listed::Pairs => 1,
-                    Listed::Nodes | Listed::Weights => usize::from(first),
+                    RigidFields::Pairs => 1,
+                    RigidFields::Nodes | RigidFields::Weights => usize::from(first),
                 };
                 first = false;
             }
             (Some(_), _) => until -= 1,
             // A weight, after which components come.
-            (None, Listed::Weights) if word.contains(&b'.') => until = 1,
+            (None, RigidFields::Weights) if word.contains(&b'.') => until = 1,
             // The nodes of what follows were named before.
-            (None, Listed::Nodes | Listed::Weights) => break,
-            (None, Listed::Pairs) => until = 0,
+            (None, RigidFields::Nodes | RigidFields::Weights) => break,
+            (None, RigidFields::Pairs) => until = 0,
         }
     }
     nodes

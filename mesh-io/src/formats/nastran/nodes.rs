@@ -5,7 +5,7 @@ use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::card;
-use crate::text::card::{Line, letters};
+use crate::text::card::{CardLine, name_bytes};
 use crate::text::cursor::Cursor;
 use crate::text::cursor_numbers::NO_Z;
 use crate::text::token::{float, fortran_float, integer};
@@ -28,28 +28,28 @@ struct Node {
     x_at: usize,
     at: [f64; 2],
     z: (usize, f64),
-    room: Room,
+    field_width: FieldWidth,
     /// Whether it names no coordinate system.
     is_of_default: bool,
 }
 
 /// How many characters the coordinates of a node have: in fixed fields as many as the field has, in free field as many as the longest.
 #[derive(Clone, Copy)]
-struct Room {
+struct FieldWidth {
     is_free: bool,
-    /// The first of [`ROOMS`] that is enough.
+    /// The first of [`WIDTH_PRECISIONS`] that is enough.
     size: usize,
 }
 
 /// The precisions of coordinates of at most 8 characters, of at most 16, and of more.
-const ROOMS: [Precision; 3] = [Precision::Text8, Precision::Text16, Precision::Double];
+const WIDTH_PRECISIONS: [Precision; 3] = [Precision::Text8, Precision::Text16, Precision::Double];
 
 /// How many nodes have which room, in fixed fields and in free field.
 #[derive(Default)]
-struct Rooms([[u64; ROOMS.len()]; 2]);
+struct FieldWidthCounts([[u64; WIDTH_PRECISIONS.len()]; 2]);
 
-impl Rooms {
-    fn add(&mut self, Room { is_free, size }: Room) {
+impl FieldWidthCounts {
+    fn add(&mut self, FieldWidth { is_free, size }: FieldWidth) {
         self.0[usize::from(is_free)][size] += 1;
     }
 
@@ -59,9 +59,9 @@ impl Rooms {
         let [fixed, free] = &self.0;
         let smallest = fixed.iter().position(|&count| count > 0);
         let longest = free.iter().rposition(|&count| count > 0);
-        let size = smallest.into_iter().chain(longest).min().unwrap_or(ROOMS.len() - 1);
+        let size = smallest.into_iter().chain(longest).min().unwrap_or(WIDTH_PRECISIONS.len() - 1);
         let longer = |counts: &[u64; 3]| counts[size + 1..].iter().sum::<u64>();
-        (ROOMS[size], longer(fixed) + longer(free))
+        (WIDTH_PRECISIONS[size], longer(fixed) + longer(free))
     }
 }
 
@@ -71,13 +71,13 @@ pub(super) fn send(
     visitor: &mut dyn MeshVisitor,
 ) -> Result<CoordinateEncoding, ReadError> {
     let mut heights = ZValues::new(visitor);
-    let mut rooms = Rooms::default();
+    let mut rooms = FieldWidthCounts::default();
     // Where the first node is that names no coordinate system, and the system of such nodes.
     let (mut count, mut first_at, mut system) = (0, None, 0);
     let cursor = &mut rows.clone();
     all_rows(cursor, visitor, card, |cursor, visitor, card| {
         match card {
-            Card::Node(Node { tag, x_at, at, z, room, is_of_default }) => {
+            Card::Node(Node { tag, x_at, at, z, field_width: room, is_of_default }) => {
                 visitor.node(cursor, tag, 2, x_at, at);
                 heights.push(z);
                 rooms.add(room);
@@ -95,7 +95,7 @@ pub(super) fn send(
     }
     cursor.check_vertex_count(count)?;
     if let (1.., Some((at, tag))) = (system, first_at) {
-        return Err(in_system(&Cursor::standing_at(cursor.source, at), tag, system));
+        return Err(in_system(&Cursor::on_line_of(cursor.source, at), tag, system));
     }
     visitor.end_nodes(cursor)?;
     let (precision, longer) = rooms.precision();
@@ -116,8 +116,8 @@ pub(super) fn send(
 #[inline]
 fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let row = cursor.row_range();
-    let line = Line::starting_at(cursor.bytes, row.start);
-    match letters(&line.name()) {
+    let line = CardLine::starting_at(cursor.bytes, row.start);
+    match name_bytes(&line.name()) {
         b"GRID" => node(cursor, line, row),
         b"GRDSET" => default_system(cursor, line),
         b"INCLUDE" => {
@@ -138,7 +138,7 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
 }
 
 #[inline]
-fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, ReadError> {
+fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Card, ReadError> {
     let bytes = cursor.bytes;
     let mut fields = line.fields();
     let mut next = || fields.next();
@@ -188,13 +188,13 @@ fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, 
         9.. => 1,
         _ => usize::from(line.is_large),
     };
-    let room = Room { is_free: line.is_free, size };
-    Ok(Card::Node(Node { tag, x_at, at, z, room, is_of_default: system.is_none() }))
+    let room = FieldWidth { is_free: line.is_free, size };
+    Ok(Card::Node(Node { tag, x_at, at, z, field_width: room, is_of_default: system.is_none() }))
 }
 
 /// Reads the coordinate system that GRDSET names.
 #[cold]
-fn default_system(cursor: &Cursor<'_>, line: Line<'_>) -> Result<Card, ReadError> {
+fn default_system(cursor: &Cursor<'_>, line: CardLine<'_>) -> Result<Card, ReadError> {
     let field = line.fields().nth(1).unwrap_or(0..0);
     let system = match cursor.bytes[field].trim_ascii() {
         b"" => 0,

@@ -149,7 +149,7 @@ impl Items {
                     .and_then(|()| cursor.item(&mut read, &mut missing)),
             };
             let taken = read.and_then(|()| match item {
-                Some(at) => take(&Cursor::at_byte_of(cursor.source, at), &values, &places),
+                Some(at) => take(&Cursor::at_byte_offset(cursor.source, at), &values, &places),
                 None => take(cursor, &values, &places),
             });
             match taken {
@@ -182,7 +182,7 @@ impl Items {
         let Some(bytes) = cursor.take(size) else {
             return Err(cursor.error("the file ends within its lists", CUT_OFF));
         };
-        let at = cursor.taken();
+        let at = cursor.last_taken();
         item.get_or_insert(at);
         let value = match number {
             Number::Float => order.real(Precision::Single, bytes),

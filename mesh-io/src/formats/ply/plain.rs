@@ -5,7 +5,7 @@ use crate::binary::number_field::NumberField;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::visit::items::{Element, Kind};
-use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
 use crate::visit::rows::nodes;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
@@ -32,7 +32,7 @@ impl Items {
             let is_first = x == 0;
             return if is_first { vertices_of_text(cursor, list, z, heights, visitor) } else { 0 };
         };
-        let Some((bytes, start)) = cursor.ahead(list.count, stride) else { return 0 };
+        let Some((bytes, start)) = cursor.peek(list.count, stride) else { return 0 };
         let field = |index: usize| {
             NumberField::new(
                 bytes.get(before(index)..),
@@ -41,12 +41,13 @@ impl Items {
                 order,
             )
         };
-        let (count, x_at, tags) = (list.count as usize, start + before(x), Tags::From(0));
+        let (count, x_at, tags) = (list.count as usize, start + before(x), NodeIds::Consecutive(0));
         let heights_of = z.map(|z| (field(z), start + before(z)));
         if heights_of.is_some_and(|(z, _)| !z.all_real(count, f64::is_finite)) {
             return 0;
         }
-        let records = NodeRecords { count, x: field(x), y: field(x + 1), x_at, tags };
+        let records =
+            NodeRecords { count, x: field(x), y: field(x + 1), x_offset: x_at, ids: tags };
         let taken = visitor.node_records(&records);
         if let Some((z, at)) = heights_of {
             heights.push_records(z, taken, at);
@@ -89,17 +90,17 @@ impl Items {
         let stride = properties.iter().map(size).sum::<usize>();
         let at = properties[..corners].iter().map(size).sum::<usize>();
         // If elements have other lengths, there may be too few bytes for this many triangles. Then none is taken here.
-        let Some((bytes, _)) = cursor.ahead(list.count, stride) else { return 0 };
+        let Some((bytes, _)) = cursor.peek(list.count, stride) else { return 0 };
         let field = |at: usize, number: Number| {
             NumberField::new(bytes.get(at..), stride, number.size(), order)
         };
         let taken = visitor.triangle_records(&TriangleRecords {
             count: list.count as usize,
             corners: field(at + length.size(), number),
-            first: 0,
-            below: u64::MAX,
+            min_node: 0,
+            node_end: u64::MAX,
             regions: [Region::Same(0); 2],
-            expected: &[(field(at, length), Expected::Is(3))],
+            required_fields: &[(field(at, length), FieldRule::Is(3))],
         });
         cursor.take(taken * stride);
         taken as u64

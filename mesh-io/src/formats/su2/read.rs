@@ -44,7 +44,7 @@ impl FormatReader for Su2 {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::PERCENT);
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::PERCENT);
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and the number of all points.
         let (mut zones, mut points) = (vec![0], 0_u64);

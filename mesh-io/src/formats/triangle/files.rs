@@ -107,7 +107,7 @@ fn missing_file(missing: &Path, names: &Names) -> ReadError {
     ReadError::Io { path: missing.to_owned(), source, remedy }
 }
 
-/// Returns the files that are written for `path`, in the order of [`Source::parts`].
+/// Returns the files that are written for `path`, in the order of [`Source::files`].
 pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
     let refused = |problem: String, remedy: &str| {
         Err(WriteError::Format { path: path.to_owned(), problem, remedy: remedy.into() })

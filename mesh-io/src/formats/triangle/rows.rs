@@ -8,7 +8,7 @@ use crate::text::syntax::Syntax;
 /// Returns a cursor before the first row of one of the files.
 pub(super) fn rows(source: &Source) -> Cursor<'_> {
     // Triangle skips a comma before the blanks that precede a number.
-    Cursor::new(source).of(Syntax::TRAILING)
+    Cursor::new(source).with_syntax(Syntax::TRAILING)
 }
 
 /// The numbering of a file's vertices: `count` consecutive numbers from `first` on.

@@ -4,13 +4,13 @@ use super::centers::Tables;
 use super::mesh::Mesh;
 use super::table::Table;
 use crate::content::remark::Remark;
-use crate::formats::netcdf_points::{Parts, PointData};
-use crate::netcdf::{Number, Variable};
+use crate::formats::netcdf_points::{ComponentSlice, PointData};
+use crate::netcdf::{NumberType, Variable};
 use crate::visit::visitor::MeshVisitor;
 
 /// What a variable has numbers for.
 #[derive(Clone, Copy, PartialEq)]
-enum Location {
+enum DataLocation {
     Nodes,
     Faces,
 }
@@ -28,18 +28,20 @@ impl<'h, 'a> Mesh<'h, 'a> {
         };
         let mut points = PointData::new(self.header);
         for variable in self.header.variables.iter().filter(is_data) {
-            let Some((Location::Nodes, parts)) = self.located(variable, lengths) else { continue };
+            let Some((DataLocation::Nodes, parts)) = self.located(variable, lengths) else {
+                continue;
+            };
             match visitor.asks_for_data() {
                 true => points.send(&variable.name, variable, &parts, variable.missing(), visitor),
                 false => {
-                    let is_real = matches!(variable.number, Number::Real(_));
+                    let is_real = matches!(variable.number, NumberType::Real(_));
                     visitor.point_array(&variable.name, parts.components, is_real);
                 }
             }
         }
         if visitor.asks_for_data() {
             for variable in self.header.variables.iter().filter(is_data) {
-                if let Some((Location::Faces, parts)) = self.located(variable, lengths) {
+                if let Some((DataLocation::Faces, parts)) = self.located(variable, lengths) {
                     self.of_faces(faces, variable, &parts, &mut points, visitor);
                 }
             }
@@ -57,40 +59,44 @@ impl<'h, 'a> Mesh<'h, 'a> {
 
     /// What a variable has numbers for, and how its records consist of parts. None if it is of something else, or if that is not
     /// known.
-    fn located(&self, variable: &Variable, lengths: [u64; 2]) -> Option<(Location, Parts)> {
-        let is_numeric = matches!(variable.number, Number::Real(_) | Number::Whole(_));
+    fn located(
+        &self,
+        variable: &Variable,
+        lengths: [u64; 2],
+    ) -> Option<(DataLocation, ComponentSlice)> {
+        let is_numeric = matches!(variable.number, NumberType::Real(_) | NumberType::Whole(_));
         if !is_numeric || variable.text("mesh").is_some_and(|mesh| mesh != self.own.name) {
             return None;
         }
         let location = match variable.text("location") {
-            Some(b"node") => Location::Nodes,
-            Some(b"face") => Location::Faces,
+            Some(b"node") => DataLocation::Nodes,
+            Some(b"face") => DataLocation::Faces,
             Some(_) => return None,
             None => match lengths.map(|length| variable.shape.contains(&length)) {
-                [true, false] => Location::Nodes,
-                [false, true] => Location::Faces,
+                [true, false] => DataLocation::Nodes,
+                [false, true] => DataLocation::Faces,
                 _ => return None,
             },
         };
-        let length = lengths[usize::from(location == Location::Faces)];
+        let length = lengths[usize::from(location == DataLocation::Faces)];
         let axis = variable.shape.iter().position(|&own| own == length)?;
         let product = |lengths: &[u64]| {
             lengths.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).filter(|&n| n > 0)
         };
         let all = usize::try_from(product(&variable.shape[..axis])?).ok()?;
         let components = product(&variable.shape[axis + 1..])?;
-        Some((location, Parts { wanted: 0..all, all, components }))
+        Some((location, ComponentSlice { wanted: 0..all, all, components }))
     }
 
     fn of_faces(
         &self,
         faces: &Table<'h, 'a>,
         variable: &'h Variable,
-        parts: &Parts,
+        parts: &ComponentSlice,
         points: &mut PointData<'h, 'a>,
         visitor: &mut dyn MeshVisitor,
     ) {
-        let is_real = matches!(variable.number, Number::Real(_));
+        let is_real = matches!(variable.number, NumberType::Real(_));
         let tags = faces.first..faces.first + faces.count as u64;
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {

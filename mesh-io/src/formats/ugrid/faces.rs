@@ -3,7 +3,7 @@
 use super::table::Table;
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
-use crate::netcdf::Number;
+use crate::netcdf::NumberType;
 use crate::visit::items::{Element, Kind};
 use crate::visit::records::{Region, TriangleRecords};
 use crate::visit::visitor::MeshVisitor;
@@ -12,17 +12,17 @@ use crate::visit::visitor::MeshVisitor;
 pub(super) fn send(faces: &Table<'_, '_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
     visitor.expect_elements(faces.count);
     let mut taken = 0;
-    if let (Number::Whole(width @ (4 | 8)), 3, true) =
+    if let (NumberType::Whole(width @ (4 | 8)), 3, true) =
         (faces.variable.number, faces.corners, faces.has_rows)
     {
         let own = faces.items.own();
         taken = visitor.triangle_records(&TriangleRecords {
             count: faces.count,
             corners: NumberField::new(Some(own), 3 * width, width, faces.variable.order),
-            first: 0,
-            below: u64::MAX,
+            min_node: 0,
+            node_end: u64::MAX,
             regions: [Region::Same(0), Region::Same(0)],
-            expected: &[],
+            required_fields: &[],
         });
     }
     let mut nodes = Vec::with_capacity(faces.corners);

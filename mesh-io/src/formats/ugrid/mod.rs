@@ -19,7 +19,7 @@ use crate::visit::reader::FormatReader;
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use mesh::Mesh;
-use table::{Table, What};
+use table::{Table, TableKind};
 
 pub(crate) struct Ugrid;
 
@@ -41,7 +41,7 @@ impl FormatReader for Ugrid {
     ) -> Result<CoordinateStorage, ReadError> {
         let header = netcdf::open(source)?;
         let mesh = Mesh::find(&header)?;
-        let faces = Table::find(&mesh, mesh.face_nodes, What::Faces)?;
+        let faces = Table::find(&mesh, mesh.face_nodes, TableKind::Faces)?;
         let layout = mesh.axes()?.send(Format::Ugrid, mesh.nodes, faces.first, visitor)?;
         faces::send(&faces, visitor)?;
         mesh.data(&mesh.tables(faces), visitor);

@@ -6,7 +6,7 @@ use crate::error::ReadError;
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::items::{Element, Kind};
-use crate::visit::records::{Expected, LONG, Region, TriangleRecords};
+use crate::visit::records::{FieldRule, MIN_PARALLEL_RECORDS, Region, TriangleRecords};
 use crate::visit::rows::volume;
 use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
@@ -72,22 +72,22 @@ impl Triangles<'_> {
     pub(crate) fn send(self, visitor: &mut dyn MeshVisitor) -> (usize, usize) {
         let Triangles { count, numbers, own, ends, types, first, below, regions } = self;
         let (stride, counts) = match ends {
-            Some(ends) => (3, (ends, Expected::Steps { first: own.end as u64, step: 3 })),
+            Some(ends) => (3, (ends, FieldRule::Steps { first: own.end as u64, step: 3 })),
             None => match own.start.checked_sub(1) {
-                Some(before) => (4, (numbers.field(before, 4), Expected::Is(3))),
+                Some(before) => (4, (numbers.field(before, 4), FieldRule::Is(3))),
                 None => return (0, own.end),
             },
         };
-        let triangles = types.map(|types| (types, Expected::Is(types::TRIANGLE)));
+        let triangles = types.map(|types| (types, FieldRule::Is(types::TRIANGLE)));
         let expected: Vec<_> = [counts].into_iter().chain(triangles).collect();
         let corners = numbers.field(own.start, stride);
         let taken = visitor.triangle_records(&TriangleRecords {
             count,
             corners,
-            first,
-            below,
+            min_node: first,
+            node_end: below,
             regions,
-            expected: &expected,
+            required_fields: &expected,
         });
         (taken, own.start + 3 + taken.saturating_sub(1) * stride)
     }
@@ -109,7 +109,7 @@ impl BulkBackoff {
     /// Records a try at a cell, and how many triangles were handed on.
     pub(crate) fn done(&mut self, cell: usize, taken: usize) {
         self.left -= 1;
-        self.next = cell + taken + LONG;
+        self.next = cell + taken + MIN_PARALLEL_RECORDS;
     }
 }
 

@@ -1,6 +1,6 @@
 //! Writes VTK's formats: the legacy `.vtk` as text, and `.vtu` with arrays in base64.
 
-use crate::export::content::Data;
+use crate::export::content::DataArray;
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::formats::vtk::types::number_of;
@@ -35,7 +35,7 @@ pub(crate) enum Numbers {
 }
 
 impl Array {
-    fn of(data: &Data, places: Option<&[usize]>) -> Array {
+    fn of(data: &DataArray, places: Option<&[usize]>) -> Array {
         let each = data.components;
         let values: Vec<f64> = match places {
             None => data.values.clone(),
@@ -58,19 +58,19 @@ impl Array {
 }
 
 /// Makes the arrays of the vertices.
-pub(crate) fn of_points(job: &WriterInput<'_>) -> Vec<Array> {
-    let mut arrays: Vec<Array> = job.point_data().map(|data| Array::of(data, None)).collect();
-    if !job.content.vertex_groups.is_empty() {
-        let what = &job.content.vertex_groups[0].0.what;
-        arrays.push(Array::whole(array_name(what), job.vertex_group_numbers()));
+pub(crate) fn of_points(input: &WriterInput<'_>) -> Vec<Array> {
+    let mut arrays: Vec<Array> = input.point_data().map(|data| Array::of(data, None)).collect();
+    if !input.content.vertex_groups.is_empty() {
+        let what = &input.content.vertex_groups[0].0.kind;
+        arrays.push(Array::whole(array_name(what), input.vertex_group_numbers()));
     }
     arrays
 }
 
 /// Makes the arrays of the cells: one for each kind of group, and the data.
-pub(crate) fn of_cells(job: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
+pub(crate) fn of_cells(input: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
     let mut whats: Vec<&str> = Vec::new();
-    for what in (0..3).rev().flat_map(|dimension| job.content.whats(dimension)) {
+    for what in (0..3).rev().flat_map(|dimension| input.content.whats(dimension)) {
         if !whats.contains(&what) {
             whats.push(what);
         }
@@ -83,36 +83,36 @@ pub(crate) fn of_cells(job: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
     });
     let mut arrays: Vec<Array> = Vec::new();
     for what in whats {
-        let column = job.content.column(what);
-        let tag = |&cell: &usize| column[cell].map_or(0, |group| job.group_numbers.number(group));
+        let column = input.content.column(what);
+        let tag = |&cell: &usize| column[cell].map_or(0, |group| input.group_numbers.number(group));
         let usual = array_name(what);
         let is_taken = arrays.iter().any(|array| array.name == usual);
         let name = if is_taken { what } else { usual };
         arrays.push(Array::whole(name, cells.iter().map(tag).collect()));
     }
-    arrays.extend(job.cell_data().map(|data| Array::of(data, Some(cells))));
+    arrays.extend(input.cell_data().map(|data| Array::of(data, Some(cells))));
     arrays
 }
 
-pub(crate) fn write_legacy(job: &WriterInput<'_>) -> String {
-    let content = job.content;
-    let cells: Vec<usize> = job.cells().collect();
+pub(crate) fn write_legacy(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let cells: Vec<usize> = input.cells().collect();
     let mut out = format!(
         "# vtk DataFile Version 4.2\nwritten by {}\nASCII\nDATASET UNSTRUCTURED_GRID\n",
-        job.creator
+        input.creator
     );
     put!(out, "POINTS {} double\n", content.points.len());
-    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", job.xyz(vertex)));
+    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
     let numbers: usize = cells.iter().map(|&cell| 1 + content.cells.of(cell).len()).sum();
     put!(out, "CELLS {} {numbers}\n", cells.len());
     for &cell in &cells {
-        put!(out, "{} {}\n", content.cells.of(cell).len(), job.positions(cell, 0));
+        put!(out, "{} {}\n", content.cells.of(cell).len(), input.positions(cell, 0));
     }
     put!(out, "CELL_TYPES {}\n", cells.len());
     cells.iter().for_each(|&cell| put!(out, "{}\n", number_of(content.cells.kinds[cell])));
     for (keyword, count, arrays) in [
-        ("CELL_DATA", cells.len(), of_cells(job, &cells)),
-        ("POINT_DATA", content.points.len(), of_points(job)),
+        ("CELL_DATA", cells.len(), of_cells(input, &cells)),
+        ("POINT_DATA", content.points.len(), of_points(input)),
     ] {
         if arrays.is_empty() {
             continue;
@@ -150,9 +150,9 @@ fn encoded(name: &str) -> String {
     encoded
 }
 
-pub(crate) fn write_xml(job: &WriterInput<'_>) -> String {
-    let content = job.content;
-    let cells: Vec<usize> = job.cells().collect();
+pub(crate) fn write_xml(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let cells: Vec<usize> = input.cells().collect();
     let mut out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
                    byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
         .to_owned();
@@ -177,8 +177,8 @@ pub(crate) fn write_xml(job: &WriterInput<'_>) -> String {
     let ends = ends.collect();
     let types = cells.iter().map(|&cell| number_of(content.cells.kinds[cell]) as i64).collect();
     let sections = [
-        ("PointData", of_points(job)),
-        ("CellData", of_cells(job, &cells)),
+        ("PointData", of_points(input)),
+        ("CellData", of_cells(input, &cells)),
         ("Points", vec![coordinates]),
         (
             "Cells",

@@ -15,39 +15,39 @@ use crate::visit::records::TriangleRecords;
 use crate::visit::visitor::MeshVisitor;
 
 /// The whole numbers of a topology, one after another.
-enum Words<'a> {
+enum CellNumbers<'a> {
     Text(Cursor<'a>),
     /// Those of a file beside the XML, and how many of them were taken.
     Heavy {
-        numbers: Box<heavy::Numbers<'a>>,
+        numbers: Box<heavy::HeavyArray<'a>>,
         whole: IntArray<'a>,
         taken: usize,
         size: usize,
     },
 }
 
-impl<'a> Words<'a> {
+impl<'a> CellNumbers<'a> {
     /// Stands where the number is that is taken next, or was taken last in text.
     fn cursor(&self) -> Cursor<'a> {
         match self {
-            Words::Text(cursor) => cursor.clone(),
-            Words::Heavy { numbers, taken, size, .. } => numbers.cursor(taken * size),
+            CellNumbers::Text(cursor) => cursor.clone(),
+            CellNumbers::Heavy { numbers, taken, size, .. } => numbers.cursor(taken * size),
         }
     }
 
     /// Whether there is another number, on which it then stands.
-    fn goes_on(&mut self) -> bool {
+    fn has_next(&mut self) -> bool {
         match self {
-            Words::Text(cursor) => cursor.next_word(),
-            Words::Heavy { whole, taken, .. } => *taken < whole.len(),
+            CellNumbers::Text(cursor) => cursor.next_word(),
+            CellNumbers::Heavy { whole, taken, .. } => *taken < whole.len(),
         }
     }
 
     /// Takes the number that it stands on.
     fn take(&mut self, what: &str) -> Result<u64, ReadError> {
         match self {
-            Words::Text(cursor) => cursor.integer(what),
-            Words::Heavy { whole, taken, .. } => {
+            CellNumbers::Text(cursor) => cursor.integer(what),
+            CellNumbers::Heavy { whole, taken, .. } => {
                 *taken += 1;
                 Ok(whole.at(*taken - 1))
             }
@@ -86,7 +86,7 @@ impl<'a> File<'a> {
         let words = &mut self.words(item)?;
         let (mut tag, mut count) = self.triangles(item, words, &regions, visitor);
         let mut points = Vec::new();
-        while words.goes_on() {
+        while words.has_next() {
             let (cell_type, corners) = match item.kind.as_str() {
                 "mixed" => mixed(words, &mut count)?,
                 kind => self.uniform(item, kind)?,
@@ -94,7 +94,7 @@ impl<'a> File<'a> {
             points.clear();
             let own = words.cursor();
             for _ in 0..corners {
-                if !words.goes_on() {
+                if !words.has_next() {
                     let problem = format!("the Topology ends within cell {tag}");
                     return Err(words.error(problem, CORRECT));
                 }
@@ -116,17 +116,17 @@ impl<'a> File<'a> {
         Ok(())
     }
 
-    fn words(&self, item: &Item) -> Result<Words<'a>, ReadError> {
+    fn words(&self, item: &Item) -> Result<CellNumbers<'a>, ReadError> {
         let Some(mut numbers) = self.heavy.read(item, &self.cursor(item))? else {
             let cursor = self.content(item);
-            return Ok(Words::Text(cursor));
+            return Ok(CellNumbers::Text(cursor));
         };
         let Some((size, order)) = numbers.whole() else {
             let problem = "a Topology of numbers that are not whole";
             return Err(self.cursor(item).error(problem, "Save the mesh again"));
         };
         let whole = IntArray::binary(std::mem::take(&mut numbers.bytes), size, order);
-        Ok(Words::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
+        Ok(CellNumbers::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
     }
 
     /// Hands on triangles of a file beside the XML, as many as the visitor takes at once. Returns how many these are, and how many
@@ -134,11 +134,11 @@ impl<'a> File<'a> {
     fn triangles(
         &self,
         item: &Item,
-        words: &mut Words<'_>,
+        words: &mut CellNumbers<'_>,
         regions: &RegionNumbers,
         visitor: &mut dyn MeshVisitor,
     ) -> (u64, u64) {
-        let Words::Heavy { whole, taken, .. } = words else {
+        let CellNumbers::Heavy { whole, taken, .. } = words else {
             let room = words.cursor().capacity(item.elements.unwrap_or(0), "0 1 2 ".len());
             visitor.expect_elements(room);
             return (0, 0);
@@ -150,10 +150,10 @@ impl<'a> File<'a> {
         let found = visitor.triangle_records(&TriangleRecords {
             count: whole.len() / 3,
             corners: whole.field(0, 3),
-            first: 0,
-            below: u64::MAX,
+            min_node: 0,
+            node_end: u64::MAX,
             regions: regions.from(0),
-            expected: &[],
+            required_fields: &[],
         });
         *taken = 3 * found;
         (found as u64, *taken as u64)
@@ -218,14 +218,14 @@ impl<'a> File<'a> {
 }
 
 /// Reads the type of an element among others, and how many nodes it has.
-fn mixed(words: &mut Words<'_>, count: &mut u64) -> Result<(u64, u64), ReadError> {
+fn mixed(words: &mut CellNumbers<'_>, count: &mut u64) -> Result<(u64, u64), ReadError> {
     *count += 1;
     let place = words.cursor();
     let number = words.take("the type of a cell")?;
     Ok(match number {
         1..=3 => {
             *count += 1;
-            if !words.goes_on() {
+            if !words.has_next() {
                 return Err(words.error("the number of a cell's nodes is missing", CORRECT));
             }
             of_several(number, words.take("a number of nodes")?)

@@ -8,7 +8,7 @@ use crate::hdf5::Datatype;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF};
 use crate::text::token::quoted;
-use crate::xml::{Tag, Tags, plain_text};
+use crate::xml::{XmlTag, XmlTags, plain_text};
 use std::ops::Range;
 
 /// Where the numbers of an item stand.
@@ -66,7 +66,7 @@ struct Section {
 }
 
 impl Section {
-    fn of(tag: &Tag<'_>) -> Result<Section, ReadError> {
+    fn of(tag: &XmlTag<'_>) -> Result<Section, ReadError> {
         let attributes = tag.attributes().map(|attribute| {
             let (name, value) = attribute?;
             Ok((name.into_owned(), value))
@@ -86,7 +86,7 @@ impl Section {
 
 /// Returns the items of a file in order, without those that refer to others.
 pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
-    let mut tags = Tags::new(source);
+    let mut tags = XmlTags::new(source);
     let mut items = Vec::new();
     let mut seen = false;
     while let Some(tag) = tags.next()? {
@@ -108,7 +108,7 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
 }
 
 /// Reads an item, given its attributes and the section that it is in.
-fn item(source: &Source, xml: &Tag<'_>, tag: &Section, of: &Section) -> Result<Item, ReadError> {
+fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Result<Item, ReadError> {
     let text = xml.text().ok_or_else(|| xml.error("the file ends within a DataItem", CUT_OFF))?;
     let number = |text: &str| {
         text.trim().parse::<u64>().map_err(|_| {

@@ -5,7 +5,7 @@ use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::{Companion, Source};
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
-use crate::hdf5::{Array, Datatype, Hdf5, Hdf5Arrays};
+use crate::hdf5::{DatasetArray, Datatype, Hdf5, Hdf5Arrays};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
@@ -14,13 +14,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The files companion an XDMF.
-pub(super) struct Heavy<'a> {
+pub(super) struct HeavyData<'a> {
     /// Each with its tree, if it is HDF5.
     files: Vec<(&'a Companion, Option<Hdf5<'a>>)>,
 }
 
 /// The numbers of an item.
-pub(super) struct Numbers<'a> {
+pub(super) struct HeavyArray<'a> {
     /// The file that they stand in, and which of the files of the mesh that is.
     pub(super) source: &'a Source,
     pub(super) part: usize,
@@ -30,18 +30,18 @@ pub(super) struct Numbers<'a> {
     pub(super) start: Option<usize>,
     /// Near which byte they start, for messages.
     at: usize,
-    array: Option<Array<'a>>,
+    array: Option<DatasetArray<'a>>,
     file: usize,
 }
 
-impl<'a> Heavy<'a> {
+impl<'a> HeavyData<'a> {
     /// Opens the companions of a source.
-    pub(super) fn open(source: &'a Source) -> Result<Heavy<'a>, ReadError> {
+    pub(super) fn open(source: &'a Source) -> Result<HeavyData<'a>, ReadError> {
         let mut files = Vec::new();
         for companion in &source.companions {
             files.push((companion, Hdf5::open_any(&companion.source)?));
         }
-        Ok(Heavy { files })
+        Ok(HeavyData { files })
     }
 
     /// The file of a name.
@@ -66,7 +66,7 @@ impl<'a> Heavy<'a> {
         &self,
         item: &Item,
         cursor: &Cursor<'_>,
-    ) -> Result<Option<Numbers<'a>>, ReadError> {
+    ) -> Result<Option<HeavyArray<'a>>, ReadError> {
         let name = match &item.content {
             Content::Text(_) => return Ok(None),
             Content::Hdf5 { file, .. } | Content::Raw { file, .. } => file,
@@ -91,7 +91,7 @@ impl<'a> Heavy<'a> {
                 let (start, at) = (array.place(), array.byte_of(0));
                 let bytes = std::mem::take(&mut array.bytes);
                 let number = dataset.number;
-                Numbers { source, part, number, bytes, start, at, array: Some(array), file }
+                HeavyArray { source, part, number, bytes, start, at, array: Some(array), file }
             }
             (Content::Raw { seek, number, .. }, _) => {
                 let size = number.bytes() as u64;
@@ -106,7 +106,7 @@ impl<'a> Heavy<'a> {
                     return Err(cursor.error(problem, CUT_OFF));
                 };
                 let (number, bytes) = (*number, Cow::Borrowed(bytes));
-                Numbers {
+                HeavyArray {
                     source,
                     part,
                     number,
@@ -158,7 +158,7 @@ impl<'a> Heavy<'a> {
     }
 
     /// What becomes of the files when numbers that are not where they could be replaced as they are change.
-    pub(super) fn encoding(&self, numbers: &mut Numbers<'_>) -> Option<Hdf5Arrays> {
+    pub(super) fn encoding(&self, numbers: &mut HeavyArray<'_>) -> Option<Hdf5Arrays> {
         let mut array = numbers.array.take()?;
         array.bytes = std::mem::take(&mut numbers.bytes);
         let tree = self.files[numbers.file].1.as_ref()?;
@@ -166,7 +166,7 @@ impl<'a> Heavy<'a> {
     }
 
     /// Checks that no parts of a file overlap.
-    pub(super) fn check_apart(&self) -> Result<(), ReadError> {
+    pub(super) fn check_no_overlaps(&self) -> Result<(), ReadError> {
         self.files
             .iter()
             .filter_map(|(_, tree)| tree.as_ref())
@@ -178,11 +178,11 @@ fn number_size(number: Datatype) -> usize {
     number.bytes().max(1)
 }
 
-impl<'a> Numbers<'a> {
+impl<'a> HeavyArray<'a> {
     /// Stands at or near the byte of the file at which one of the bytes stands.
     pub(super) fn cursor(&self, at: usize) -> Cursor<'a> {
         let at = if self.start.is_some() { self.at + at } else { self.at };
-        Cursor::at_byte_of(self.source, at)
+        Cursor::at_byte_offset(self.source, at)
     }
 
     /// All of them, real or whole.
@@ -212,7 +212,7 @@ impl<'a> Numbers<'a> {
 }
 
 /// Where real numbers of data stand, so that they can be replaced.
-pub(super) fn stored(numbers: &mut Numbers<'_>, heavy: &Heavy<'_>) -> Option<ArrayLocation> {
+pub(super) fn stored(numbers: &mut HeavyArray<'_>, heavy: &HeavyData<'_>) -> Option<ArrayLocation> {
     let Datatype::Real(precision, order) = numbers.number else { return None };
     let (form, part, stride) =
         (NumberEncoding::Binary(order, precision), numbers.part, precision.bytes());

@@ -23,7 +23,7 @@ use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
 use document::{Content, Item};
-use heavy::Heavy;
+use heavy::HeavyData;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -62,11 +62,11 @@ impl FormatReader for Xdmf {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
         let items = document::items(source)?;
-        let file = File { source, items, heavy: Heavy::open(source)? };
+        let file = File { source, items, heavy: HeavyData::open(source)? };
         let (layout, points) = file.points(file.only("Geometry")?, visitor)?;
         file.elements(file.only("Topology")?, visitor)?;
         file.point_data(points, visitor)?;
-        file.heavy.check_apart()?;
+        file.heavy.check_no_overlaps()?;
         Ok(layout)
     }
 }
@@ -75,7 +75,7 @@ impl FormatReader for Xdmf {
 struct File<'a> {
     source: &'a Source,
     items: Vec<Item>,
-    heavy: Heavy<'a>,
+    heavy: HeavyData<'a>,
 }
 
 impl Item {
@@ -109,7 +109,7 @@ impl<'a> File<'a> {
     }
 
     fn cursor(&self, item: &Item) -> Cursor<'a> {
-        Cursor::standing_at(self.source, item.at)
+        Cursor::on_line_of(self.source, item.at)
     }
 
     /// Stands before the numbers of an item in the XML.

@@ -11,7 +11,7 @@ use crate::hdf5::{Datatype, Hdf5Arrays};
 use crate::precision::Precision;
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
-use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::records::{NodeIds, NodeRecords};
 use crate::visit::send::REWRITE;
 use crate::visit::storage::{ByteSpace, CoordinateStorage};
 use crate::visit::visitor::MeshVisitor;
@@ -100,7 +100,7 @@ impl File<'_> {
     fn heavy_points(
         &self,
         item: &Item,
-        mut numbers: heavy::Numbers<'_>,
+        mut numbers: heavy::HeavyArray<'_>,
         axes: usize,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(CoordinateStorage, u64), ReadError> {
@@ -128,9 +128,9 @@ impl File<'_> {
         let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Hdf5Arrays::bytes);
         let mut heights = ZValues::new(visitor);
         let field = |axis: usize| NumberField::new(bytes.get(axis * size..), stride, size, order);
-        let (x, y, tags) = (field(0), field(1), Tags::From(0));
+        let (x, y, tags) = (field(0), field(1), NodeIds::Consecutive(0));
         let place = |index| numbers.cursor(index * stride);
-        NodeRecords { count, x, y, x_at: start, tags }.send(visitor, place, |index| {
+        NodeRecords { count, x, y, x_offset: start, ids: tags }.send(visitor, place, |index| {
             let problem = format!("a coordinate of point {index} is not a finite number");
             place(index).error(problem, REWRITE)
         })?;

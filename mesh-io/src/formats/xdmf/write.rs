@@ -6,9 +6,9 @@ use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
 use crate::visit::items::Kind;
 use std::fmt::Write;
 
-pub(crate) fn write_xdmf(job: &WriterInput<'_>) -> String {
-    let content = job.content;
-    let cells: Vec<usize> = job.cells().collect();
+pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let cells: Vec<usize> = input.cells().collect();
     let (points, count) = (content.points.len(), cells.len());
     let mut out = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"Grid\" GridType=\"Uniform\">\n"
         .to_owned();
@@ -17,9 +17,9 @@ pub(crate) fn write_xdmf(job: &WriterInput<'_>) -> String {
         "<Geometry GeometryType=\"XYZ\">\n<DataItem DataType=\"Float\" Dimensions=\"{points} 3\" Format=\"XML\" \
          Precision=\"8\">\n"
     );
-    (0..points).for_each(|vertex| put!(out, "{}\n", job.xyz(vertex)));
+    (0..points).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
     out.push_str("</DataItem>\n</Geometry>\n");
-    let rows: Vec<String> = cells.iter().map(|&cell| row(job, cell)).collect();
+    let rows: Vec<String> = cells.iter().map(|&cell| row(input, cell)).collect();
     let words: usize = rows.iter().map(|row| row.split(' ').count()).sum();
     put!(
         out,
@@ -28,21 +28,21 @@ pub(crate) fn write_xdmf(job: &WriterInput<'_>) -> String {
     );
     rows.iter().for_each(|row| put!(out, "{row}\n"));
     out.push_str("</DataItem>\n</Topology>\n");
-    of_points(job).iter().for_each(|array| attribute(array, "Node", points, &mut out));
-    of_cells(job, &cells).iter().for_each(|array| attribute(array, "Cell", count, &mut out));
+    of_points(input).iter().for_each(|array| attribute(array, "Node", points, &mut out));
+    of_cells(input, &cells).iter().for_each(|array| attribute(array, "Cell", count, &mut out));
     out.push_str("</Grid>\n</Domain>\n</Xdmf>\n");
     out
 }
 
 /// Writes a cell: XDMF's number of its type, its number of vertices if the type does not tell, and its vertices.
-fn row(job: &WriterInput<'_>, cell: usize) -> String {
-    let vertices = job.positions(cell, 0);
-    match job.content.cells.kinds[cell] {
+fn row(input: &WriterInput<'_>, cell: usize) -> String {
+    let vertices = input.positions(cell, 0);
+    match input.content.cells.kinds[cell] {
         Kind::Point => format!("1 1 {vertices}"),
         Kind::Line => format!("2 2 {vertices}"),
         Kind::Triangle => format!("4 {vertices}"),
         Kind::Quadrilateral => format!("5 {vertices}"),
-        Kind::Corner => format!("3 {} {vertices}", job.content.cells.of(cell).len()),
+        Kind::Corner => format!("3 {} {vertices}", input.content.cells.of(cell).len()),
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::binary::byte_order::ByteOrder;
 use crate::content::label::Label;
 use crate::edit::numbers::{NumberEncoding, Offsets};
-use crate::formats::vtk::legacy::skip::{array_name, pass, size_of, take};
+use crate::formats::vtk::legacy::skip::{array_name, size_of, skip_section, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
@@ -150,7 +150,7 @@ impl Data<'_> {
             return Some(());
         }
         if !(self.of_cells && of_all && is_region) {
-            return pass(cursor, self.binary, kind, count).ok();
+            return skip_section(cursor, self.binary, kind, count).ok();
         }
         let what = String::from_utf8_lossy(name).into_owned();
         // The number of each cell's region, or the bits of the number if the array has real numbers.
@@ -183,7 +183,7 @@ impl Data<'_> {
             let (size, value) = (size_of(kind)?, value_of(kind));
             let bytes = take(cursor, count, size).ok()?.chunks_exact(size);
             let numbers = bytes.map(|number| value(ByteOrder::Big.signed(number))).collect();
-            let places = Offsets::Regular { start: cursor.taken(), stride: size };
+            let places = Offsets::Regular { start: cursor.last_taken(), stride: size };
             let stored = precision.and_then(|precision| {
                 ArrayLocation::in_place(places, NumberEncoding::Binary(ByteOrder::Big, precision))
             });

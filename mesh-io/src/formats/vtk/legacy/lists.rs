@@ -72,9 +72,9 @@ pub(super) fn integers<'a>(
 /// Reads whole rows of numbers on all threads, as long as they are plain and have no more than `count` numbers in all.
 fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut IntArray<'_>) {
     /// Rows with more numbers than this, or with numbers of more than 32 bits, are left to be read one by one.
-    const MOST: usize = 10;
-    let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MOST], u8), ReadError> {
-        let mut row = ([0; MOST], 0);
+    const MAX_ROW_NUMBERS: usize = 10;
+    let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MAX_ROW_NUMBERS], u8), ReadError> {
+        let mut row = ([0; MAX_ROW_NUMBERS], 0);
         while !cursor.is_at_end() {
             let number = u32::try_from(cursor.integer("a number")?).ok();
             let (Some(number), Some(next)) = (number, row.0.get_mut(usize::from(row.1))) else {
@@ -149,7 +149,7 @@ pub(super) fn read<'a>(
 /// Returns a cursor at the numbers that are read next.
 fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
     match binary {
-        true => Cursor::at_byte_of(cursor.source, cursor.at_byte()),
+        true => Cursor::at_byte_offset(cursor.source, cursor.at_byte()),
         false => cursor.clone(),
     }
 }
@@ -206,13 +206,13 @@ impl Cells<'_> {
                 Cell { tag: *tag, cell_type: self.cell_type(index), points: &points, region };
             if visitor.allows_parallel() {
                 if cell.send(cursor, visitor).is_err() {
-                    self.stand_before(&mut place, index);
+                    self.seek_cell(&mut place, index);
                     return cell.send(&place, visitor);
                 }
             } else {
-                self.stand(&mut place);
+                self.seek_next(&mut place);
                 cell.send(&place, visitor)?;
-                self.pass(&mut place, own.len());
+                self.skip_cell(&mut place, own.len());
             }
             (index, end) = (index + 1, own.end);
         }
@@ -266,29 +266,29 @@ impl Cells<'_> {
 
     /// Moves from the first cell to another one.
     #[cold]
-    fn stand_before(&self, place: &mut Cursor<'_>, index: usize) {
+    fn seek_cell(&self, place: &mut Cursor<'_>, index: usize) {
         let mut end = 0;
         for before in 0..index {
             let points = self.points(before, end);
-            self.pass(place, points.len());
+            self.skip_cell(place, points.len());
             end = points.end;
         }
-        self.stand(place);
+        self.seek_next(place);
     }
 
     /// Moves to the start of the next cell, over blanks in text.
-    fn stand(&self, place: &mut Cursor<'_>) {
+    fn seek_next(&self, place: &mut Cursor<'_>) {
         if self.width.is_none() {
             place.next_word();
         }
     }
 
     /// Moves from the start of a cell with this many points to its end.
-    fn pass(&self, place: &mut Cursor<'_>, points: usize) {
+    fn skip_cell(&self, place: &mut Cursor<'_>, points: usize) {
         let numbers = points + usize::from(self.offsets.is_none());
         match self.width {
             Some(width) => {
-                *place = Cursor::at_byte_of(place.source, place.taken() + numbers * width)
+                *place = Cursor::at_byte_offset(place.source, place.last_taken() + numbers * width)
             }
             None => {
                 for _ in 0..numbers {

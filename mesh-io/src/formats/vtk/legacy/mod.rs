@@ -19,7 +19,7 @@ use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::reader::FormatReader;
-use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::records::{NodeIds, NodeRecords};
 use crate::visit::rows::each_row;
 use crate::visit::send::REWRITE;
 use crate::visit::storage::CoordinateStorage;
@@ -94,7 +94,7 @@ impl FormatReader for Vtk {
                 b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
                 b"FIELD" => {
                     visitor.unsupported("field data");
-                    skip::pass_field(cursor, binary)?;
+                    skip::skip_field(cursor, binary)?;
                 }
                 // Data of points and cells go on to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
@@ -162,14 +162,14 @@ fn points(
     if binary {
         let width = precision.bytes();
         let bytes = take(cursor, count, 3 * width)?;
-        let start = cursor.taken();
+        let start = cursor.last_taken();
         let count = bytes.len() / (3 * width);
         let [x, y, z] = [0, 1, 2].map(|axis| {
             NumberField::new(bytes.get(axis * width..), 3 * width, width, ByteOrder::Big)
         });
-        let place = |index| Cursor::at_byte_of(cursor.source, start + index * 3 * width);
+        let place = |index| Cursor::at_byte_offset(cursor.source, start + index * 3 * width);
         let not_finite = |index| place(index).error("a coordinate is not a finite number", REWRITE);
-        let records = NodeRecords { count, x, y, x_at: start, tags: Tags::From(0) };
+        let records = NodeRecords { count, x, y, x_offset: start, ids: NodeIds::Consecutive(0) };
         records.send(visitor, place, not_finite)?;
         heights.push_records(z, count, start + 2 * width);
         return Ok(precision);

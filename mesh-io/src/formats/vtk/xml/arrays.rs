@@ -70,7 +70,7 @@ impl File<'_> {
         };
         let found = self.source.bytes.get(start..end).and_then(|input| wrapping.unwrap(input));
         let found = found.ok_or_else(|| self.damaged(array))?;
-        let range = start..start + found.taken;
+        let range = start..start + found.encoded_length;
         Ok((wrapping, found, range))
     }
 

@@ -29,18 +29,31 @@ pub(super) struct DecodedBlocks<'a> {
     /// The decoded bytes; those of the file itself, if they are not encoded.
     pub(super) bytes: Cow<'a, [u8]>,
     /// How many bytes of the file the array takes.
-    pub(super) taken: usize,
+    pub(super) encoded_length: usize,
     /// The size of a block before compression; 0 without blocks.
     block: usize,
     /// Whether an uncompressed array has its length in a base64 text of its own.
-    header_apart: bool,
+    has_separate_header: bool,
 }
 
 impl<'a> DecodedBlocks<'a> {
     /// Separates the bytes from the rest.
     pub(super) fn split(self) -> (Cow<'a, [u8]>, DecodedBlocks<'static>) {
-        let DecodedBlocks { bytes, taken, block, header_apart } = self;
-        (bytes, DecodedBlocks { bytes: Cow::default(), taken, block, header_apart })
+        let DecodedBlocks {
+            bytes,
+            encoded_length: taken,
+            block,
+            has_separate_header: header_apart,
+        } = self;
+        (
+            bytes,
+            DecodedBlocks {
+                bytes: Cow::default(),
+                encoded_length: taken,
+                block,
+                has_separate_header: header_apart,
+            },
+        )
     }
 }
 
@@ -58,7 +71,12 @@ impl BlockEncoding {
             let length = self.number(input.get(..self.header)?)?;
             let bytes = input.get(self.header..)?.get(..length)?.into();
             let taken = self.header + length;
-            return Some(DecodedBlocks { bytes, taken, block: 0, header_apart: false });
+            return Some(DecodedBlocks {
+                bytes,
+                encoded_length: taken,
+                block: 0,
+                has_separate_header: false,
+            });
         }
         let apart = encoded(self.header);
         // The padding of a header that is encoded alone. With a few bytes after it, there is less padding.
@@ -74,7 +92,12 @@ impl BlockEncoding {
             }
         };
         bytes.truncate(length);
-        Some(DecodedBlocks { bytes: bytes.into(), taken, block: 0, header_apart })
+        Some(DecodedBlocks {
+            bytes: bytes.into(),
+            encoded_length: taken,
+            block: 0,
+            has_separate_header: header_apart,
+        })
     }
 
     fn unwrap_compressed(
@@ -114,14 +137,19 @@ impl BlockEncoding {
             (bytes.len() == expected).then_some(bytes)
         });
         let bytes = unpacked.into_iter().collect::<Option<Vec<_>>>()?.concat();
-        Some(DecodedBlocks { bytes: bytes.into(), taken, block: size, header_apart: true })
+        Some(DecodedBlocks {
+            bytes: bytes.into(),
+            encoded_length: taken,
+            block: size,
+            has_separate_header: true,
+        })
     }
 
     /// Encodes new bytes as those of `old` were encoded.
     pub(super) fn wrap(&self, old: &DecodedBlocks<'_>, bytes: &[u8]) -> Vec<u8> {
         let Some(compressor) = self.compressor else {
             let header = self.bytes_of(bytes.len());
-            return match (self.base64, old.header_apart) {
+            return match (self.base64, old.has_separate_header) {
                 (false, _) => [header.as_slice(), bytes].concat(),
                 (true, false) => STANDARD.encode([header.as_slice(), bytes].concat()).into_bytes(),
                 (true, true) => (STANDARD.encode(header) + &STANDARD.encode(bytes)).into_bytes(),
@@ -205,9 +233,9 @@ mod tests {
                             let wrapping = BlockEncoding { order, header, compressor, base64 };
                             let old = DecodedBlocks {
                                 bytes: Cow::default(),
-                                taken: 0,
+                                encoded_length: 0,
                                 block: 1000,
-                                header_apart,
+                                has_separate_header: header_apart,
                             };
                             for bytes in [&bytes[..], &bytes[..3000], &bytes[..1]] {
                                 let mut wrapped = wrapping.wrap(&old, bytes);
@@ -215,7 +243,10 @@ mod tests {
                                 wrapped.extend_from_slice(b"   </DataArray>");
                                 let back = wrapping.unwrap(&wrapped).unwrap();
                                 assert!(back.bytes == bytes, "{wrapping:?} {header_apart}");
-                                assert_eq!(back.taken, length, "{wrapping:?} {header_apart}");
+                                assert_eq!(
+                                    back.encoded_length, length,
+                                    "{wrapping:?} {header_apart}"
+                                );
                                 assert!(wrapping.unwrap(&wrapped[..length - 1]).is_none());
                             }
                         }

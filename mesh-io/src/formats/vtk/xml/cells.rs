@@ -15,7 +15,7 @@ use crate::visit::visitor::MeshVisitor;
 enum Types<'a> {
     /// The same type for all cells.
     Same(u64),
-    Listed(IntArray<'a>),
+    PerCell(IntArray<'a>),
 }
 
 /// A list of cells of a piece.
@@ -48,7 +48,7 @@ impl File<'_> {
             let mut index = 0;
             let mut points: Vec<u64> = Vec::new();
             for List { connectivity, offsets, types, at } in &lists {
-                let cursor = &Cursor::standing_at(self.source, *at);
+                let cursor = &Cursor::on_line_of(self.source, *at);
                 let (mut start, mut own) = (0, 0);
                 let mut tries = BulkBackoff::NEW;
                 while own < offsets.len() {
@@ -56,7 +56,7 @@ impl File<'_> {
                     let of_triangles = match types {
                         Types::Same(types::POLYGON) => Some(None),
                         Types::Same(_) => None,
-                        Types::Listed(types) => Some(Some(types.field(own, 1))),
+                        Types::PerCell(types) => Some(Some(types.field(own, 1))),
                     };
                     if end - start == 3
                         && tries.is_due(own)
@@ -81,7 +81,7 @@ impl File<'_> {
                     }
                     let cell_type = match types {
                         &Types::Same(cell_type) => cell_type,
-                        Types::Listed(types) => types.at(own),
+                        Types::PerCell(types) => types.at(own),
                     };
                     points.clear();
                     for point in connectivity.range(start..end) {
@@ -130,13 +130,13 @@ impl File<'_> {
             let types = match cell_type {
                 Some(cell_type) => Types::Same(cell_type),
                 None => {
-                    Types::Listed(self.integers(self.array(piece, section, Some("types"))?)?)
+                    Types::PerCell(self.integers(self.array(piece, section, Some("types"))?)?)
                 }
             };
-            let cursor = &Cursor::standing_at(self.source, list.at);
+            let cursor = &Cursor::on_line_of(self.source, list.at);
             let types_count = match &types {
                 Types::Same(_) => offsets.len(),
-                Types::Listed(types) => types.len(),
+                Types::PerCell(types) => types.len(),
             };
             let counts = [offsets.len(), types_count].map(|count| count as u64);
             if counts != [cells; 2] {
@@ -158,7 +158,7 @@ impl File<'_> {
     /// on them.
     fn region_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        for array in self.document.arrays.iter().filter(|array| tells_regions(array)) {
+        for array in self.document.arrays.iter().filter(|array| is_region_array(array)) {
             if names.len() < MAX_ARRAYS
                 && !names.contains(&array.name)
                 && self.signed_integers(array).is_ok()
@@ -171,7 +171,7 @@ impl File<'_> {
 
     /// Reads the regions of a piece's cells from the array with this name. Empty if there is none.
     fn regions(&self, piece: usize, name: &str) -> Vec<i64> {
-        let mut arrays = self.document.arrays.iter().filter(|array| tells_regions(array));
+        let mut arrays = self.document.arrays.iter().filter(|array| is_region_array(array));
         let array = arrays.find(|array| array.piece == piece && array.name == name);
         array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
     }
@@ -214,7 +214,7 @@ impl File<'_> {
         visitor: &mut dyn MeshVisitor,
     ) {
         for array in &self.document.arrays {
-            let is_region = tells_regions(array) && regions.contains(&array.name);
+            let is_region = is_region_array(array) && regions.contains(&array.name);
             let is_real = precision_of(array).is_some();
             match array.section.as_str() {
                 "FieldData" => visitor.unsupported("field data"),
@@ -236,7 +236,7 @@ impl File<'_> {
     }
 }
 
-fn tells_regions(array: &Array) -> bool {
+fn is_region_array(array: &Array) -> bool {
     let named = names_regions(array.name.as_bytes());
     array.section == "CellData" && array.components == 1 && named
 }

@@ -7,7 +7,7 @@ use crate::error::ReadError;
 use crate::formats::vtk::xml::blocks::Compressor;
 use crate::text::cursor::CUT_OFF;
 use crate::text::token::quoted;
-use crate::xml::{Tag, Tags};
+use crate::xml::{XmlTag, XmlTags};
 use std::ops::Range;
 
 /// The content of a file's tags.
@@ -82,7 +82,7 @@ impl Document {
             arrays: Vec::new(),
             appended: None,
         };
-        let mut tags = Tags::new(source);
+        let mut tags = XmlTags::new(source);
         let mut seen = false;
         while let Some(tag) = tags.next()? {
             match &*tag.name() {
@@ -124,7 +124,7 @@ impl Document {
         self.arrays.iter().filter_map(offset).collect()
     }
 
-    fn header_of(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
+    fn header_of(&mut self, tag: &XmlTag<'_>) -> Result<(), ReadError> {
         let kind = tag.attribute("type")?.unwrap_or_default();
         self.content = match kind.as_str() {
             "UnstructuredGrid" => Content::Grid,
@@ -154,7 +154,7 @@ impl Document {
         Ok(())
     }
 
-    fn piece(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
+    fn piece(&mut self, tag: &XmlTag<'_>) -> Result<(), ReadError> {
         let points = tag.number("NumberOfPoints")?;
         let optional = |name: &str| match tag.attribute(name)? {
             None => Ok(0),
@@ -174,7 +174,7 @@ impl Document {
     }
 }
 
-fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadError> {
+fn array(tag: &XmlTag<'_>, section: String, piece: usize) -> Result<Array, ReadError> {
     let format = match tag.attribute("format")?.as_deref() {
         Some("binary") => ArrayFormat::Base64,
         Some("appended") => ArrayFormat::Appended,
@@ -215,7 +215,7 @@ fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadErro
     })
 }
 
-fn appended(tag: &Tag<'_>, source: &Source) -> Result<Appended, ReadError> {
+fn appended(tag: &XmlTag<'_>, source: &Source) -> Result<Appended, ReadError> {
     let base64 = match tag.attribute("encoding")?.as_deref() {
         Some("raw") => false,
         None | Some("base64") => true,

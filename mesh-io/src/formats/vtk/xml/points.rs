@@ -10,7 +10,7 @@ use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::records::{NodeIds, NodeRecords};
 use crate::visit::send::REWRITE;
 use crate::visit::storage::ByteSpace;
 use crate::visit::visitor::MeshVisitor;
@@ -68,7 +68,7 @@ pub(super) fn read(
 
 impl<'f> Points<'_, 'f> {
     fn read(&mut self, file: &'f File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
-        let cursor = &mut Cursor::standing_at(file.source, points.at);
+        let cursor = &mut Cursor::on_line_of(file.source, points.at);
         cursor.check_vertex_count(self.count.saturating_add(count))?;
         if points.components != 3 {
             let problem = format!("the points have {} components", points.components);
@@ -112,7 +112,7 @@ impl<'f> Points<'_, 'f> {
         count: u64,
         precision: Precision,
     ) -> Result<(usize, CoordinateEncoding, bool), ReadError> {
-        let cursor = &Cursor::standing_at(file.source, points.at);
+        let cursor = &Cursor::on_line_of(file.source, points.at);
         let (wrapping, old, range) = file.unwrap(points)?;
         let wide = precision.bytes();
         if Some(old.bytes.len() as u64) != count.checked_mul(3 * wide as u64) {
@@ -126,9 +126,9 @@ impl<'f> Points<'_, 'f> {
         let [x, y, z] = [0, 1, 2].map(|axis| {
             NumberField::new(old.bytes.get(axis * wide..), 3 * wide, wide, wrapping.order)
         });
-        let (tags, count) = (Tags::From(self.count), count as usize);
+        let (tags, count) = (NodeIds::Consecutive(self.count), count as usize);
         let not_finite = |index| cursor.error(format!("point {index} is not finite"), REWRITE);
-        let records = NodeRecords { count, x, y, x_at: start, tags };
+        let records = NodeRecords { count, x, y, x_offset: start, ids: tags };
         records.send(self.visitor, |_| cursor.clone(), not_finite)?;
         self.heights.push_records(z, count, start + 2 * wide);
         let numbers = CoordinateEncoding::adjacent(wrapping.order, precision);
