@@ -43,7 +43,7 @@ pub use crate::content::remark::Remark;
 pub use crate::convert::Conversion;
 pub use crate::disk::source::ReadOptions;
 pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
-pub use crate::export::content::{Cell, CellKind, Content, ContentGroup, DataArray};
+pub use crate::export::content::{Cell, Content, ContentGroup, DataArray};
 pub use crate::format::Format;
 pub use crate::formats::side::gmsh_view::GmshView;
 pub use crate::formats::side::medit_solution::MeditSolution;
@@ -52,6 +52,7 @@ pub use crate::mesh_file::locate::SourceLocation;
 pub use crate::mesh_file::mesh::MeshFile;
 pub use crate::precision::Precision;
 pub use crate::visit::field::PointField;
+pub use crate::visit::items::CellKind;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {

@@ -1,13 +1,13 @@
-//! Finds the index of a vertex by its tag, the number that the file gives it. Tags are arbitrary numbers.
+//! Finds the index of a vertex by its id, the number that the file gives it. Tags are arbitrary numbers.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
 /// Map from the id of a node in the file to the index of the vertex.
 pub(crate) enum IdIndex {
-    /// Consecutive tags, which most files have.
+    /// Consecutive ids, which most files have.
     Run { first: u64, count: u64 },
-    /// Tags with few gaps: the index for each tag from `first` on, and [`ABSENT`] in the gaps.
+    /// Tags with few gaps: the index for each id from `first` on, and [`ABSENT`] in the gaps.
     Dense { first: u64, indices: Vec<u32> },
     /// Tags far apart.
     Sparse(HashMap<u64, u32>),
@@ -17,20 +17,20 @@ pub(crate) enum IdIndex {
 const ABSENT: u32 = u32::MAX;
 
 impl IdIndex {
-    /// Maps each tag to its position. There may be at most `u32::MAX` tags. The error is the position of the first tag
+    /// Maps each id to its position. There may be at most `u32::MAX` ids. The error is the position of the first id
     /// that repeats an earlier one.
-    pub(crate) fn new(tags: &[u64]) -> Result<IdIndex, usize> {
-        let first = tags.iter().copied().min().unwrap_or(0);
-        let last = tags.iter().copied().max().unwrap_or(0);
-        let count = tags.len() as u64;
-        if tags.iter().enumerate().all(|(position, &tag)| tag - first == position as u64) {
+    pub(crate) fn new(ids: &[u64]) -> Result<IdIndex, usize> {
+        let first = ids.iter().copied().min().unwrap_or(0);
+        let last = ids.iter().copied().max().unwrap_or(0);
+        let count = ids.len() as u64;
+        if ids.iter().enumerate().all(|(position, &id)| id - first == position as u64) {
             return Ok(IdIndex::Run { first, count });
         }
-        // The table is at most four times as long as the list of tags, whatever their values.
+        // The table is at most four times as long as the list of ids, whatever their values.
         if last - first < 4 * count {
             let mut indices = vec![ABSENT; (last - first) as usize + 1];
-            for (position, &tag) in tags.iter().enumerate() {
-                let index = &mut indices[(tag - first) as usize];
+            for (position, &id) in ids.iter().enumerate() {
+                let index = &mut indices[(id - first) as usize];
                 if *index != ABSENT {
                     return Err(position);
                 }
@@ -38,9 +38,9 @@ impl IdIndex {
             }
             return Ok(IdIndex::Dense { first, indices });
         }
-        let mut map = HashMap::with_capacity(tags.len());
-        for (position, &tag) in tags.iter().enumerate() {
-            if map.insert(tag, position as u32).is_some() {
+        let mut map = HashMap::with_capacity(ids.len());
+        for (position, &id) in ids.iter().enumerate() {
+            if map.insert(id, position as u32).is_some() {
                 return Err(position);
             }
         }
@@ -48,16 +48,16 @@ impl IdIndex {
     }
 
     #[inline]
-    pub(crate) fn index(&self, tag: u64) -> Option<u32> {
+    pub(crate) fn index(&self, id: u64) -> Option<u32> {
         match self {
             IdIndex::Run { first, count } => {
-                tag.checked_sub(*first).filter(|index| index < count).map(|index| index as u32)
+                id.checked_sub(*first).filter(|index| index < count).map(|index| index as u32)
             }
             IdIndex::Dense { first, indices } => {
-                let slot = usize::try_from(tag.checked_sub(*first)?).ok()?;
+                let slot = usize::try_from(id.checked_sub(*first)?).ok()?;
                 indices.get(slot).copied().filter(|&index| index != ABSENT)
             }
-            IdIndex::Sparse(map) => map.get(&tag).copied(),
+            IdIndex::Sparse(map) => map.get(&id).copied(),
         }
     }
 }
@@ -67,9 +67,9 @@ impl IdIndex {
 pub(crate) struct IdList {
     first: u64,
     count: u64,
-    /// All tags, if they are not consecutive.
+    /// All ids, if they are not consecutive.
     list: Vec<u64>,
-    /// About how many tags there will be.
+    /// About how many ids there will be.
     expected: usize,
 }
 
@@ -79,11 +79,11 @@ impl IdList {
     }
 
     #[inline]
-    pub(crate) fn push(&mut self, tag: u64) {
-        self.extend(tag, 1);
+    pub(crate) fn push(&mut self, id: u64) {
+        self.extend(id, 1);
     }
 
-    /// Adds `count` consecutive tags.
+    /// Adds `count` consecutive ids.
     #[inline]
     pub(crate) fn extend(&mut self, first: u64, count: u64) {
         if self.count == 0 {
@@ -103,7 +103,7 @@ impl IdList {
         self.list.extend((0..count).map(|position| first + position));
     }
 
-    /// Returns the tag at this position.
+    /// Returns the id at this position.
     pub(crate) fn of(&self, position: usize) -> u64 {
         match self.list.is_empty() {
             true => self.first + position as u64,
@@ -123,31 +123,31 @@ impl IdList {
 /// The ids of the nodes, and the map that is made of them once all are known.
 #[derive(Default)]
 pub(crate) struct IdIndexBuilder {
-    found: IdList,
+    list: IdList,
     map: OnceCell<IdIndex>,
 }
 
 impl IdIndexBuilder {
-    /// Returns the list of tags, to which more can be added until [`index`](Self::index) is called.
-    pub(crate) fn ids(&mut self) -> &mut IdList {
-        &mut self.found
+    /// Returns the list of ids, to which more can be added until [`index`](Self::index) is called.
+    pub(crate) fn list(&mut self) -> &mut IdList {
+        &mut self.list
     }
 
     #[inline]
-    pub(crate) fn push(&mut self, tag: u64) {
-        self.found.push(tag);
+    pub(crate) fn push(&mut self, id: u64) {
+        self.list.push(id);
     }
 
-    /// Returns how many tags there are.
+    /// Returns how many ids there are.
     pub(crate) fn len(&self) -> usize {
-        self.found.count as usize
+        self.list.count as usize
     }
 
-    /// Makes the map after all tags are found, and drops the list. The error is the tag that is repeated first, with the
+    /// Makes the map after all ids are found, and drops the list. The error is the id that is repeated first, with the
     /// position of its second node.
     pub(crate) fn finish(&mut self) -> Result<&IdIndex, (u64, usize)> {
-        let map = self.found.map().map_err(|second| (self.found.of(second), second))?;
-        self.found.list = Vec::new();
+        let map = self.list.map().map_err(|second| (self.list.of(second), second))?;
+        self.list.list = Vec::new();
         Ok(self.map.get_or_init(|| map))
     }
 
@@ -156,20 +156,20 @@ impl IdIndexBuilder {
         self.map.get()
     }
 
-    /// Returns the index of the node with a tag. Of a file that was not refused, each tag belongs to one node; of others, no
+    /// Returns the index of the node with an id. Of a file that was not refused, each id belongs to one node; of others, no
     /// node is found.
     #[inline]
-    pub(crate) fn index(&self, tag: u64) -> Option<u32> {
+    pub(crate) fn index(&self, id: u64) -> Option<u32> {
         match self.map.get() {
-            Some(map) => map.index(tag),
-            None => self.map_now().index(tag),
+            Some(map) => map.index(id),
+            None => self.map_now().index(id),
         }
     }
 
     #[cold]
     fn map_now(&self) -> &IdIndex {
         let none = IdIndex::Run { first: 0, count: 0 };
-        self.map.get_or_init(|| self.found.map().unwrap_or(none))
+        self.map.get_or_init(|| self.list.map().unwrap_or(none))
     }
 }
 
@@ -187,13 +187,13 @@ mod tests {
             &[u64::MAX],
             &[u64::MAX - 1, u64::MAX],
         ];
-        for tags in kinds {
-            let map = IdIndex::new(tags).unwrap();
-            for (position, &tag) in tags.iter().enumerate() {
-                assert_eq!(map.index(tag), Some(position as u32), "{tags:?}");
+        for ids in kinds {
+            let map = IdIndex::new(ids).unwrap();
+            for (position, &id) in ids.iter().enumerate() {
+                assert_eq!(map.index(id), Some(position as u32), "{ids:?}");
             }
             for absent in [2, 3, 8, 10, 1 << 40] {
-                assert_eq!(map.index(absent), None, "{tags:?}");
+                assert_eq!(map.index(absent), None, "{ids:?}");
             }
         }
     }
@@ -220,7 +220,7 @@ mod tests {
             assert_eq!(found.list.is_empty(), is_run, "{runs:?}");
             match (found.map(), IdIndex::new(&expected)) {
                 (Ok(map), Ok(other)) => {
-                    let of = |map: &IdIndex| [0, 5, 6, 7, 12, u64::MAX].map(|tag| map.index(tag));
+                    let of = |map: &IdIndex| [0, 5, 6, 7, 12, u64::MAX].map(|id| map.index(id));
                     assert_eq!(of(&map), of(&other), "{runs:?}");
                 }
                 (found, expected) => assert_eq!(found.err(), expected.err(), "{runs:?}"),

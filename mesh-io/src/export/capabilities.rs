@@ -6,7 +6,7 @@ use super::name_rules::NameRules;
 use super::sides;
 use crate::content::label::Label;
 use crate::precision::Precision;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 
 /// The parts of a mesh that a format can store.
 #[derive(Clone, Copy)]
@@ -153,27 +153,29 @@ impl Capabilities {
             ElementSupport::OfGroups => tags.group(content, cell).is_some(),
         };
         match content.cells.kinds[cell] {
-            Kind::Point => of(self.points),
-            Kind::Line => of(self.lines),
-            Kind::Triangle => true,
-            Kind::Quadrilateral => self.quadrilaterals,
-            Kind::Corner => self.polygons,
+            CellKind::Point => of(self.points),
+            CellKind::Line => of(self.lines),
+            CellKind::Triangle => true,
+            CellKind::Quadrilateral => self.quadrilaterals,
+            CellKind::Polygon => self.polygons,
         }
     }
 
     fn element_losses(&self, content: &Content, lost: &mut Vec<String>) {
         let tags = GroupNumbers::new(content, self.allows_negative_numbers);
         for (kind, what) in [
-            (Kind::Point, "point"),
-            (Kind::Line, "line"),
-            (Kind::Quadrilateral, "quadrilateral"),
-            (Kind::Corner, "polygon of more than four corners"),
+            (CellKind::Point, "point"),
+            (CellKind::Line, "line"),
+            (CellKind::Quadrilateral, "quadrilateral"),
+            (CellKind::Polygon, "polygon of more than four corners"),
         ] {
             let dropped = |&cell: &usize| !self.supports_cell(content, &tags, cell);
             let count = content.cells.all(kind).filter(dropped).count();
-            let elements = if kind == Kind::Point { self.points } else { self.lines };
+            let elements = if kind == CellKind::Point { self.points } else { self.lines };
             let of_none = match kind {
-                Kind::Point | Kind::Line if elements == ElementSupport::OfGroups => " of no group",
+                CellKind::Point | CellKind::Line if elements == ElementSupport::OfGroups => {
+                    " of no group"
+                }
                 _ => "",
             };
             match count {

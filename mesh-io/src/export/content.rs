@@ -1,7 +1,7 @@
 //! A mesh in memory with all that its file says of it, independent of any format.
 
 use crate::content::label::Label;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 
 /// A mesh with its cells of all kinds, groups and data, independent of a format. Made by
 /// [`MeshFile::content`](crate::MeshFile::content).
@@ -42,8 +42,8 @@ pub struct Content {
 /// Elements of all kinds in the order of the file.
 #[derive(Default)]
 pub(crate) struct Cells {
-    /// The kind of each cell. [`Kind::Corner`] stands for a polygon of more than four corners.
-    pub(crate) kinds: Vec<Kind>,
+    /// The kind of each cell.
+    pub(crate) kinds: Vec<CellKind>,
     /// The end of each cell's vertices in `vertices`.
     pub(crate) ends: Vec<usize>,
     pub(crate) vertices: Vec<u32>,
@@ -64,22 +64,6 @@ pub struct Cell<'c> {
     pub vertices: &'c [u32],
     content: &'c Content,
     set: u32,
-}
-
-/// The kinds of cells. A line of several segments becomes several cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum CellKind {
-    /// One vertex.
-    Point,
-    /// Two vertices.
-    Line,
-    /// Three vertices.
-    Triangle,
-    /// Four vertices.
-    Quadrilateral,
-    /// Five or more vertices.
-    Polygon,
 }
 
 /// The identity of a group of cells or vertices in a [`Content`].
@@ -172,16 +156,16 @@ impl Cells {
         &self.vertices[start..self.ends[cell]]
     }
 
-    pub(crate) fn push(&mut self, kind: Kind, vertices: &[u32], set: u32, tag: u64) {
+    pub(crate) fn push(&mut self, kind: CellKind, vertices: &[u32], set: u32, id: u64) {
         self.kinds.push(kind);
         self.vertices.extend_from_slice(vertices);
         self.ends.push(self.vertices.len());
         self.sets.push(set);
-        self.ids.push(tag);
+        self.ids.push(id);
     }
 
     /// Lists the cells of a kind, in the order of the file.
-    pub(crate) fn all(&self, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn all(&self, kind: CellKind) -> impl Iterator<Item = usize> + '_ {
         (0..self.len()).filter(move |&cell| self.kinds[cell] == kind)
     }
 }
@@ -200,13 +184,7 @@ impl Content {
     /// Lists the cells in the order of the file.
     pub fn cells(&self) -> impl Iterator<Item = Cell<'_>> {
         (0..self.cells.len()).map(|cell| Cell {
-            kind: match self.cells.kinds[cell] {
-                Kind::Point => CellKind::Point,
-                Kind::Line => CellKind::Line,
-                Kind::Triangle => CellKind::Triangle,
-                Kind::Quadrilateral => CellKind::Quadrilateral,
-                Kind::Corner => CellKind::Polygon,
-            },
+            kind: self.cells.kinds[cell],
             id: self.cells.ids[cell],
             vertices: self.cells.of(cell),
             content: self,

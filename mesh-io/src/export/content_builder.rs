@@ -8,7 +8,7 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::scatter;
-use crate::visit::items::{Element, GroupScope, Kind, PointNumbers, RegionAttribute};
+use crate::visit::items::{CellKind, Element, GroupScope, PointNumbers, RegionAttribute};
 use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
@@ -24,7 +24,7 @@ pub(crate) fn content(reader: &ReaderFunctions, source: &Source) -> Result<Conte
 #[derive(Default)]
 struct ContentBuilder {
     content: Content,
-    tags: IdIndexBuilder,
+    ids: IdIndexBuilder,
     columns: Vec<RegionAttribute>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
     within: Vec<(String, Label, Option<u8>)>,
@@ -130,7 +130,7 @@ impl ContentBuilder {
         let mut groups = Vec::new();
         let of_columns = self.columns.iter().zip(region).filter_map(|(column, number)| {
             let label = (column.label)(number).filter(|_| dimension >= column.from_dimension)?;
-            Some((column.what.clone(), dimension, label))
+            Some((column.kind.clone(), dimension, label))
         });
         // Each dimension has groups of its own here, even if the format has not.
         let within = self.within.iter();
@@ -151,7 +151,7 @@ impl ContentBuilder {
     }
 
     fn vertices(&self, nodes: &[u64]) -> Vec<u32> {
-        nodes.iter().filter_map(|&node| self.tags.index(node)).collect()
+        nodes.iter().filter_map(|&node| self.ids.index(node)).collect()
     }
 }
 
@@ -160,43 +160,43 @@ impl MeshVisitor for ContentBuilder {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, at: [f64; 2]) {
-        self.tags.push(tag);
-        self.content.vertex_ids.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, at: [f64; 2]) {
+        self.ids.push(id);
+        self.content.vertex_ids.push(id);
         self.content.points.push(at);
     }
 
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        let &Element { tag, kind, region, nodes } = element;
+        let &Element { id, kind, region, nodes } = element;
         self.open_end = None;
-        if kind == Kind::Corner {
+        if kind == CellKind::Polygon {
             // The corners of required triangles, which are listed a second time.
             self.unsupported("the list of required triangles");
             return Ok(());
         }
         let set = self.set(kind.dimension(), region);
         let vertices = self.vertices(&nodes[..kind.nodes()]);
-        self.content.cells.push(kind, &vertices, set, tag);
+        self.content.cells.push(kind, &vertices, set, id);
         Ok(())
     }
 
     fn polygon(
         &mut self,
         _: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         region: [i64; 2],
         corners: &[u64],
     ) -> Result<(), ReadError> {
         let set = self.set(2, region);
         let vertices = self.vertices(corners);
-        self.content.cells.push(Kind::Corner, &vertices, set, tag);
+        self.content.cells.push(CellKind::Polygon, &vertices, set, id);
         Ok(())
     }
 
     fn polyline(
         &mut self,
         _: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         region: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
@@ -206,7 +206,7 @@ impl MeshVisitor for ContentBuilder {
         let before = self.open_end.take().filter(|_| goes_on);
         let all: Vec<u32> = before.into_iter().chain(vertices).collect();
         for ends in all.windows(2) {
-            self.content.cells.push(Kind::Line, ends, set, tag);
+            self.content.cells.push(CellKind::Line, ends, set, id);
         }
         self.open_end = all.last().copied();
         Ok(())
@@ -227,7 +227,7 @@ impl MeshVisitor for ContentBuilder {
 
     fn group_scopes(&mut self, groups: &[GroupScope<'_>]) {
         let owned =
-            |group: &GroupScope<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+            |group: &GroupScope<'_>| (group.kind.to_owned(), group.label.clone(), group.dimension);
         let within: Vec<_> = groups.iter().map(owned).collect();
         // A line is continued only within the same group. Calls without groups in between do not end it.
         if !within.is_empty() && within != self.within {
@@ -294,7 +294,7 @@ impl MeshVisitor for ContentBuilder {
         let values = match nodes {
             None => numbers,
             Some(nodes) => {
-                let index = |&node: &u64| self.tags.index(node).unwrap_or(u32::MAX);
+                let index = |&node: &u64| self.ids.index(node).unwrap_or(u32::MAX);
                 scatter(&numbers, components, self.content.points.len(), nodes.iter().map(index))
             }
         };

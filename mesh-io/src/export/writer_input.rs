@@ -4,7 +4,7 @@ use super::capabilities::Capabilities;
 use super::content::{Content, ContentGroup, DataArray};
 use super::group_numbers::GroupNumbers;
 use crate::content::label::Label;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 
 /// A mesh to be written in a format, with the capabilities of the format and the numbers of groups.
 pub(crate) struct WriterInput<'a> {
@@ -41,11 +41,11 @@ impl<'a> WriterInput<'a> {
     }
 
     /// Lists the cells of a kind that the format holds.
-    pub(crate) fn all(&self, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn all(&self, kind: CellKind) -> impl Iterator<Item = usize> + '_ {
         self.cells().filter(move |&cell| self.content.cells.kinds[cell] == kind)
     }
 
-    pub(crate) fn count(&self, kind: Kind) -> usize {
+    pub(crate) fn count(&self, kind: CellKind) -> usize {
         self.all(kind).count()
     }
 

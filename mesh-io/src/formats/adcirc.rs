@@ -13,7 +13,7 @@ use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::visit::items::{Element, GroupScope, Kind};
+use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
 use crate::visit::storage::CoordinateStorage;
@@ -46,13 +46,14 @@ impl FormatReader for Adcirc {
             "elements",
             visitor,
             |cursor| {
-                let tag = cursor.integer("the number of an element")?;
-                let corners = cursor.integer(format_args!("how many nodes element {tag} has"))?;
-                let Some(kind) = Kind::of_polygon(corners).filter(|kind| kind.nodes() > 2) else {
-                    let problem = format!("element {tag} has {corners} nodes");
+                let id = cursor.integer("the number of an element")?;
+                let corners = cursor.integer(format_args!("how many nodes element {id} has"))?;
+                let Some(kind) = CellKind::of_polygon(corners).filter(|kind| kind.nodes() > 2)
+                else {
+                    let problem = format!("element {id} has {corners} nodes");
                     return Err(cursor.error(problem, "Elements of three and four nodes are read"));
                 };
-                Ok(Element { tag, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
+                Ok(Element { id, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
             },
             |cursor, visitor, _, element| visitor.element(cursor, &element),
         )?;
@@ -92,7 +93,7 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
                 }
             }
             let label = Label::Name(format!("{word}{index}"));
-            visitor.group_scopes(&[GroupScope { what: "boundary", label, dimension: Some(1) }]);
+            visitor.group_scopes(&[GroupScope { kind: "boundary", label, dimension: Some(1) }]);
             // A node that does not exist is no reason to refuse the mesh.
             if visitor.polyline(cursor, 0, [0; 2], &nodes).is_err() {
                 return;

@@ -88,14 +88,14 @@ impl<'a> Axes<'a> {
         let y_after = y.start as isize - x.start as isize;
         let field =
             |axis: &Range<usize>| NumberField::new(bytes.get(axis.clone()), size, size, order);
-        let (x_at, tags) = (x.start, NodeIds::Consecutive(first));
+        let (x_at, ids) = (x.start, NodeIds::Consecutive(first));
         let place_of = |index: usize| place(x.start + index * size);
-        NodeRecords { count, x: field(&x), y: field(&y), x_offset: x_at, ids: tags }.send(
+        NodeRecords { count, x: field(&x), y: field(&y), x_offset: x_at, ids }.send(
             visitor,
             place_of,
             |index| {
-                let tag = index as u64 + first;
-                let problem = format!("a coordinate of node {tag} is not a finite number");
+                let id = index as u64 + first;
+                let problem = format!("a coordinate of node {id} is not a finite number");
                 place_of(index).error(problem, REWRITE)
             },
         )?;

@@ -10,7 +10,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::visit::items::{Element, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
 use crate::visit::storage::CoordinateStorage;
@@ -65,7 +65,7 @@ impl FormatReader for FreeFem {
         visitor.region_attributes(vec![RegionAttribute::tags("label", 1)]);
         visitor.expect_elements(cursor.capacity(triangles, "1 2 3 0\n".len()));
         for (kind, count, what) in
-            [(Kind::Triangle, triangles, "triangles"), (Kind::Line, edges, "edges")]
+            [(CellKind::Triangle, triangles, "triangles"), (CellKind::Line, edges, "edges")]
         {
             each_row(
                 cursor,
@@ -74,7 +74,7 @@ impl FormatReader for FreeFem {
                 visitor,
                 |cursor| Ok((nodes(cursor, kind)?, cursor.signed("a label")?)),
                 |cursor, visitor, done, (nodes, label)| {
-                    let element = Element { tag: done + 1, kind, region: [label, 0], nodes };
+                    let element = Element { id: done + 1, kind, region: [label, 0], nodes };
                     visitor.element(cursor, &element)
                 },
             )?;

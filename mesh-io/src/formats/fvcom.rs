@@ -12,7 +12,7 @@ use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value};
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
 use crate::visit::storage::CoordinateStorage;
@@ -61,7 +61,7 @@ fn number_of(cursor: &mut Cursor<'_>, key: &str) -> Result<u64, ReadError> {
 /// Reads a cell. What stands behind its nodes is not used.
 #[inline]
 fn cell(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
-    let tag = cursor.integer("the number of a cell")?;
-    let kind = Kind::Triangle;
-    Ok(Element { tag, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
+    let id = cursor.integer("the number of a cell")?;
+    let kind = CellKind::Triangle;
+    Ok(Element { id, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
 }

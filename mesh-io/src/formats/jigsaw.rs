@@ -14,7 +14,7 @@ use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
-use crate::visit::items::{Element, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
 use crate::visit::storage::CoordinateStorage;
@@ -32,7 +32,7 @@ struct List<'a> {
 /// The lists of a file besides its points.
 #[derive(Default)]
 struct Lists<'a> {
-    elements: Vec<(Kind, List<'a>)>,
+    elements: Vec<(CellKind, List<'a>)>,
     /// The last list of values, with the numbers in each row.
     values: Option<(List<'a>, u64)>,
 }
@@ -74,9 +74,9 @@ impl FormatReader for Jigsaw {
                 }
                 b"EDGE2" | b"TRIA3" | b"QUAD4" => {
                     let kind = match key[0] {
-                        b'E' => Kind::Line,
-                        b'T' => Kind::Triangle,
-                        _ => Kind::Quadrilateral,
+                        b'E' => CellKind::Line,
+                        b'T' => CellKind::Triangle,
+                        _ => CellKind::Quadrilateral,
                     };
                     let count = number(cursor, &key, first)?;
                     lists.elements.push((kind, List { cursor: cursor.clone(), count }));
@@ -116,7 +116,7 @@ impl FormatReader for Jigsaw {
                 visitor,
                 |cursor| Ok((nodes(cursor, kind)?, tag(cursor)?)),
                 |cursor, visitor, done, (nodes, tag)| {
-                    let element = Element { tag: done, kind, region: [tag, 0], nodes };
+                    let element = Element { id: done, kind, region: [tag, 0], nodes };
                     visitor.element(cursor, &element)
                 },
             )?;

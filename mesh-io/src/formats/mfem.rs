@@ -11,7 +11,7 @@ use crate::formats::numbered_nodes::{NodeNames, counted_nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
-use crate::visit::items::{Element, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
 use crate::visit::storage::CoordinateStorage;
@@ -82,7 +82,7 @@ impl FormatReader for Mfem {
                 |cursor, visitor, done, read| {
                     let (kind, attribute, nodes) = read;
                     let region = [attribute, 0];
-                    visitor.element(cursor, &Element { tag: done, kind, region, nodes })
+                    visitor.element(cursor, &Element { id: done, kind, region, nodes })
                 },
             )?;
         }
@@ -109,13 +109,13 @@ fn vertices(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<()
 
 /// Reads an element: its kind, attribute and vertices.
 #[inline]
-fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, i64, [u64; 4]), ReadError> {
+fn element(cursor: &mut Cursor<'_>) -> Result<(CellKind, i64, [u64; 4]), ReadError> {
     let attribute = cursor.signed("the attribute of an element")?;
     let kind = match cursor.integer("the geometry of an element")? {
-        0 => Kind::Point,
-        1 => Kind::Line,
-        2 => Kind::Triangle,
-        3 => Kind::Quadrilateral,
+        0 => CellKind::Point,
+        1 => CellKind::Line,
+        2 => CellKind::Triangle,
+        3 => CellKind::Quadrilateral,
         4..=7 => return Err(volume(cursor, "elements of a volume")),
         other => return Err(cursor.error(format!("{other} is no geometry"), CORRECT)),
     };

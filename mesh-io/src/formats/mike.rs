@@ -12,7 +12,7 @@ use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
 use crate::visit::storage::CoordinateStorage;
@@ -61,13 +61,13 @@ impl FormatReader for Mike {
 /// Reads an element. Among quadrilaterals, a triangle has 0 for a fourth node.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
-    let tag = cursor.integer("the number of an element")?;
-    let mut nodes = nodes(cursor, Kind::Triangle)?;
+    let id = cursor.integer("the number of an element")?;
+    let mut nodes = nodes(cursor, CellKind::Triangle)?;
     if !cursor.is_at_end() {
         nodes[3] = cursor.integer("a vertex of a quadrilateral")?;
     }
-    let kind = if nodes[3] == 0 { Kind::Triangle } else { Kind::Quadrilateral };
-    Ok(Element { tag, kind, region: [0; 2], nodes })
+    let kind = if nodes[3] == 0 { CellKind::Triangle } else { CellKind::Quadrilateral };
+    Ok(Element { id, kind, region: [0; 2], nodes })
 }
 
 /// Hands on the codes of nodes. They stand behind z, and inner nodes have the code 0.
@@ -97,9 +97,9 @@ pub(crate) fn opens(first: &[&[u8]], second: &[&[u8]]) -> bool {
     let numbers = first.iter().take_while(|token| integer(token).is_some()).count();
     let is_projection = |token: &&[u8]| token.first().is_some_and(u8::is_ascii_alphabetic);
     let is_node = || {
-        let [tag, at @ .., code] = second else { return false };
+        let [id, at @ .., code] = second else { return false };
         at.len() == 3
-            && integer(tag).is_some()
+            && integer(id).is_some()
             && integer(code).is_some()
             && at.iter().all(|token| float(token).is_some())
     };

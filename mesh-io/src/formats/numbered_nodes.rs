@@ -23,16 +23,16 @@ pub(crate) fn numbered_nodes(
         "nodes",
         visitor,
         |cursor| {
-            let tag = cursor.integer("the number of a node")?;
-            let point = cursor.point(format_args!("node {tag}"))?;
+            let id = cursor.integer("the number of a node")?;
+            let point = cursor.point(format_args!("node {id}"))?;
             let third = match is_third_optional {
-                true => cursor.z_if_any(format_args!("node {tag}"))?,
-                false => cursor.z(format_args!("node {tag}"))?,
+                true => cursor.z_if_any(format_args!("node {id}"))?,
+                false => cursor.z(format_args!("node {id}"))?,
             };
-            Ok((tag, point, third))
+            Ok((id, point, third))
         },
-        |cursor, visitor, _, (tag, (x_at, at), third)| {
-            visitor.node(cursor, tag, 2, x_at, at);
+        |cursor, visitor, _, (id, (x_at, at), third)| {
+            visitor.node(cursor, id, 2, x_at, at);
             heights.push(third);
             Ok(())
         },

@@ -13,7 +13,7 @@ use crate::format::Format;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
-use crate::visit::items::{Element, GroupScope, Kind};
+use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::all_rows;
 use crate::visit::storage::CoordinateStorage;
@@ -112,8 +112,8 @@ impl FormatReader for Obj {
                     match corners {
                         Corners::Few([a, b, c, _], 3) if a > 0 && b > 0 && c > 0 => {
                             let nodes = [a, b, c, 0].map(i64::unsigned_abs);
-                            let kind = Kind::Triangle;
-                            visitor.element(cursor, &Element { tag, kind, region, nodes })?;
+                            let kind = CellKind::Triangle;
+                            visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
                         }
                         corners => {
                             let nodes = counted(cursor, corners.all(), before)?;
@@ -125,8 +125,8 @@ impl FormatReader for Obj {
                 Row::Points(points) => {
                     let nodes = counted(cursor, points.all(), before)?;
                     for &node in &nodes {
-                        let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
-                        visitor.element(cursor, &Element { tag: 0, kind, region, nodes })?;
+                        let (kind, nodes) = (CellKind::Point, [node, 0, 0, 0]);
+                        visitor.element(cursor, &Element { id: 0, kind, region, nodes })?;
                     }
                 }
                 Row::Line(points) => {
@@ -178,8 +178,11 @@ impl<'a> CurrentGroups<'a> {
     /// Returns the groups of the elements that follow, which may have elements of any kind.
     fn groups(&self) -> Vec<GroupScope<'static>> {
         let of = |what, names: &[&[u8]]| -> Vec<_> {
-            let one =
-                |name: &&[u8]| GroupScope { what, label: Label::name(name), dimension: Some(2) };
+            let one = |name: &&[u8]| GroupScope {
+                kind: what,
+                label: Label::name(name),
+                dimension: Some(2),
+            };
             names.iter().map(one).collect()
         };
         let (material, object) = (self.material.as_slice(), self.object.as_slice());
@@ -209,11 +212,11 @@ fn face(
     region: [i64; 2],
     corners: &[u64],
 ) -> Result<(), ReadError> {
-    match Kind::of_polygon(corners.len() as u64) {
-        Some(kind @ (Kind::Triangle | Kind::Quadrilateral)) => {
+    match CellKind::of_polygon(corners.len() as u64) {
+        Some(kind @ (CellKind::Triangle | CellKind::Quadrilateral)) => {
             let mut nodes = [0; 4];
             nodes[..corners.len()].copy_from_slice(corners);
-            visitor.element(cursor, &Element { tag, kind, region, nodes })
+            visitor.element(cursor, &Element { id: tag, kind, region, nodes })
         }
         _ => visitor.polygon(cursor, tag, region, corners),
     }

@@ -10,7 +10,7 @@ use crate::format::Format;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
 use crate::visit::storage::CoordinateStorage;
@@ -94,14 +94,14 @@ impl FormatReader for Off {
             visitor,
             |cursor| {
                 let corners = cursor.integer("the number of a face's vertices")?;
-                let Some(kind) = Kind::of_polygon(corners) else {
+                let Some(kind) = CellKind::of_polygon(corners) else {
                     let problem = format!("a face has {corners} vertices");
                     return Err(cursor.error(problem, "Split it into triangles"));
                 };
                 Ok((kind, nodes(cursor, kind)?))
             },
-            |cursor, visitor, tag, (kind, nodes)| {
-                visitor.element(cursor, &Element { tag, kind, region: [0; 2], nodes })
+            |cursor, visitor, id, (kind, nodes)| {
+                visitor.element(cursor, &Element { id, kind, region: [0; 2], nodes })
             },
         )?;
         Ok(CoordinateStorage::in_place(Format::Off, CoordinateEncoding::TEXT))

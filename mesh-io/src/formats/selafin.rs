@@ -11,7 +11,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
-use crate::visit::items::{Kind, PointNumbers};
+use crate::visit::items::{CellKind, PointNumbers};
 use crate::visit::reader::FormatReader;
 use crate::visit::records::{NodeIds, NodeRecords, Region};
 use crate::visit::rows::volume;
@@ -53,8 +53,8 @@ impl FormatReader for Selafin {
         let sizes = integers(record(cursor, order, "the sizes", Some(16))?, order);
         let [triangles, points, corners] = [sizes[0], sizes[1], sizes[2]];
         let kind = match corners {
-            3 => Kind::Triangle,
-            4 => Kind::Quadrilateral,
+            3 => CellKind::Triangle,
+            4 => CellKind::Quadrilateral,
             6 => return Err(volume(cursor, "prisms")),
             other => {
                 let problem = format!("the elements have {other} corners");

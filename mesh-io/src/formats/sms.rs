@@ -11,7 +11,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::unquoted;
-use crate::visit::items::{Element, GroupScope, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{all_rows, nodes};
 use crate::visit::storage::CoordinateStorage;
@@ -64,7 +64,7 @@ impl FormatReader for Sms {
         let mut string = 1;
         let materials = || {
             let label = |material| (material != NO_MATERIAL).then_some(Label::Tag(material));
-            vec![RegionAttribute { what: "material".into(), from_dimension: 1, label }]
+            vec![RegionAttribute { kind: "material".into(), from_dimension: 1, label }]
         };
         visitor.region_attributes(materials());
         all_rows(cursor, visitor, element, |cursor, visitor, row| {
@@ -74,7 +74,7 @@ impl FormatReader for Sms {
                     // A row that continues a string has the same label.
                     let label = Label::Tag(string);
                     visitor.group_scopes(&[GroupScope {
-                        what: "nodestring",
+                        kind: "nodestring",
                         label,
                         dimension: Some(1),
                     }]);
@@ -134,9 +134,9 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
 fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let (word, length) = keyword(cursor);
     let kind = match &word[..length] {
-        b"E3T" => Kind::Triangle,
-        b"E4Q" => Kind::Quadrilateral,
-        b"E2L" => Kind::Line,
+        b"E3T" => CellKind::Triangle,
+        b"E4Q" => CellKind::Quadrilateral,
+        b"E2L" => CellKind::Line,
         b"NS" => return string(cursor),
         b"MAT" => return Ok(material(cursor)),
         b"E6T" | b"E8Q" | b"E9Q" | b"E3L" => {
@@ -153,9 +153,9 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let nodes = nodes(cursor, kind)?;
     // A material is a number, which some programs leave out.
     let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
-    let of_none = kind == Kind::Line && material == 0;
+    let of_none = kind == CellKind::Line && material == 0;
     let region = [if of_none { NO_MATERIAL } else { material }, 0];
-    Ok(Row::Element(Element { tag, kind, region, nodes }))
+    Ok(Row::Element(Element { id: tag, kind, region, nodes }))
 }
 
 /// Reads the nodes in a row of a node string. The last node of a string is negative, and the string's name may follow.

@@ -13,7 +13,7 @@ use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{Element, GroupScope, Kind, PointNumbers};
+use crate::visit::items::{CellKind, Element, GroupScope, PointNumbers};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{all_rows, volume};
 use crate::visit::storage::{CoordinateStorage, RepeatedVertices};
@@ -268,7 +268,7 @@ fn send_mesh(
         if visitor.asks_for_groups() && last.replace(solid) != Some(solid) {
             let name = solids.get(solid as usize).filter(|name| !name.is_empty());
             let group = |name: &&[u8]| GroupScope {
-                what: "solid",
+                kind: "solid",
                 label: Label::name(name),
                 dimension: None,
             };
@@ -277,8 +277,8 @@ fn send_mesh(
         place.seek(at);
         let mut nodes = [0; 4];
         nodes.iter_mut().zip(corners).for_each(|(node, &v)| *node = u64::from(v) + 1);
-        let (tag, kind) = (index as u64 + 1, Kind::Triangle);
-        visitor.element(&place, &Element { tag, kind, region: [i64::from(solid), 0], nodes })?;
+        let (id, kind) = (index as u64 + 1, CellKind::Triangle);
+        visitor.element(&place, &Element { id, kind, region: [i64::from(solid), 0], nodes })?;
     }
     Ok(RepeatedVertices { x_at, vertices })
 }

@@ -4,7 +4,7 @@ use crate::export::content::{Content, DataArray};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
@@ -70,9 +70,9 @@ pub(crate) fn write_sms(input: &WriterInput<'_>) -> String {
     let mut element = 0;
     for cell in input.cells() {
         let kind = match content.cells.kinds[cell] {
-            Kind::Triangle => "E3T",
-            Kind::Quadrilateral => "E4Q",
-            Kind::Line if !is_of_string(input, cell) => "E2L",
+            CellKind::Triangle => "E3T",
+            CellKind::Quadrilateral => "E4Q",
+            CellKind::Line if !is_of_string(input, cell) => "E2L",
             _ => continue,
         };
         element += 1;
@@ -84,7 +84,7 @@ pub(crate) fn write_sms(input: &WriterInput<'_>) -> String {
     let mut materials = BTreeMap::new();
     for cell in input.cells() {
         let Some(group) = input.group_numbers.group(content, cell) else { continue };
-        let is_line = content.cells.kinds[cell] == Kind::Line;
+        let is_line = content.cells.kinds[cell] == CellKind::Line;
         if let Some(name) = content.groups[group as usize].name().filter(|_| !is_line) {
             materials.insert(input.group_numbers.number(group), name);
         }
@@ -143,7 +143,7 @@ fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
 pub(crate) fn write_adcirc(input: &WriterInput<'_>) -> String {
     let content = input.content;
     let depth = input.point_data().next();
-    let is_inside = |cell: &usize| content.cells.kinds[*cell] != Kind::Line;
+    let is_inside = |cell: &usize| content.cells.kinds[*cell] != CellKind::Line;
     let elements = || input.cells().filter(is_inside);
     let mut out = format!("grid\n{} {}\n", elements().count(), content.points.len());
     for vertex in 0..content.points.len() {
@@ -182,7 +182,7 @@ fn is_of_string(input: &WriterInput<'_>, line: usize) -> bool {
 /// Returns the lines of each group as chains of vertices.
 fn strings(input: &WriterInput<'_>) -> Vec<(u32, Vec<u32>)> {
     let mut lines: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
-    for cell in input.all(Kind::Line).filter(|&cell| is_of_string(input, cell)) {
+    for cell in input.all(CellKind::Line).filter(|&cell| is_of_string(input, cell)) {
         if let (Some(group), &[a, b]) =
             (input.group_numbers.group(input.content, cell), input.content.cells.of(cell))
         {

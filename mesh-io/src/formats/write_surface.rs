@@ -2,7 +2,7 @@
 
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 pub(crate) fn write_obj(input: &WriterInput<'_>) -> String {
@@ -30,8 +30,8 @@ pub(crate) fn write_obj(input: &WriterInput<'_>) -> String {
             last = group;
         }
         let letter = match content.cells.kinds[cell] {
-            Kind::Point => 'p',
-            Kind::Line => 'l',
+            CellKind::Point => 'p',
+            CellKind::Line => 'l',
             _ => 'f',
         };
         put!(out, "{letter} {}\n", input.positions(cell, 1));

@@ -46,7 +46,7 @@ impl MeshFile {
             // Reading the file again cannot fail, as it was read before.
             _ = (self.reader().visit)(self.source(), &mut visitor);
         }
-        let map = IdIndex::new(&visitor.tags).unwrap_or(IdIndex::Run { first: 0, count: 0 });
+        let map = IdIndex::new(&visitor.ids).unwrap_or(IdIndex::Run { first: 0, count: 0 });
         let (mut fields, mut others) = (Vec::new(), Vec::new());
         for Array { name, axis, centers } in visitor.found {
             let new = Elements::of(&centers, &map).and_then(|elements| {
@@ -159,7 +159,7 @@ fn circumcenter(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
 /// Visitor that collects arrays with the centers of elements.
 #[derive(Default)]
 struct CenterVisitor {
-    tags: Vec<u64>,
+    ids: Vec<u64>,
     last: (String, usize),
     found: Vec<Array>,
 }
@@ -169,8 +169,8 @@ impl MeshVisitor for CenterVisitor {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn center_array(&mut self, name: &[u8], axis: usize) -> bool {

@@ -80,10 +80,12 @@ impl MeshFile {
         found: Vec<ItemLocation>,
     ) -> impl Iterator<Item = (usize, SourceLocation)> + 'a {
         let source = self.source();
-        wanted.iter().zip(found).map(move |(&index, ItemLocation { location, label, part })| {
-            let path = source.files().nth(part).unwrap_or(source).path.clone();
-            (index, SourceLocation { path, location, id: label })
-        })
+        wanted.iter().zip(found).map(
+            move |(&index, ItemLocation { location, id: label, file_index: part })| {
+                let path = source.files().nth(part).unwrap_or(source).path.clone();
+                (index, SourceLocation { path, location, id: label })
+            },
+        )
     }
 }
 

@@ -17,12 +17,12 @@ pub(crate) fn parameters(
     let mut visitor = ParameterVisitor::default();
     (reader.visit)(source, &mut visitor)?;
     // There is no error to report, as the file was read before without one.
-    let map = IdIndex::new(&visitor.tags).unwrap_or(IdIndex::Run { first: 0, count: 0 });
+    let map = IdIndex::new(&visitor.ids).unwrap_or(IdIndex::Run { first: 0, count: 0 });
     let field = |(surface, numbers): (i64, PointNumbers)| {
         let nodes = numbers.nodes.as_deref().unwrap_or_default();
         let vertices = nodes.iter().map(|&node| map.index(node).unwrap_or(u32::MAX)).collect();
         let name = format!("parameters on surface {surface}");
-        PointField::new(name, 2, visitor.tags.len(), numbers, Some(vertices))
+        PointField::new(name, 2, visitor.ids.len(), numbers, Some(vertices))
     };
     Ok(visitor.found.into_iter().map(field).collect())
 }
@@ -30,7 +30,7 @@ pub(crate) fn parameters(
 /// Visitor that collects the parameters of nodes on surfaces of a model.
 #[derive(Default)]
 struct ParameterVisitor {
-    tags: Vec<u64>,
+    ids: Vec<u64>,
     surface: i64,
     found: Vec<(i64, PointNumbers)>,
 }
@@ -40,8 +40,8 @@ impl MeshVisitor for ParameterVisitor {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn parameters(&mut self, surface: i64) -> bool {

@@ -3,7 +3,7 @@
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;
 use crate::content::label::Label;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::collections::HashMap;
 
 /// The groups found so far. Their indices are their numbers.
@@ -51,13 +51,13 @@ impl GroupTable {
     }
 
     /// Adds the vertices of an element other than a triangle.
-    pub(crate) fn add(&mut self, group: usize, kind: Kind, vertices: &[u32]) {
+    pub(crate) fn add(&mut self, group: usize, kind: CellKind, vertices: &[u32]) {
         let GroupMembers { group, others } = &mut self.groups[group];
         match kind {
-            Kind::Point => group.points += 1,
-            Kind::Line => group.lines += 1,
-            Kind::Triangle | Kind::Corner => {}
-            Kind::Quadrilateral => group.quadrilaterals += 1,
+            CellKind::Point => group.points += 1,
+            CellKind::Line => group.lines += 1,
+            CellKind::Triangle | CellKind::Polygon => {}
+            CellKind::Quadrilateral => group.quadrilaterals += 1,
         }
         others.extend_from_slice(vertices);
     }

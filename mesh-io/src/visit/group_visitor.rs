@@ -7,7 +7,7 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::group_table::GroupTable;
-use crate::visit::items::{Element, GroupScope, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
 use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 
@@ -22,14 +22,14 @@ pub(crate) fn groups(reader: &ReaderFunctions, source: &Source) -> Result<GroupT
 pub(crate) fn labels(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u64>, ReadError> {
     let mut labels = VertexIdVisitor::default();
     (reader.visit)(source, &mut labels)?;
-    Ok(labels.tags)
+    Ok(labels.ids)
 }
 
 /// Visitor that collects the groups of a file in a [`GroupTable`].
 #[derive(Default)]
 struct GroupVisitor {
     table: GroupTable,
-    tags: IdIndexBuilder,
+    ids: IdIndexBuilder,
     triangles: u32,
     columns: Vec<RegionAttribute>,
     /// For each column, the numbers that were met, by dimension.
@@ -57,7 +57,7 @@ impl GroupVisitor {
             let name = met.intern((dimension, number)) as usize;
             if name == groups.len() {
                 let label = (column.label)(number);
-                let group = label.map(|label| table.number(&column.what, dimension, &label));
+                let group = label.map(|label| table.number(&column.kind, dimension, &label));
                 groups.push(group);
             }
             of_element.extend(groups[name]);
@@ -80,20 +80,20 @@ impl MeshVisitor for GroupVisitor {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { kind, region, nodes, .. } = element;
         self.find(kind.dimension(), region);
-        if kind == Kind::Triangle {
+        if kind == CellKind::Triangle {
             for &group in &self.of_element {
                 self.table.add_triangle(group, self.triangles);
             }
             self.triangles += 1;
         } else {
-            let index = |&node: &u64| self.tags.index(node);
+            let index = |&node: &u64| self.ids.index(node);
             let vertices: Vec<u32> = nodes[..kind.nodes()].iter().filter_map(index).collect();
             for &group in &self.of_element {
                 self.table.add(group, kind, &vertices);
@@ -114,7 +114,7 @@ impl MeshVisitor for GroupVisitor {
 
     fn group_scopes(&mut self, groups: &[GroupScope<'_>]) {
         let owned =
-            |group: &GroupScope<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+            |group: &GroupScope<'_>| (group.kind.to_owned(), group.label.clone(), group.dimension);
         self.within = groups.iter().map(owned).collect();
         self.within_groups = [None, None, None];
     }
@@ -132,7 +132,7 @@ impl MeshVisitor for GroupVisitor {
 /// Visitor that collects the ids of the vertices.
 #[derive(Default)]
 struct VertexIdVisitor {
-    tags: Vec<u64>,
+    ids: Vec<u64>,
 }
 
 impl MeshVisitor for VertexIdVisitor {
@@ -140,8 +140,8 @@ impl MeshVisitor for VertexIdVisitor {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {

@@ -3,7 +3,7 @@
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 
@@ -20,9 +20,9 @@ pub(crate) struct ItemLocation {
     /// [`Location::Unknown`] if the walk does not come to the item.
     pub(crate) location: Location,
     /// The file's number of the item; its index in the list if the location is unknown.
-    pub(crate) label: u64,
+    pub(crate) id: u64,
     /// The index of the file, in the order of [`Source::files`].
-    pub(crate) part: usize,
+    pub(crate) file_index: usize,
 }
 
 /// Walks through the file and returns one place for each of these items of a list. `indices` are ascending.
@@ -37,8 +37,11 @@ pub(crate) fn locate(
     // The file was read before without an error. If there is one now, items after it are not found.
     let _ = (reader.visit)(source, &mut locator);
     let LocationVisitor { left, mut found, .. } = locator;
-    let unknown =
-        |&index: &usize| ItemLocation { location: Location::Unknown, label: index as u64, part: 0 };
+    let unknown = |&index: &usize| ItemLocation {
+        location: Location::Unknown,
+        id: index as u64,
+        file_index: 0,
+    };
     found.extend(left.iter().map(unknown));
     found
 }
@@ -60,7 +63,11 @@ impl LocationVisitor<'_> {
         if self.left.first() == Some(&self.next) {
             let mut parts = self.source.files();
             let part = parts.position(|part| std::ptr::eq(part, cursor.source)).unwrap_or(0);
-            self.found.push(ItemLocation { location: cursor.location(), label, part });
+            self.found.push(ItemLocation {
+                location: cursor.location(),
+                id: label,
+                file_index: part,
+            });
             self.left = &self.left[1..];
         }
         self.next += 1;
@@ -77,9 +84,9 @@ impl MeshVisitor for LocationVisitor<'_> {
         self.list == ItemList::Nodes
     }
 
-    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
+    fn node(&mut self, cursor: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
         if self.list == ItemList::Nodes {
-            self.pass(cursor, tag);
+            self.pass(cursor, id);
         }
     }
 
@@ -88,8 +95,8 @@ impl MeshVisitor for LocationVisitor<'_> {
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        if self.list == ItemList::Triangles && element.kind == Kind::Triangle {
-            self.pass(cursor, element.tag);
+        if self.list == ItemList::Triangles && element.kind == CellKind::Triangle {
+            self.pass(cursor, element.id);
             return self.end_if_found(cursor);
         }
         Ok(())

@@ -8,7 +8,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::{Element, Kind, PeriodicNodes};
+use crate::visit::items::{CellKind, Element, PeriodicNodes};
 use crate::visit::locate::{ItemList, ItemLocation, locate};
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
@@ -50,7 +50,7 @@ pub(crate) fn parse_by(
     for (vertex, point) in points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let ItemLocation { location, label, part } =
+            let ItemLocation { location, id: label, file_index: part } =
                 locate(reader, source, ItemList::Nodes, &[vertex])[0];
             let source = source.files().nth(part).unwrap_or(source);
             let problem =
@@ -89,7 +89,7 @@ struct MeshBuilder {
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
     x_at: OffsetsBuilder,
-    tags: IdIndexBuilder,
+    ids: IdIndexBuilder,
     region_names: Interner<[i64; 2]>,
     regions: TriangleRegions,
     constraints: Constraints,
@@ -114,13 +114,13 @@ impl MeshBuilder {
     fn index(
         &self,
         cursor: &Cursor<'_>,
-        kind: Kind,
-        tag: u64,
+        kind: CellKind,
+        id: u64,
         node: u64,
     ) -> Result<u32, ReadError> {
-        self.tags.index(node).ok_or_else(|| {
+        self.ids.index(node).ok_or_else(|| {
             let (kind, list) = (kind.name(), self.vertices_of);
-            let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
+            let problem = format!("{kind} {id} has node {node}, which {list} does not list");
             cursor.error(problem, CORRECT)
         })
     }
@@ -134,11 +134,11 @@ impl MeshVisitor for MeshBuilder {
     fn expect_nodes(&mut self, count: usize) {
         self.points.reserve_exact(count);
         self.x_at.expect(count);
-        self.tags.ids().expect(count);
+        self.ids.list().expect(count);
     }
 
     #[inline]
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]) {
+    fn node(&mut self, _: &Cursor<'_>, id: u64, dimension: u64, x_at: usize, at: [f64; 2]) {
         if dimension < 2 {
             // On a point or curve of the model. It may lie inside the domain without being saved as line elements, such
             // as the interface of two surfaces.
@@ -148,7 +148,7 @@ impl MeshVisitor for MeshBuilder {
         if dimension == 0 {
             self.constraints.anchored.push(self.points.len() as u32);
         }
-        self.tags.push(tag);
+        self.ids.push(id);
         self.x_at.push(x_at);
         self.points.push(at);
     }
@@ -157,17 +157,17 @@ impl MeshVisitor for MeshBuilder {
         if !self.takes_ahead {
             return 0;
         }
-        records.read(&mut self.points, self.tags.ids(), &mut self.x_at)
+        records.read(&mut self.points, self.ids.list(), &mut self.x_at)
     }
 
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         _: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
-        let index = |&node: &u64| self.index(cursor, Kind::Point, tag, node);
+        let index = |&node: &u64| self.index(cursor, CellKind::Point, id, node);
         let vertices = nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
         self.constraints.lines.extend(vertices.windows(2).map(|pair| [pair[0], pair[1]]));
         self.constraints.vertices.extend(vertices);
@@ -187,7 +187,7 @@ impl MeshVisitor for MeshBuilder {
             motions.extend(motion.filter(|_| nodes.is_empty()));
             let mut pairs = Vec::with_capacity(nodes.len());
             for [a, b] in nodes {
-                match (self.tags.index(a), self.tags.index(b)) {
+                match (self.ids.index(a), self.ids.index(b)) {
                     (Some(a), Some(b)) => pairs.push([a, b]),
                     (a, b) => {
                         // The known node of the pair cannot move along its curve.
@@ -231,8 +231,8 @@ impl MeshVisitor for MeshBuilder {
     }
 
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
-        let Err((tag, second)) = self.tags.finish() else { return Ok(()) };
-        let problem = format!("node {tag} is listed a second time");
+        let Err((id, second)) = self.ids.finish() else { return Ok(()) };
+        let problem = format!("node {id} is listed a second time");
         let location = cursor.location_of(self.x_at.at(second));
         Err(cursor.source.error_at(location, problem, "Give each node a tag of its own"))
     }
@@ -242,10 +242,10 @@ impl MeshVisitor for MeshBuilder {
     }
 
     fn triangle_records(&mut self, records: &TriangleRecords<'_>) -> usize {
-        let Self { tags, takes_ahead: true, triangles, regions, region_names, .. } = self else {
+        let Self { ids, takes_ahead: true, triangles, regions, region_names, .. } = self else {
             return 0;
         };
-        let Some(map) = tags.map() else { return 0 };
+        let Some(map) = ids.map() else { return 0 };
         records.read(map, triangles, |region, count| {
             let number = region_names.intern(region);
             (0..count).for_each(|_| regions.push(number));
@@ -254,32 +254,32 @@ impl MeshVisitor for MeshBuilder {
 
     #[inline]
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        let &Element { tag, kind, region, nodes } = element;
+        let &Element { id, kind, region, nodes } = element;
         let nodes = &nodes[..kind.nodes()];
         let mut vertices = [0; 4];
         for (vertex, &node) in vertices.iter_mut().zip(nodes) {
-            *vertex = self.index(cursor, kind, tag, node)?;
+            *vertex = self.index(cursor, kind, id, node)?;
         }
         let [a, b, c, _] = vertices;
         match kind {
-            Kind::Triangle if a == b || b == c || c == a => {
+            CellKind::Triangle if a == b || b == c || c == a => {
                 let twice = if b == c { nodes[1] } else { nodes[0] };
-                let problem = format!("triangle {tag} lists node {twice} twice");
+                let problem = format!("triangle {id} lists node {twice} twice");
                 Err(cursor.error(problem, "Remove the triangle, or correct its nodes"))
             }
-            Kind::Triangle => {
+            CellKind::Triangle => {
                 self.triangles.push([a, b, c]);
                 self.regions.push(self.region_names.intern(region));
                 Ok(())
             }
-            Kind::Point | Kind::Corner | Kind::Line | Kind::Quadrilateral => {
+            CellKind::Point | CellKind::Polygon | CellKind::Line | CellKind::Quadrilateral => {
                 let fixed = &vertices[..nodes.len()];
                 self.constraints.vertices.extend_from_slice(fixed);
                 match kind {
-                    Kind::Line => self.constraints.lines.push([a, b]),
+                    CellKind::Line => self.constraints.lines.push([a, b]),
                     _ => self.constraints.anchored.extend_from_slice(fixed),
                 }
-                self.quadrilaterals += u64::from(kind == Kind::Quadrilateral);
+                self.quadrilaterals += u64::from(kind == CellKind::Quadrilateral);
                 Ok(())
             }
         }

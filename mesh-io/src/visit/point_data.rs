@@ -34,8 +34,8 @@ pub(crate) fn point_data(
     source: &Source,
     wanted: FieldSelection<'_>,
 ) -> Result<PointData, ReadError> {
-    let (last, tags, found) = (Default::default(), IdIndexBuilder::default(), PointData::default());
-    let mut visitor = PointDataVisitor { wanted, last, tags, found, named: HashSet::new() };
+    let (last, ids, found) = (Default::default(), IdIndexBuilder::default(), PointData::default());
+    let mut visitor = PointDataVisitor { wanted, last, ids, found, named: HashSet::new() };
     (reader.visit)(source, &mut visitor)?;
     Ok(visitor.found)
 }
@@ -45,7 +45,7 @@ struct PointDataVisitor<'n> {
     wanted: FieldSelection<'n>,
     /// The name of the array that was announced last, and its number of components.
     last: (String, usize),
-    tags: IdIndexBuilder,
+    ids: IdIndexBuilder,
     found: PointData,
     /// The names in `found.known`. A damaged file may announce any number of them.
     named: HashSet<String>,
@@ -56,8 +56,8 @@ impl MeshVisitor for PointDataVisitor<'_> {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn asks_for_data(&self) -> bool {
@@ -78,10 +78,10 @@ impl MeshVisitor for PointDataVisitor<'_> {
     }
 
     fn point_numbers(&mut self, numbers: PointNumbers) {
-        let index = |&node: &u64| self.tags.index(node).unwrap_or(u32::MAX);
+        let index = |&node: &u64| self.ids.index(node).unwrap_or(u32::MAX);
         let vertices = numbers.nodes.as_ref().map(|nodes| nodes.iter().map(index).collect());
         let (name, components) = std::mem::take(&mut self.last);
-        let count = self.tags.len();
+        let count = self.ids.len();
         self.found.fields.push(PointField::new(name, components, count, numbers, vertices));
     }
 }

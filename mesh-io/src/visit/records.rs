@@ -17,13 +17,13 @@ pub(crate) const MIN_PARALLEL_RECORDS: usize = 1 << 14;
 /// The ids of the nodes of a binary list.
 #[derive(Clone, Copy)]
 pub(crate) enum NodeIds<'a> {
-    /// Consecutive tags from this one on.
+    /// Consecutive ids from this one on.
     Consecutive(u64),
     Field(NumberField<'a>),
 }
 
 impl NodeIds<'_> {
-    /// Returns the tag of a node by its index. The field must hold it.
+    /// Returns the id of a node by its index. The field must hold it.
     pub(super) fn of(self, index: usize) -> u64 {
         match self {
             NodeIds::Consecutive(first) => first + index as u64,
@@ -48,17 +48,17 @@ impl NodeRecords<'_> {
     pub(crate) fn read(
         &self,
         points: &mut Vec<[f64; 2]>,
-        tags: &mut IdList,
+        ids: &mut IdList,
         places: &mut OffsetsBuilder,
     ) -> usize {
         let &NodeRecords { count, x, y, .. } = self;
         let fits =
             x.holds(count, 1) && y.holds(count, 1) && matches!((x.width, y.width), (4, 4) | (8, 8));
-        let has_tags = match self.ids {
+        let has_ids = match self.ids {
             NodeIds::Consecutive(_) => true,
             NodeIds::Field(field) => field.holds(count, 1),
         };
-        if count < MIN_PARALLEL_RECORDS || !fits || !has_tags {
+        if count < MIN_PARALLEL_RECORDS || !fits || !has_ids {
             return 0;
         }
         let (taken, _) = append(points, count, |records, points| {
@@ -70,28 +70,28 @@ impl NodeRecords<'_> {
             }
             let is_plain = match self.ids {
                 NodeIds::Consecutive(_) => true,
-                NodeIds::Field(field) => field.whole(records).all(|tag| tag <= field.max()),
+                NodeIds::Field(field) => field.whole(records).all(|id| id <= field.max()),
             };
             (is_finite && is_plain).then_some(())
         });
         places.extend(self.x_offset, x.stride, taken);
         match self.ids {
-            NodeIds::Consecutive(first) => tags.extend(first, taken as u64),
-            NodeIds::Field(field) => add_tags(field, taken, tags),
+            NodeIds::Consecutive(first) => ids.extend(first, taken as u64),
+            NodeIds::Field(field) => add_tags(field, taken, ids),
         }
         taken
     }
 }
 
-fn add_tags(field: NumberField<'_>, count: usize, tags: &mut IdList) {
+fn add_tags(field: NumberField<'_>, count: usize, ids: &mut IdList) {
     let first = field.whole(0..count.min(1)).next().unwrap_or(0);
     let are_consecutive = |records: Range<usize>| {
         let expected = records.clone().map(|record| first.checked_add(record as u64));
         field.whole(records).map(Some).eq(expected)
     };
     match map_ranges(count, CHUNK_RECORDS, are_consecutive).into_iter().all(|are| are) {
-        true => tags.extend(first, count as u64),
-        false => field.whole(0..count).for_each(|tag| tags.push(tag)),
+        true => ids.extend(first, count as u64),
+        false => field.whole(0..count).for_each(|id| ids.push(id)),
     }
 }
 
@@ -131,8 +131,8 @@ impl Region<'_> {
 pub(crate) struct TriangleRecords<'a> {
     pub(crate) count: usize,
     /// The numbers of three nodes. Each must be less than `below`.
-    pub(crate) corners: NumberField<'a>,
-    /// This is added to a number to get the node's tag.
+    pub(crate) nodes: NumberField<'a>,
+    /// This is added to a number to get the node's id.
     pub(crate) min_node: u64,
     pub(crate) node_end: u64,
     pub(crate) regions: [Region<'a>; 2],
@@ -149,7 +149,7 @@ impl TriangleRecords<'_> {
         triangles: &mut Vec<[u32; 3]>,
         mut region: impl FnMut([i64; 2], usize),
     ) -> usize {
-        let &TriangleRecords { count, corners, .. } = self;
+        let &TriangleRecords { count, nodes: corners, .. } = self;
         let mut fields = self.required_fields.iter().map(|&(field, _)| field);
         let has_regions = self.regions.iter().all(|region| match region {
             Region::Field(field) => field.holds(count, 1),
@@ -166,10 +166,10 @@ impl TriangleRecords<'_> {
         }
         let (taken, same) = append(triangles, count, |records, triangles| {
             let is_plain = match *map {
-                IdIndex::Run { first, count } => self.fill(records.clone(), triangles, |tag| {
-                    tag.checked_sub(first).filter(|&index| index < count).map(|index| index as u32)
+                IdIndex::Run { first, count } => self.fill(records.clone(), triangles, |id| {
+                    id.checked_sub(first).filter(|&index| index < count).map(|index| index as u32)
                 }),
-                _ => self.fill(records.clone(), triangles, |tag| map.index(tag)),
+                _ => self.fill(records.clone(), triangles, |id| map.index(id)),
             };
             (is_plain && self.is_expected(records.clone())).then(|| self.same_region(records))
         });
@@ -192,14 +192,14 @@ impl TriangleRecords<'_> {
         index: impl Fn(u64) -> Option<u32>,
     ) -> bool {
         let (most, width) =
-            (self.corners.max().min(self.node_end.saturating_sub(1)), self.corners.width);
-        for (triangle, bytes) in triangles.iter_mut().zip(self.corners.of(records)) {
+            (self.nodes.max().min(self.node_end.saturating_sub(1)), self.nodes.width);
+        for (triangle, bytes) in triangles.iter_mut().zip(self.nodes.of(records)) {
             for (corner, bytes) in triangle.iter_mut().zip(bytes.chunks_exact(width)) {
-                let tag = self.corners.order.whole(bytes);
-                if tag > most {
+                let id = self.nodes.order.whole(bytes);
+                if id > most {
                     return false;
                 }
-                let Some(index) = tag.checked_add(self.min_node).and_then(&index) else {
+                let Some(index) = id.checked_add(self.min_node).and_then(&index) else {
                     return false;
                 };
                 *corner = index;

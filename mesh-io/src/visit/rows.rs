@@ -3,7 +3,7 @@
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use crate::visit::visitor::MeshVisitor;
 
 /// Reads a list and hands its items, one in each row, to the visitor with their positions. Plain rows are read on all
@@ -88,7 +88,7 @@ pub(crate) fn all_rows<'a, T: Send>(
 
 /// Reads the numbers of an element's nodes.
 #[inline]
-pub(crate) fn nodes(cursor: &mut Cursor<'_>, kind: Kind) -> Result<[u64; 4], ReadError> {
+pub(crate) fn nodes(cursor: &mut Cursor<'_>, kind: CellKind) -> Result<[u64; 4], ReadError> {
     let mut nodes = [0; 4];
     for node in &mut nodes[..kind.nodes()] {
         *node = cursor.integer(format_args!("a vertex of a {}", kind.name()))?;

@@ -3,7 +3,7 @@
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{NodeRecords, Region, TriangleRecords};
 use crate::visit::visitor::MeshVisitor;
 
@@ -19,7 +19,7 @@ impl NodeRecords<'_> {
         place: impl Fn(usize) -> Cursor<'c>,
         not_finite: impl Fn(usize) -> ReadError,
     ) -> Result<(), ReadError> {
-        let &NodeRecords { count, x, y, x_offset: x_at, ids: tags } = self;
+        let &NodeRecords { count, x, y, x_offset: x_at, ids } = self;
         visitor.expect_nodes(count);
         for index in visitor.node_records(self)..count {
             let at = [x, y].map(|field| field.real_at(index));
@@ -27,7 +27,7 @@ impl NodeRecords<'_> {
                 return Err(not_finite(index));
             }
             let x_at = x_at + index * x.stride();
-            visitor.node(&place(index), tags.of(index), 2, x_at, at);
+            visitor.node(&place(index), ids.of(index), 2, x_at, at);
         }
         Ok(())
     }
@@ -35,13 +35,13 @@ impl NodeRecords<'_> {
 
 /// A list of elements of one kind, of which each record has the nodes of an element.
 pub(crate) struct ElementRecords<'a> {
-    pub(crate) kind: Kind,
+    pub(crate) kind: CellKind,
     pub(crate) count: usize,
-    /// The tag of the first element. Tags are consecutive.
+    /// The id of the first element. Tags are consecutive.
     pub(crate) first_tag: u64,
-    /// The tags of an element's nodes, side by side.
+    /// The ids of an element's nodes, side by side.
     pub(crate) nodes: NumberField<'a>,
-    /// Whether tags of nodes are signed. A negative tag becomes 0, which no node has.
+    /// Whether ids of nodes are signed. A negative id becomes 0, which no node has.
     pub(crate) is_signed: bool,
     pub(crate) regions: [Region<'a>; 2],
 }
@@ -56,12 +56,12 @@ impl ElementRecords<'_> {
     ) -> Result<(), ReadError> {
         let &ElementRecords { kind, count, nodes: corners, regions, .. } = self;
         let mut taken = 0;
-        if kind == Kind::Triangle {
+        if kind == CellKind::Triangle {
             visitor.expect_elements(count);
             let (first, below, expected) = (0, u64::MAX, &[][..]);
             let records = TriangleRecords {
                 count,
-                corners,
+                nodes: corners,
                 min_node: first,
                 node_end: below,
                 regions,
@@ -82,9 +82,9 @@ impl ElementRecords<'_> {
                 };
             }
             let region = regions.map(|region| region.of(index));
-            let tag = self.first_tag.saturating_add(index as u64);
+            let id = self.first_tag.saturating_add(index as u64);
             let cursor = place(index, visitor);
-            visitor.element(&cursor, &Element { tag, kind, region, nodes })?;
+            visitor.element(&cursor, &Element { id, kind, region, nodes })?;
         }
         Ok(())
     }

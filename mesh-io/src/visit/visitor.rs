@@ -5,7 +5,7 @@ use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::items::{
-    Centers, Element, GroupScope, Kind, PeriodicNodes, PointNumbers, RegionAttribute,
+    CellKind, Centers, Element, GroupScope, PeriodicNodes, PointNumbers, RegionAttribute,
 };
 use crate::visit::records::{NodeRecords, TriangleRecords};
 
@@ -26,7 +26,7 @@ pub(crate) trait MeshVisitor {
     fn expect_nodes(&mut self, _count: usize) {}
     /// Takes a node that was just read. `x_at` is the offset of x, and `at` are x and y. `dimension` is that of the
     /// model entity it lies on if the file tells it, else 2.
-    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]);
+    fn node(&mut self, cursor: &Cursor<'_>, id: u64, dimension: u64, x_at: usize, at: [f64; 2]);
     /// Takes nodes of a binary list from the first one on. Returns how many it took; the caller hands the others to
     /// [`node`](Self::node).
     fn node_records(&mut self, _records: &NodeRecords<'_>) -> usize {
@@ -51,26 +51,26 @@ pub(crate) trait MeshVisitor {
     fn polygon(
         &mut self,
         cursor: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         region: [i64; 2],
         corners: &[u64],
     ) -> Result<(), ReadError> {
         corners.iter().try_for_each(|&corner| {
             let nodes = [corner, 0, 0, 0];
-            self.element(cursor, &Element { tag, kind: Kind::Corner, region, nodes })
+            self.element(cursor, &Element { id, kind: CellKind::Polygon, region, nodes })
         })
     }
     /// Takes a line through any number of nodes, which are constraints.
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         region: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
         nodes.iter().try_for_each(|&node| {
             let nodes = [node, 0, 0, 0];
-            self.element(cursor, &Element { tag, kind: Kind::Point, region, nodes })
+            self.element(cursor, &Element { id, kind: CellKind::Point, region, nodes })
         })
     }
     /// Returns whether the visitor uses pairs of periodic nodes. If not, readers may leave out calls of

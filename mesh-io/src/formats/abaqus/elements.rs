@@ -11,7 +11,7 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::items::{Element, GroupScope, Kind};
+use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -192,7 +192,7 @@ impl ElementGroups {
                 send_scopes(&self.names, &mut told, &within[..own], visitor);
                 let section = self.sections.get(place as usize).copied().unwrap_or(0);
                 let region = [*set, i64::from(section)];
-                visitor.element(cursor, &Element { tag, kind, region, nodes })?;
+                visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
                 within = &within[own..];
                 while let [(element, surface, label), rest @ ..] = sides
                     && *element == place
@@ -222,13 +222,13 @@ impl ElementGroups {
             let (name, at) = &self.surfaces[of_surface[0].0 as usize];
             cursor.seek(*at);
             visitor.group_scopes(&[GroupScope {
-                what: "surface",
+                kind: "surface",
                 label: Label::name(name),
                 dimension: Some(1),
             }]);
             for &(_, [a, b]) in of_surface {
-                let (kind, nodes) = (Kind::Line, [a, b, 0, 0]);
-                visitor.element(&cursor, &Element { tag: 0, kind, region: [0; 2], nodes })?;
+                let (kind, nodes) = (CellKind::Line, [a, b, 0, 0]);
+                visitor.element(&cursor, &Element { id: 0, kind, region: [0; 2], nodes })?;
             }
         }
         visitor.group_scopes(&[]);
@@ -247,7 +247,7 @@ fn send_scopes<'f>(
     if !groups(told).eq(groups(now)) {
         let within = |group: u32| {
             let label = Label::name(&names[group as usize]);
-            GroupScope { what: "elset", label, dimension: None }
+            GroupScope { kind: "elset", label, dimension: None }
         };
         visitor.group_scopes(&groups(now).map(within).collect::<Vec<_>>());
     }
@@ -262,8 +262,8 @@ fn send_constrained_nodes(
 ) -> Result<u64, ReadError> {
     let (mut count, mut last) = (0, None);
     rows::each_constrained(rows, assembly, |cursor, tag, node| {
-        let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
-        visitor.element(cursor, &Element { tag, kind, region: [0; 2], nodes })?;
+        let (kind, nodes) = (CellKind::Point, [node, 0, 0, 0]);
+        visitor.element(cursor, &Element { id: tag, kind, region: [0; 2], nodes })?;
         count += u64::from(last.replace(tag) != Some(tag));
         Ok(())
     })?;

@@ -6,7 +6,7 @@ use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::integer;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use crate::visit::rows::{all_rows, nodes};
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
@@ -31,13 +31,13 @@ pub(super) fn send_nodes(
     cursor: &mut Cursor<'_>,
     visitor: &mut dyn MeshVisitor,
     heights: &mut ZValues,
-    tags: &mut Option<Vec<u64>>,
+    ids: &mut Option<Vec<u64>>,
     counted: &mut LengthCounts,
 ) -> Result<(), ReadError> {
-    all_rows(cursor, visitor, node, |cursor, visitor, (tag, (x_at, is_long), at, z)| {
-        visitor.node(cursor, tag, 2, x_at, at);
+    all_rows(cursor, visitor, node, |cursor, visitor, (id, (x_at, is_long), at, z)| {
+        visitor.node(cursor, id, 2, x_at, at);
         heights.push(z);
-        tags.iter_mut().for_each(|tags| tags.push(tag));
+        ids.iter_mut().for_each(|ids| ids.push(id));
         counted.all += 1;
         counted.long += u64::from(is_long);
         Ok(())
@@ -52,50 +52,50 @@ const MAX_NUMBER_LENGTH: usize = 20;
 
 #[inline]
 fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
-    let tag = cursor.integer("the number of a node")?;
+    let id = cursor.integer("the number of a node")?;
     let x_at = cursor.at();
     let (mut at, mut is_long) = ([0.0; 2], false);
     for (axis, x) in ['x', 'y'].into_iter().zip(&mut at) {
         if cursor.is_at_end() {
-            let problem = format!("{axis} of node {tag} is left out, which stands for 0");
+            let problem = format!("{axis} of node {id} is left out, which stands for 0");
             return Err(
                 cursor.error(problem, "Write the 0, as there is no place for another value")
             );
         }
         let start = cursor.at();
-        *x = cursor.coordinate(axis, format_args!("node {tag}"))?;
+        *x = cursor.coordinate(axis, format_args!("node {id}"))?;
         is_long |= cursor.at - start > MAX_NUMBER_LENGTH;
     }
-    Ok((tag, (x_at, is_long), at, cursor.z_if_any(format_args!("node {tag}"))?))
+    Ok((id, (x_at, is_long), at, cursor.z_if_any(format_args!("node {id}"))?))
 }
 
 /// Reads the elements of a block, each with its number and nodes, long lists on all threads if `ahead`. A call of `take` that
 /// fails must leave all unchanged.
 pub(super) fn each_element<'a>(
     cursor: &mut Cursor<'a>,
-    kind: Kind,
+    kind: CellKind,
     ahead: bool,
     mut take: impl FnMut(&Cursor<'a>, u64, [u64; 4]) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     if ahead && cursor.is_long() {
         let nowhere = &Cursor::new(cursor.source);
         let plain = |cursor: &mut Cursor<'a>| {
-            let tag = cursor.integer(NUMBER)?;
+            let id = cursor.integer(NUMBER)?;
             let nodes = nodes(cursor, kind)?;
-            check_row_end(cursor, kind, tag)?;
-            Ok((tag, nodes))
+            check_row_end(cursor, kind, id)?;
+            Ok((id, nodes))
         };
-        take_rows(cursor, u64::MAX, plain, |(tag, nodes)| take(nowhere, tag, nodes).is_ok());
+        take_rows(cursor, u64::MAX, plain, |(id, nodes)| take(nowhere, id, nodes).is_ok());
     }
     while cursor.next_row() {
-        let tag = cursor.integer(NUMBER)?;
+        let id = cursor.integer(NUMBER)?;
         let mut nodes = [0; 4];
         for node in &mut nodes[..kind.nodes()] {
             skip_continuation(cursor);
             *node = cursor.integer(format_args!("a vertex of a {}", kind.name()))?;
         }
-        check_row_end(cursor, kind, tag)?;
-        take(cursor, tag, nodes)?;
+        check_row_end(cursor, kind, id)?;
+        take(cursor, id, nodes)?;
     }
     Ok(())
 }
@@ -108,7 +108,7 @@ pub(super) fn each_constrained<'a>(
     mut take: impl FnMut(&Cursor<'a>, u64, u64) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     while cursor.next_row() {
-        let tag = cursor.integer(NUMBER)?;
+        let id = cursor.integer(NUMBER)?;
         loop {
             skip_continuation(cursor);
             if cursor.is_at(b',') {
@@ -121,7 +121,7 @@ pub(super) fn each_constrained<'a>(
             }
             let Some(deck) = assembly else {
                 let node = cursor.integer("a node of an element")?;
-                take(cursor, tag, node)?;
+                take(cursor, id, node)?;
                 continue;
             };
             let word = cursor.token().unwrap_or_default();
@@ -129,7 +129,7 @@ pub(super) fn each_constrained<'a>(
                 memchr::memchr(b'.', word).filter(|&at| deck.is_of_mesh(&word[..at]))
                 && let Some(node) = integer(&word[point + 1..])
             {
-                take(cursor, tag, node)?;
+                take(cursor, id, node)?;
             }
         }
     }
@@ -152,11 +152,11 @@ fn skip_continuation(cursor: &mut Cursor<'_>) {
 
 /// Checks that no node is left in a row. Beams may have another one, which tells their direction.
 #[inline]
-fn check_row_end(cursor: &Cursor<'_>, kind: Kind, tag: u64) -> Result<(), ReadError> {
-    if kind == Kind::Line || cursor.is_at_end() {
+fn check_row_end(cursor: &Cursor<'_>, kind: CellKind, id: u64) -> Result<(), ReadError> {
+    if kind == CellKind::Line || cursor.is_at_end() {
         return Ok(());
     }
     let (kind, nodes) = (kind.name(), kind.nodes());
-    let problem = format!("{kind} {tag} has more nodes than {nodes}");
+    let problem = format!("{kind} {id} has more nodes than {nodes}");
     Err(cursor.error(problem, "Correct the row, or the TYPE of its *ELEMENT"))
 }

@@ -5,7 +5,7 @@ use crate::export::name_rules::{NameRules, distinct};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::precision::short_text;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 /// How many numbers a row of a set has.
@@ -24,10 +24,10 @@ pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
         out.push('\n');
     }
     let kind_of = |cell: usize| match (content.cells.kinds[cell], is_flat) {
-        (Kind::Triangle, true) => "CPS3",
-        (Kind::Triangle, false) => "S3",
-        (Kind::Quadrilateral, true) => "CPS4",
-        (Kind::Quadrilateral, false) => "S4",
+        (CellKind::Triangle, true) => "CPS3",
+        (CellKind::Triangle, false) => "S3",
+        (CellKind::Quadrilateral, true) => "CPS4",
+        (CellKind::Quadrilateral, false) => "S4",
         (_, true) => "T2D2",
         (_, false) => "T3D2",
     };

@@ -50,7 +50,7 @@ impl Boundaries {
         if *self.last.borrow() != own {
             let names = own.iter().flat_map(|&number| &self.all[number].names);
             let within = |(what, name): &'_ (&'static str, String)| GroupScope {
-                what,
+                kind: what,
                 label: Label::Name(name.clone()),
                 dimension: None,
             };

@@ -9,7 +9,7 @@ use crate::error::ReadError;
 use crate::hdf5::{DatasetArray, Datatype, Object};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{Element, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
@@ -52,7 +52,7 @@ impl<'a> File<'a> {
     ) -> Result<(), ReadError> {
         let label = |section| Some(Label::Tag(section));
         visitor.region_attributes(vec![RegionAttribute {
-            what: "section".into(),
+            kind: "section".into(),
             from_dimension: 0,
             label,
         }]);
@@ -139,9 +139,9 @@ impl<'a> File<'a> {
                 *corner = nodes.at(at).ok_or_else(damaged)?;
                 at += 1;
             }
-            let tag = first.saturating_add(element as u64);
-            boundaries.of_element(tag, visitor);
-            let element = Element { tag, kind, region: [number, 0], nodes: corners };
+            let id = first.saturating_add(element as u64);
+            boundaries.of_element(id, visitor);
+            let element = Element { id, kind, region: [number, 0], nodes: corners };
             visitor.element(&place(start), &element)?;
         }
         match at == length {
@@ -150,13 +150,13 @@ impl<'a> File<'a> {
         }
     }
 
-    fn kind(&self, number: i64, section: &'a Object) -> Result<Kind, ReadError> {
+    fn kind(&self, number: i64, section: &'a Object) -> Result<CellKind, ReadError> {
         let cursor = self.cursor(section);
         match number {
-            2 => Ok(Kind::Point),
-            3 => Ok(Kind::Line),
-            5 => Ok(Kind::Triangle),
-            7 => Ok(Kind::Quadrilateral),
+            2 => Ok(CellKind::Point),
+            3 => Ok(CellKind::Line),
+            5 => Ok(CellKind::Triangle),
+            7 => Ok(CellKind::Quadrilateral),
             10..=19 | 23 => Err(volume(&cursor, &format!("elements of the type {number}"))),
             _ => {
                 let problem = format!("elements of the type {number} are not read");

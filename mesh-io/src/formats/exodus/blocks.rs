@@ -7,7 +7,7 @@ use crate::error::ReadError;
 use crate::netcdf::{Items, NumberType, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
@@ -17,7 +17,7 @@ use crate::visit::visitor::MeshVisitor;
 pub(super) struct Block<'a> {
     /// Its place among the blocks, counted from one.
     pub(super) number: usize,
-    pub(super) kind: Kind,
+    pub(super) kind: CellKind,
     /// Whether its first two sides are its faces, as those of shells are.
     pub(super) is_shell: bool,
     /// How many elements stand before it, and how many it has.
@@ -96,10 +96,10 @@ impl<'a> File<'a> {
         let name = String::from_utf8_lossy(given).to_ascii_uppercase();
         let is = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
         let kind = match corners {
-            1 if is(&["SPHERE", "CIRCLE", "POINT", "PARTICLE"]) => Kind::Point,
-            2 if is(&["BAR", "BEAM", "TRUSS", "EDGE", "ROD", "LINE"]) => Kind::Line,
-            3 if is(&["TRI", "SHELL"]) => Kind::Triangle,
-            4 if is(&["QUAD", "SHELL"]) => Kind::Quadrilateral,
+            1 if is(&["SPHERE", "CIRCLE", "POINT", "PARTICLE"]) => CellKind::Point,
+            2 if is(&["BAR", "BEAM", "TRUSS", "EDGE", "ROD", "LINE"]) => CellKind::Line,
+            3 if is(&["TRI", "SHELL"]) => CellKind::Triangle,
+            4 if is(&["QUAD", "SHELL"]) => CellKind::Quadrilateral,
             _ if is(&["TET", "HEX", "PYR", "WEDGE"]) => {
                 return Err(volume(&cursor, &format!("elements of the type {}", quoted(given))));
             }

@@ -71,14 +71,14 @@ impl File<'_> {
                 if !visitor.cell_array(name, 1, true) {
                     continue;
                 }
-                let (mut numbers, mut tags) = (Vec::new(), Vec::new());
+                let (mut numbers, mut ids) = (Vec::new(), Vec::new());
                 for ((block, variable), read) in parts.iter().zip(&mut read) {
                     let steps = read.get_or_insert_with(|| self.steps(variable));
                     let Some(own) = steps.get_mut(step) else { continue };
                     numbers.append(own);
-                    tags.extend(block.before + 1..=block.before + block.count);
+                    ids.extend(block.before + 1..=block.before + block.count);
                 }
-                visitor.cell_numbers(numbers, Some(tags));
+                visitor.cell_numbers(numbers, Some(ids));
             }
         }
     }

@@ -63,7 +63,7 @@ impl FormatReader for Exodus {
         let layout = file.axes()?.send(Format::Exodus, file.nodes, 1, visitor)?;
         let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
         visitor.region_attributes(vec![RegionAttribute {
-            what: "block".into(),
+            kind: "block".into(),
             from_dimension: 0,
             label,
         }]);

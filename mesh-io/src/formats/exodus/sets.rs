@@ -5,7 +5,7 @@ use super::{File, NO_BLOCK};
 use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::{Element, GroupScope, Kind};
+use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 
 impl File<'_> {
@@ -30,16 +30,16 @@ impl File<'_> {
                 return Err(cursor.error(problem, CORRECT));
             };
             let label = Label::Tag(self.id(&ids, number));
-            visitor.group_scopes(&[GroupScope { what: "sideset", label, dimension: Some(1) }]);
+            visitor.group_scopes(&[GroupScope { kind: "sideset", label, dimension: Some(1) }]);
             for (&element, &side) in elements.iter().zip(&sides) {
                 let Some(ends) = self.side(blocks, element, side) else {
                     let problem = format!("side set {number} has side {side} of element {element}");
                     return Err(cursor.error(problem, "There is no such side: correct the set"));
                 };
                 if let Some([a, b]) = ends {
-                    let (kind, nodes) = (Kind::Line, [a, b, 0, 0]);
+                    let (kind, nodes) = (CellKind::Line, [a, b, 0, 0]);
                     // Sides have no number of their own.
-                    let line = Element { tag: 0, kind, region: [NO_BLOCK, 0], nodes };
+                    let line = Element { id: 0, kind, region: [NO_BLOCK, 0], nodes };
                     visitor.element(&cursor, &line)?;
                 }
             }
@@ -61,7 +61,7 @@ impl File<'_> {
             }
         }
         let corners = match block.kind {
-            Kind::Triangle | Kind::Quadrilateral => block.kind.nodes(),
+            CellKind::Triangle | CellKind::Quadrilateral => block.kind.nodes(),
             _ => return Some(None),
         };
         let (nodes, _) = block.element(place - block.before);

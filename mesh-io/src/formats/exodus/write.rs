@@ -7,7 +7,7 @@ use crate::export::content::ContentGroup;
 use crate::export::sides::{pair, sides};
 use crate::export::writer_input::WriterInput;
 use crate::netcdf::write::{NetCdfWriter, Values};
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 
 /// The dimension of time steps.
@@ -15,7 +15,7 @@ const RECORDS: &str = "time_step";
 
 /// Elements of one kind and group.
 struct Block {
-    kind: Kind,
+    kind: CellKind,
     group: Option<u32>,
     cells: Vec<usize>,
 }
@@ -28,12 +28,12 @@ struct SideSet {
 }
 
 /// Returns the Exodus name of a type of elements, and its number of nodes.
-fn type_of(kind: Kind) -> (&'static str, usize) {
+fn type_of(kind: CellKind) -> (&'static str, usize) {
     let name = match kind {
-        Kind::Point | Kind::Corner => "SPHERE",
-        Kind::Line => "BAR2",
-        Kind::Triangle => "TRI3",
-        Kind::Quadrilateral => "QUAD4",
+        CellKind::Point | CellKind::Polygon => "SPHERE",
+        CellKind::Line => "BAR2",
+        CellKind::Triangle => "TRI3",
+        CellKind::Quadrilateral => "QUAD4",
     };
     (name, kind.nodes())
 }
@@ -122,7 +122,7 @@ fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) 
     }
     let mut sets: Vec<SideSet> = Vec::new();
     let mut places: HashMap<u32, usize> = HashMap::new();
-    for line in content.cells.all(Kind::Line).filter(|line| sides.contains(line)) {
+    for line in content.cells.all(CellKind::Line).filter(|line| sides.contains(line)) {
         let (Some(group), &[a, b]) =
             (input.group_numbers.group(content, line), content.cells.of(line))
         else {

@@ -9,7 +9,7 @@ use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
@@ -82,7 +82,7 @@ pub(super) fn elements(
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;
         let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
         let mut taken = 0;
-        if let (Kind::Triangle, Some((block, _))) = (kind, cursor.peek(size, bytes)) {
+        if let (CellKind::Triangle, Some((block, _))) = (kind, cursor.peek(size, bytes)) {
             let field = |at: usize| NumberField::new(block.get(4 * at..), bytes, 4, order);
             let region = |column: usize| match column < groups {
                 true => Region::Field(field(1 + column)),
@@ -90,7 +90,7 @@ pub(super) fn elements(
             };
             taken = visitor.triangle_records(&TriangleRecords {
                 count: size as usize,
-                corners: field(1 + groups),
+                nodes: field(1 + groups),
                 min_node: 0,
                 node_end: u64::MAX,
                 regions: [region(0), region(1)],
@@ -110,7 +110,7 @@ pub(super) fn elements(
             for node in &mut nodes[..kind.nodes()] {
                 *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
             }
-            visitor.element(cursor, &Element { tag, kind, region, nodes })?;
+            visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
         }
         done += size;
     }

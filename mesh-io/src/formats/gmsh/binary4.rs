@@ -10,7 +10,7 @@ use crate::binary::number_field::NumberField;
 use crate::edit::numbers::Offsets;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Element, Kind, PointNumbers};
+use crate::visit::items::{CellKind, Element, PointNumbers};
 use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
 use crate::visit::storage::ArrayLocation;
 use crate::visit::visitor::MeshVisitor;
@@ -107,12 +107,12 @@ pub(super) fn elements(
         block_fits(cursor, size, count - done, "elements")?;
         let row = tag_bytes * (1 + kind.nodes());
         let mut taken = 0;
-        if let (Kind::Triangle, Some((bytes, _))) = (kind, cursor.peek(size, row)) {
+        if let (CellKind::Triangle, Some((bytes, _))) = (kind, cursor.peek(size, row)) {
             let field = |at: usize| NumberField::new(bytes.get(at..), row, tag_bytes, order);
             let natural = [(field(0), FieldRule::Natural)];
             taken = visitor.triangle_records(&TriangleRecords {
                 count: size as usize,
-                corners: field(tag_bytes),
+                nodes: field(tag_bytes),
                 min_node: 0,
                 node_end: u64::MAX,
                 regions: region.map(Region::Same),
@@ -135,7 +135,7 @@ pub(super) fn elements(
                 nodes[..kind.nodes()].fill_with(|| words.size());
                 tag
             };
-            visitor.element(cursor, &Element { tag, kind, region, nodes })?;
+            visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
         }
         done += size;
     }

@@ -8,7 +8,7 @@ use crate::content::label::Label;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::in_quotes;
-use crate::visit::items::{GroupScope, Kind};
+use crate::visit::items::{CellKind, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
@@ -55,9 +55,10 @@ struct Entity {
 
 impl Model {
     /// Returns the groups of an entity's elements. Physical groups are known only after `$Entities` was read.
-    pub(super) fn groups_of(&self, kind: Kind, entity: i64) -> Vec<GroupScope<'static>> {
+    pub(super) fn groups_of(&self, kind: CellKind, entity: i64) -> Vec<GroupScope<'static>> {
         let known = self.entities.get(&(kind.dimension(), entity));
-        let within = |what, tag: i64| GroupScope { what, label: Label::Tag(tag), dimension: None };
+        let within =
+            |what, tag: i64| GroupScope { kind: what, label: Label::Tag(tag), dimension: None };
         let physical = known.into_iter().flat_map(|entity| &entity.physical);
         let mut groups: Vec<_> = physical.map(|&tag| within("physical", tag)).collect();
         let entity = known.map_or(entity, |entity| entity.tag);

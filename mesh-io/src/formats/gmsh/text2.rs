@@ -82,5 +82,5 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
             return Err(cursor.error(problem, CORRECT));
         }
     }
-    Ok(Element { tag, kind, region, nodes: node_tags(cursor, kind, tag)? })
+    Ok(Element { id: tag, kind, region, nodes: node_tags(cursor, kind, tag)? })
 }

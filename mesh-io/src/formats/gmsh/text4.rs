@@ -151,7 +151,7 @@ pub(super) fn elements(
         block_fits(cursor, size, count - done, "elements")?;
         let read = |cursor: &mut Cursor<'_>, _| {
             let tag = cursor.integer("an element tag")?;
-            Ok(Element { tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
+            Ok(Element { id: tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
         };
         let progress = Progress::new(done, count, "elements");
         each(cursor, size, progress, visitor, read, |cursor, visitor, _, element| {

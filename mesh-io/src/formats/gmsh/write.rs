@@ -3,17 +3,17 @@
 use crate::export::content::DataArray;
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 /// Returns gmsh's number for a kind of element.
-fn kind_of(kind: Kind) -> u32 {
+fn kind_of(kind: CellKind) -> u32 {
     match kind {
-        Kind::Point => 15,
-        Kind::Line => 1,
-        Kind::Triangle => 2,
-        Kind::Quadrilateral | Kind::Corner => 3,
+        CellKind::Point => 15,
+        CellKind::Line => 1,
+        CellKind::Triangle => 2,
+        CellKind::Quadrilateral | CellKind::Polygon => 3,
     }
 }
 

@@ -55,7 +55,7 @@ impl Families {
     /// Tells that the elements that follow are of a family.
     pub(super) fn of_elements(&self, family: i64, visitor: &mut dyn MeshVisitor) {
         let within = |&group: &usize| GroupScope {
-            what: "group",
+            kind: "group",
             label: Label::name(&self.names[group]),
             dimension: None,
         };

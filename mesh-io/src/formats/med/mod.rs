@@ -16,7 +16,7 @@ use crate::formats::axes::{Axes, BinaryReals};
 use crate::hdf5::{Datatype, Hdf5, Object, SIGNATURE};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{Kind, RegionAttribute};
+use crate::visit::items::{CellKind, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
@@ -103,7 +103,7 @@ impl<'a> File<'a> {
         let layout = axes.send(Format::Med, count, 1, visitor)?;
         let label = |family| (family != 0).then_some(Label::Tag(family));
         visitor.region_attributes(vec![RegionAttribute {
-            what: "family".into(),
+            kind: "family".into(),
             from_dimension: 0,
             label,
         }]);
@@ -183,10 +183,10 @@ impl<'a> File<'a> {
     ) -> Result<(), ReadError> {
         let cursor = self.cursor(object);
         let kind = match name {
-            b"PO1" => Kind::Point,
-            b"SE2" => Kind::Line,
-            b"TR3" => Kind::Triangle,
-            b"QU4" => Kind::Quadrilateral,
+            b"PO1" => CellKind::Point,
+            b"SE2" => CellKind::Line,
+            b"TR3" => CellKind::Triangle,
+            b"QU4" => CellKind::Quadrilateral,
             _ if [&b"TE"[..], b"HE", b"PE", b"PY", b"POE"]
                 .iter()
                 .any(|kind| name.starts_with(kind)) =>

@@ -14,7 +14,7 @@ use crate::format::Format;
 use crate::formats::medit::required::send_required_vertices;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
-use crate::visit::items::{GroupScope, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, GroupScope, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::records::{NodeIds, NodeRecords, Region};
 use crate::visit::rows::volume;
@@ -38,7 +38,7 @@ struct Widths {
 struct List<'a> {
     cursor: Cursor<'a>,
     bytes: &'a [u8],
-    kind: Kind,
+    kind: CellKind,
     /// Whether each element has a reference after its vertices.
     referred: bool,
     /// The name of the list in text files.
@@ -121,11 +121,11 @@ impl FormatReader for MeditBinary {
                 }
                 keyword => {
                     let of = match keyword {
-                        5 => Some((Kind::Line, true, "Edges")),
-                        6 => Some((Kind::Triangle, true, "Triangles")),
-                        7 => Some((Kind::Quadrilateral, true, "Quadrilaterals")),
-                        13 => Some((Kind::Point, false, "Corners")),
-                        15 => Some((Kind::Point, false, "RequiredVertices")),
+                        5 => Some((CellKind::Line, true, "Edges")),
+                        6 => Some((CellKind::Triangle, true, "Triangles")),
+                        7 => Some((CellKind::Quadrilateral, true, "Quadrilaterals")),
+                        13 => Some((CellKind::Point, false, "Corners")),
+                        15 => Some((CellKind::Point, false, "RequiredVertices")),
                         _ => None,
                     };
                     if of.is_none() && visitor.asks_for_data() {
@@ -166,7 +166,7 @@ impl FormatReader for MeditBinary {
         for list in &lists {
             elements(list, widths, visitor)?;
         }
-        lists.retain(|list| list.kind == Kind::Triangle);
+        lists.retain(|list| list.kind == CellKind::Triangle);
         let size = 4 * widths.integer;
         let counts: Vec<u64> = lists.iter().map(|list| (list.bytes.len() / size) as u64).collect();
         send_required_vertices(required, &counts, visitor, |list, index| {
@@ -226,8 +226,8 @@ fn vertices(
     let start = cursor.last_taken();
     let field = |at: usize| NumberField::new(bytes.get(at..), item, size, widths.order);
     let count = bytes.len() / item;
-    let (x, y, tags) = (field(0), field(size), NodeIds::Consecutive(1));
-    NodeRecords { count, x, y, x_offset: start, ids: tags }.send(
+    let (x, y, ids) = (field(0), field(size), NodeIds::Consecutive(1));
+    NodeRecords { count, x, y, x_offset: start, ids }.send(
         visitor,
         |index| Cursor::at_byte_offset(cursor.source, start + index * item),
         |index| {
@@ -259,7 +259,7 @@ fn elements(
 ) -> Result<(), ReadError> {
     let List { cursor, bytes, kind, referred, name } = list;
     // Points have no reference. The list they stand in is their group.
-    let within = GroupScope { what: "list", label: Label::name(name.as_bytes()), dimension: None };
+    let within = GroupScope { kind: "list", label: Label::name(name.as_bytes()), dimension: None };
     visitor.group_scopes(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;

@@ -4,7 +4,7 @@ use crate::content::label::Label;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Element, GroupScope, Kind};
+use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 
 /// Hands on the corners of the required triangles. `required` are the numbers of the triangles, counted from 1 through all
@@ -23,14 +23,14 @@ pub(super) fn send_required_vertices<'a>(
     required.dedup();
     visitor.remark(Remark::elements(required.len() as u64, "required triangle", ""));
     let label = Label::name(b"RequiredTriangles");
-    visitor.group_scopes(&[GroupScope { what: "list", label, dimension: None }]);
+    visitor.group_scopes(&[GroupScope { kind: "list", label, dimension: None }]);
     let mut before = 0;
     for (list, &count) in counts.iter().enumerate() {
         for &tag in required.iter().filter(|&&tag| tag > before && tag - before <= count) {
             let (place, nodes, reference) = triangle(list, tag - before - 1)?;
             for &corner in &nodes[..3] {
-                let (kind, nodes, region) = (Kind::Corner, [corner, 0, 0, 0], [reference, 0]);
-                visitor.element(&place, &Element { tag, kind, region, nodes })?;
+                let (kind, nodes, region) = (CellKind::Polygon, [corner, 0, 0, 0], [reference, 0]);
+                visitor.element(&place, &Element { id: tag, kind, region, nodes })?;
             }
         }
         before += count;

@@ -13,7 +13,7 @@ use crate::formats::medit::required::send_required_vertices;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
-use crate::visit::items::{Element, GroupScope, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
 use crate::visit::storage::CoordinateStorage;
@@ -31,7 +31,7 @@ struct List<'a> {
     /// The cursor before the first element.
     cursor: Cursor<'a>,
     count: u64,
-    kind: Kind,
+    kind: CellKind,
     keyword: &'a [u8],
 }
 
@@ -40,9 +40,13 @@ impl<'a> List<'a> {
     fn send(self, visitor: &mut dyn MeshVisitor) -> Result<Cursor<'a>, ReadError> {
         let List { mut cursor, count, kind, keyword } = self;
         // Points have no reference. The list they stand in is their group.
-        let list = GroupScope { what: "list", label: Label::name(keyword), dimension: None };
-        visitor.group_scopes(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
-        if kind == Kind::Triangle {
+        let list = GroupScope { kind: "list", label: Label::name(keyword), dimension: None };
+        visitor.group_scopes(if kind == CellKind::Point {
+            std::slice::from_ref(&list)
+        } else {
+            &[]
+        });
+        if kind == CellKind::Triangle {
             visitor.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
         }
         each_row(
@@ -52,7 +56,7 @@ impl<'a> List<'a> {
             visitor,
             |cursor| element(cursor, kind),
             |cursor, visitor, done, (nodes, reference)| {
-                let element = Element { tag: done + 1, kind, region: [reference, 0], nodes };
+                let element = Element { id: done + 1, kind, region: [reference, 0], nodes };
                 visitor.element(cursor, &element)
             },
         )?;
@@ -138,7 +142,7 @@ impl FormatReader for Medit {
             let problem = "it has no list of Vertices";
             return Err(source.error(problem, "Save the mesh again"));
         }
-        lists.retain(|list| list.kind == Kind::Triangle);
+        lists.retain(|list| list.kind == CellKind::Triangle);
         let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
         // The list and the index in it of the next triangle.
         let mut next = (0, 0);
@@ -149,7 +153,7 @@ impl FormatReader for Medit {
             let List { cursor, count, .. } = &mut lists[list];
             loop {
                 cursor.row(next.1, *count, "elements")?;
-                let triangle = |cursor: &mut Cursor<'_>| element(cursor, Kind::Triangle);
+                let triangle = |cursor: &mut Cursor<'_>| element(cursor, CellKind::Triangle);
                 let (nodes, reference) = cursor.item(triangle, &mut None)?;
                 next.1 += 1;
                 if next.1 > index {
@@ -177,12 +181,12 @@ fn is_of_higher_order(keyword: &[u8]) -> bool {
     kind_of(elements).is_some()
 }
 
-fn kind_of(keyword: &[u8]) -> Option<Kind> {
+fn kind_of(keyword: &[u8]) -> Option<CellKind> {
     match keyword {
-        b"Corners" | b"RequiredVertices" => Some(Kind::Point),
-        b"Edges" => Some(Kind::Line),
-        b"Triangles" => Some(Kind::Triangle),
-        b"Quadrilaterals" => Some(Kind::Quadrilateral),
+        b"Corners" | b"RequiredVertices" => Some(CellKind::Point),
+        b"Edges" => Some(CellKind::Line),
+        b"Triangles" => Some(CellKind::Triangle),
+        b"Quadrilaterals" => Some(CellKind::Quadrilateral),
         _ => None,
     }
 }
@@ -247,10 +251,10 @@ fn vertices(
 
 /// Reads the nodes and the reference of an element. Points have no reference.
 #[inline]
-fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<([u64; 4], i64), ReadError> {
+fn element(cursor: &mut Cursor<'_>, kind: CellKind) -> Result<([u64; 4], i64), ReadError> {
     let nodes = nodes(cursor, kind)?;
     let reference = match kind {
-        Kind::Point => 0,
+        CellKind::Point => 0,
         _ => cursor.signed("the reference of an element")?,
     };
     Ok((nodes, reference))

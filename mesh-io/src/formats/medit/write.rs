@@ -2,7 +2,7 @@
 
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 /// A list of elements: its name, its keyword in binary files, how many numbers each element has, and the numbers.
@@ -28,7 +28,7 @@ impl Medit {
         let mut references = input.vertex_group_numbers();
         // Points are written as references of their vertices, except those of the format's own lists.
         let is_listed = |cell: usize| input.group(cell).is_some_and(|group| group.kind == "list");
-        for cell in input.all(Kind::Point).filter(|&cell| !is_listed(cell)) {
+        for cell in input.all(CellKind::Point).filter(|&cell| !is_listed(cell)) {
             references[content.cells.of(cell)[0] as usize] = input.group_number(cell);
         }
         let places =
@@ -39,13 +39,13 @@ impl Medit {
                 let own = input.group(*cell).and_then(|group| group.name());
                 is_listed(*cell) && own == Some(name)
             };
-            let numbers = input.all(Kind::Point).filter(is_of).flat_map(places).collect();
+            let numbers = input.all(CellKind::Point).filter(is_of).flat_map(places).collect();
             lists.push(List { name, keyword, width: 1, numbers });
         }
         for (kind, name, keyword) in [
-            (Kind::Line, "Edges", 5),
-            (Kind::Triangle, "Triangles", 6),
-            (Kind::Quadrilateral, "Quadrilaterals", 7),
+            (CellKind::Line, "Edges", 5),
+            (CellKind::Triangle, "Triangles", 6),
+            (CellKind::Quadrilateral, "Quadrilaterals", 7),
         ] {
             let numbers =
                 input.all(kind).flat_map(|cell| places(cell).chain([input.group_number(cell)]));
@@ -120,12 +120,12 @@ fn meshb(input: &WriterInput<'_>, medit: &Medit, version: i32) -> Vec<u8> {
 
 pub(crate) fn write_freefem(input: &WriterInput<'_>) -> String {
     let points = input.content.points.len();
-    let counts = [points, input.count(Kind::Triangle), input.count(Kind::Line)];
+    let counts = [points, input.count(CellKind::Triangle), input.count(CellKind::Line)];
     let mut out = format!("{} {} {}\n", counts[0], counts[1], counts[2]);
     for (vertex, label) in input.vertex_group_numbers().into_iter().enumerate() {
         put!(out, "{} {label}\n", input.xy(vertex));
     }
-    for kind in [Kind::Triangle, Kind::Line] {
+    for kind in [CellKind::Triangle, CellKind::Line] {
         for cell in input.all(kind) {
             put!(out, "{} {}\n", input.positions(cell, 1), input.group_number(cell));
         }

@@ -8,7 +8,7 @@ use crate::text::card;
 use crate::text::card::{CardLine, Name, name_bytes};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
-use crate::visit::items::{Element, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::rows::{all_rows, volume};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashSet};
@@ -74,16 +74,16 @@ fn send_constrained_nodes(
     let mut there = BTreeSet::new();
     let cursor = &mut rows.clone();
     all_rows(cursor, visitor, node, |_, _, card| {
-        if let Card::Node(tag) = card
-            && held.contains(&tag)
+        if let Card::Node(id) = card
+            && held.contains(&id)
         {
-            there.insert(tag);
+            there.insert(id);
         }
         Ok(())
     })?;
-    there.into_iter().try_for_each(|tag| {
-        let nodes = [tag, 0, 0, 0];
-        visitor.element(cursor, &Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes })
+    there.into_iter().try_for_each(|id| {
+        let nodes = [id, 0, 0, 0];
+        visitor.element(cursor, &Element { id: 0, kind: CellKind::Point, region: [0; 2], nodes })
     })
 }
 
@@ -91,9 +91,9 @@ fn send_constrained_nodes(
 fn node(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let line = CardLine::starting_at(cursor.bytes, cursor.row_range().start);
     let name = line.name();
-    let tag = line.fields().next().filter(|_| name_bytes(&name) == b"GRID");
-    let tag = tag.and_then(|field| integer(cursor.bytes[field].trim_ascii()));
-    Ok(tag.map_or(Card::Other(name), Card::Node))
+    let id = line.fields().next().filter(|_| name_bytes(&name) == b"GRID");
+    let id = id.and_then(|field| integer(cursor.bytes[field].trim_ascii()));
+    Ok(id.map_or(Card::Other(name), Card::Node))
 }
 
 /// Reads a card if it is one of elements.
@@ -110,7 +110,7 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let mut next = || words.next().unwrap_or_default();
     let (kind, has_property) = match class {
         Class::Of(kind) => (kind, true),
-        Class::Line => (Kind::Line, false),
+        Class::Line => (CellKind::Line, false),
         Class::Constraining(fields) => {
             let words: Vec<&[u8]> = words.take(1 + fields[fields.len() - 1]).collect();
             let node = |&field: &usize| words.get(field).and_then(|word| integer(word));
@@ -124,18 +124,18 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
             return Err(cursor.error(problem, "Save linear elements (CTRIA3, CQUAD4)"));
         }
     };
-    let tag = whole(cursor, next(), format_args!("the number of a {}", kind.name()))?;
+    let id = whole(cursor, next(), format_args!("the number of a {}", kind.name()))?;
     let property = match has_property.then(&mut next) {
         None => 0,
         // It is called as the element is.
-        Some(b"") => tag,
-        Some(word) => whole(cursor, word, format_args!("the property of {} {tag}", kind.name()))?,
+        Some(b"") => id,
+        Some(word) => whole(cursor, word, format_args!("the property of {} {id}", kind.name()))?,
     };
     let mut nodes = [0; 4];
     for node in &mut nodes[..kind.nodes()] {
-        *node = whole(cursor, next(), format_args!("a vertex of {} {tag}", kind.name()))?;
+        *node = whole(cursor, next(), format_args!("a vertex of {} {id}", kind.name()))?;
     }
-    Ok(Card::Element(Element { tag, kind, region: [property.cast_signed(), 0], nodes }))
+    Ok(Card::Element(Element { id, kind, region: [property.cast_signed(), 0], nodes }))
 }
 
 /// Lists the nodes of a rigid element.

@@ -23,7 +23,7 @@ enum Card {
 }
 
 struct Node {
-    tag: u64,
+    id: u64,
     /// The offset of x.
     x_at: usize,
     at: [f64; 2],
@@ -77,12 +77,12 @@ pub(super) fn send(
     let cursor = &mut rows.clone();
     all_rows(cursor, visitor, card, |cursor, visitor, card| {
         match card {
-            Card::Node(Node { tag, x_at, at, z, field_width: room, is_of_default }) => {
-                visitor.node(cursor, tag, 2, x_at, at);
+            Card::Node(Node { id, x_at, at, z, field_width: room, is_of_default }) => {
+                visitor.node(cursor, id, 2, x_at, at);
                 heights.push(z);
                 rooms.add(room);
                 count += 1;
-                first_at = first_at.or(is_of_default.then_some((x_at, tag)));
+                first_at = first_at.or(is_of_default.then_some((x_at, id)));
             }
             Card::System(own) => system = own,
             Card::Other => {}
@@ -94,8 +94,8 @@ pub(super) fn send(
         return Err(cursor.source.error(problem, "Save the mesh with its nodes and elements"));
     }
     cursor.check_vertex_count(count)?;
-    if let (1.., Some((at, tag))) = (system, first_at) {
-        return Err(in_system(&Cursor::on_line_of(cursor.source, at), tag, system));
+    if let (1.., Some((at, id))) = (system, first_at) {
+        return Err(in_system(&Cursor::on_line_of(cursor.source, at), id, system));
     }
     visitor.end_nodes(cursor)?;
     let (precision, longer) = rooms.precision();
@@ -146,21 +146,21 @@ fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Ca
         Some(field) => bytes[field.clone()].trim_ascii(),
         None => &[],
     };
-    let tag = whole(cursor, word(&next()), "the number of a node")?;
+    let id = whole(cursor, word(&next()), "the number of a node")?;
     let system = next();
     let system = match word(&system) {
         b"" => None,
-        system => Some(whole(cursor, system, format_args!("the coordinate system of node {tag}"))?),
+        system => Some(whole(cursor, system, format_args!("the coordinate system of node {id}"))?),
     };
     if let Some(system @ 1..) = system {
-        return Err(in_system(cursor, tag, system));
+        return Err(in_system(cursor, id, system));
     }
     let (mut x_at, mut at, mut longest) = (0, [0.0; 2], 0);
     for (axis, x) in ['x', 'y'].into_iter().zip(&mut at) {
         let field = next();
         let Some(start) = field.as_ref().map(|field| field.start) else {
             let problem = format!(
-                "{axis} of node {tag} is left out at the end of its row, which stands for 0"
+                "{axis} of node {id} is left out at the end of its row, which stands for 0"
             );
             let remedy = "Write the 0, as there is no place for another value";
             return Err(cursor.error(problem, remedy));
@@ -171,7 +171,7 @@ fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Ca
         let own = word(&field);
         longest = longest.max(own.len());
         *x = number(own).filter(|x| x.is_finite()).ok_or_else(|| {
-            cursor.unusable(Some(own), format_args!("{axis} of node {tag}"), "a finite number")
+            cursor.unusable(Some(own), format_args!("{axis} of node {id}"), "a finite number")
         })?;
     }
     // In large field it is mostly in the next line.
@@ -180,7 +180,7 @@ fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Ca
     let of_z = word(&z);
     longest = longest.max(of_z.len());
     let height = number(of_z)
-        .ok_or_else(|| cursor.unusable(Some(of_z), format_args!("z of node {tag}"), "a number"))?;
+        .ok_or_else(|| cursor.unusable(Some(of_z), format_args!("z of node {id}"), "a number"))?;
     let z = z.map_or(NO_Z, |z| (z.start, height));
     let given = if line.is_free { longest } else { 0 };
     let size = match given {
@@ -189,7 +189,7 @@ fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Ca
         _ => usize::from(line.is_large),
     };
     let room = FieldWidth { is_free: line.is_free, size };
-    Ok(Card::Node(Node { tag, x_at, at, z, field_width: room, is_of_default: system.is_none() }))
+    Ok(Card::Node(Node { id, x_at, at, z, field_width: room, is_of_default: system.is_none() }))
 }
 
 /// Reads the coordinate system that GRDSET names.
@@ -204,8 +204,8 @@ fn default_system(cursor: &Cursor<'_>, line: CardLine<'_>) -> Result<Card, ReadE
 }
 
 #[cold]
-fn in_system(cursor: &Cursor<'_>, tag: u64, system: u64) -> ReadError {
-    let problem = format!("node {tag} is in the coordinate system {system}, not in the basic one");
+fn in_system(cursor: &Cursor<'_>, id: u64, system: u64) -> ReadError {
+    let problem = format!("node {id} is in the coordinate system {system}, not in the basic one");
     cursor.error(problem, "Write the nodes in the basic system, with CP blank or 0")
 }
 

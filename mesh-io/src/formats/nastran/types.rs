@@ -1,13 +1,13 @@
 //! The cards of elements, by their names.
 
 use crate::text::card::{Name, name_bytes};
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 
 /// What elements are in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Class {
     /// Elements with their nodes behind their number and their property.
-    Of(Kind),
+    Of(CellKind),
     /// Lines with their nodes behind their number, without a property.
     Line,
     /// Elements that hold the nodes which are in these fields. The number of the element is in field 0.
@@ -34,12 +34,12 @@ pub(super) enum RigidFields {
 pub(super) fn class(name: &Name) -> Option<Class> {
     Some(match name_bytes(name) {
         b"CTRIA3" | b"CTRIAR" | b"CTRIA1" | b"CTRIA2" | b"CTRMEM" | b"CTRPLT" | b"CTRBSC"
-        | b"CPLSTN3" | b"CPLSTS3" | b"CTRAX3" => Class::Of(Kind::Triangle),
+        | b"CPLSTN3" | b"CPLSTS3" | b"CTRAX3" => Class::Of(CellKind::Triangle),
         b"CQUAD4" | b"CQUADR" | b"CQUAD1" | b"CQUAD2" | b"CQDMEM" | b"CQDMEM1" | b"CQDMEM2"
         | b"CQDPLT" | b"CSHEAR" | b"CTWIST" | b"CPLSTN4" | b"CPLSTS4" | b"CQUADX4" => {
-            Class::Of(Kind::Quadrilateral)
+            Class::Of(CellKind::Quadrilateral)
         }
-        b"CBAR" | b"CBEAM" | b"CROD" | b"CTUBE" | b"CBEND" => Class::Of(Kind::Line),
+        b"CBAR" | b"CBEAM" | b"CROD" | b"CTUBE" | b"CBEND" => Class::Of(CellKind::Line),
         b"CONROD" | b"PLOTEL" => Class::Line,
         b"CONM1" | b"CONM2" => Class::Constraining(&[1]),
         b"CELAS1" | b"CELAS2" | b"CMASS1" | b"CMASS2" | b"CDAMP1" | b"CDAMP2" => {

@@ -10,7 +10,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
-use crate::visit::items::{Element, Kind, PointNumbers};
+use crate::visit::items::{CellKind, Element, PointNumbers};
 use crate::visit::reader::FormatReader;
 use crate::visit::storage::{ArrayLocation, CoordinateStorage};
 use crate::visit::visitor::MeshVisitor;
@@ -221,19 +221,19 @@ impl Items {
         let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
         let mut heights = ZValues::new(visitor);
         let mut data = Data::new(list, z, visitor);
-        let mut tag = self.plain_vertices(cursor, list, x, z, &mut heights, visitor);
-        self.each(cursor, list, tag, |place, values, places| {
+        let mut id = self.plain_vertices(cursor, list, x, z, &mut heights, visitor);
+        self.each(cursor, list, id, |place, values, places| {
             data.see(values, places);
             if let Some(z) = z {
                 heights.push((places[z], values[z][0]));
             }
             let at = [values[x][0], values[y][0]];
             if !at.iter().all(|x| x.is_finite()) {
-                let problem = format!("a coordinate of vertex {tag} is not a finite number");
+                let problem = format!("a coordinate of vertex {id} is not a finite number");
                 return Err(place.error(problem, CORRECT));
             }
-            visitor.node(place, tag, 2, places[x], at);
-            tag += 1;
+            visitor.node(place, id, 2, places[x], at);
+            id += 1;
             Ok(())
         })?;
         visitor.end_nodes(cursor)?;
@@ -264,8 +264,8 @@ impl Items {
         if properties.iter().any(|property| !names.contains(&property.name)) {
             visitor.unsupported("properties of faces or edges");
         }
-        let mut tag = self.plain_triangles(cursor, list, names, visitor);
-        self.each(cursor, list, tag, |place, values, _| {
+        let mut id = self.plain_triangles(cursor, list, names, visitor);
+        self.each(cursor, list, id, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
             // A number that is negative or not whole is no number of a vertex.
@@ -274,20 +274,20 @@ impl Items {
                 false => u64::MAX,
             };
             let region = [0; 2];
-            match Kind::of_polygon(corners.len() as u64) {
+            match CellKind::of_polygon(corners.len() as u64) {
                 Some(kind) => {
                     let mut nodes = [0; 4];
                     for (to, corner) in nodes.iter_mut().zip(&corners) {
                         *to = node(corner);
                     }
-                    visitor.element(place, &Element { tag, kind, region, nodes })?;
+                    visitor.element(place, &Element { id, kind, region, nodes })?;
                 }
                 None => {
                     let corners: Vec<u64> = corners.iter().map(node).collect();
-                    visitor.polygon(place, tag, region, &corners)?;
+                    visitor.polygon(place, id, region, &corners)?;
                 }
             }
-            tag += 1;
+            id += 1;
             Ok(())
         })
     }

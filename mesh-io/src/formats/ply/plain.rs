@@ -4,7 +4,7 @@ use super::header::{Items, List, Number, Property};
 use crate::binary::number_field::NumberField;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
 use crate::visit::rows::nodes;
 use crate::visit::visitor::MeshVisitor;
@@ -41,13 +41,12 @@ impl Items {
                 order,
             )
         };
-        let (count, x_at, tags) = (list.count as usize, start + before(x), NodeIds::Consecutive(0));
+        let (count, x_at, ids) = (list.count as usize, start + before(x), NodeIds::Consecutive(0));
         let heights_of = z.map(|z| (field(z), start + before(z)));
         if heights_of.is_some_and(|(z, _)| !z.all_real(count, f64::is_finite)) {
             return 0;
         }
-        let records =
-            NodeRecords { count, x: field(x), y: field(x + 1), x_offset: x_at, ids: tags };
+        let records = NodeRecords { count, x: field(x), y: field(x + 1), x_offset: x_at, ids };
         let taken = visitor.node_records(&records);
         if let Some((z, at)) = heights_of {
             heights.push_records(z, taken, at);
@@ -96,7 +95,7 @@ impl Items {
         };
         let taken = visitor.triangle_records(&TriangleRecords {
             count: list.count as usize,
-            corners: field(at + length.size(), number),
+            nodes: field(at + length.size(), number),
             min_node: 0,
             node_end: u64::MAX,
             regions: [Region::Same(0); 2],
@@ -121,7 +120,7 @@ fn vertices_of_text(
     }
     let count = list.properties.len();
     let nowhere = &Cursor::new(cursor.source);
-    let mut tag = 0;
+    let mut id = 0;
     let read = |cursor: &mut Cursor<'_>| {
         let point = cursor.point("a vertex")?;
         let mut height = (0, 0.0);
@@ -134,11 +133,11 @@ fn vertices_of_text(
         Ok((point, height))
     };
     let taken = take_rows(cursor, list.count, read, |((x_at, at), height)| {
-        visitor.node(nowhere, tag, 2, x_at, at);
+        visitor.node(nowhere, id, 2, x_at, at);
         if z.is_some() {
             heights.push(height);
         }
-        tag += 1;
+        id += 1;
         true
     });
     if taken > 0 && taken == list.count {
@@ -153,14 +152,14 @@ fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, visitor: &mut dyn Mesh
         return 0;
     }
     let nowhere = &Cursor::new(cursor.source);
-    let mut tag = 0;
+    let mut id = 0;
     let read = |cursor: &mut Cursor<'_>| match cursor.integer("the number of corners")? {
-        3 => nodes(cursor, Kind::Triangle),
+        3 => nodes(cursor, CellKind::Triangle),
         _ => Err(cursor.error("no triangle", CORRECT)),
     };
     let taken = take_rows(cursor, count, read, |nodes| {
-        let element = Element { tag, kind: Kind::Triangle, region: [0; 2], nodes };
-        tag += 1;
+        let element = Element { id, kind: CellKind::Triangle, region: [0; 2], nodes };
+        id += 1;
         visitor.element(nowhere, &element).is_ok()
     });
     if taken > 0 && taken == count {

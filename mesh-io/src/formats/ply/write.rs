@@ -3,7 +3,7 @@
 use crate::export::content::DataArray;
 use crate::export::put;
 use crate::export::writer_input::{WriterInput, text_of};
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 /// Writes PLY as text, with data of one number among the properties of vertices.
@@ -23,8 +23,8 @@ pub(crate) fn write_ply(input: &WriterInput<'_>) -> String {
     };
     put!(out, "element face {}\n", faces().count());
     out.push_str("property list uchar int vertex_indices\n");
-    if input.count(Kind::Line) > 0 {
-        put!(out, "element edge {}\n", input.count(Kind::Line));
+    if input.count(CellKind::Line) > 0 {
+        put!(out, "element edge {}\n", input.count(CellKind::Line));
         out.push_str("property int vertex1\nproperty int vertex2\n");
     }
     out.push_str("end_header\n");
@@ -36,6 +36,6 @@ pub(crate) fn write_ply(input: &WriterInput<'_>) -> String {
     for cell in faces() {
         put!(out, "{} {}\n", content.cells.of(cell).len(), input.positions(cell, 0));
     }
-    input.all(Kind::Line).for_each(|cell| put!(out, "{}\n", input.positions(cell, 0)));
+    input.all(CellKind::Line).for_each(|cell| put!(out, "{}\n", input.positions(cell, 0)));
     out
 }

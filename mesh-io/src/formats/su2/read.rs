@@ -14,7 +14,7 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
-use crate::visit::items::{Element, GroupScope, Kind, RegionAttribute};
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
 use crate::visit::storage::CoordinateStorage;
@@ -35,7 +35,7 @@ struct List<'a> {
 }
 
 /// An element with its nodes. Most fit this small type.
-type Small = (Kind, [u32; 4]);
+type Small = (CellKind, [u32; 4]);
 
 impl FormatReader for Su2 {
     const VERTICES: &'static str = "NPOIN";
@@ -121,14 +121,14 @@ impl FormatReader for Su2 {
         if zones.len() > 1 {
             let label = |zone| Some(Label::Tag(zone + 1));
             visitor.region_attributes(vec![RegionAttribute {
-                what: "zone".into(),
+                kind: "zone".into(),
                 from_dimension: 2,
                 label,
             }]);
         }
         for List { mut cursor, ahead, count, zone, marker } in lists {
             let within =
-                |name| GroupScope { what: "marker", label: Label::name(name), dimension: None };
+                |name| GroupScope { kind: "marker", label: Label::name(name), dimension: None };
             visitor.group_scopes(marker.map(within).as_slice());
             let last = zones.get(zone + 1).copied().unwrap_or(points);
             elements(&mut cursor, &ahead, count, zone, zones[zone]..last, visitor)?;
@@ -147,7 +147,7 @@ fn elements(
     visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     visitor.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
-    let mut take = |cursor: &Cursor<'_>, done: u64, (kind, nodes): (Kind, [u64; 4])| {
+    let mut take = |cursor: &Cursor<'_>, done: u64, (kind, nodes): (CellKind, [u64; 4])| {
         let listed = &nodes[..kind.nodes()];
         if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
             let kind = kind.name();
@@ -155,7 +155,7 @@ fn elements(
             return Err(cursor.error(problem, CORRECT));
         }
         let nodes = nodes.map(|node| node.saturating_add(first));
-        visitor.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
+        visitor.element(cursor, &Element { id: done, kind, region: [zone as i64, 0], nodes })
     };
     let mut done = 0;
     // Errors are dropped here, as reading row by row meets them again.
@@ -230,7 +230,7 @@ fn wrong(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> ReadError {
 
 /// Reads the row of an element, which starts with VTK's number of its type.
 #[inline]
-fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, [u64; 4]), ReadError> {
+fn element(cursor: &mut Cursor<'_>) -> Result<(CellKind, [u64; 4]), ReadError> {
     let number = cursor.integer("the type of an element")?;
     match types::kind_of(number) {
         Some(kind) => Ok((kind, nodes(cursor, kind)?)),

@@ -16,7 +16,7 @@ use crate::formats::triangle::segments::{Segments, listed_vertices};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::float;
-use crate::visit::items::{Element, GroupScope, Kind};
+use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::each_row;
 use crate::visit::storage::CoordinateStorage;
@@ -185,7 +185,10 @@ fn triangles(
     each_row(cursor, count, "triangles", visitor, read, |cursor, visitor, _, triangle| {
         let (tag, [a, b, c], text) = triangle;
         let region = [i64::from(attributes.region(text, visitor)), 0];
-        visitor.element(cursor, &Element { tag, kind: Kind::Triangle, region, nodes: [a, b, c, 0] })
+        visitor.element(
+            cursor,
+            &Element { id: tag, kind: CellKind::Triangle, region, nodes: [a, b, c, 0] },
+        )
     })?;
     visitor.group_scopes(&[]);
     Ok(())
@@ -261,7 +264,7 @@ impl<'a> Attributes<'a> {
         let labels = tokens(text).map(attribute);
         let groups = kinds.iter().zip(labels);
         let groups: Vec<GroupScope<'_>> = groups
-            .map(|(what, label)| GroupScope { what: what.as_str(), label, dimension: None })
+            .map(|(what, label)| GroupScope { kind: what.as_str(), label, dimension: None })
             .collect();
         visitor.group_scopes(&groups);
     }
@@ -299,7 +302,7 @@ fn segments(
         let label = segments.cursor.token().filter(|_| has_markers).and_then(marker);
         if label != last {
             let within = label.iter().map(|label| GroupScope {
-                what: "marker",
+                kind: "marker",
                 label: label.clone(),
                 dimension: None,
             });
@@ -307,7 +310,7 @@ fn segments(
             last = label;
         }
         let nodes = [a, b, 0, 0];
-        let element = Element { tag, kind: Kind::Line, region: [0; 2], nodes };
+        let element = Element { id: tag, kind: CellKind::Line, region: [0; 2], nodes };
         visitor.element(&segments.cursor, &element)?;
     }
     visitor.group_scopes(&[]);

@@ -2,7 +2,7 @@
 
 use crate::export::put;
 use crate::export::writer_input::{WriterInput, text_of};
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 /// Returns the contents of the `.node`, the `.ele`, and the `.poly` if there are lines.
@@ -18,9 +18,9 @@ pub(crate) fn write(input: &WriterInput<'_>) -> Vec<String> {
         markers.iter().for_each(|markers| put!(node, " {}", markers[vertex]));
         node.push('\n');
     }
-    let grouped = input.all(Kind::Triangle).any(|cell| input.group(cell).is_some());
-    let mut ele = format!("{} 3 {}\n", input.count(Kind::Triangle), usize::from(grouped));
-    for (cell, number) in input.all(Kind::Triangle).zip(1..) {
+    let grouped = input.all(CellKind::Triangle).any(|cell| input.group(cell).is_some());
+    let mut ele = format!("{} 3 {}\n", input.count(CellKind::Triangle), usize::from(grouped));
+    for (cell, number) in input.all(CellKind::Triangle).zip(1..) {
         put!(ele, "{number} {}", input.positions(cell, 1));
         if grouped {
             // A fraction cannot be a tag, but it can be the name of a group that stands for an attribute.
@@ -34,12 +34,12 @@ pub(crate) fn write(input: &WriterInput<'_>) -> Vec<String> {
         }
         ele.push('\n');
     }
-    let lines = input.count(Kind::Line);
+    let lines = input.count(CellKind::Line);
     if lines == 0 {
         return vec![node, ele];
     }
     let mut poly = format!("0 2 0 0\n{lines} 1\n");
-    for (cell, number) in input.all(Kind::Line).zip(1..) {
+    for (cell, number) in input.all(CellKind::Line).zip(1..) {
         put!(poly, "{number} {} {}\n", input.positions(cell, 1), input.group_number(cell));
     }
     poly.push_str("0\n");

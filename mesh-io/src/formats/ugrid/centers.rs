@@ -89,7 +89,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
 }
 
 /// Hands on one coordinate of places, one for each element of a table or one for each of its corners. `None` if there are
-/// not so many numbers. `first` is the tag of the first node.
+/// not so many numbers. `first` is the id of the first node.
 fn send<'h, 'a>(
     table: &Table<'h, 'a>,
     first: u64,
@@ -110,15 +110,15 @@ fn send<'h, 'a>(
     let (mut nodes, mut ends, mut of_one) = (Vec::new(), Vec::new(), Vec::new());
     for element in 0..table.count {
         table.nodes(element, &mut of_one).ok()?;
-        let tags = of_one.iter().map(|node| (node + first).saturating_sub(table.first));
+        let ids = of_one.iter().map(|node| (node + first).saturating_sub(table.first));
         if !of_corners {
-            nodes.extend(tags);
+            nodes.extend(ids);
             ends.push(nodes.len());
             continue;
         }
-        let tags: Vec<u64> = tags.collect();
+        let ids: Vec<u64> = ids.collect();
         for corner in 0..each {
-            nodes.extend(tags.get(corner));
+            nodes.extend(ids.get(corner));
             ends.push(nodes.len());
         }
     }

@@ -97,14 +97,14 @@ impl<'h, 'a> Mesh<'h, 'a> {
         visitor: &mut dyn MeshVisitor,
     ) {
         let is_real = matches!(variable.number, NumberType::Real(_));
-        let tags = faces.first..faces.first + faces.count as u64;
+        let ids = faces.first..faces.first + faces.count as u64;
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
                 if visitor.cell_array(&variable.name, parts.components, is_real)
                     && let Some(own) =
                         points.numbers(variable, record, part, parts, variable.missing())
                 {
-                    visitor.cell_numbers(own.numbers, Some(tags.clone().collect()));
+                    visitor.cell_numbers(own.numbers, Some(ids.clone().collect()));
                 }
             }
         }

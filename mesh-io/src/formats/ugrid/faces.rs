@@ -4,7 +4,7 @@ use super::table::Table;
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::netcdf::NumberType;
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{Region, TriangleRecords};
 use crate::visit::visitor::MeshVisitor;
 
@@ -18,7 +18,7 @@ pub(super) fn send(faces: &Table<'_, '_>, visitor: &mut dyn MeshVisitor) -> Resu
         let own = faces.items.own();
         taken = visitor.triangle_records(&TriangleRecords {
             count: faces.count,
-            corners: NumberField::new(Some(own), 3 * width, width, faces.variable.order),
+            nodes: NumberField::new(Some(own), 3 * width, width, faces.variable.order),
             min_node: 0,
             node_end: u64::MAX,
             regions: [Region::Same(0), Region::Same(0)],
@@ -29,18 +29,18 @@ pub(super) fn send(faces: &Table<'_, '_>, visitor: &mut dyn MeshVisitor) -> Resu
     for face in taken..faces.count {
         faces.nodes(face, &mut nodes)?;
         let cursor = &faces.cursor(face);
-        let (tag, region) = (face as u64 + faces.first, [0, 0]);
+        let (id, region) = (face as u64 + faces.first, [0, 0]);
         let kind = match nodes.len() {
-            3 => Kind::Triangle,
-            4 => Kind::Quadrilateral,
+            3 => CellKind::Triangle,
+            4 => CellKind::Quadrilateral,
             _ => {
-                visitor.polygon(cursor, tag, region, &nodes)?;
+                visitor.polygon(cursor, id, region, &nodes)?;
                 continue;
             }
         };
         let mut own = [0; 4];
         own[..nodes.len()].copy_from_slice(&nodes);
-        visitor.element(cursor, &Element { tag, kind, region, nodes: own })?;
+        visitor.element(cursor, &Element { id, kind, region, nodes: own })?;
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::{Element, Kind};
+use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{FieldRule, MIN_PARALLEL_RECORDS, Region, TriangleRecords};
 use crate::visit::rows::volume;
 use crate::visit::visitor::MeshVisitor;
@@ -15,7 +15,7 @@ use std::ops::Range;
 #[derive(Clone, Copy)]
 pub(crate) struct Cell<'a> {
     /// The position of the cell in the file.
-    pub(crate) tag: u64,
+    pub(crate) id: u64,
     /// VTK's number for the type of the cell.
     pub(crate) cell_type: u64,
     pub(crate) points: &'a [u64],
@@ -30,19 +30,19 @@ impl Cell<'_> {
         cursor: &Cursor<'_>,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
-        let Cell { tag, cell_type, points, region } = *self;
-        let kind = kind_of(cursor, tag, cell_type, points.len())?;
+        let Cell { id, cell_type, points, region } = *self;
+        let kind = kind_of(cursor, id, cell_type, points.len())?;
         if kind.nodes() == points.len() {
             let mut nodes = [0; 4];
             nodes[..points.len()].copy_from_slice(points);
-            return visitor.element(cursor, &Element { tag, kind, region, nodes });
+            return visitor.element(cursor, &Element { id, kind, region, nodes });
         }
         match (kind, cell_type) {
-            (Kind::Corner, _) => visitor.polygon(cursor, tag, region, points),
-            (_, types::POLY_LINE) => visitor.polyline(cursor, tag, region, points),
+            (CellKind::Polygon, _) => visitor.polygon(cursor, id, region, points),
+            (_, types::POLY_LINE) => visitor.polyline(cursor, id, region, points),
             _ => points.iter().try_for_each(|&point| {
                 let nodes = [point, 0, 0, 0];
-                visitor.element(cursor, &Element { tag, kind, region, nodes })
+                visitor.element(cursor, &Element { id, kind, region, nodes })
             }),
         }
     }
@@ -83,7 +83,7 @@ impl Triangles<'_> {
         let corners = numbers.field(own.start, stride);
         let taken = visitor.triangle_records(&TriangleRecords {
             count,
-            corners,
+            nodes: corners,
             min_node: first,
             node_end: below,
             regions,
@@ -117,28 +117,30 @@ impl BulkBackoff {
 /// that of a single point.
 fn kind_of(
     cursor: &Cursor<'_>,
-    tag: u64,
+    id: u64,
     cell_type: u64,
     points: usize,
-) -> Result<Kind, ReadError> {
+) -> Result<CellKind, ReadError> {
     let kind = match cell_type {
-        types::EMPTY | types::POLY_VERTEX | types::POLY_LINE => return Ok(Kind::Point),
-        types::POLYGON => return Ok(Kind::of_polygon(points as u64).unwrap_or(Kind::Corner)),
-        types::PIXEL => Kind::Quadrilateral,
+        types::EMPTY | types::POLY_VERTEX | types::POLY_LINE => return Ok(CellKind::Point),
+        types::POLYGON => {
+            return Ok(CellKind::of_polygon(points as u64).unwrap_or(CellKind::Polygon));
+        }
+        types::PIXEL => CellKind::Quadrilateral,
         types::TRIANGLE_STRIP => {
-            let problem = format!("cell {tag} is a strip of triangles");
+            let problem = format!("cell {id} is a strip of triangles");
             return Err(cursor.error(problem, "Save strips as triangles"));
         }
         number if types::is_of_volume(number) => {
             return Err(volume(cursor, "cells of a volume"));
         }
         number => types::kind_of(number).ok_or_else(|| {
-            let problem = format!("cell {tag} is of type {number}, not of first order");
+            let problem = format!("cell {id} is of type {number}, not of first order");
             cursor.error(problem, "Save a mesh of linear triangles (type 5)")
         })?,
     };
     if points != kind.nodes() {
-        let problem = format!("cell {tag}, a {}, has {points} points", kind.name());
+        let problem = format!("cell {id}, a {}, has {points} points", kind.name());
         return Err(cursor.error(problem, CORRECT));
     }
     Ok(kind)

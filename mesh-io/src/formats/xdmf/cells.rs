@@ -84,7 +84,7 @@ impl<'a> File<'a> {
             of_regions.iter().map(|own| RegionAttribute::tags(&own.name, 0)).collect(),
         );
         let words = &mut self.words(item)?;
-        let (mut tag, mut count) = self.triangles(item, words, &regions, visitor);
+        let (mut id, mut count) = self.triangles(item, words, &regions, visitor);
         let mut points = Vec::new();
         while words.has_next() {
             let (cell_type, corners) = match item.kind.as_str() {
@@ -95,23 +95,23 @@ impl<'a> File<'a> {
             let own = words.cursor();
             for _ in 0..corners {
                 if !words.has_next() {
-                    let problem = format!("the Topology ends within cell {tag}");
+                    let problem = format!("the Topology ends within cell {id}");
                     return Err(words.error(problem, CORRECT));
                 }
                 points.push(words.take("a node of a cell")?);
             }
             count += corners;
-            let region = regions.of(tag as usize);
-            Cell { tag, cell_type, points: &points, region }.send(&own, visitor)?;
-            tag += 1;
+            let region = regions.of(id as usize);
+            Cell { id, cell_type, points: &points, region }.send(&own, visitor)?;
+            id += 1;
         }
         let differs = |announced: Option<u64>, found: u64| announced.is_some_and(|n| n != found);
-        if differs(item.elements, tag) || differs(item.announced(), count) {
-            let problem = format!("the Topology ends after {tag} elements of {count} numbers");
+        if differs(item.elements, id) || differs(item.announced(), count) {
+            let problem = format!("the Topology ends after {id} elements of {count} numbers");
             return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
         if visitor.asks_for_data() {
-            self.cell_data(&of_regions, tag, visitor);
+            self.cell_data(&of_regions, id, visitor);
         }
         Ok(())
     }
@@ -149,7 +149,7 @@ impl<'a> File<'a> {
         }
         let found = visitor.triangle_records(&TriangleRecords {
             count: whole.len() / 3,
-            corners: whole.field(0, 3),
+            nodes: whole.field(0, 3),
             min_node: 0,
             node_end: u64::MAX,
             regions: regions.from(0),

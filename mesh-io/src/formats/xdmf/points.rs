@@ -128,9 +128,9 @@ impl File<'_> {
         let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Hdf5Arrays::bytes);
         let mut heights = ZValues::new(visitor);
         let field = |axis: usize| NumberField::new(bytes.get(axis * size..), stride, size, order);
-        let (x, y, tags) = (field(0), field(1), NodeIds::Consecutive(0));
+        let (x, y, ids) = (field(0), field(1), NodeIds::Consecutive(0));
         let place = |index| numbers.cursor(index * stride);
-        NodeRecords { count, x, y, x_offset: start, ids: tags }.send(visitor, place, |index| {
+        NodeRecords { count, x, y, x_offset: start, ids }.send(visitor, place, |index| {
             let problem = format!("a coordinate of point {index} is not a finite number");
             place(index).error(problem, REWRITE)
         })?;

@@ -3,7 +3,7 @@
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
@@ -38,11 +38,11 @@ pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
 fn row(input: &WriterInput<'_>, cell: usize) -> String {
     let vertices = input.positions(cell, 0);
     match input.content.cells.kinds[cell] {
-        Kind::Point => format!("1 1 {vertices}"),
-        Kind::Line => format!("2 2 {vertices}"),
-        Kind::Triangle => format!("4 {vertices}"),
-        Kind::Quadrilateral => format!("5 {vertices}"),
-        Kind::Corner => format!("3 {} {vertices}", input.content.cells.of(cell).len()),
+        CellKind::Point => format!("1 1 {vertices}"),
+        CellKind::Line => format!("2 2 {vertices}"),
+        CellKind::Triangle => format!("4 {vertices}"),
+        CellKind::Quadrilateral => format!("5 {vertices}"),
+        CellKind::Polygon => format!("3 {} {vertices}", input.content.cells.of(cell).len()),
     }
 }
 

@@ -171,7 +171,7 @@ impl Data<'_> {
                 names.push((number + 0.0).to_bits().cast_signed());
             }
         }
-        self.found.columns.push(RegionAttribute { what, from_dimension: 0, label });
+        self.found.columns.push(RegionAttribute { kind: what, from_dimension: 0, label });
         self.found.numbers.push(names);
         Some(())
     }

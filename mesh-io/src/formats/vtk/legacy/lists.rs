@@ -167,12 +167,12 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
 }
 
 impl Cells<'_> {
-    /// Hands the cells to the visitor. `tag` is that of the first cell, and becomes that of the next list's first cell.
+    /// Hands the cells to the visitor. `id` is that of the first cell, and becomes that of the next list's first cell.
     pub(super) fn send(
         &self,
         cursor: &Cursor<'_>,
         regions: &RegionNumbers,
-        tag: &mut u64,
+        id: &mut u64,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         visitor.expect_elements(self.count);
@@ -184,13 +184,13 @@ impl Cells<'_> {
         let mut tries = BulkBackoff::NEW;
         let (mut index, mut end) = (0, 0);
         let mut points = Vec::new();
-        let first = *tag;
+        let first = *id;
         while index < self.count {
-            *tag = first + index as u64;
+            *id = first + index as u64;
             let own = self.points(index, end);
             if own.len() == 3
                 && tries.is_due(index)
-                && let Some(triangles) = self.triangles(index, own.clone(), regions, *tag)
+                && let Some(triangles) = self.triangles(index, own.clone(), regions, *id)
             {
                 let (taken, last) = triangles.send(visitor);
                 tries.done(index, taken);
@@ -201,9 +201,8 @@ impl Cells<'_> {
             }
             points.clear();
             points.extend(self.numbers.range(own.clone()));
-            let region = regions.of(*tag as usize);
-            let cell =
-                Cell { tag: *tag, cell_type: self.cell_type(index), points: &points, region };
+            let region = regions.of(*id as usize);
+            let cell = Cell { id: *id, cell_type: self.cell_type(index), points: &points, region };
             if visitor.allows_parallel() {
                 if cell.send(cursor, visitor).is_err() {
                     self.seek_cell(&mut place, index);
@@ -216,7 +215,7 @@ impl Cells<'_> {
             }
             (index, end) = (index + 1, own.end);
         }
-        *tag = first + self.count as u64;
+        *id = first + self.count as u64;
         Ok(())
     }
 
@@ -226,7 +225,7 @@ impl Cells<'_> {
         index: usize,
         own: Range<usize>,
         regions: &'c RegionNumbers,
-        tag: u64,
+        id: u64,
     ) -> Option<Triangles<'c>> {
         let types = match (&self.types, self.kind) {
             (Some(types), _) => Some(types.field(index, 1)),
@@ -241,7 +240,7 @@ impl Cells<'_> {
             types,
             first: 0,
             below: u64::MAX,
-            regions: regions.from(tag as usize),
+            regions: regions.from(id as usize),
         })
     }
 

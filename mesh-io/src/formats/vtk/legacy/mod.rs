@@ -120,9 +120,9 @@ impl FormatReader for Vtk {
         }
         visitor.region_attributes(regions.columns);
         let regions = RegionNumbers::from_iter(regions.numbers);
-        let mut tag = 0;
+        let mut id = 0;
         for cells in &cells {
-            cells.send(cursor, &regions, &mut tag, visitor)?;
+            cells.send(cursor, &regions, &mut id, visitor)?;
         }
         let (format, numbers) = match binary {
             false => (Format::Vtk, CoordinateEncoding::Text { precision }),

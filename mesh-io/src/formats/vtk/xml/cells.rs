@@ -95,8 +95,8 @@ impl File<'_> {
                     }
                     (start, own) = (end, own + 1);
                     let region = of_cells.of(index);
-                    let tag = first_cell + index as u64;
-                    Cell { tag, cell_type, points: &points, region }.send(cursor, visitor)?;
+                    let id = first_cell + index as u64;
+                    Cell { id, cell_type, points: &points, region }.send(cursor, visitor)?;
                     index += 1;
                 }
             }

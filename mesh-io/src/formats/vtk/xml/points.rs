@@ -126,9 +126,9 @@ impl<'f> Points<'_, 'f> {
         let [x, y, z] = [0, 1, 2].map(|axis| {
             NumberField::new(old.bytes.get(axis * wide..), 3 * wide, wide, wrapping.order)
         });
-        let (tags, count) = (NodeIds::Consecutive(self.count), count as usize);
+        let (ids, count) = (NodeIds::Consecutive(self.count), count as usize);
         let not_finite = |index| cursor.error(format!("point {index} is not finite"), REWRITE);
-        let records = NodeRecords { count, x, y, x_offset: start, ids: tags };
+        let records = NodeRecords { count, x, y, x_offset: start, ids };
         records.send(self.visitor, |_| cursor.clone(), not_finite)?;
         self.heights.push_records(z, count, start + 2 * wide);
         let numbers = CoordinateEncoding::adjacent(wrapping.order, precision);
