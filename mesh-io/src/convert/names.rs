@@ -20,7 +20,7 @@ pub(crate) fn fit(holds: &Capabilities, content: &mut Content) -> Vec<String> {
 
 fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     let tags = GroupNumbers::new(content, holds.allows_negative_numbers);
-    let main = [0, 1, 2].map(|dimension| content.whats(dimension).first().copied());
+    let main = [0, 1, 2].map(|dimension| content.group_kinds(dimension).first().copied());
     // Where names are words, a group without one is called by its number.
     let name = |(place, group): (usize, &ContentGroup)| {
         let dimension = usize::from(group.dimension);

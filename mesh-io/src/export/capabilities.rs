@@ -193,8 +193,8 @@ impl Capabilities {
 
     fn group_losses(&self, content: &Content, lost: &mut Vec<String>) {
         let several = content.sets.iter().any(|set| {
-            let what = |group: &u32| &content.groups[*group as usize].kind;
-            set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| what(b) == what(group)))
+            let kind = |group: &u32| &content.groups[*group as usize].kind;
+            set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| kind(b) == kind(group)))
         });
         if several && self.groups != GroupSupport::None {
             lost.push(
@@ -202,44 +202,44 @@ impl Capabilities {
             );
         }
         for (dimension, of) in [(0, "points"), (1, "lines"), (2, "surfaces")] {
-            let whats = content.whats(dimension);
-            let Some(&main) = whats.first() else { continue };
-            let dropped = |what: &&str| match self.groups {
+            let kinds = content.group_kinds(dimension);
+            let Some(&main) = kinds.first() else { continue };
+            let dropped = |kind: &&str| match self.groups {
                 GroupSupport::None => true,
-                GroupSupport::One => *what != main && !determines(content, dimension, main, what),
+                GroupSupport::One => *kind != main && !determines(content, dimension, main, kind),
                 GroupSupport::OneOfLines => {
-                    dimension != 1 || (*what != main && !determines(content, 1, main, what))
+                    dimension != 1 || (*kind != main && !determines(content, 1, main, kind))
                 }
                 GroupSupport::PhysicalAndEntity => {
-                    *what != main
-                        && *what != "entity"
-                        && !determines(content, dimension, main, what)
+                    *kind != main
+                        && *kind != "entity"
+                        && !determines(content, dimension, main, kind)
                 }
                 GroupSupport::Each => false,
                 GroupSupport::Blocks => {
-                    *what != main && *what != "block" && !determines(content, dimension, main, what)
+                    *kind != main && *kind != "block" && !determines(content, dimension, main, kind)
                 }
             };
-            let one = |what: &str| {
+            let one = |kind: &str| {
                 let groups = content.groups.iter();
-                groups.filter(|group| group.dimension == dimension && group.kind == what).count()
+                groups.filter(|group| group.dimension == dimension && group.kind == kind).count()
                     == 1
             };
-            for what in whats.iter().copied().filter(dropped) {
+            for kind in kinds.iter().copied().filter(dropped) {
                 let groups =
-                    || content.groups.iter().filter(|g| g.dimension == dimension && g.kind == what);
+                    || content.groups.iter().filter(|g| g.dimension == dimension && g.kind == kind);
                 // If there is one group without a name, only its number is lost.
                 let keeps_none = match self.groups {
                     GroupSupport::None => true,
                     GroupSupport::OneOfLines => dimension != 1,
                     _ => false,
                 };
-                if keeps_none && one(what) && groups().all(|group| group.name().is_none()) {
+                if keeps_none && one(kind) && groups().all(|group| group.name().is_none()) {
                     continue;
                 }
-                lost.push(format!("groups of {of} ({what}): {}", group_names(groups())));
+                lost.push(format!("groups of {of} ({kind}): {}", group_names(groups())));
             }
-            let kept = whats.iter().copied().filter(|what| !dropped(what));
+            let kept = kinds.iter().copied().filter(|kind| !dropped(kind));
             let kept: Vec<&str> = kept.collect();
             let named = |group: &&ContentGroup| {
                 let is_kept = kept.contains(&group.kind.as_str());

@@ -227,30 +227,30 @@ impl Content {
     }
 
     /// Returns for each cell its first group of this kind, if it has one.
-    pub(crate) fn column(&self, what: &str) -> Vec<Option<u32>> {
+    pub(crate) fn column(&self, kind: &str) -> Vec<Option<u32>> {
         let of_set = |set: &Vec<u32>| {
-            set.iter().copied().find(|&group| self.groups[group as usize].kind == what)
+            set.iter().copied().find(|&group| self.groups[group as usize].kind == kind)
         };
         let found: Vec<_> = self.sets.iter().map(of_set).collect();
         self.cells.sets.iter().map(|&set| found[set as usize]).collect()
     }
 
     /// Lists the kinds of groups of a dimension, the most important first.
-    pub(crate) fn whats(&self, dimension: u8) -> Vec<&str> {
+    pub(crate) fn group_kinds(&self, dimension: u8) -> Vec<&str> {
         // What users give names to comes before what programs number.
         const LAST: [&str; 6] = ["reference", "block", "section", "family", "entity", "zone"];
-        let is_number = |what: &str| {
-            let mut own = self.groups.iter().filter(|group| group.kind == what);
+        let is_number = |kind: &str| {
+            let mut own = self.groups.iter().filter(|group| group.kind == kind);
             own.any(|group| matches!(group.label, Label::Tag(_)))
         };
-        let last = |what: &str| LAST.iter().position(|last| *last == what && is_number(what));
-        let mut whats: Vec<&str> = Vec::new();
+        let last = |kind: &str| LAST.iter().position(|last| *last == kind && is_number(kind));
+        let mut group_kinds: Vec<&str> = Vec::new();
         for group in self.groups.iter().filter(|group| group.dimension == dimension) {
-            if !whats.contains(&group.kind.as_str()) {
-                whats.push(&group.kind);
+            if !group_kinds.contains(&group.kind.as_str()) {
+                group_kinds.push(&group.kind);
             }
         }
-        whats.sort_by_key(|what| last(what).map_or(0, |at| at + 1));
-        whats
+        group_kinds.sort_by_key(|kind| last(kind).map_or(0, |at| at + 1));
+        group_kinds
     }
 }

@@ -55,14 +55,14 @@ struct PendingArray {
 }
 
 /// Returns the common name for a kind of group, which formats call differently.
-fn common(what: &str) -> String {
-    let small = what.to_ascii_lowercase();
+fn common_kind(kind: &str) -> String {
+    let small = kind.to_ascii_lowercase();
     let common = match small.as_str() {
         "gmsh:physical" => "physical",
         "gmsh:geometrical" => "entity",
         "medit:ref" => "reference",
         "materialids" | "material_id" | "materials" => "material",
-        _ => what,
+        _ => kind,
     };
     common.to_owned()
 }
@@ -108,16 +108,16 @@ impl ContentBuilder {
         // Data that tell regions are kept as groups.
         let groups = &content.groups;
         let is_group =
-            |data: &DataArray| groups.iter().any(|group| group.kind == common(&data.name));
+            |data: &DataArray| groups.iter().any(|group| group.kind == common_kind(&data.name));
         content.cell_data.retain(|data| !is_group(data));
         content
     }
 
-    fn group(&mut self, what: &str, dimension: u8, label: Label) -> u32 {
-        let what = common(what);
-        let (number, is_new) = self.keys.number(&what, dimension, &label);
+    fn group(&mut self, kind: &str, dimension: u8, label: Label) -> u32 {
+        let kind = common_kind(kind);
+        let (number, is_new) = self.keys.number(&kind, dimension, &label);
         if is_new {
-            self.content.groups.push(ContentGroup { kind: what, dimension, label, name: None });
+            self.content.groups.push(ContentGroup { kind, dimension, label, name: None });
         }
         number as u32
     }
@@ -134,9 +134,9 @@ impl ContentBuilder {
         });
         // Each dimension has groups of its own here, even if the format has not.
         let within = self.within.iter();
-        let within = within.map(|(what, label, _)| (what.clone(), dimension, label.clone()));
-        for (what, dimension, label) in of_columns.chain(within).collect::<Vec<_>>() {
-            let group = self.group(&what, dimension, label);
+        let within = within.map(|(kind, label, _)| (kind.clone(), dimension, label.clone()));
+        for (kind, dimension, label) in of_columns.chain(within).collect::<Vec<_>>() {
+            let group = self.group(&kind, dimension, label);
             if !groups.contains(&group) {
                 groups.push(group);
             }
@@ -235,9 +235,9 @@ impl MeshVisitor for ContentBuilder {
                 let set = &self.content.sets[set as usize];
                 set.iter().any(|&group| {
                     let group = &self.content.groups[group as usize];
-                    within
-                        .iter()
-                        .any(|(what, label, _)| common(what) == group.kind && *label == group.label)
+                    within.iter().any(|(kind, label, _)| {
+                        common_kind(kind) == group.kind && *label == group.label
+                    })
                 })
             });
             if !same {
@@ -248,19 +248,19 @@ impl MeshVisitor for ContentBuilder {
         self.last.clear();
     }
 
-    fn node_group(&mut self, node: u32, what: &str, label: &Label) {
+    fn node_group(&mut self, node: u32, kind: &str, label: &Label) {
         let groups = &mut self.content.vertex_groups;
-        let (number, is_new) = self.vertex_keys.number(what, 0, label);
+        let (number, is_new) = self.vertex_keys.number(kind, 0, label);
         if is_new {
-            let (what, label) = (common(what), label.clone());
-            groups.push((ContentGroup { kind: what, dimension: 0, label, name: None }, Vec::new()));
+            let (kind, label) = (common_kind(kind), label.clone());
+            groups.push((ContentGroup { kind, dimension: 0, label, name: None }, Vec::new()));
         }
         groups[number].1.push(node);
     }
 
-    fn group_name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+    fn group_name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         let name = String::from_utf8_lossy(name).into_owned();
-        self.keys.set_name(&common(what), dimension, tag, name);
+        self.keys.set_name(&common_kind(kind), dimension, tag, name);
     }
 
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {

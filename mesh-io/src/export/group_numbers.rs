@@ -15,8 +15,8 @@ pub(crate) struct GroupNumbers {
 impl GroupNumbers {
     /// Chooses the groups and numbers. `negative` says whether numbers may be negative.
     pub(crate) fn new(content: &Content, negative: bool) -> GroupNumbers {
-        let column = |dimension| match content.whats(dimension).first() {
-            Some(what) => content.column(what),
+        let column = |dimension| match content.group_kinds(dimension).first() {
+            Some(kind) => content.column(kind),
             None => Vec::new(),
         };
         GroupNumbers { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
@@ -54,9 +54,9 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
         match group.label {
             Label::Tag(tag) if is_fit(tag) => tag,
             _ => {
-                let (what, dimension) = (groups_what(groups, group), group.dimension);
-                let next = next.entry((what, dimension)).or_insert(1);
-                while taken.contains(&(what, dimension, *next)) {
+                let (kind, dimension) = (shared_kind(groups, group), group.dimension);
+                let next = next.entry((kind, dimension)).or_insert(1);
+                while taken.contains(&(kind, dimension, *next)) {
                     *next += 1;
                 }
                 *next += 1;
@@ -67,7 +67,7 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     groups.iter().map(number).collect()
 }
 
-fn groups_what<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
+fn shared_kind<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
     groups.iter().find(|own| own.kind == group.kind).map_or("", |own| &own.kind)
 }
 

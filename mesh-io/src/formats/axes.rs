@@ -101,10 +101,10 @@ impl<'a> Axes<'a> {
         )?;
         visitor.end_nodes(&place(x.start))?;
         if let Some(z) = ranges.get(2) {
-            let mut heights = ZValues::new(visitor);
-            heights.push_records(field(z), z.len() / size, z.start);
+            let mut z_values = ZValues::new(visitor);
+            z_values.push_records(field(z), z.len() / size, z.start);
             let home = if encoded.is_some() { ByteSpace::Points } else { ByteSpace::File };
-            heights.send_from("z", NumberEncoding::Binary(order, precision), home, 0, visitor);
+            z_values.send_from("z", NumberEncoding::Binary(order, precision), home, 0, visitor);
         }
         let numbers = CoordinateEncoding::Binary { order, precision, y_after };
         let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn EncodedArrays>);

@@ -69,8 +69,8 @@ impl FormatReader for Jigsaw {
                     cursor.check_vertex_count(count)?;
                     let start = cursor.clone();
                     let names = NodeNames { one: "a point", all: "points" };
-                    let heights = counted_nodes(cursor, count, dimensions, names, visitor)?;
-                    points = Some((List { cursor: start, count }, heights));
+                    let z_values = counted_nodes(cursor, count, dimensions, names, visitor)?;
+                    points = Some((List { cursor: start, count }, z_values));
                 }
                 b"EDGE2" | b"TRIA3" | b"QUAD4" => {
                     let kind = match key[0] {
@@ -95,14 +95,14 @@ impl FormatReader for Jigsaw {
                 _ => {}
             }
         }
-        let Some((points, heights)) = points else {
+        let Some((points, z_values)) = points else {
             return Err(source.error("it has no POINT", "Save the mesh again"));
         };
         if visitor.asks_for_groups() {
             tags(&points, dimensions, visitor)?;
         }
         visitor.end_nodes(cursor)?;
-        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         if let Some((list, components)) = lists.values {
             values(list, components, points.count, visitor)?;
         }

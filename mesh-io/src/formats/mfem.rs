@@ -101,9 +101,9 @@ fn vertices(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<()
     }
     let dimensions = cursor.integer("the number of coordinates")?;
     let names = NodeNames { one: "a vertex", all: "vertices" };
-    let heights = counted_nodes(cursor, count, dimensions, names, visitor)?;
+    let z_values = counted_nodes(cursor, count, dimensions, names, visitor)?;
     visitor.end_nodes(cursor)?;
-    heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
+    z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
     Ok(())
 }
 

@@ -36,12 +36,12 @@ impl FormatReader for Mike {
         let count = cursor.vertex_count()?;
         cursor.rest();
         let before = &mut cursor.clone();
-        let heights = numbered_nodes(cursor, count, false, visitor)?;
+        let z_values = numbered_nodes(cursor, count, false, visitor)?;
         if visitor.asks_for_groups() {
             codes(before, count, visitor)?;
         }
         visitor.end_nodes(cursor)?;
-        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         cursor.row(0, 1, "lines of the count of elements")?;
         let elements = cursor.integer("the number of elements")?;
         let most = cursor.integer("the largest number of nodes of an element")?;

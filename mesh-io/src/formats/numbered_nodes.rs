@@ -16,7 +16,7 @@ pub(crate) fn numbered_nodes(
     visitor: &mut dyn MeshVisitor,
 ) -> Result<ZValues, ReadError> {
     visitor.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
-    let mut heights = ZValues::new(visitor);
+    let mut z_values = ZValues::new(visitor);
     each_row(
         cursor,
         count,
@@ -33,11 +33,11 @@ pub(crate) fn numbered_nodes(
         },
         |cursor, visitor, _, (id, (x_at, at), third)| {
             visitor.node(cursor, id, 2, x_at, at);
-            heights.push(third);
+            z_values.push(third);
             Ok(())
         },
     )?;
-    Ok(heights)
+    Ok(z_values)
 }
 
 /// What nodes are called in messages.
@@ -63,7 +63,7 @@ pub(crate) fn counted_nodes(
         return Err(cursor.error(problem, "Those of 2 and 3 coordinates are read"));
     }
     visitor.expect_nodes(cursor.capacity(count, "0 0\n".len()));
-    let mut heights = ZValues::new(visitor);
+    let mut z_values = ZValues::new(visitor);
     each_row(
         cursor,
         count,
@@ -75,9 +75,9 @@ pub(crate) fn counted_nodes(
         },
         |cursor, visitor, index, ((x_at, at), z)| {
             visitor.node(cursor, index, 2, x_at, at);
-            heights.push(z);
+            z_values.push(z);
             Ok(())
         },
     )?;
-    Ok(heights)
+    Ok(z_values)
 }

@@ -76,12 +76,12 @@ impl FormatReader for Obj {
         let start = rows(source);
         let cursor = &mut start.clone();
         let mut count = 0;
-        let mut heights = ZValues::new(visitor);
+        let mut z_values = ZValues::new(visitor);
         all_rows(cursor, visitor, vertex, |cursor, visitor, row| {
             if let Row::Vertex(x_at, at, z) = row {
                 count += 1;
                 visitor.node(cursor, count, 2, x_at, at);
-                heights.push(z);
+                z_values.push(z);
             }
             Ok(())
         })?;
@@ -90,7 +90,7 @@ impl FormatReader for Obj {
         if visitor.asks_for_data() {
             left_out(start.clone(), visitor);
         }
-        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         let cursor = &mut start.clone();
         let (mut before, mut faces) = (0, 0);
         let mut names = Interner::default();

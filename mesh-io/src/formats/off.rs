@@ -62,7 +62,7 @@ impl FormatReader for Off {
         let more = if syntax.is_of_words() { more } else { 0 };
         *cursor = cursor.clone().with_syntax(syntax);
         visitor.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
-        let mut heights = ZValues::new(visitor);
+        let mut z_values = ZValues::new(visitor);
         each_row(
             cursor,
             vertices,
@@ -78,12 +78,12 @@ impl FormatReader for Off {
             },
             |cursor, visitor, done, ((x_at, at), z)| {
                 visitor.node(cursor, done, 2, x_at, at);
-                heights.push(z);
+                z_values.push(z);
                 Ok(())
             },
         )?;
         visitor.end_nodes(cursor)?;
-        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         visitor.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
         // A color may follow the corners of a face on its row.
         *cursor = cursor.clone().with_syntax(Syntax::RECORDS);

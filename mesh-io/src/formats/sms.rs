@@ -49,16 +49,16 @@ impl FormatReader for Sms {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
         let nodes_first = &mut Cursor::new(source);
-        let mut heights = ZValues::new(visitor);
+        let mut z_values = ZValues::new(visitor);
         all_rows(nodes_first, visitor, node, |cursor, visitor, row| {
             if let Row::Node(tag, x_at, at, z) = row {
                 visitor.node(cursor, tag, 2, x_at, at);
-                heights.push(z);
+                z_values.push(z);
             }
             Ok(())
         })?;
         visitor.end_nodes(nodes_first)?;
-        heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;

@@ -28,15 +28,15 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
             content.point_data.push(of_vertices("depth", values));
         }
         (Format::Ugrid, Format::Sms2dm) => {
-            if let Some((heights, is_depth)) = take_heights(content) {
+            if let Some((z_values, is_depth)) = take_heights(content) {
                 let upwards = |number| if is_depth { minus(number) } else { number };
-                content.z_values = heights.into_iter().map(upwards).collect();
+                content.z_values = z_values.into_iter().map(upwards).collect();
             }
         }
         (Format::Ugrid, Format::Adcirc) => {
-            if let Some((heights, is_depth)) = take_heights(content) {
+            if let Some((z_values, is_depth)) = take_heights(content) {
                 let downwards = |number| if is_depth { number } else { minus(number) };
-                let values = heights.into_iter().map(downwards).collect();
+                let values = z_values.into_iter().map(downwards).collect();
                 content.point_data.push(of_vertices("depth", values));
             }
         }

@@ -22,15 +22,15 @@ struct GroupMembers {
 
 impl GroupTable {
     /// Returns the number of a group, after adding it if it is new.
-    pub(crate) fn number(&mut self, what: &str, dimension: u8, label: &Label) -> usize {
-        let (number, is_new) = self.keys.number(what, dimension, label);
+    pub(crate) fn number(&mut self, kind: &str, dimension: u8, label: &Label) -> usize {
+        let (number, is_new) = self.keys.number(kind, dimension, label);
         if is_new {
             let (name, tag) = match label {
                 Label::Tag(tag) => (None, Some(*tag)),
                 Label::Name(name) => (Some(name.clone()), None),
             };
             let group = Group {
-                kind: what.to_owned(),
+                kind: kind.to_owned(),
                 dimension,
                 name,
                 tag,
@@ -68,12 +68,12 @@ impl GroupTable {
     }
 
     /// Names groups that are known or are added later. A group with a name exists even if it has no element.
-    pub(crate) fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+    pub(crate) fn name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         let Label::Name(name) = Label::name(name) else { return };
         if let Some(dimension) = dimension {
-            self.number(what, dimension, &Label::Tag(tag));
+            self.number(kind, dimension, &Label::Tag(tag));
         }
-        self.keys.set_name(what, dimension, tag, name);
+        self.keys.set_name(kind, dimension, tag, name);
     }
 
     /// Returns the groups of a mesh with these triangles and this many vertices.

@@ -63,8 +63,8 @@ impl GroupVisitor {
             of_element.extend(groups[name]);
         }
         let within = within_groups[usize::from(dimension)].get_or_insert_with(|| {
-            let number = |(what, label, own): &(String, Label, Option<u8>)| {
-                table.number(what, own.unwrap_or(dimension), label)
+            let number = |(kind, label, own): &(String, Label, Option<u8>)| {
+                table.number(kind, own.unwrap_or(dimension), label)
             };
             within.iter().map(number).collect()
         });
@@ -119,13 +119,13 @@ impl MeshVisitor for GroupVisitor {
         self.within_groups = [None, None, None];
     }
 
-    fn node_group(&mut self, node: u32, what: &str, label: &Label) {
-        let group = self.table.number(what, 0, label);
+    fn node_group(&mut self, node: u32, kind: &str, label: &Label) {
+        let group = self.table.number(kind, 0, label);
         self.table.add_vertex(group, node);
     }
 
-    fn group_name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
-        self.table.name(what, dimension, tag, name);
+    fn group_name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+        self.table.name(kind, dimension, tag, name);
     }
 }
 

@@ -83,14 +83,14 @@ pub(crate) struct RegionAttribute {
 
 impl RegionAttribute {
     /// Makes a column of tags that all stand for groups.
-    pub(crate) fn tags(what: &str, from_dimension: u8) -> RegionAttribute {
-        RegionAttribute { kind: what.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
+    pub(crate) fn tags(kind: &str, from_dimension: u8) -> RegionAttribute {
+        RegionAttribute { kind: kind.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
     }
 
     /// Makes a column of tags in which 0 stands for no group.
-    pub(crate) fn tags_from_one(what: &str) -> RegionAttribute {
+    pub(crate) fn tags_from_one(kind: &str) -> RegionAttribute {
         let label = |tag| (tag != 0).then_some(Label::Tag(tag));
-        RegionAttribute { kind: what.into(), from_dimension: 0, label }
+        RegionAttribute { kind: kind.into(), from_dimension: 0, label }
     }
 }
 

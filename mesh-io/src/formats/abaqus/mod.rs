@@ -121,12 +121,12 @@ impl Nodes {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         self.tags = visitor.asks_for_groups().then(Vec::new);
-        let mut heights = ZValues::new(visitor);
+        let mut z_values = ZValues::new(visitor);
         let mut counted = LengthCounts::default();
         for block in deck.of_mesh("NODE") {
             let rows = &mut rows::data_rows(&mut cursor, block);
             let before = counted.all;
-            rows::send_nodes(rows, visitor, &mut heights, &mut self.tags, &mut counted)?;
+            rows::send_nodes(rows, visitor, &mut z_values, &mut self.tags, &mut counted)?;
             rows.check_vertex_count(counted.all)?;
             if let (Some(name), true) = (block.name("NSET"), visitor.asks_for_groups()) {
                 self.sets.add(name, before as u32..counted.all as u32);
@@ -141,7 +141,7 @@ impl Nodes {
                 "{nodes}: CalculiX reads the first 20 only, and so another number"
             )));
         }
-        heights.send("z", numbers.into(), visitor);
+        z_values.send("z", numbers.into(), visitor);
         Ok(())
     }
 

@@ -30,13 +30,13 @@ pub(super) struct LengthCounts {
 pub(super) fn send_nodes(
     cursor: &mut Cursor<'_>,
     visitor: &mut dyn MeshVisitor,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     ids: &mut Option<Vec<u64>>,
     counted: &mut LengthCounts,
 ) -> Result<(), ReadError> {
     all_rows(cursor, visitor, node, |cursor, visitor, (id, (x_at, is_long), at, z)| {
         visitor.node(cursor, id, 2, x_at, at);
-        heights.push(z);
+        z_values.push(z);
         ids.iter_mut().for_each(|ids| ids.push(id));
         counted.all += 1;
         counted.long += u64::from(is_long);

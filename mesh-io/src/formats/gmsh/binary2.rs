@@ -19,7 +19,7 @@ pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: ByteOrder,
     parametric: bool,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     const TAG: usize = 4;
@@ -35,7 +35,7 @@ pub(super) fn nodes(
         let count = count as usize;
         if z.all_real(count, f64::is_finite) {
             taken = visitor.node_records(&NodeRecords { count, x, y, x_offset: x_at, ids: tags });
-            heights.push_records(z, taken, start + TAG + 16);
+            z_values.push_records(z, taken, start + TAG + 16);
             cursor.take(taken * NODE);
         }
     }
@@ -45,7 +45,7 @@ pub(super) fn nodes(
         let tag = words.natural(cursor, "a node tag")?;
         let [x, y, z] = words.point(cursor, tag)?;
         visitor.node(cursor, tag, 2, cursor.last_taken() + TAG, [x, y]);
-        heights.push((cursor.last_taken() + TAG + 16, z));
+        z_values.push((cursor.last_taken() + TAG + 16, z));
         if parametric {
             // The dimension of the node's entity, the entity's tag, and one parameter for each dimension.
             let entity = &mut Words::take(cursor, order, 8, progress)?;

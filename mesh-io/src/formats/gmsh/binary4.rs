@@ -23,7 +23,7 @@ pub(super) const BLOCK_HEADER: usize = 20;
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: ByteOrder,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, Version::V41, order)?;
@@ -53,7 +53,7 @@ pub(super) fn nodes(
                 let tags = NodeIds::Field(NumberField::new(Some(tags.left()), 8, 8, order));
                 taken =
                     visitor.node_records(&NodeRecords { count, x, y, x_offset: x_at, ids: tags });
-                heights.push_records(z, taken, x_at + 16);
+                z_values.push_records(z, taken, x_at + 16);
             }
             tags.skip(8 * taken);
             cursor.take(taken * record);
@@ -64,7 +64,7 @@ pub(super) fn nodes(
             let tag = tags.size();
             let [x, y, z] = words.point(cursor, tag)?;
             visitor.node(cursor, tag, dimension, cursor.last_taken(), [x, y]);
-            heights.push((cursor.last_taken() + 16, z));
+            z_values.push((cursor.last_taken() + 16, z));
             if wanted {
                 own.push(tag);
                 places.extend([24, 32].map(|after| cursor.last_taken() + after));

@@ -18,7 +18,7 @@ const TAG: usize = 4;
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     order: ByteOrder,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, Version::V40, order)?;
@@ -45,7 +45,7 @@ pub(super) fn nodes(
             let [x, y, z] = words.point(cursor, tag)?;
             let x_at = cursor.last_taken() + TAG;
             visitor.node(cursor, tag, dimension, x_at, [x, y]);
-            heights.push((x_at + 16, z));
+            z_values.push((x_at + 16, z));
         }
         done += size;
     }

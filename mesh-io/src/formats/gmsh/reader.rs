@@ -70,18 +70,20 @@ fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<FileEncoding, 
                     note_parameters(visitor);
                 }
                 let mut seen = ZValues::new(visitor);
-                let heights = &mut seen;
+                let z_values = &mut seen;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::nodes(cursor, heights, visitor)?,
-                    (Version::V40, None) => text40::nodes(cursor, heights, visitor)?,
+                    (Version::V2, None) => text2::nodes(cursor, z_values, visitor)?,
+                    (Version::V40, None) => text40::nodes(cursor, z_values, visitor)?,
                     (Version::V40, Some(order)) => {
-                        binary40::nodes(cursor, order, heights, visitor)?
+                        binary40::nodes(cursor, order, z_values, visitor)?
                     }
-                    (Version::V41, None) => text4::nodes(cursor, heights, visitor)?,
+                    (Version::V41, None) => text4::nodes(cursor, z_values, visitor)?,
                     (Version::V2, Some(order)) => {
-                        binary2::nodes(cursor, order, parametric, heights, visitor)?
+                        binary2::nodes(cursor, order, parametric, z_values, visitor)?
                     }
-                    (Version::V41, Some(order)) => binary4::nodes(cursor, order, heights, visitor)?,
+                    (Version::V41, Some(order)) => {
+                        binary4::nodes(cursor, order, z_values, visitor)?
+                    }
                 };
                 node_count = count;
                 let name = str::from_utf8(name).unwrap_or_default();

@@ -12,7 +12,7 @@ use crate::visit::z_values::ZValues;
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let count = counts(cursor, Cursor::vertex_count, |count| count)?;
@@ -26,7 +26,7 @@ pub(super) fn nodes(
         |cursor, _| node(cursor),
         |cursor, visitor, _, (tag, (x_at, at), z)| {
             visitor.node(cursor, tag, 2, x_at, at);
-            heights.push(z);
+            z_values.push(z);
             Ok(())
         },
     )?;

@@ -17,7 +17,7 @@ use std::fmt::Display;
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let read = |cursor: &mut Cursor<'_>| {
@@ -72,7 +72,7 @@ pub(super) fn nodes(
                 read,
                 |cursor, visitor, at, ((x_at, point), z)| {
                     visitor.node(cursor, tag(Some(at)), dimension, x_at, point);
-                    heights.push(z);
+                    z_values.push(z);
                     Ok(())
                 },
             )

@@ -11,7 +11,7 @@ use crate::visit::z_values::ZValues;
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let read = |cursor: &mut Cursor<'_>| {
@@ -49,7 +49,7 @@ pub(super) fn nodes(
                 read,
                 |cursor, visitor, _, (tag, (x_at, at), z)| {
                     visitor.node(cursor, tag, dimension, x_at, at);
-                    heights.push(z);
+                    z_values.push(z);
                     Ok(())
                 },
             )

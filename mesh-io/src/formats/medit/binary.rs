@@ -236,9 +236,9 @@ fn vertices(
         },
     )?;
     if dimension == 3 {
-        let mut heights = ZValues::new(visitor);
-        heights.push_records(field(2 * size), count, start + 2 * size);
-        heights.send("z", NumberEncoding::Binary(widths.order, widths.precision), visitor);
+        let mut z_values = ZValues::new(visitor);
+        z_values.push_records(field(2 * size), count, start + 2 * size);
+        z_values.send("z", NumberEncoding::Binary(widths.order, widths.precision), visitor);
     }
     if visitor.asks_for_groups() {
         for (index, vertex) in (0..).zip(bytes.chunks_exact(item)) {

@@ -210,7 +210,7 @@ fn vertices(
     let count = cursor.vertex_count()?;
     visitor.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
     let before = &mut cursor.clone();
-    let mut heights = ZValues::new(visitor);
+    let mut z_values = ZValues::new(visitor);
     each_row(
         cursor,
         count,
@@ -227,11 +227,11 @@ fn vertices(
         },
         |cursor, visitor, done, ((x_at, at), z)| {
             visitor.node(cursor, done + 1, 2, x_at, at);
-            z.into_iter().for_each(|z| heights.push(z));
+            z.into_iter().for_each(|z| z_values.push(z));
             Ok(())
         },
     )?;
-    heights.send("z", CoordinateEncoding::TEXT.into(), visitor);
+    z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
     if visitor.asks_for_groups() {
         for vertex in 0..count {
             before.row(vertex, count, "vertices")?;

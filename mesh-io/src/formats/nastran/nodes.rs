@@ -70,7 +70,7 @@ pub(super) fn send(
     rows: &Cursor<'_>,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<CoordinateEncoding, ReadError> {
-    let mut heights = ZValues::new(visitor);
+    let mut z_values = ZValues::new(visitor);
     let mut rooms = FieldWidthCounts::default();
     // Where the first node is that names no coordinate system, and the system of such nodes.
     let (mut count, mut first_at, mut system) = (0, None, 0);
@@ -79,7 +79,7 @@ pub(super) fn send(
         match card {
             Card::Node(Node { id, x_at, at, z, field_width: room, is_of_default }) => {
                 visitor.node(cursor, id, 2, x_at, at);
-                heights.push(z);
+                z_values.push(z);
                 rooms.add(room);
                 count += 1;
                 first_at = first_at.or(is_of_default.then_some((x_at, id)));
@@ -108,7 +108,7 @@ pub(super) fn send(
         )));
     }
     let numbers = CoordinateEncoding::Fields { precision };
-    heights.send("z", numbers.into(), visitor);
+    z_values.send("z", numbers.into(), visitor);
     Ok(numbers)
 }
 

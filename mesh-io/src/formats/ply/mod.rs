@@ -219,13 +219,13 @@ impl Items {
             return Err(cursor.error(problem, "Save vertices with x, y and z in this order"));
         }
         let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
-        let mut heights = ZValues::new(visitor);
+        let mut z_values = ZValues::new(visitor);
         let mut data = Data::new(list, z, visitor);
-        let mut id = self.plain_vertices(cursor, list, x, z, &mut heights, visitor);
+        let mut id = self.plain_vertices(cursor, list, x, z, &mut z_values, visitor);
         self.each(cursor, list, id, |place, values, places| {
             data.see(values, places);
             if let Some(z) = z {
-                heights.push((places[z], values[z][0]));
+                z_values.push((places[z], values[z][0]));
             }
             let at = [values[x][0], values[y][0]];
             if !at.iter().all(|x| x.is_finite()) {
@@ -238,7 +238,7 @@ impl Items {
         })?;
         visitor.end_nodes(cursor)?;
         if let Some(precision) = z.and_then(|z| list.properties[z].precision()) {
-            heights.send("z", self.form(precision), visitor);
+            z_values.send("z", self.form(precision), visitor);
         }
         data.send(self, visitor);
         Ok(match self.order {

@@ -19,7 +19,7 @@ impl Items {
         list: &List<'_>,
         x: usize,
         z: Option<usize>,
-        heights: &mut ZValues,
+        z_values: &mut ZValues,
         visitor: &mut dyn MeshVisitor,
     ) -> u64 {
         let properties = &list.properties;
@@ -30,7 +30,7 @@ impl Items {
         }
         let Some(order) = self.order else {
             let is_first = x == 0;
-            return if is_first { vertices_of_text(cursor, list, z, heights, visitor) } else { 0 };
+            return if is_first { vertices_of_text(cursor, list, z, z_values, visitor) } else { 0 };
         };
         let Some((bytes, start)) = cursor.peek(list.count, stride) else { return 0 };
         let field = |index: usize| {
@@ -42,14 +42,14 @@ impl Items {
             )
         };
         let (count, x_at, ids) = (list.count as usize, start + before(x), NodeIds::Consecutive(0));
-        let heights_of = z.map(|z| (field(z), start + before(z)));
-        if heights_of.is_some_and(|(z, _)| !z.all_real(count, f64::is_finite)) {
+        let z_of = z.map(|z| (field(z), start + before(z)));
+        if z_of.is_some_and(|(z, _)| !z.all_real(count, f64::is_finite)) {
             return 0;
         }
         let records = NodeRecords { count, x: field(x), y: field(x + 1), x_offset: x_at, ids };
         let taken = visitor.node_records(&records);
-        if let Some((z, at)) = heights_of {
-            heights.push_records(z, taken, at);
+        if let Some((z, at)) = z_of {
+            z_values.push_records(z, taken, at);
         }
         cursor.take(taken * stride);
         taken as u64
@@ -112,7 +112,7 @@ fn vertices_of_text(
     cursor: &mut Cursor<'_>,
     list: &List<'_>,
     z: Option<usize>,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> u64 {
     if !visitor.allows_parallel() || visitor.asks_for_data() {
@@ -135,7 +135,7 @@ fn vertices_of_text(
     let taken = take_rows(cursor, list.count, read, |((x_at, at), height)| {
         visitor.node(nowhere, id, 2, x_at, at);
         if z.is_some() {
-            heights.push(height);
+            z_values.push(height);
         }
         id += 1;
         true

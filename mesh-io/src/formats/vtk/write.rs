@@ -69,20 +69,20 @@ pub(crate) fn of_points(input: &WriterInput<'_>) -> Vec<Array> {
 
 /// Makes the arrays of the cells: one for each kind of group, and the data.
 pub(crate) fn of_cells(input: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
-    let mut whats: Vec<&str> = Vec::new();
-    for what in (0..3).rev().flat_map(|dimension| input.content.whats(dimension)) {
-        if !whats.contains(&what) {
-            whats.push(what);
+    let mut kinds: Vec<&str> = Vec::new();
+    for what in (0..3).rev().flat_map(|dimension| input.content.group_kinds(dimension)) {
+        if !kinds.contains(&what) {
+            kinds.push(what);
         }
     }
     // The order of the usual arrays is always the same.
     const FIRST: [&str; 5] =
         ["gmsh:physical", "gmsh:geometrical", "medit:ref", "MaterialIDs", "region"];
-    whats.sort_by_key(|what| {
+    kinds.sort_by_key(|what| {
         FIRST.iter().position(|first| *first == array_name(what)).unwrap_or(FIRST.len())
     });
     let mut arrays: Vec<Array> = Vec::new();
-    for what in whats {
+    for what in kinds {
         let column = input.content.column(what);
         let tag = |&cell: &usize| column[cell].map_or(0, |group| input.group_numbers.number(group));
         let usual = array_name(what);

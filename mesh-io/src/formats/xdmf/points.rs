@@ -54,7 +54,7 @@ impl File<'_> {
         self.cursor(item).check_vertex_count(count.unwrap_or(0))?;
         let cursor = &mut self.content(item);
         visitor.expect_nodes(cursor.capacity(count.unwrap_or(0), "0 0 ".len()));
-        let mut heights = ZValues::new(visitor);
+        let mut z_values = ZValues::new(visitor);
         let mut index = 0;
         while cursor.next_word() {
             if Some(index) == count {
@@ -78,7 +78,7 @@ impl File<'_> {
             }
             visitor.node(&own, index, 2, places[0], [point[0], point[1]]);
             if axes == 3 {
-                heights.push((places[2], point[2]));
+                z_values.push((places[2], point[2]));
             }
             index += 1;
         }
@@ -92,7 +92,7 @@ impl File<'_> {
         visitor.end_nodes(&self.cursor(item))?;
         let precision = item.precision.unwrap_or(Precision::Double);
         let numbers = CoordinateEncoding::Text { precision };
-        heights.send("z", numbers.into(), visitor);
+        z_values.send("z", numbers.into(), visitor);
         Ok((CoordinateStorage::in_place(Format::Xdmf, numbers), index))
     }
 
@@ -126,7 +126,7 @@ impl File<'_> {
             None => self.heavy.encoding(&mut numbers),
         };
         let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Hdf5Arrays::bytes);
-        let mut heights = ZValues::new(visitor);
+        let mut z_values = ZValues::new(visitor);
         let field = |axis: usize| NumberField::new(bytes.get(axis * size..), stride, size, order);
         let (x, y, ids) = (field(0), field(1), NodeIds::Consecutive(0));
         let place = |index| numbers.cursor(index * stride);
@@ -135,12 +135,12 @@ impl File<'_> {
             place(index).error(problem, REWRITE)
         })?;
         if axes == 3 {
-            heights.push_records(field(2), count, start + 2 * size);
+            z_values.push_records(field(2), count, start + 2 * size);
         }
         visitor.end_nodes(&self.cursor(item))?;
         let numbers = CoordinateEncoding::adjacent(order, precision);
         let home = if encoded.is_some() { ByteSpace::Points } else { ByteSpace::File };
-        heights.send_from("z", numbers.into(), home, part, visitor);
+        z_values.send_from("z", numbers.into(), home, part, visitor);
         let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn EncodedArrays>);
         Ok((
             CoordinateStorage {

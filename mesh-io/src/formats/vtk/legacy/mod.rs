@@ -52,7 +52,7 @@ impl FormatReader for Vtk {
         };
         let mut cells: Vec<Cells<'_>> = Vec::new();
         let mut precision = None;
-        let mut heights = None;
+        let mut z_values = None;
         let mut regions = RegionArrays::default();
         while cursor.next_word() {
             // VTK ignores the case of keywords.
@@ -66,7 +66,7 @@ impl FormatReader for Vtk {
                     }
                     let mut seen = ZValues::new(visitor);
                     precision = Some(points(cursor, binary, &mut seen, visitor)?);
-                    heights = Some(seen);
+                    z_values = Some(seen);
                 }
                 b"CELLS" | b"POLYGONS" | b"LINES" | b"VERTICES" | b"TRIANGLE_STRIPS" => {
                     let kind = match keyword.as_slice() {
@@ -111,12 +111,12 @@ impl FormatReader for Vtk {
             return Err(source.error("it has no POINTS", "Save the mesh again"));
         };
         visitor.end_nodes(cursor)?;
-        if let Some(heights) = heights {
+        if let Some(z_values) = z_values {
             let form = match binary {
                 true => NumberEncoding::Binary(ByteOrder::Big, precision),
                 false => NumberEncoding::Text(precision),
             };
-            heights.send("z", form, visitor);
+            z_values.send("z", form, visitor);
         }
         visitor.region_attributes(regions.columns);
         let regions = RegionNumbers::from_iter(regions.numbers);
@@ -147,7 +147,7 @@ fn dataset(cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
 fn points(
     cursor: &mut Cursor<'_>,
     binary: bool,
-    heights: &mut ZValues,
+    z_values: &mut ZValues,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<Precision, ReadError> {
     let count = cursor.vertex_count()?;
@@ -171,7 +171,7 @@ fn points(
         let not_finite = |index| place(index).error("a coordinate is not a finite number", REWRITE);
         let records = NodeRecords { count, x, y, x_offset: start, ids: NodeIds::Consecutive(0) };
         records.send(visitor, place, not_finite)?;
-        heights.push_records(z, count, start + 2 * width);
+        z_values.push_records(z, count, start + 2 * width);
         return Ok(precision);
     }
     visitor.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
@@ -195,7 +195,7 @@ fn points(
         },
         |cursor, visitor, index, ((x_at, at), z)| {
             visitor.node(cursor, index, 2, x_at, at);
-            heights.push(z);
+            z_values.push(z);
             done = index + 1;
             Ok(())
         },
@@ -216,7 +216,7 @@ fn points(
         }
         if index >= done {
             visitor.node(&rest, index, 2, places[0], [point[0], point[1]]);
-            heights.push((places[2], point[2]));
+            z_values.push((places[2], point[2]));
         }
     }
     *cursor = rest;

@@ -27,7 +27,7 @@ pub(super) struct PointStorage {
 /// The points read so far.
 struct Points<'s, 'f> {
     visitor: &'s mut dyn MeshVisitor,
-    heights: ZValues,
+    z_values: ZValues,
     /// How the numbers are stored, and whether they are encoded. It must be the same in all pieces.
     numbers: Option<(CoordinateEncoding, bool)>,
     encoded: Vec<(BlockEncoding, DecodedBlocks<'f>, Range<usize>)>,
@@ -44,15 +44,22 @@ pub(super) fn read(
     file: &File<'_>,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<PointStorage, ReadError> {
-    let heights = ZValues::new(visitor);
-    let mut points =
-        Points { visitor, heights, numbers: None, encoded: Vec::new(), bytes: 0, count: 0, end: 0 };
+    let z_values = ZValues::new(visitor);
+    let mut points = Points {
+        visitor,
+        z_values,
+        numbers: None,
+        encoded: Vec::new(),
+        bytes: 0,
+        count: 0,
+        end: 0,
+    };
     for (piece, announced) in file.document.pieces.iter().enumerate() {
         if announced.points > 0 || file.document.pieces.len() == 1 {
             points.read(file, file.array(piece, "Points", None)?, announced.points)?;
         }
     }
-    let Points { heights, numbers, encoded, visitor, .. } = points;
+    let Points { z_values, numbers, encoded, visitor, .. } = points;
     let Some((numbers, is_encoded)) = numbers else {
         return Err(file.source.error("it has no piece with points", CORRECT));
     };
@@ -62,7 +69,7 @@ pub(super) fn read(
         Box::new(XmlArrays::new(encoded, offsets)) as Box<dyn EncodedArrays>
     });
     visitor.end_nodes(&Cursor::new(file.source))?;
-    heights.send_from("z", numbers.into(), home, 0, visitor);
+    z_values.send_from("z", numbers.into(), home, 0, visitor);
     Ok(PointStorage { numbers, encoded })
 }
 
@@ -130,7 +137,7 @@ impl<'f> Points<'_, 'f> {
         let not_finite = |index| cursor.error(format!("point {index} is not finite"), REWRITE);
         let records = NodeRecords { count, x, y, x_offset: start, ids };
         records.send(self.visitor, |_| cursor.clone(), not_finite)?;
-        self.heights.push_records(z, count, start + 2 * wide);
+        self.z_values.push_records(z, count, start + 2 * wide);
         let numbers = CoordinateEncoding::adjacent(wrapping.order, precision);
         if is_encoded {
             self.bytes += old.bytes.len();
@@ -158,7 +165,7 @@ impl<'f> Points<'_, 'f> {
                 };
             }
             self.visitor.node(cursor, self.count + index, 2, places[0], [point[0], point[1]]);
-            self.heights.push((places[2], point[2]));
+            self.z_values.push((places[2], point[2]));
         }
         Ok(())
     }
