@@ -36,7 +36,7 @@ pub(crate) fn map_ranges<T: Send>(
     map_parts(starts.map(|start| start..count.min(start + size)), |_, range| task(range))
 }
 
-/// Runs two tasks at the same time: `here` on this thread, and `there` on any thread.
+/// Runs `there` on another thread, if there is one, while `here` runs on the current thread.
 pub(crate) fn run_both(there: &mut (dyn FnMut() + Send), here: &mut dyn FnMut()) {
     rayon::in_place_scope(|scope| {
         scope.spawn(|_| there());

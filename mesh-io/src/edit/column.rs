@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Old and new values of numbers that a file stores at ascending offsets.
 pub(crate) struct EditableColumn<'a> {
     at: ItemOffsets<'a>,
-    form: NumberEncoding,
+    encoding: NumberEncoding,
     old: &'a [f64],
     new: &'a [f64],
     /// Item `i` is number `first + step * i` of `old` and `new`.
@@ -28,7 +28,7 @@ enum ItemOffsets<'a> {
 pub(crate) struct NumberEdit {
     pub(crate) range: Range<usize>,
     pub(crate) value: f64,
-    pub(crate) form: NumberEncoding,
+    pub(crate) encoding: NumberEncoding,
     /// How many characters the number must have at least, with blanks.
     pub(crate) width: usize,
 }
@@ -45,7 +45,7 @@ impl<'a> EditableColumn<'a> {
     ) -> Vec<EditableColumn<'a>> {
         let column = |at, first| {
             let (old, new) = (old.as_flattened(), new.as_flattened());
-            EditableColumn { at, form: numbers.into(), old, new, first, step: 2, owners }
+            EditableColumn { at, encoding: numbers.into(), old, new, first, step: 2, owners }
         };
         match numbers {
             CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. } => {
@@ -62,14 +62,14 @@ impl<'a> EditableColumn<'a> {
 
     /// Makes a column for the numbers of an array.
     pub(crate) fn of_array(
-        places: &'a Offsets,
-        form: NumberEncoding,
+        offsets: &'a Offsets,
+        encoding: NumberEncoding,
         old: &'a [f64],
         new: &'a [f64],
     ) -> EditableColumn<'a> {
         EditableColumn {
-            at: ItemOffsets::After(places, 0),
-            form,
+            at: ItemOffsets::After(offsets, 0),
+            encoding,
             old,
             new,
             first: 0,
@@ -79,7 +79,7 @@ impl<'a> EditableColumn<'a> {
     }
 
     fn count(&self) -> usize {
-        match (self.places(), self.owners) {
+        match (self.offsets(), self.owners) {
             (Offsets::List(list), _) => list.len(),
             (Offsets::Regular { .. }, Some(owners)) => owners.len(),
             (Offsets::Regular { .. }, None) => self.old.len() / self.step,
@@ -88,22 +88,22 @@ impl<'a> EditableColumn<'a> {
 
     fn start(&self, item: usize) -> usize {
         match self.at {
-            ItemOffsets::After(places, shift) => places.at(item).saturating_add_signed(shift),
-            ItemOffsets::Pairs(places) => places.at(item),
+            ItemOffsets::After(offsets, shift) => offsets.at(item).saturating_add_signed(shift),
+            ItemOffsets::Pairs(offsets) => offsets.at(item),
         }
     }
 
-    fn places(&self) -> &'a Offsets {
+    fn offsets(&self) -> &'a Offsets {
         match self.at {
-            ItemOffsets::After(places, _) | ItemOffsets::Pairs(places) => places,
+            ItemOffsets::After(offsets, _) | ItemOffsets::Pairs(offsets) => offsets,
         }
     }
 
     /// Returns the byte after an item.
     pub(crate) fn end(&self, bytes: &[u8], item: usize) -> usize {
-        let (end, _) = self.form.extent(bytes, self.start(item));
+        let (end, _) = self.encoding.extent(bytes, self.start(item));
         match self.at {
-            ItemOffsets::Pairs(_) => self.form.extent(bytes, self.form.next(bytes, end)).0,
+            ItemOffsets::Pairs(_) => self.encoding.extent(bytes, self.encoding.next(bytes, end)).0,
             ItemOffsets::After(..) => end,
         }
     }
@@ -123,12 +123,12 @@ impl<'a> EditableColumn<'a> {
 
     /// Adds the numbers of some items that have changed, rounded to the precision of the file.
     pub(crate) fn changes(&self, bytes: &[u8], items: Range<usize>, changes: &mut Vec<NumberEdit>) {
-        let form = self.form;
+        let encoding = self.encoding;
         let mut add = |number: usize, start: usize, extent: Option<(usize, usize)>| {
-            let value = form.precision().rounded(self.new[number]);
+            let value = encoding.precision().rounded(self.new[number]);
             if value.to_bits() != self.old[number].to_bits() {
-                let (end, width) = extent.unwrap_or_else(|| form.extent(bytes, start));
-                changes.push(NumberEdit { range: start..end, value, form, width });
+                let (end, width) = extent.unwrap_or_else(|| encoding.extent(bytes, start));
+                changes.push(NumberEdit { range: start..end, value, encoding, width });
             }
         };
         for item in items {
@@ -136,9 +136,9 @@ impl<'a> EditableColumn<'a> {
             let (start, number) = (self.start(item), self.first + self.step * index);
             match self.at {
                 ItemOffsets::Pairs(_) => {
-                    let extent = form.extent(bytes, start);
+                    let extent = encoding.extent(bytes, start);
                     add(number, start, Some(extent));
-                    add(number + 1, form.next(bytes, extent.0), None);
+                    add(number + 1, encoding.next(bytes, extent.0), None);
                 }
                 _ => add(number, start, None),
             }

@@ -73,10 +73,10 @@ impl Rewrite<'_> {
         }
         let mut out = Vec::with_capacity(range.len() + range.len() / 4);
         let mut copied = range.start;
-        for NumberEdit { range, value, form, width } in changes {
+        for NumberEdit { range, value, encoding, width } in changes {
             out.extend_from_slice(&self.bytes[copied..range.start]);
             let start = out.len();
-            form.write(value, &mut out);
+            encoding.write(value, &mut out);
             let blanks = std::iter::repeat_n(b' ', (start + width).saturating_sub(out.len()));
             // What stood at the end of its field stays there.
             let is_right = width > 0 && self.bytes[..range.end].last().is_some_and(|&b| b > b' ');
@@ -181,8 +181,8 @@ mod tests {
             let mut columns =
                 EditableColumn::of_points(&x_at, None, CoordinateEncoding::TEXT, &old, &new);
             let places = Offsets::List(z_at);
-            let form = NumberEncoding::Text(Precision::Double);
-            columns.push(EditableColumn::of_array(&places, form, &z_old, &z_new));
+            let encoding = NumberEncoding::Text(Precision::Double);
+            columns.push(EditableColumn::of_array(&places, encoding, &z_old, &z_new));
             let mut out = Vec::new();
             Rewrite { bytes: &bytes, columns: &columns, edits: &[] }.write(&mut out).unwrap();
             assert!(out == expected, "{vertices} vertices");
@@ -212,8 +212,8 @@ mod tests {
             &new,
         );
         let places = Offsets::Regular { start: 20, stride: 20 };
-        let form = NumberEncoding::Binary(order, Precision::Single);
-        columns.push(EditableColumn::of_array(&places, form, &z_old, &z_new));
+        let encoding = NumberEncoding::Binary(order, Precision::Single);
+        columns.push(EditableColumn::of_array(&places, encoding, &z_old, &z_new));
         let edits = [
             ByteEdit { range: 0..2, bytes: b"HHH".into() },
             ByteEdit { range: 3..4, bytes: vec![] },

@@ -9,9 +9,9 @@ use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which parts of each record of a variable are handed on, each with numbers for all nodes.
+/// The parts of each record of a variable that are visited. Each part has the numbers of all nodes.
 #[derive(Clone)]
-pub(crate) struct ComponentSlice {
+pub(crate) struct RecordParts {
     pub(crate) wanted: Range<usize>,
     /// How many equal parts a record consists of.
     pub(crate) all: usize,
@@ -19,9 +19,9 @@ pub(crate) struct ComponentSlice {
     pub(crate) components: u64,
 }
 
-impl ComponentSlice {
+impl RecordParts {
     /// A record has one number for each node.
-    pub(crate) const WHOLE: ComponentSlice = ComponentSlice { wanted: 0..1, all: 1, components: 1 };
+    pub(crate) const WHOLE: RecordParts = RecordParts { wanted: 0..1, all: 1, components: 1 };
 }
 
 /// Reads data of nodes or faces, and hands those of nodes on. What is encoded of a variable is shared by all of its parts and records.
@@ -43,7 +43,7 @@ impl<'h, 'a> PointData<'h, 'a> {
         &mut self,
         name: &[u8],
         variable: &'h Variable,
-        parts: &ComponentSlice,
+        parts: &RecordParts,
         missing: Option<f64>,
         visitor: &mut dyn MeshVisitor,
     ) {
@@ -65,7 +65,7 @@ impl<'h, 'a> PointData<'h, 'a> {
         variable: &'h Variable,
         record: usize,
         part: usize,
-        parts: &ComponentSlice,
+        parts: &RecordParts,
         missing: Option<f64>,
     ) -> Option<PointNumbers> {
         let precision = match variable.number {
@@ -92,9 +92,9 @@ impl<'h, 'a> PointData<'h, 'a> {
         let is_missing = |number: &&mut f64| Some(**number) == missing;
         numbers.iter_mut().filter(is_missing).for_each(|number| *number = f64::NAN);
         let stored = precision.map(|precision| {
-            let places = Offsets::Regular { start, stride: precision.bytes() };
+            let offsets = Offsets::Regular { start, stride: precision.bytes() };
             ArrayLocation {
-                offsets: places,
+                offsets,
                 encoding: NumberEncoding::Binary(variable.order, precision),
                 space: home,
                 file_index: 0,

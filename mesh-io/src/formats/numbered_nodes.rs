@@ -40,7 +40,7 @@ pub(crate) fn numbered_nodes(
     Ok(z_values)
 }
 
-/// What nodes are called in messages.
+/// Words for the nodes of a format, for messages.
 #[derive(Clone, Copy)]
 pub(crate) struct NodeNames {
     /// A single node, with its article.

@@ -150,7 +150,7 @@ fn rows(source: &Source) -> Cursor<'_> {
     }
 }
 
-/// The material, object and groups of the current row.
+/// The material, object and groups to which the next elements belong.
 #[derive(Default)]
 struct CurrentGroups<'a> {
     material: Option<&'a [u8]>,

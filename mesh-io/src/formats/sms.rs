@@ -33,7 +33,7 @@ enum Row {
     Other,
 }
 
-/// How a row of a node string ends.
+/// The end of a row of a nodestring.
 enum NodestringEnd {
     /// The string continues in the next row.
     Open,

@@ -213,7 +213,7 @@ impl TriangleSoup<'_> {
     }
 }
 
-/// Returns for each corner the first corner at the same place.
+/// Returns for each corner the index of the first corner with equal coordinates.
 fn first_equal_corners(corners: &[[f64; 2]]) -> Vec<u32> {
     let mut first = HashMap::new();
     // Adding zero makes a negative zero positive, so both are one place.
@@ -221,8 +221,8 @@ fn first_equal_corners(corners: &[[f64; 2]]) -> Vec<u32> {
     (0..).zip(places).map(|(corner, place)| *first.entry(place).or_insert(corner)).collect()
 }
 
-/// Joins corners at the same place, and hands on vertices and triangles. Vertices are in the order in which the file
-/// first has them. Returns where the copies of each vertex stand.
+/// Merges corners with equal coordinates into vertices, in the order of their first corners, and visits vertices and
+/// triangles. Returns all corners of each vertex.
 fn send_mesh(
     source: &Source,
     soup: TriangleSoup<'_>,

@@ -4,7 +4,7 @@ use super::bytes::{ByteReader, Hdf5Error};
 use super::checksum::Checksum;
 use super::file_bytes::FileBytes;
 
-/// How deep a tree may be. One of so many levels would have more leaves than there are bytes on any disk.
+/// Limit on the levels of a tree. A deeper tree would have more leaves than there are bytes on any disk.
 const MAX_DEPTH: u8 = 32;
 
 /// A tree of version 1.

@@ -3,7 +3,7 @@
 use crate::binary::byte_order::ByteOrder;
 use std::ops::Range;
 
-/// What is wrong with a part of a file, or is not read of it.
+/// Damage or an unsupported feature of a part of an HDF5 file.
 #[derive(Clone, Debug)]
 pub(crate) struct Hdf5Error {
     /// The byte at which that part starts.
@@ -31,14 +31,14 @@ impl Hdf5Error {
     }
 }
 
-/// How many bytes an address has, and a length.
+/// Widths of addresses and lengths in the file, in bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FieldWidths {
     pub(super) address: usize,
     pub(super) length: usize,
 }
 
-/// Takes one item of metadata after another. Numbers have their lowest byte first.
+/// Reader of the fields of a metadata object. Numbers are little-endian.
 #[derive(Clone)]
 pub(super) struct ByteReader<'a> {
     all: &'a [u8],

@@ -7,13 +7,14 @@ use std::ops::Range;
 /// A range of a file with a checksum, the four bytes after it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Checksum {
-    pub(super) range: Range<usize>,
+    /// The range that the checksum covers.
+    pub(super) covered: Range<usize>,
 }
 
 impl Checksum {
-    /// Where the checksum stands.
-    pub(super) fn range(&self) -> Range<usize> {
-        self.range.end..self.range.end + 4
+    /// Returns the range of the checksum itself: the four bytes after the covered range.
+    pub(super) fn stored_range(&self) -> Range<usize> {
+        self.covered.end..self.covered.end + 4
     }
 
     /// Takes the checksum of what was taken since `start`, which has to be right. Fuzzers do not get beyond checksums by chance, so
@@ -23,29 +24,30 @@ impl Checksum {
         let own = bytes.within(range.clone()).take(range.len())?;
         let stored = bytes.number(4)?;
         match cfg!(any(fuzzing, test)) || u64::from(lookup3(own)) == stored {
-            true => Ok(Checksum { range }),
+            true => Ok(Checksum { covered: range }),
             false => Err(bytes.damaged()),
         }
     }
 
-    /// The checksum once these ranges are replaced by as many bytes, if one of them is covered by it.
-    pub(super) fn edit<'s>(
+    /// Returns the edit of the checksum after `edits`, which keep their lengths; `None` if no edit lies in the
+    /// covered range.
+    pub(super) fn update<'s>(
         &self,
         file: &[u8],
         edits: impl Iterator<Item = &'s ByteEdit>,
     ) -> Option<ByteEdit> {
         let own = |edit: &&ByteEdit| {
-            edit.range.start >= self.range.start && edit.range.end <= self.range.end
+            edit.range.start >= self.covered.start && edit.range.end <= self.covered.end
         };
-        let mut bytes = file.get(self.range.clone())?.to_vec();
+        let mut bytes = file.get(self.covered.clone())?.to_vec();
         let mut is_touched = false;
         for edit in edits.filter(own) {
-            let at = edit.range.start - self.range.start;
+            let at = edit.range.start - self.covered.start;
             bytes.get_mut(at..at + edit.bytes.len())?.copy_from_slice(&edit.bytes);
             is_touched = true;
         }
         let bytes = lookup3(&bytes).to_le_bytes().to_vec();
-        is_touched.then(|| ByteEdit { range: self.range(), bytes })
+        is_touched.then(|| ByteEdit { range: self.stored_range(), bytes })
     }
 }
 

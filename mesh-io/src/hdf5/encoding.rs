@@ -1,7 +1,7 @@
 //! What becomes of a file when numbers of its datasets change.
 
 use super::checksum::Checksum;
-use super::dataset::{ChunkedStorage, DatasetArray};
+use super::dataset::{DatasetArray, DatasetStorage};
 use super::entry::{Chunk, Entry};
 use super::file::Hdf5;
 use super::file_bytes::EndAddress;
@@ -22,7 +22,7 @@ pub(crate) struct Hdf5Arrays {
 }
 
 struct DatasetBytes {
-    pieces: ChunkedStorage,
+    storage: DatasetStorage,
     /// Its bytes among those of all.
     own: Range<usize>,
 }
@@ -38,7 +38,7 @@ impl Hdf5Arrays {
                 true => bytes = array.bytes.into_owned(),
                 false => bytes.extend_from_slice(&array.bytes),
             }
-            parts.push(DatasetBytes { pieces: array.pieces, own: start..bytes.len() });
+            parts.push(DatasetBytes { storage: array.storage, own: start..bytes.len() });
         }
         Hdf5Arrays { parts, bytes, end: file.raw.end.clone(), address: file.raw.widths.address }
     }
@@ -46,7 +46,7 @@ impl Hdf5Arrays {
     /// The byte of the file near which one of the bytes stands, for messages.
     pub(crate) fn byte_of(&self, at: usize) -> usize {
         let part = self.parts.iter().find(|part| part.own.end > at);
-        part.and_then(|part| part.pieces.chunks.first()).map_or(0, |chunk| chunk.range.start)
+        part.and_then(|part| part.storage.chunks.first()).map_or(0, |chunk| chunk.range.start)
     }
 
     /// The numbers of all of them.
@@ -55,13 +55,13 @@ impl Hdf5Arrays {
     }
 
     fn chunks(&self) -> impl Iterator<Item = &Chunk> {
-        self.parts.iter().flat_map(|part| &part.pieces.chunks)
+        self.parts.iter().flat_map(|part| &part.storage.chunks)
     }
 
     /// The checksums that may change with what they cover.
     fn sums(&self) -> impl Iterator<Item = &Checksum> {
         let entries = self.chunks().filter_map(|chunk| chunk.entry.as_ref()?.sum.as_ref());
-        let items = self.parts.iter().filter_map(|part| part.pieces.sum.as_ref());
+        let items = self.parts.iter().filter_map(|part| part.storage.sum.as_ref());
         entries.chain(items).chain(&self.end.sum)
     }
 
@@ -69,9 +69,9 @@ impl Hdf5Arrays {
         (value as u64).to_le_bytes()[..self.address.min(8)].to_vec()
     }
 
-    /// Puts the chunks that follow each other up to the end of the file there again, from the first one on that gets another
-    /// length, and takes their new bytes from `changed`. Does nothing if something else was put to the end before.
-    fn move_all_chunks(
+    /// Rewrites the chunks at the end of the file that are adjacent, from the first one on that changes its length.
+    /// New bytes come from `changed`. Does nothing if bytes were appended to the file before.
+    fn rewrite_trailing_chunks(
         &self,
         changed: &mut [(&Chunk, Option<Vec<u8>>)],
         file: &[u8],
@@ -162,35 +162,35 @@ impl EncodedArrays for Hdf5Arrays {
             ranges.push(entry.address..entry.address + self.address);
             ranges.extend(entry.size.clone());
         }
-        ranges.push(self.end.place.clone());
-        ranges.extend(self.sums().map(Checksum::range));
+        ranges.push(self.end.range.clone());
+        ranges.extend(self.sums().map(Checksum::stored_range));
         ranges
     }
 
     fn edits(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<ByteEdit> {
         let mut changed: Vec<(&Chunk, Option<Vec<u8>>)> = Vec::new();
-        for DatasetBytes { pieces, own } in &self.parts {
+        for DatasetBytes { storage, own } in &self.parts {
             let (old, new) = (&self.bytes[own.clone()], &new[own.clone()]);
-            let Some(lattice) = pieces.lattice.as_ref().filter(|_| old != new) else { continue };
-            for chunk in &pieces.chunks {
+            let Some(grid) = storage.grid.as_ref().filter(|_| old != new) else { continue };
+            for chunk in &storage.chunks {
                 let mut is_same = true;
-                lattice.runs(chunk.number, |at, _, length| {
+                grid.runs(chunk.number, |at, _, length| {
                     is_same &= old[at..at + length] == new[at..at + length];
                 });
                 // What was read once can be read again.
-                let Some(mut bytes) = pieces.chunk(file, chunk).filter(|_| !is_same) else {
+                let Some(mut bytes) = storage.chunk(file, chunk).filter(|_| !is_same) else {
                     continue;
                 };
                 // What a chunk at the edge has beside the items stays.
-                lattice.runs(chunk.number, |at, to, length| {
+                grid.runs(chunk.number, |at, to, length| {
                     bytes.to_mut()[to..to + length].copy_from_slice(&new[at..at + length]);
                 });
-                let stored = filters::filtered(&pieces.filters, chunk.mask, bytes.into_owned());
+                let stored = filters::filtered(&storage.filters, chunk.mask, bytes.into_owned());
                 changed.push((chunk, Some(stored)));
             }
         }
         let mut edits = Vec::new();
-        self.move_all_chunks(&mut changed, file, end, &mut edits);
+        self.rewrite_trailing_chunks(&mut changed, file, end, &mut edits);
         for (chunk, stored) in changed {
             if let Some(stored) = stored {
                 self.stored(chunk, stored, file, end, &mut edits);
@@ -202,13 +202,13 @@ impl EncodedArrays for Hdf5Arrays {
     fn dependent_edits(&self, file: &[u8], edits: &[ByteEdit], end: usize) -> Vec<ByteEdit> {
         let mut more = Vec::new();
         if end != file.len() {
-            more.push(ByteEdit { range: self.end.place.clone(), bytes: self.address_of(end) });
+            more.push(ByteEdit { range: self.end.range.clone(), bytes: self.address_of(end) });
         }
         let mut sums: Vec<&Checksum> = self.sums().collect();
         sums.dedup();
         for sum in sums {
-            if more.iter().all(|edit| edit.range != sum.range()) {
-                more.extend(sum.edit(file, edits.iter().chain(&more)));
+            if more.iter().all(|edit| edit.range != sum.stored_range()) {
+                more.extend(sum.update(file, edits.iter().chain(&more)));
             }
         }
         more

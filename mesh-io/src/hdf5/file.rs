@@ -113,6 +113,7 @@ impl<'a> Hdf5<'a> {
     /// Follows a path over so many links to other paths.
     fn follow<'h>(&'h self, from: &'h Object, path: &[u8], left: &mut u32) -> Option<&'h Object> {
         // Longer paths are no program's work.
+        /// Limit on the names of a path. Programs write no longer paths.
         const MAX_PATH_NAMES: usize = 64;
         let mut object = from;
         for (number, name) in path.split(|&byte| byte == b'/').enumerate() {

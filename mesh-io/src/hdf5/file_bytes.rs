@@ -8,26 +8,27 @@ use std::ops::Range;
 /// What a file starts with.
 pub(crate) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1A\n";
 
-/// The bytes of a file, and what its superblock says of them.
+/// The bytes of an HDF5 file, with the contents of its superblock.
 pub(super) struct FileBytes<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) widths: FieldWidths,
     pub(super) end: EndAddress,
-    /// What has been read, each part of which is of one thing alone, with where that starts.
+    /// Byte ranges read so far, each with the offset of the object that owns the range. Ranges of two owners must not
+    /// overlap, or an edit of one would damage the other.
     claimed: RefCell<Vec<(Range<usize>, usize)>>,
     /// How many bytes of metadata may still be read. Where parts of a file lead to each other in circles, they would be read
     /// forever.
     left: Cell<usize>,
 }
 
-/// How many times the length of the file is read of metadata at most, once the tree is known: those of a dataset are read anew
-/// each time it is asked for.
+/// Limit on metadata reads after the object tree is built, in multiples of the file length. The limit stops files
+/// whose structures refer to each other in a circle.
 const MAX_REREADS: usize = 64;
 
-/// Where the superblock says how long the file is.
+/// The end address in the superblock, which is the length of the file.
 #[derive(Clone, Debug)]
 pub(super) struct EndAddress {
-    pub(super) place: Range<usize>,
+    pub(super) range: Range<usize>,
     pub(super) sum: Option<Checksum>,
 }
 
@@ -75,7 +76,13 @@ impl<'a> FileBytes<'a> {
         let taken = RefCell::new(vec![(0..own.at(), 0)]);
         let left = Cell::new(bytes.len());
         Ok((
-            FileBytes { bytes, widths, end: EndAddress { place, sum }, claimed: taken, left },
+            FileBytes {
+                bytes,
+                widths,
+                end: EndAddress { range: place, sum },
+                claimed: taken,
+                left,
+            },
             root,
         ))
     }
@@ -85,7 +92,10 @@ impl<'a> FileBytes<'a> {
         ByteReader::new(self.bytes, at, self.widths, what)
     }
 
-    /// Notes that a range of metadata was read, which has to lie in the file.
+    /// Notes that a range of metadata was read.
+    ///
+    /// # Errors
+    /// If the range ends after the file, or if too much metadata was read.
     pub(super) fn claim(&self, range: Range<usize>, of: &ByteReader<'_>) -> Result<(), Hdf5Error> {
         if range.end > self.bytes.len() {
             return Err(of.damaged());
@@ -95,7 +105,10 @@ impl<'a> FileBytes<'a> {
         Ok(())
     }
 
-    /// Notes that so many bytes of metadata were read, so that a file cannot have the same ones read forever.
+    /// Counts `bytes` bytes of metadata as read.
+    ///
+    /// # Errors
+    /// If more metadata was read than the limit allows.
     pub(super) fn count_metadata(
         &self,
         bytes: usize,
@@ -106,17 +119,17 @@ impl<'a> FileBytes<'a> {
         Ok(())
     }
 
-    /// Notes that the data of an object were read.
+    /// Notes that the data of the object at offset `object` were read.
     pub(super) fn claim_data(&self, ranges: impl Iterator<Item = Range<usize>>, object: usize) {
         self.claimed.borrow_mut().extend(ranges.map(|range| (range, object)));
     }
 
-    /// Lets metadata be read again, once the tree is known.
+    /// Allows metadata to be read again, up to [`MAX_REREADS`] times, once the object tree is built.
     pub(super) fn allow_rereads(&self) {
         self.left.set(self.bytes.len().saturating_mul(MAX_REREADS));
     }
 
-    /// A byte that two of the things that were read share, if there is one.
+    /// Returns the start of a range that overlaps the range sorted before it; `None` if no ranges overlap.
     pub(super) fn first_overlap(&self) -> Option<usize> {
         let mut taken = self.claimed.borrow_mut();
         taken.retain(|(range, _)| !range.is_empty());

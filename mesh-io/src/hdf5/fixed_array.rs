@@ -5,7 +5,7 @@ use super::checksum::Checksum;
 use super::entry::Entry;
 use super::file_bytes::FileBytes;
 
-/// The array of a dataset.
+/// The index of the chunks of a dataset that does not grow: a fixed array of addresses.
 pub(super) struct FixedArray {
     /// How many there are, and how many stand together under a checksum.
     count: usize,
@@ -21,7 +21,7 @@ pub(super) struct FixedArray {
     sum: Option<Checksum>,
 }
 
-/// What the array says of a chunk.
+/// The entry of one chunk in a fixed array.
 pub(super) struct FixedArrayElement {
     pub(super) address: usize,
     /// How many bytes it has, if that is told.
@@ -97,7 +97,7 @@ impl FixedArray {
             // Once for each page.
             match place {
                 0 => sum = Some(self.page_sum(raw, &mut raw.at(start, OBJECT_NAME), own)?),
-                _ => sum = Some(Checksum { range: start..start + own }),
+                _ => sum = Some(Checksum { covered: start..start + own }),
             }
         }
         let mut bytes: ByteReader<'_> = raw.at(start + place * self.size, OBJECT_NAME);

@@ -17,7 +17,7 @@ pub(super) enum Target<O> {
     Object(O),
     /// Another path.
     Soft(Vec<u8>),
-    /// Another file.
+    /// An object of another file, which is not read.
     OtherFile,
 }
 
@@ -31,7 +31,7 @@ impl<O> Target<O> {
     }
 }
 
-/// Takes the name of a link, and the address of the header that it leads to.
+/// Called with the name and the target of each link of a group.
 type LinkVisitor<'t> = dyn FnMut(Vec<u8>, Target<usize>) -> Result<(), Hdf5Error> + 't;
 
 /// Hands on the links of a group; none if the object is no group.

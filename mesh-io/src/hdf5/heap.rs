@@ -3,7 +3,7 @@
 use super::bytes::{ByteReader, Hdf5Error};
 use super::file_bytes::FileBytes;
 
-/// A heap, and where its blocks stand.
+/// A fractal heap, with the addresses of its blocks.
 pub(super) struct FractalHeap {
     at: usize,
     /// How many bytes the place of an object has, and its length.
@@ -12,7 +12,7 @@ pub(super) struct FractalHeap {
     blocks: Vec<(usize, usize, usize)>,
 }
 
-/// How large the blocks of a row are, and how many there are in one.
+/// Sizes of the blocks in each row of a fractal heap.
 struct DoublingTable {
     width: usize,
     first: usize,

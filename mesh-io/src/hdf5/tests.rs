@@ -38,7 +38,7 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
             let path = [&group[..], b"/", name].concat();
             match file.dataset(child) {
                 Ok(None) if path.len() < 200 => groups.push(path),
-                Ok(Some(dataset)) if matches!(dataset.number, Datatype::Real(..)) => {
+                Ok(Some(dataset)) if matches!(dataset.datatype, Datatype::Real(..)) => {
                     found.push(path)
                 }
                 _ => {}
@@ -50,7 +50,7 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
 
 fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::DatasetArray<'a>, Datatype)> {
     let dataset = file.dataset(file.find(path)?).ok()??;
-    Some((file.array(&dataset).ok()?, dataset.number))
+    Some((file.array(&dataset).ok()?, dataset.datatype))
 }
 
 /// The file with all numbers of a dataset changed.

@@ -4,7 +4,7 @@ use super::bytes::{ByteReader, Hdf5Error};
 use crate::binary::byte_order::ByteOrder;
 use crate::precision::Precision;
 
-/// The types of numbers that are told apart.
+/// The type of the items of a dataset or attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Datatype {
     /// Letters, so many to an item.
@@ -12,7 +12,7 @@ pub(crate) enum Datatype {
     /// Whole numbers of so many bytes.
     Whole(usize, ByteOrder),
     Real(Precision, ByteOrder),
-    /// The place of a text of any length, in so many bytes.
+    /// The address of a text of variable length, in this number of bytes.
     VariableText(usize),
     /// Anything else of this size.
     Other(usize),
@@ -62,12 +62,12 @@ impl Datatype {
     }
 }
 
-/// The lengths of a dataset or attribute.
+/// The dimensions of a dataset or attribute.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Dataspace {
     /// One length for each dimension; none for a single item.
     pub(super) shape: Vec<u64>,
-    /// How large each may become; `u64::MAX` without a limit.
+    /// The largest length of each dimension; `u64::MAX` without a limit.
     pub(super) max_shape: Vec<u64>,
     /// Whether there is no item at all.
     pub(super) is_null: bool,

@@ -39,16 +39,17 @@ impl MeshFile {
         fields: [&[PointField]; 2],
     ) -> Option<Difference> {
         let (mine, theirs) = (self.files(), other.files());
-        let place = |file: &MeshFile, part: usize, at: usize| {
-            let source = file.files()[part];
-            let location = match file.is_text(part) {
+        let place = |file: &MeshFile, file_index: usize, at: usize| {
+            let source = file.files()[file_index];
+            let location = match file.is_text(file_index) {
                 true => Location::Line(source.line_of(at)),
                 false => Location::Byte(at),
             };
             SourceLocation { path: source.path.clone(), location, id: 0 }
         };
-        let differ = |part: usize, at: [usize; 2], what: String| {
-            let (place, other_place) = (place(self, part, at[0]), place(other, part, at[1]));
+        let differ = |file_index: usize, at: [usize; 2], what: String| {
+            let (place, other_place) =
+                (place(self, file_index, at[0]), place(other, file_index, at[1]));
             Some(Difference { location: place, other_location: other_place, description: what })
         };
         if self.format() != other.format() {
@@ -86,14 +87,18 @@ impl MeshFile {
                 });
             }
         }
-        for (part, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
+        for (file_index, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
             let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
-            let mut ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
-            if [0, 1].iter().any(|&side| [self, other][side].keeps_places(part, fields[side])) {
+            let mut ranges =
+                [0, 1].map(|side| [self, other][side].changeable(file_index, fields[side]));
+            if [0, 1]
+                .iter()
+                .any(|&side| [self, other][side].preserves_offsets(file_index, fields[side]))
+            {
                 ranges = in_either(bytes, ranges);
             }
             if let Some(at) = unequal(bytes, ranges) {
-                let text = |side: usize| match self.is_text(part) {
+                let text = |side: usize| match self.is_text(file_index) {
                     _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
                     true => {
                         let start = memchr::memrchr(b'\n', &bytes[side][..at[side]]);
@@ -103,7 +108,7 @@ impl MeshFile {
                     }
                     false => format!("the byte {}", bytes[side][at[side]]),
                 };
-                return differ(part, at, format!("{} and {}", text(0), text(1)));
+                return differ(file_index, at, format!("{} and {}", text(0), text(1)));
             }
         }
         None
@@ -128,12 +133,12 @@ impl MeshFile {
         let places = (0..count).map(|index| x_at.at(index));
         match self.encoding() {
             CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. } => {
-                let (bytes, form) =
+                let (bytes, encoding) =
                     (&self.files()[self.file_index()].bytes, NumberEncoding::from(self.encoding()));
                 for x in places {
-                    let (x_end, _) = form.extent(bytes, x);
-                    let y = form.next(bytes, x_end);
-                    ranges.extend([x..x_end, y..form.extent(bytes, y).0]);
+                    let (x_end, _) = encoding.extent(bytes, x);
+                    let y = encoding.next(bytes, x_end);
+                    ranges.extend([x..x_end, y..encoding.extent(bytes, y).0]);
                 }
             }
             CoordinateEncoding::Binary { precision, y_after, .. } => {
@@ -150,47 +155,48 @@ impl MeshFile {
     }
 
     /// Whether places in one of the files are told by lines.
-    fn is_text(&self, part: usize) -> bool {
+    fn is_text(&self, file_index: usize) -> bool {
         match self.encoding() {
             CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. }
-                if part == self.file_index() =>
+                if file_index == self.file_index() =>
             {
                 true
             }
-            CoordinateEncoding::Binary { .. } if part == self.file_index() => false,
-            _ => memchr::memchr(0, &self.files()[part].bytes).is_none(),
+            CoordinateEncoding::Binary { .. } if file_index == self.file_index() => false,
+            _ => memchr::memchr(0, &self.files()[file_index].bytes).is_none(),
         }
     }
 
     /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
-    fn keeps_places(&self, part: usize, fields: &[PointField]) -> bool {
+    fn preserves_offsets(&self, file_index: usize, fields: &[PointField]) -> bool {
         let of = |field: &PointField| match field.stored()? {
             ArrayLocation { space: ByteSpace::Encoded(array), file_index: own, .. } => {
-                Some(*own == part && array.preserves_offsets())
+                Some(*own == file_index && array.preserves_offsets())
             }
             _ => None,
         };
-        (part == self.file_index()
+        (file_index == self.file_index()
             && self.encoded_points().is_some_and(EncodedArrays::preserves_offsets))
             || fields.iter().filter_map(of).any(|keeps| keeps)
     }
 
     /// The ranges of a file that may change where vertices move and these data change, ascending.
-    fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
-        let bytes = &self.files()[part].bytes;
-        let encoded = self.encoded_points().filter(|_| part == self.file_index());
+    fn changeable(&self, file_index: usize, fields: &[PointField]) -> Vec<Range<usize>> {
+        let bytes = &self.files()[file_index].bytes;
+        let encoded = self.encoded_points().filter(|_| file_index == self.file_index());
         let mut ranges = match encoded {
-            None if part == self.file_index() => self.coordinates(),
+            None if file_index == self.file_index() => self.coordinates(),
             None => Vec::new(),
             Some(points) => points.ranges(),
         };
-        if part == 0 {
+        if file_index == 0 {
             // Companions may have other names.
             let named_at = self.source().companions.iter().flat_map(|own| &own.named_at);
             ranges.extend(named_at.cloned());
         }
-        let own =
-            |field: &&PointField| field.stored().is_some_and(|stored| stored.file_index == part);
+        let own = |field: &&PointField| {
+            field.stored().is_some_and(|stored| stored.file_index == file_index)
+        };
         let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.space));
         let arrays = homes().filter_map(|home| match home {
             ByteSpace::Encoded(array) => Some(&**array),
@@ -204,7 +210,7 @@ impl MeshFile {
             ranges.extend(array.dependent_ranges(first));
         }
         let in_file = |stored: &ArrayLocation| {
-            stored.file_index == part && matches!(stored.space, ByteSpace::File)
+            stored.file_index == file_index && matches!(stored.space, ByteSpace::File)
         };
         merged(ranges, number_ranges(bytes, fields, in_file))
     }
@@ -242,14 +248,13 @@ fn number_ranges(
 ) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     for field in fields {
-        let Some(stored @ ArrayLocation { offsets: places, encoding: form, .. }) = field.stored()
-        else {
+        let Some(stored @ ArrayLocation { offsets: places, encoding, .. }) = field.stored() else {
             continue;
         };
         if !in_these(stored) {
             continue;
         }
-        let range = |at: usize| at..form.extent(bytes, at).0;
+        let range = |at: usize| at..encoding.extent(bytes, at).0;
         match places {
             Offsets::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
             Offsets::Regular { start, stride } => {

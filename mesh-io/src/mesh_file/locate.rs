@@ -46,7 +46,7 @@ impl MeshFile {
         let mut wanted: Vec<usize> = indices.into_iter().map(|v| v as usize).collect();
         keep_ascending(&mut wanted, self.points().len());
         let found = locate(self.reader(), self.source(), ItemList::Nodes, &wanted);
-        self.places(&wanted, found).map(|(v, place)| (v as u32, place)).collect()
+        self.locations(&wanted, found).map(|(v, place)| (v as u32, place)).collect()
     }
 
     /// Returns the location of a triangle's vertices in the file. `index` is the 0-based index in
@@ -70,19 +70,19 @@ impl MeshFile {
         let mut wanted: Vec<usize> = indices.into_iter().collect();
         keep_ascending(&mut wanted, self.triangles().len());
         let found = locate(self.reader(), self.source(), ItemList::Triangles, &wanted);
-        self.places(&wanted, found).collect()
+        self.locations(&wanted, found).collect()
     }
 
     /// Returns the place of each of these items with the index of the item.
-    fn places<'a>(
+    fn locations<'a>(
         &'a self,
         wanted: &'a [usize],
         found: Vec<ItemLocation>,
     ) -> impl Iterator<Item = (usize, SourceLocation)> + 'a {
         let source = self.source();
         wanted.iter().zip(found).map(
-            move |(&index, ItemLocation { location, id: label, file_index: part })| {
-                let path = source.files().nth(part).unwrap_or(source).path.clone();
+            move |(&index, ItemLocation { location, id: label, file_index })| {
+                let path = source.files().nth(file_index).unwrap_or(source).path.clone();
                 (index, SourceLocation { path, location, id: label })
             },
         )
@@ -110,12 +110,12 @@ mod tests {
     use std::path::Path;
     use std::sync::atomic::{AtomicBool, Ordering};
 
-    /// A second walk through a file may find other items than the first one only by a fault of a reader. Messages must come out
+    /// A second reading of a file may find other items than the first one only by a fault of a reader. Messages must come out
     /// even so.
     #[test]
-    fn items_that_a_second_walk_does_not_find_have_a_place_without_a_line() {
+    fn items_that_a_second_reading_does_not_find_have_a_location_without_a_line() {
         static READER: ReaderFunctions = ReaderFunctions {
-            visit: |source, _| Err(source.error("no second walk", "")),
+            visit: |source, _| Err(source.error("no second reading", "")),
             load_companions: Ok,
             require_single: |_| Ok(()),
             destinations: |_, path| Ok(vec![path.to_owned()]),
@@ -135,21 +135,21 @@ mod tests {
         assert!(std::panic::catch_unwind(no_triangle).is_err());
     }
 
-    /// The reader of this test comes to no node in its second walk.
+    /// The reader of this test comes to no node in its second reading.
     #[test]
     fn a_coordinate_beyond_single_precision_is_an_error_even_if_its_place_is_not_found() {
-        static WALKED: AtomicBool = AtomicBool::new(false);
-        fn walk(
+        static WAS_READ: AtomicBool = AtomicBool::new(false);
+        fn visit(
             source: &Source,
             visitor: &mut dyn MeshVisitor,
         ) -> Result<CoordinateStorage, ReadError> {
-            if WALKED.swap(true, Ordering::SeqCst) {
-                return Err(source.error("no second walk", ""));
+            if WAS_READ.swap(true, Ordering::SeqCst) {
+                return Err(source.error("no second reading", ""));
             }
             (detect::reader(source)?.visit)(source, visitor)
         }
         static READER: ReaderFunctions = ReaderFunctions {
-            visit: walk,
+            visit,
             load_companions: Ok,
             require_single: |_| Ok(()),
             destinations: |_, path| Ok(vec![path.to_owned()]),

@@ -136,7 +136,7 @@ impl MeshFile {
     }
 
     pub(crate) fn x_offsets(&self) -> &Offsets {
-        &self.parsed.x_at
+        &self.parsed.x_offsets
     }
 
     pub(crate) fn offset_vertices(&self) -> Option<&[u32]> {

@@ -257,7 +257,8 @@ fn read(name: &str, bytes: &[u8], ahead: bool) -> Result<impl PartialEq, String>
     }
     let reader = detect::reader(&source).map_err(|e| e.to_string())?;
     let parsed = parse_by(reader, &source, ahead).map_err(|e| e.to_string())?;
-    let ParsedMesh { points, triangles, constraints, x_at, regions, remarks, .. } = parsed;
+    let ParsedMesh { points, triangles, constraints, x_offsets: x_at, regions, remarks, .. } =
+        parsed;
     let places: Vec<usize> = (0..points.len()).map(|v| x_at.at(v)).collect();
     let is_regular = matches!(x_at, Offsets::Regular { .. });
     Ok(((points, triangles, constraints), places, regions, remarks, is_regular))

@@ -1,4 +1,4 @@
-//! Walks again through a file for the parameters of vertices on surfaces of a model.
+//! Visitor for a second reading of a file: for the parameters of vertices on surfaces of a model.
 
 use crate::content::id_index::IdIndex;
 use crate::disk::source::Source;

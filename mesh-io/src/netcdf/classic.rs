@@ -13,7 +13,7 @@ use crate::text::cursor::{CUT_OFF, Cursor};
 
 const ORDER: ByteOrder = ByteOrder::Big;
 
-/// A variable, and where it starts.
+/// A variable as the header of the file describes it.
 struct VariableEntry {
     name: Vec<u8>,
     shape: Vec<u64>,
@@ -131,7 +131,7 @@ fn variable_entries(
     Ok((records, stride))
 }
 
-/// Takes what a header consists of.
+/// Reader of the fields of the header.
 struct HeaderReader<'a> {
     cursor: Cursor<'a>,
     /// How many bytes a count has, and an offset.

@@ -2,7 +2,7 @@
 
 use crate::precision::Precision;
 
-/// The types of numbers that are told apart.
+/// The type of the numbers of a variable or attribute.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum NumberType {
     Text,

@@ -42,7 +42,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         if is_record {
             shape.remove(0);
         }
-        let (number, order) = match dataset.number {
+        let (number, order) = match dataset.datatype {
             hdf5::Datatype::Text(1) => (NumberType::Text, ByteOrder::Big),
             other => number_of(other),
         };

@@ -110,8 +110,8 @@ impl PointField {
 
     /// Returns the numbers as a column for rewriting, if they stand in the file.
     pub(crate) fn column(&self) -> Option<EditableColumn<'_>> {
-        let ArrayLocation { offsets: places, encoding: form, .. } = self.stored.as_ref()?;
-        Some(EditableColumn::of_array(places, *form, &self.old, &self.new))
+        let ArrayLocation { offsets, encoding, .. } = self.stored.as_ref()?;
+        Some(EditableColumn::of_array(offsets, *encoding, &self.old, &self.new))
     }
 }
 

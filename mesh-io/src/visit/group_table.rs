@@ -1,4 +1,4 @@
-//! Gathers the groups of a file during a walk through it.
+//! The groups of a file, collected while its items are visited.
 
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;

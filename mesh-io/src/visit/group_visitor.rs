@@ -1,4 +1,4 @@
-//! Walks again through a file for what the reading of the mesh leaves out: groups, and the labels of vertices.
+//! Visitors for a second reading of a file: for its groups, and for the ids of its vertices.
 
 use crate::content::id_index::IdIndexBuilder;
 use crate::content::label::Label;

@@ -5,8 +5,6 @@ use crate::content::label::Label;
 use crate::visit::storage::ArrayLocation;
 
 /// The kinds of cells. A line of several segments becomes several cells.
-///
-/// Readers visit a polygon corner by corner: each corner is an [`Element`] of one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CellKind {

@@ -17,7 +17,7 @@ pub(crate) enum ItemList {
 /// Location and id of an item of a file.
 #[derive(Clone, Copy)]
 pub(crate) struct ItemLocation {
-    /// [`Location::Unknown`] if the walk does not come to the item.
+    /// [`Location::Unknown`] if the reader does not visit the item.
     pub(crate) location: Location,
     /// The file's number of the item; its index in the list if the location is unknown.
     pub(crate) id: u64,
@@ -25,7 +25,7 @@ pub(crate) struct ItemLocation {
     pub(crate) file_index: usize,
 }
 
-/// Walks through the file and returns one place for each of these items of a list. `indices` are ascending.
+/// Reads the file again and returns the location of each of these items of a list. `indices` are ascending.
 pub(crate) fn locate(
     reader: &ReaderFunctions,
     source: &Source,
@@ -61,19 +61,15 @@ impl LocationVisitor<'_> {
     /// Notes the place of the next item of the list, if the item is looked for.
     fn pass(&mut self, cursor: &Cursor<'_>, label: u64) {
         if self.left.first() == Some(&self.next) {
-            let mut parts = self.source.files();
-            let part = parts.position(|part| std::ptr::eq(part, cursor.source)).unwrap_or(0);
-            self.found.push(ItemLocation {
-                location: cursor.location(),
-                id: label,
-                file_index: part,
-            });
+            let mut files = self.source.files();
+            let file_index = files.position(|file| std::ptr::eq(file, cursor.source)).unwrap_or(0);
+            self.found.push(ItemLocation { location: cursor.location(), id: label, file_index });
             self.left = &self.left[1..];
         }
         self.next += 1;
     }
 
-    /// Ends the walk by an error, which nobody sees, once all items are found.
+    /// Stops the reader by an error, which is discarded, once all items are found.
     fn end_if_found(&self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
         if self.left.is_empty() { Err(cursor.error("", "")) } else { Ok(()) }
     }

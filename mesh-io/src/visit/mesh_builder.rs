@@ -29,16 +29,18 @@ pub(crate) fn parse_by(
     takes_ahead: bool,
 ) -> Result<ParsedMesh, ReadError> {
     let vertices_of = reader.vertices;
-    let mut assembler = MeshBuilder { vertices_of, takes_ahead, ..MeshBuilder::default() };
+    let mut assembler =
+        MeshBuilder { vertices_of, allows_parallel: takes_ahead, ..MeshBuilder::default() };
     let CoordinateStorage {
         format,
         encoding: numbers,
         encoded,
         repeated_vertices: copies,
-        file_index: part,
+        file_index,
     } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
-    let MeshBuilder { mut points, triangles, x_at, regions, constraints, .. } = assembler;
+    let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
+        assembler;
     let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
     if quadrilaterals > 0 {
         remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
@@ -50,9 +52,9 @@ pub(crate) fn parse_by(
     for (vertex, point) in points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let ItemLocation { location, id: label, file_index: part } =
+            let ItemLocation { location, id: label, file_index } =
                 locate(reader, source, ItemList::Nodes, &[vertex])[0];
-            let source = source.files().nth(part).unwrap_or(source);
+            let source = source.files().nth(file_index).unwrap_or(source);
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
             return Err(source.error_at(location, problem, CORRECT));
@@ -67,10 +69,10 @@ pub(crate) fn parse_by(
         format,
         points,
         triangles,
-        x_at,
+        x_offsets: x_at,
         owners,
         encoding: numbers,
-        file_index: part,
+        file_index,
         encoded,
         regions,
         constraints,
@@ -85,10 +87,10 @@ pub(crate) fn parse_by(
 #[derive(Default)]
 struct MeshBuilder {
     /// Whether items that were read on all threads are taken.
-    takes_ahead: bool,
+    allows_parallel: bool,
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
-    x_at: OffsetsBuilder,
+    x_offsets: OffsetsBuilder,
     ids: IdIndexBuilder,
     region_names: Interner<[i64; 2]>,
     regions: TriangleRegions,
@@ -128,12 +130,12 @@ impl MeshBuilder {
 
 impl MeshVisitor for MeshBuilder {
     fn allows_parallel(&self) -> bool {
-        self.takes_ahead
+        self.allows_parallel
     }
 
     fn expect_nodes(&mut self, count: usize) {
         self.points.reserve_exact(count);
-        self.x_at.expect(count);
+        self.x_offsets.expect(count);
         self.ids.list().expect(count);
     }
 
@@ -149,15 +151,15 @@ impl MeshVisitor for MeshBuilder {
             self.constraints.anchored.push(self.points.len() as u32);
         }
         self.ids.push(id);
-        self.x_at.push(x_at);
+        self.x_offsets.push(x_at);
         self.points.push(at);
     }
 
     fn node_records(&mut self, records: &NodeRecords<'_>) -> usize {
-        if !self.takes_ahead {
+        if !self.allows_parallel {
             return 0;
         }
-        records.read(&mut self.points, self.ids.list(), &mut self.x_at)
+        records.read(&mut self.points, self.ids.list(), &mut self.x_offsets)
     }
 
     fn polyline(
@@ -233,7 +235,7 @@ impl MeshVisitor for MeshBuilder {
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
         let Err((id, second)) = self.ids.finish() else { return Ok(()) };
         let problem = format!("node {id} is listed a second time");
-        let location = cursor.location_of(self.x_at.at(second));
+        let location = cursor.location_of(self.x_offsets.at(second));
         Err(cursor.source.error_at(location, problem, "Give each node a tag of its own"))
     }
 
@@ -242,7 +244,7 @@ impl MeshVisitor for MeshBuilder {
     }
 
     fn triangle_records(&mut self, records: &TriangleRecords<'_>) -> usize {
-        let Self { ids, takes_ahead: true, triangles, regions, region_names, .. } = self else {
+        let Self { ids, allows_parallel: true, triangles, regions, region_names, .. } = self else {
             return 0;
         };
         let Some(map) = ids.map() else { return 0 };

@@ -1,4 +1,4 @@
-//! The protocol between readers and their listeners: what a reader hands on, and listeners that collect a mesh, groups or data.
+//! The protocol between readers and visitors: the items that a reader visits, and visitors that build a mesh, groups or data of them.
 
 pub(crate) mod field;
 pub(crate) mod group_table;

@@ -13,7 +13,7 @@ pub(crate) struct ParsedMesh {
     /// The vertices of each triangle.
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Offset of each vertex's x in the file that holds the vertices, ascending.
-    pub(crate) x_at: Offsets,
+    pub(crate) x_offsets: Offsets,
     /// The vertex of each offset in `x_at`; `None` if there is one for each vertex in order.
     pub(crate) owners: Option<Vec<u32>>,
     /// How the file stores coordinates.

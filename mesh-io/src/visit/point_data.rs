@@ -1,4 +1,4 @@
-//! Walks again through a file for arrays of point data.
+//! Visitor for a second reading of a file: for arrays of point data.
 
 use crate::content::id_index::IdIndexBuilder;
 use crate::disk::source::Source;

@@ -15,13 +15,8 @@ pub(crate) struct ArrayLocation {
 
 impl ArrayLocation {
     /// Makes the value for numbers that stand in the file itself.
-    pub(crate) fn in_place(places: Offsets, form: NumberEncoding) -> Option<ArrayLocation> {
-        Some(ArrayLocation {
-            offsets: places,
-            encoding: form,
-            space: ByteSpace::File,
-            file_index: 0,
-        })
+    pub(crate) fn in_place(offsets: Offsets, encoding: NumberEncoding) -> Option<ArrayLocation> {
+        Some(ArrayLocation { offsets, encoding, space: ByteSpace::File, file_index: 0 })
     }
 }
 

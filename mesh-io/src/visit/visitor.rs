@@ -1,4 +1,4 @@
-//! The trait of what takes the items of a file.
+//! The visitor that readers call for each item of a file.
 
 use crate::content::label::Label;
 use crate::content::remark::Remark;
@@ -38,7 +38,7 @@ pub(crate) trait MeshVisitor {
     }
     /// Announces about how many elements follow.
     fn expect_elements(&mut self, _count: usize) {}
-    /// Takes an element that was just read. Sinks that look for something else ignore it.
+    /// Takes an element that was just read. Visitors that need no elements ignore the call.
     fn element(&mut self, _cursor: &Cursor<'_>, _element: &Element) -> Result<(), ReadError> {
         Ok(())
     }

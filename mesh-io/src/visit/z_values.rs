@@ -35,8 +35,8 @@ impl ZValues {
             None => self.first = Some(z),
             Some(first) => self.differ |= z != first,
         }
-        if let Some((places, numbers)) = &mut self.collected {
-            places.push(at);
+        if let Some((offsets, numbers)) = &mut self.collected {
+            offsets.push(at);
             numbers.push(z);
         }
     }
@@ -54,33 +54,33 @@ impl ZValues {
     }
 
     /// Hands the numbers to the visitor under this name, if they differ or if the visitor asks for data.
-    pub(crate) fn send(self, name: &str, form: NumberEncoding, visitor: &mut dyn MeshVisitor) {
-        self.send_from(name, form, ByteSpace::File, 0, visitor);
+    pub(crate) fn send(self, name: &str, encoding: NumberEncoding, visitor: &mut dyn MeshVisitor) {
+        self.send_from(name, encoding, ByteSpace::File, 0, visitor);
     }
 
     /// The same, if they stand elsewhere than in the file itself, or in this one of the files of the mesh.
     pub(crate) fn send_from(
         self,
         name: &str,
-        form: NumberEncoding,
+        encoding: NumberEncoding,
         home: ByteSpace,
-        part: usize,
+        file_index: usize,
         visitor: &mut dyn MeshVisitor,
     ) {
         let is_any = self.collected.is_some() && self.first.is_some() && !self.is_partial;
         let is_told = self.differ || is_any;
         if is_told
             && visitor.z_array(name.as_bytes())
-            && let Some((places, mut numbers)) = self.collected
+            && let Some((offsets, mut numbers)) = self.collected
         {
-            let precision = form.precision();
+            let precision = encoding.precision();
             numbers.iter_mut().for_each(|z| *z = precision.rounded(*z));
             // There is no place for those that a file does not have.
             let stored = (!self.is_partial).then_some(ArrayLocation {
-                offsets: Offsets::List(places),
-                encoding: form,
+                offsets: Offsets::List(offsets),
+                encoding,
                 space: home,
-                file_index: part,
+                file_index,
             });
             visitor.point_numbers(PointNumbers { numbers, nodes: None, location: stored });
         }
@@ -90,7 +90,7 @@ impl ZValues {
 /// Collects numbers of a text with their offsets.
 #[derive(Default)]
 pub(crate) struct TextNumbers {
-    places: Vec<usize>,
+    offsets: Vec<usize>,
     numbers: Vec<f64>,
 }
 
@@ -99,7 +99,7 @@ impl TextNumbers {
     pub(crate) fn read(&mut self, cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
         let at = cursor.at();
         let number = cursor.real("a number of a point")?;
-        self.places.push(at);
+        self.offsets.push(at);
         self.numbers.push(number);
         Ok(())
     }
@@ -121,10 +121,10 @@ impl TextNumbers {
 
     /// Returns all numbers. `nodes` are the nodes they belong to; `None` if they belong to all nodes in order.
     pub(crate) fn finish(self, precision: Precision, nodes: Option<Vec<u64>>) -> PointNumbers {
-        let Self { places, mut numbers } = self;
+        let Self { offsets, mut numbers } = self;
         numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));
         let stored =
-            ArrayLocation::in_place(Offsets::List(places), NumberEncoding::Text(precision));
+            ArrayLocation::in_place(Offsets::List(offsets), NumberEncoding::Text(precision));
         PointNumbers { numbers, nodes, location: stored }
     }
 }

@@ -12,7 +12,7 @@ use std::ops::Range;
 /// The most elements that may be nested. VTK and XDMF nest no more than ten, and each takes memory until it ends.
 const MAX_DEPTH: usize = 100;
 
-/// Reads the start tags of a file, in order.
+/// Iterator over the start tags of a document, with the elements that are open.
 pub(crate) struct XmlTags<'a> {
     source: &'a Source,
     /// The offset of the first byte that the parser gets.
@@ -24,7 +24,7 @@ pub(crate) struct XmlTags<'a> {
     last: Option<XmlTag<'a>>,
 }
 
-/// The start tag of an element.
+/// A start tag, with its range in the file.
 #[derive(Clone)]
 pub(crate) struct XmlTag<'a> {
     source: &'a Source,

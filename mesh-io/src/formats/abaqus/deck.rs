@@ -27,7 +27,7 @@ pub(super) const ASSEMBLY: usize = 1;
 /// Keywords that make nodes or elements which have no row.
 const GENERATING_KEYWORDS: [&str; 8] =
     ["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SYMMETRICMODELGENERATION"];
-/// How deep files may include others.
+/// Limit on the depth of nested includes.
 const MAX_INCLUDE_DEPTH: u32 = 8;
 
 impl<'a> Deck<'a> {

@@ -15,7 +15,8 @@ use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// What is found out of elements before they are handed on. All lists are empty if they are not needed.
+/// The sections, sets and surfaces of the elements, found before the elements are visited. Lists that are not needed
+/// are empty.
 #[derive(Default)]
 pub(super) struct ElementGroups {
     /// The number of the section of each element, or of the sets that it is in, counted from 1.
@@ -236,7 +237,7 @@ impl ElementGroups {
     }
 }
 
-/// Tells the visitor the groups of the next element, if they differ from those before.
+/// Visits the groups of the next element, if they differ from the groups of the element before.
 fn send_scopes<'f>(
     names: &[Vec<u8>],
     told: &mut &'f [(u32, u32)],
@@ -254,7 +255,8 @@ fn send_scopes<'f>(
     *told = now;
 }
 
-/// Hands on the nodes of elements that hold them, and counts the elements. `assembly` is given for elements of an assembly.
+/// Visits the nodes of elements that constrain them, and counts the elements. `assembly` is given for elements of an
+/// assembly.
 fn send_constrained_nodes(
     rows: &mut Cursor<'_>,
     assembly: Option<&Deck<'_>>,

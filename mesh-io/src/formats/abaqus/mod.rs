@@ -76,7 +76,7 @@ fn sections<'d, 'a>(deck: &'d Deck<'a>) -> impl Iterator<Item = &'d Block<'a>> {
     own.map(|(block, _)| block)
 }
 
-/// Tells of keywords that say more than what a mesh is.
+/// Reports keywords with information beyond the mesh as unsupported.
 fn report_unsupported(deck: &Deck<'_>, visitor: &mut dyn MeshVisitor) {
     const MESH_KEYWORDS: [&str; 13] = [
         "HEADING",

@@ -11,7 +11,7 @@ use crate::visit::rows::{all_rows, nodes};
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
-/// Moves the cursor on to the lines of data of a block. Returns one that does not read beyond them.
+/// Moves the cursor to the data lines of a block. Returns a cursor that does not read beyond these lines.
 pub(super) fn data_rows<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
     cursor.seek(block.data.start);
     let mut rows = cursor.clone();
@@ -19,7 +19,7 @@ pub(super) fn data_rows<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Curso
     rows
 }
 
-/// How many nodes there are, and how many of them have a number of more characters than are read of it.
+/// Number of nodes, and of nodes with a coordinate of more than [`MAX_NUMBER_LENGTH`] characters.
 #[derive(Default)]
 pub(super) struct LengthCounts {
     pub(super) all: u64,
@@ -47,7 +47,7 @@ pub(super) fn send_nodes(
 /// A node: its number, the offset of x, whether a number is long, x and y, and z with its offset.
 type Node = (u64, (usize, bool), [f64; 2], (usize, f64));
 
-/// How many characters of a number are read by Abaqus and CalculiX.
+/// Number of characters of a number that Abaqus and CalculiX read.
 const MAX_NUMBER_LENGTH: usize = 20;
 
 #[inline]
@@ -138,7 +138,7 @@ pub(super) fn each_constrained<'a>(
 
 const NUMBER: &str = "the number of an element";
 
-/// Moves to the next row if this one has ended in a comma.
+/// Moves to the next row if the current row ends in a comma.
 fn skip_continuation(cursor: &mut Cursor<'_>) {
     let at = cursor.at();
     let is_at_end = cursor.bytes.get(at).is_none_or(|&byte| byte == b'\n');
@@ -150,7 +150,10 @@ fn skip_continuation(cursor: &mut Cursor<'_>) {
     }
 }
 
-/// Checks that no node is left in a row. Beams may have another one, which tells their direction.
+/// Checks that a row has no more nodes than its kind of element.
+///
+/// # Errors
+/// If the row has another node. A line may have one more, which gives the direction of a beam.
 #[inline]
 fn check_row_end(cursor: &Cursor<'_>, kind: CellKind, id: u64) -> Result<(), ReadError> {
     if kind == CellKind::Line || cursor.is_at_end() {

@@ -40,7 +40,7 @@ enum Item {
     Set(Key),
 }
 
-/// The numbers of all elements or nodes, ascending, each with its place in the file.
+/// The ids of nodes or elements, sorted, each with its position in the file.
 pub(super) struct IdPositions(Vec<(u64, u32)>);
 
 impl IdPositions {
@@ -66,7 +66,8 @@ impl IdPositions {
     }
 }
 
-/// How much may still be done to list members of sets, so that a damaged file does not take forever.
+/// Number of steps that may still be taken to list members of sets. The limit stops damaged files whose sets include
+/// each other many times.
 pub(super) struct WorkBudget(usize);
 
 impl WorkBudget {

@@ -38,7 +38,7 @@ const VOLUMES: [&str; 15] = [
     "C3D", "DC3D", "DCC3D", "AC3D", "ACIN3D", "CIN3D", "SC6", "SC8", "CSS8", "COH3D", "EMC3D",
     "GK3D", "Q3D", "F3D", "CCL",
 ];
-/// What the names of elements begin with that hold their nodes.
+/// First letters of the names of elements whose nodes are constraints.
 const CONSTRAINING: [&str; 17] = [
     "MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "GAP", "DGAP", "CONN", "DCOUP", "JOINT",
     "ITS", "ASI", "PSI", "DRAG", "PC3D", "PD3D", "FRAME",

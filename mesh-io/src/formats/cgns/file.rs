@@ -64,7 +64,7 @@ impl<'a> File<'a> {
         node: &'a Object,
     ) -> Result<Option<(Dataset, DatasetArray<'a>)>, ReadError> {
         let dataset = self.data(node).map(|data| self.hdf5.dataset(data)).transpose()?.flatten();
-        let dataset = dataset.filter(|dataset| matches!(dataset.number, Datatype::Real(..)));
+        let dataset = dataset.filter(|dataset| matches!(dataset.datatype, Datatype::Real(..)));
         dataset
             .map(|dataset| Ok((self.hdf5.array(&dataset)?, dataset)).map(|(a, d)| (d, a)))
             .transpose()

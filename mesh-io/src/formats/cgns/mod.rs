@@ -64,9 +64,9 @@ impl<'a> File<'a> {
             let Some(node) = node else { break };
             read.extend(self.reals(node)?);
         }
-        let first = read.first().map(|(dataset, array)| (dataset.number, array.bytes.len()));
+        let first = read.first().map(|(dataset, array)| (dataset.datatype, array.bytes.len()));
         let is_same = |(dataset, array): &(Dataset, DatasetArray<'_>)| {
-            Some((dataset.number, array.bytes.len())) == first
+            Some((dataset.datatype, array.bytes.len())) == first
         };
         let (Some((Datatype::Real(precision, order), length)), 2..=3, true) =
             (first, read.len(), read.iter().all(is_same))
@@ -94,7 +94,7 @@ impl<'a> File<'a> {
             }
             for (name, node) in labeled(self.hdf5, solution, b"DataArray_t") {
                 let dataset = self.data(node).and_then(|data| self.hdf5.dataset(data).ok()?);
-                let Some(Datatype::Real(precision, order)) = dataset.map(|own| own.number) else {
+                let Some(Datatype::Real(precision, order)) = dataset.map(|own| own.datatype) else {
                     continue;
                 };
                 if !visitor.point_array(name, 1, true) {

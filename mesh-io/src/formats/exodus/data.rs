@@ -2,7 +2,7 @@
 
 use super::File;
 use super::blocks::Block;
-use crate::formats::netcdf_points::{ComponentSlice, PointData};
+use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::Variable;
 use crate::visit::visitor::MeshVisitor;
 
@@ -39,12 +39,12 @@ impl File<'_> {
             let all = self.header.variable("vals_nod_var");
             let all = all.filter(|all| all.shape == [names.len() as u64, nodes]);
             let found = match (own, all) {
-                (Some(&(_, own)), _) => Some((own, ComponentSlice::WHOLE)),
+                (Some(&(_, own)), _) => Some((own, RecordParts::WHOLE)),
                 (None, Some(all)) => {
-                    let parts = ComponentSlice {
+                    let parts = RecordParts {
                         wanted: place..place + 1,
                         all: names.len(),
-                        ..ComponentSlice::WHOLE
+                        ..RecordParts::WHOLE
                     };
                     Some((all, parts))
                 }

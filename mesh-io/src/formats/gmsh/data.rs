@@ -11,7 +11,7 @@ use crate::visit::storage::ArrayLocation;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
 
-/// Data of nodes are skipped if fewer than one in this many nodes has them.
+/// Data of nodes are skipped if fewer than one in this number of nodes has them.
 const MIN_NODE_SHARE: u64 = 16;
 
 /// Announces the data of a section after its first line, and reads them if the visitor wants them. The cursor does not

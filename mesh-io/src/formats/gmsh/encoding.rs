@@ -12,7 +12,7 @@ pub(super) enum Version {
     V41,
 }
 
-/// The version and byte order that `$MeshFormat` gives.
+/// Version of the format, and byte order if the file is binary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FileEncoding {
     pub(super) version: Version,

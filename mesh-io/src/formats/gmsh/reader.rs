@@ -27,7 +27,7 @@ impl FormatReader for Gmsh {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let FileEncoding { version, order } = walk(source, visitor)?;
+        let FileEncoding { version, order } = visit_sections(source, visitor)?;
         let format = match (version, order) {
             (Version::V2, None) => Format::Gmsh22,
             (Version::V2, Some(_)) => Format::Gmsh22Binary,
@@ -45,7 +45,10 @@ impl FormatReader for Gmsh {
 }
 
 /// Hands a file's nodes and elements to the visitor.
-fn walk(source: &Source, visitor: &mut dyn MeshVisitor) -> Result<FileEncoding, ReadError> {
+fn visit_sections(
+    source: &Source,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<FileEncoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);

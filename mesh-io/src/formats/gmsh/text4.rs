@@ -86,7 +86,7 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Skips the least and the greatest tag of a section, which are not needed.
+/// Skips the smallest and the largest tag of a section, which are not needed.
 fn skip_min_and_max(cursor: &mut Cursor<'_>) {
     cursor.token();
     cursor.token();

@@ -14,7 +14,7 @@ pub(super) struct Families {
     names: Vec<Vec<u8>>,
 }
 
-/// How many letters a name has.
+/// Number of bytes of a group name.
 const NAME_LENGTH: usize = 80;
 
 impl Families {

@@ -151,7 +151,7 @@ impl<'a> File<'a> {
                 .error("the mesh has no nodes", "Save the mesh again"));
         };
         let cursor = self.cursor(object);
-        let Datatype::Real(precision, order) = dataset.number else {
+        let Datatype::Real(precision, order) = dataset.datatype else {
             return Err(cursor.error("the coordinates are not real numbers", "Save the mesh again"));
         };
         let axes = self.hdf5.attribute(self.mesh, b"ESP").and_then(|axes| axes.whole());
@@ -204,7 +204,7 @@ impl<'a> File<'a> {
         let own = self.hdf5.child(object, b"NOD");
         let dataset = own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten();
         let Some((dataset, Datatype::Whole(size, order))) = dataset.map(|own| {
-            let number = own.number;
+            let number = own.datatype;
             (own, number)
         }) else {
             let problem = format!("the type {} has no list of nodes", quoted(name));

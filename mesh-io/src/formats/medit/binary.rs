@@ -11,7 +11,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::medit::required::send_required_vertices;
+use crate::formats::medit::required::send_required_corners;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::items::{CellKind, GroupScope, RegionAttribute};
@@ -169,7 +169,7 @@ impl FormatReader for MeditBinary {
         lists.retain(|list| list.kind == CellKind::Triangle);
         let size = 4 * widths.integer;
         let counts: Vec<u64> = lists.iter().map(|list| (list.bytes.len() / size) as u64).collect();
-        send_required_vertices(required, &counts, visitor, |list, index| {
+        send_required_corners(required, &counts, visitor, |list, index| {
             let List { cursor, bytes, .. } = &lists[list];
             let at = index as usize * size;
             let mut numbers = bytes[at..at + size].chunks_exact(widths.integer);

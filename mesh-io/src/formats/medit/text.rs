@@ -9,7 +9,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::medit::required::send_required_vertices;
+use crate::formats::medit::required::send_required_corners;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
@@ -146,7 +146,7 @@ impl FormatReader for Medit {
         let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
         // The list and the index in it of the next triangle.
         let mut next = (0, 0);
-        send_required_vertices(required, &counts, visitor, |list, index| {
+        send_required_corners(required, &counts, visitor, |list, index| {
             if next.0 != list {
                 next = (list, 0);
             }

@@ -76,7 +76,8 @@ pub(crate) fn write_medit(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Offsets in files of version 2 have 4 bytes. Longer files are written as version 3, with 8 bytes.
+/// Limit on the length of files of version 2, whose offsets have 4 bytes. Longer files are written as version 3, with
+/// 8 bytes.
 const MAX_VERSION_2_BYTES: usize = 1 << 31;
 
 pub(crate) fn write_meshb(input: &WriterInput<'_>) -> Vec<u8> {

@@ -16,7 +16,7 @@ use std::collections::{BTreeSet, HashSet};
 /// A card, as far as it is of elements.
 enum Card {
     Element(Element),
-    /// The nodes that an element holds, and what it is called.
+    /// The name of an element that constrains its nodes, and the ids of these nodes.
     Constrains(Name, Vec<u64>),
     Node(u64),
     Other(Name),
@@ -61,7 +61,7 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
     send_constrained_nodes(rows, held, visitor)
 }
 
-/// Hands on the nodes that elements hold. Some may be scalar points, which are no part of the mesh.
+/// Visits the nodes that elements constrain. Some ids may be those of scalar points, which are not in the mesh.
 fn send_constrained_nodes(
     rows: &Cursor<'_>,
     held: Vec<u64>,

@@ -43,7 +43,7 @@ impl FormatReader for Nastran {
     }
 }
 
-/// How many rows are looked at to tell the format.
+/// Number of rows by which the format is recognized.
 const MAX_DETECTION_ROWS: usize = 1000;
 
 /// Whether the first rows of a file are those of Nastran: a statement that only its files have, or a card of a node or an element.

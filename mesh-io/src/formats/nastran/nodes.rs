@@ -33,7 +33,8 @@ struct Node {
     is_of_default: bool,
 }
 
-/// How many characters the coordinates of a node have: in fixed fields as many as the field has, in free field as many as the longest.
+/// Number of characters of the coordinates of a node: the width of the fixed fields, or the longest number in free
+/// field.
 #[derive(Clone, Copy)]
 struct FieldWidth {
     is_free: bool,
@@ -44,7 +45,7 @@ struct FieldWidth {
 /// The precisions of coordinates of at most 8 characters, of at most 16, and of more.
 const WIDTH_PRECISIONS: [Precision; 3] = [Precision::Text8, Precision::Text16, Precision::Double];
 
-/// How many nodes have which room, in fixed fields and in free field.
+/// Number of nodes by field width, for fixed fields and for free field.
 #[derive(Default)]
 struct FieldWidthCounts([[u64; WIDTH_PRECISIONS.len()]; 2]);
 

@@ -10,7 +10,7 @@ pub(super) enum Class {
     Of(CellKind),
     /// Lines with their nodes behind their number, without a property.
     Line,
-    /// Elements that hold the nodes which are in these fields. The number of the element is in field 0.
+    /// Elements that constrain the nodes in these fields, counted from the number of the element in field 0.
     Constraining(&'static [usize]),
     /// Elements that hold as many nodes as they list.
     Rigid(RigidFields),
@@ -19,7 +19,7 @@ pub(super) enum Class {
     Volume,
 }
 
-/// How a rigid element lists nodes.
+/// Order of nodes, components and weights in the fields of a rigid element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum RigidFields {
     /// A node, components, and nodes: RBE2.

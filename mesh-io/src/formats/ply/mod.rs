@@ -81,7 +81,7 @@ impl<'l, 'a> Data<'l, 'a> {
     }
 
     /// Takes the data of the next vertex.
-    fn see(&mut self, values: &[Vec<f64>], at: &[usize]) {
+    fn push(&mut self, values: &[Vec<f64>], at: &[usize]) {
         let Some(numbers) = &mut self.numbers else { return };
         for ((numbers, places), &(index, _)) in numbers.iter_mut().zip(&self.properties) {
             numbers.push(values[index][0]);
@@ -223,7 +223,7 @@ impl Items {
         let mut data = Data::new(list, z, visitor);
         let mut id = self.plain_vertices(cursor, list, x, z, &mut z_values, visitor);
         self.each(cursor, list, id, |place, values, places| {
-            data.see(values, places);
+            data.push(values, places);
             if let Some(z) = z {
                 z_values.push((places[z], values[z][0]));
             }

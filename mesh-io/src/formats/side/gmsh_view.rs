@@ -7,7 +7,7 @@ use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::text::token::quoted;
 
-/// A mesh with a number on each vertex, such as the size wanted there.
+/// A triangle mesh with a number at each vertex, such as a target size, from a view of gmsh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GmshView {
     points: Vec<[f64; 2]>,

@@ -7,8 +7,8 @@ use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::{float, quoted};
 
-/// Numbers for the vertices of a mesh, in the order of the mesh file. Each vertex has one number, a size in the unit of
-/// the mesh, or three, a symmetric tensor as xx, xy, yy.
+/// Numbers for the vertices of a mesh, in the order of the mesh file: for each vertex a size in the unit of the mesh,
+/// or three components xx, xy, yy of a symmetric tensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeditSolution {
     components: usize,

@@ -2,7 +2,7 @@
 
 use super::mesh::{Mesh, axis_of};
 use super::table::{Table, TableKind};
-use crate::formats::netcdf_points::{ComponentSlice, PointData};
+use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};
 use crate::visit::items::Centers;
 use crate::visit::visitor::MeshVisitor;
@@ -13,7 +13,7 @@ pub(super) struct Tables<'h, 'a> {
     edges: Option<Table<'h, 'a>>,
 }
 
-/// A variable that has one coordinate of the places of faces or edges.
+/// A variable with one coordinate of the centers of faces or edges.
 pub(super) struct CenterVariable<'h> {
     pub(super) variable: &'h Variable,
     of: TableKind,
@@ -32,7 +32,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
     }
 
     /// Finds the places of faces and edges: variables that the mesh names, and others as long that say that they are coordinates.
-    pub(super) fn places(&self, tables: &Tables<'h, 'a>) -> Vec<CenterVariable<'h>> {
+    pub(super) fn center_variables(&self, tables: &Tables<'h, 'a>) -> Vec<CenterVariable<'h>> {
         let mut found: Vec<CenterVariable<'h>> = Vec::new();
         for (of, attribute) in
             [(TableKind::Faces, "face_coordinates"), (TableKind::Edges, "edge_coordinates")]
@@ -122,7 +122,7 @@ fn send<'h, 'a>(
             ends.push(nodes.len());
         }
     }
-    let numbers = points.numbers(variable, 0, 0, &ComponentSlice::WHOLE, variable.missing())?;
+    let numbers = points.numbers(variable, 0, 0, &RecordParts::WHOLE, variable.missing())?;
     visitor.center_numbers(Centers { nodes, ends, numbers });
     Some(())
 }

@@ -4,7 +4,7 @@ use super::centers::Tables;
 use super::mesh::Mesh;
 use super::table::Table;
 use crate::content::remark::Remark;
-use crate::formats::netcdf_points::{ComponentSlice, PointData};
+use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};
 use crate::visit::visitor::MeshVisitor;
 
@@ -20,7 +20,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
     pub(super) fn data(&self, tables: &Tables<'h, 'a>, visitor: &mut dyn MeshVisitor) {
         let faces = &tables.faces;
         let lengths = [self.nodes as u64, faces.count as u64];
-        let places = self.places(tables);
+        let places = self.center_variables(tables);
         let is_data = |variable: &&Variable| {
             ![self.x, self.y, self.face_nodes].iter().any(|own| own.name == variable.name)
                 && !places.iter().any(|own| own.variable.name == variable.name)
@@ -63,7 +63,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         &self,
         variable: &Variable,
         lengths: [u64; 2],
-    ) -> Option<(DataLocation, ComponentSlice)> {
+    ) -> Option<(DataLocation, RecordParts)> {
         let is_numeric = matches!(variable.number, NumberType::Real(_) | NumberType::Whole(_));
         if !is_numeric || variable.text("mesh").is_some_and(|mesh| mesh != self.own.name) {
             return None;
@@ -85,14 +85,14 @@ impl<'h, 'a> Mesh<'h, 'a> {
         };
         let all = usize::try_from(product(&variable.shape[..axis])?).ok()?;
         let components = product(&variable.shape[axis + 1..])?;
-        Some((location, ComponentSlice { wanted: 0..all, all, components }))
+        Some((location, RecordParts { wanted: 0..all, all, components }))
     }
 
     fn of_faces(
         &self,
         faces: &Table<'h, 'a>,
         variable: &'h Variable,
-        parts: &ComponentSlice,
+        parts: &RecordParts,
         points: &mut PointData<'h, 'a>,
         visitor: &mut dyn MeshVisitor,
     ) {

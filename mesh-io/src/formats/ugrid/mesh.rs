@@ -118,7 +118,7 @@ fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variab
     }
 }
 
-/// Which coordinate a variable says that it is: 0 for x or the longitude, 1 for y or the latitude.
+/// Returns the axis that the attributes of a variable name: 0 for x or longitude, 1 for y or latitude.
 pub(super) fn axis_of(variable: &Variable) -> Option<usize> {
     const AXIS_ATTRIBUTES: [(&str, [&[&[u8]]; 2]); 3] = [
         (

@@ -24,7 +24,7 @@ pub(super) struct Table<'h, 'a> {
     pub(super) first: u64,
 }
 
-/// What a table has the nodes of.
+/// The elements that a connectivity table lists.
 #[derive(Clone, Copy)]
 pub(super) enum TableKind {
     Faces,

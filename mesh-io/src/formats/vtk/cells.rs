@@ -93,7 +93,8 @@ impl Triangles<'_> {
     }
 }
 
-/// Decides when to try to hand on many triangles at once: rarely if they are few among other cells.
+/// Decides at which cells triangles are visited in bulk: at most ten times, and not again among the
+/// [`MIN_PARALLEL_RECORDS`] cells after the last time.
 pub(crate) struct BulkBackoff {
     left: usize,
     next: usize,

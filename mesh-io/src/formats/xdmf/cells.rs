@@ -14,7 +14,7 @@ use crate::visit::items::RegionAttribute;
 use crate::visit::records::TriangleRecords;
 use crate::visit::visitor::MeshVisitor;
 
-/// The whole numbers of a topology, one after another.
+/// The integers of a Topology, in the XML or in another file.
 enum CellNumbers<'a> {
     Text(Cursor<'a>),
     /// Those of a file beside the XML, and how many of them were taken.
@@ -35,7 +35,7 @@ impl<'a> CellNumbers<'a> {
         }
     }
 
-    /// Whether there is another number, on which it then stands.
+    /// Returns whether another number follows.
     fn has_next(&mut self) -> bool {
         match self {
             CellNumbers::Text(cursor) => cursor.next_word(),

@@ -13,17 +13,17 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The files companion an XDMF.
+/// The companion files with heavy data, each opened if it is HDF5.
 pub(super) struct HeavyData<'a> {
     /// Each with its tree, if it is HDF5.
     files: Vec<(&'a Companion, Option<Hdf5<'a>>)>,
 }
 
-/// The numbers of an item.
+/// The numbers of an item in a companion file.
 pub(super) struct HeavyArray<'a> {
     /// The file that they stand in, and which of the files of the mesh that is.
     pub(super) source: &'a Source,
-    pub(super) part: usize,
+    pub(super) file_index: usize,
     pub(super) number: Datatype,
     pub(super) bytes: Cow<'a, [u8]>,
     /// Where they start in the file, if they stand there as they are.
@@ -56,7 +56,7 @@ impl<'a> HeavyData<'a> {
             Content::Raw { number, .. } => Some(*number),
             Content::Hdf5 { file, path, .. } => {
                 let file = self.files[self.file(file)?].1.as_ref()?;
-                Some(file.dataset(file.find(path.as_bytes())?).ok()??.number)
+                Some(file.dataset(file.find(path.as_bytes())?).ok()??.datatype)
             }
         }
     }
@@ -78,7 +78,7 @@ impl<'a> HeavyData<'a> {
         };
         let (companion, tree) = &self.files[index];
         let source = &companion.source;
-        let (part, file) = (index + 1, index);
+        let (file_index, file) = (index + 1, index);
         let numbers = match (&item.content, tree) {
             (Content::Hdf5 { path, .. }, Some(tree)) => {
                 let found = tree.find(path.as_bytes()).map(|object| tree.dataset(object));
@@ -90,8 +90,17 @@ impl<'a> HeavyData<'a> {
                 let mut array = tree.array(&dataset)?;
                 let (start, at) = (array.place(), array.byte_of(0));
                 let bytes = std::mem::take(&mut array.bytes);
-                let number = dataset.number;
-                HeavyArray { source, part, number, bytes, start, at, array: Some(array), file }
+                let number = dataset.datatype;
+                HeavyArray {
+                    source,
+                    file_index,
+                    number,
+                    bytes,
+                    start,
+                    at,
+                    array: Some(array),
+                    file,
+                }
             }
             (Content::Raw { seek, number, .. }, _) => {
                 let size = number.bytes() as u64;
@@ -108,7 +117,7 @@ impl<'a> HeavyData<'a> {
                 let (number, bytes) = (*number, Cow::Borrowed(bytes));
                 HeavyArray {
                     source,
-                    part,
+                    file_index,
                     number,
                     bytes,
                     start: Some(start),
@@ -214,8 +223,8 @@ impl<'a> HeavyArray<'a> {
 /// Where real numbers of data stand, so that they can be replaced.
 pub(super) fn stored(numbers: &mut HeavyArray<'_>, heavy: &HeavyData<'_>) -> Option<ArrayLocation> {
     let Datatype::Real(precision, order) = numbers.number else { return None };
-    let (form, part, stride) =
-        (NumberEncoding::Binary(order, precision), numbers.part, precision.bytes());
+    let (encoding, file_index, stride) =
+        (NumberEncoding::Binary(order, precision), numbers.file_index, precision.bytes());
     let (start, home) = match numbers.start {
         Some(start) => (start, ByteSpace::File),
         None => {
@@ -225,8 +234,8 @@ pub(super) fn stored(numbers: &mut HeavyArray<'_>, heavy: &HeavyData<'_>) -> Opt
     };
     Some(ArrayLocation {
         offsets: Offsets::Regular { start, stride },
-        encoding: form,
+        encoding,
         space: home,
-        file_index: part,
+        file_index,
     })
 }

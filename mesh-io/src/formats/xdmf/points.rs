@@ -120,7 +120,7 @@ impl File<'_> {
         let count = numbers.bytes.len() / stride;
         self.cursor(item).check_vertex_count(count as u64)?;
         // Numbers that stand in the file are replaced there, all others encoded again.
-        let (start, part) = (numbers.start.unwrap_or(0), numbers.part);
+        let (start, file_index) = (numbers.start.unwrap_or(0), numbers.file_index);
         let encoded: Option<Hdf5Arrays> = match numbers.start {
             Some(_) => None,
             None => self.heavy.encoding(&mut numbers),
@@ -140,12 +140,12 @@ impl File<'_> {
         visitor.end_nodes(&self.cursor(item))?;
         let numbers = CoordinateEncoding::adjacent(order, precision);
         let home = if encoded.is_some() { ByteSpace::Points } else { ByteSpace::File };
-        z_values.send_from("z", numbers.into(), home, part, visitor);
+        z_values.send_from("z", numbers.into(), home, file_index, visitor);
         let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn EncodedArrays>);
         Ok((
             CoordinateStorage {
                 encoded,
-                file_index: part,
+                file_index,
                 ..CoordinateStorage::in_place(Format::Xdmf, numbers)
             },
             count as u64,

@@ -71,7 +71,8 @@ pub(super) fn integers<'a>(
 
 /// Reads whole rows of numbers on all threads, as long as they are plain and have no more than `count` numbers in all.
 fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut IntArray<'_>) {
-    /// Rows with more numbers than this, or with numbers of more than 32 bits, are left to be read one by one.
+    /// Limit on the numbers of a row that is read on all threads. Rows with more numbers, or with numbers of more
+    /// than 32 bits, are read one by one.
     const MAX_ROW_NUMBERS: usize = 10;
     let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MAX_ROW_NUMBERS], u8), ReadError> {
         let mut row = ([0; MAX_ROW_NUMBERS], 0);

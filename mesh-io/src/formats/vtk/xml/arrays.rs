@@ -132,7 +132,7 @@ impl File<'_> {
         let stride = precision.bytes();
         let numbers = old.bytes.chunks_exact(stride);
         let numbers = numbers.map(|number| wrapping.order.real(precision, number)).collect();
-        let form = NumberEncoding::Binary(wrapping.order, precision);
+        let encoding = NumberEncoding::Binary(wrapping.order, precision);
         // Raw bytes can be replaced in place. All others are encoded again.
         let (start, home) = match !wrapping.base64 && wrapping.compressor.is_none() {
             true => (range.end - old.bytes.len(), ByteSpace::File),
@@ -147,9 +147,8 @@ impl File<'_> {
                 )
             }
         };
-        let places = Offsets::Regular { start, stride };
-        let stored =
-            Some(ArrayLocation { offsets: places, encoding: form, space: home, file_index: 0 });
+        let offsets = Offsets::Regular { start, stride };
+        let stored = Some(ArrayLocation { offsets, encoding, space: home, file_index: 0 });
         Ok(PointNumbers { numbers, nodes: None, location: stored })
     }
 

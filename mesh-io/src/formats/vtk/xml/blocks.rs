@@ -14,7 +14,7 @@ pub(super) enum Compressor {
     Lz4,
 }
 
-/// How the bytes of an array are encoded.
+/// Encoding of the bytes of an array: byte order, width of header numbers, compression and base64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BlockEncoding {
     pub(super) order: ByteOrder,
@@ -24,15 +24,15 @@ pub(super) struct BlockEncoding {
     pub(super) base64: bool,
 }
 
-/// A decoded array, with what is needed to encode it again.
+/// A decoded array, with the block size and header form that an encoder needs to write the array again.
 pub(super) struct DecodedBlocks<'a> {
     /// The decoded bytes; those of the file itself, if they are not encoded.
     pub(super) bytes: Cow<'a, [u8]>,
-    /// How many bytes of the file the array takes.
+    /// Number of bytes of the file that the encoded array takes.
     pub(super) encoded_length: usize,
     /// The size of a block before compression; 0 without blocks.
     block: usize,
-    /// Whether an uncompressed array has its length in a base64 text of its own.
+    /// Whether an uncompressed array has its length in a separate base64 text.
     has_separate_header: bool,
 }
 

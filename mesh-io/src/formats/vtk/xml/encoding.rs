@@ -5,7 +5,7 @@ use crate::edit::numbers::{AppendedOffset, ByteEdit, EncodedArrays};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Arrays of points or of their data that are encoded, one for each piece of the mesh.
+/// Encoded arrays of points or point data, one for each piece of the mesh.
 pub(super) struct XmlArrays {
     parts: Vec<ArrayBytes>,
     /// The decoded bytes of all arrays, one after the other.
@@ -13,8 +13,9 @@ pub(super) struct XmlArrays {
     offsets: Arc<[AppendedOffset]>,
 }
 
+/// The encoded and decoded bytes of one array.
 struct ArrayBytes {
-    wrapping: BlockEncoding,
+    encoding: BlockEncoding,
     /// How the array was encoded, without its bytes.
     old: DecodedBlocks<'static>,
     /// The range of the array in the file.
@@ -30,14 +31,14 @@ impl XmlArrays {
     ) -> XmlArrays {
         let mut bytes = Vec::new();
         let mut parts = Vec::new();
-        for (wrapping, old, range) in arrays {
+        for (encoding, old, range) in arrays {
             let start = bytes.len();
             let (own, old) = old.split();
             match bytes.is_empty() {
                 true => bytes = own.into_owned(),
                 false => bytes.extend_from_slice(&own),
             }
-            parts.push(ArrayBytes { wrapping, old, range, own: start..bytes.len() });
+            parts.push(ArrayBytes { encoding, old, range, own: start..bytes.len() });
         }
         XmlArrays { parts, bytes, offsets }
     }
@@ -58,7 +59,7 @@ impl EncodedArrays for XmlArrays {
             new[own.clone()] != self.bytes[own]
         });
         let edit = |part: &ArrayBytes| {
-            let bytes = part.wrapping.wrap(&part.old, &new[part.own.clone()]);
+            let bytes = part.encoding.wrap(&part.old, &new[part.own.clone()]);
             ByteEdit { range: part.range.clone(), bytes }
         };
         changed.map(edit).collect()

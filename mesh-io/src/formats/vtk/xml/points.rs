@@ -18,7 +18,7 @@ use crate::visit::z_values::ZValues;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How the points of all pieces are stored in the file.
+/// Encoding of the coordinates of all pieces, with their encoded arrays.
 pub(super) struct PointStorage {
     pub(super) numbers: CoordinateEncoding,
     pub(super) encoded: Option<Box<dyn EncodedArrays>>,
