@@ -22,25 +22,25 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     }
     // The title of such a grid may start with anything.
     if ADCIRC.matches_extension(&source.path) {
-        return of(source, &ADCIRC);
+        return reader_of(source, &ADCIRC);
     }
     let promised = |family: &&&FormatEntry| family.matches_extension(&source.path);
     let by_content = || detect_by_magic(&source.bytes);
     let known = by_content().find(promised).or_else(|| by_content().next());
     // Nastran's may start with anything, such as a title.
-    if known.is_none_or(|family| !family.is_read()) && nastran::opens(source) {
-        return of(source, &NASTRAN);
+    if known.is_none_or(|family| !family.is_read()) && nastran::is_nastran(source) {
+        return reader_of(source, &NASTRAN);
     }
     if let Some(family) = known {
-        return of(source, family);
+        return reader_of(source, family);
     }
     // Files of MIKE may start with any numbers. Their ending is also that of Medit.
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
-    if mike::opens(&first, &second) {
-        return of(source, &MIKE);
+    if mike::is_mike(&first, &second) {
+        return reader_of(source, &MIKE);
     }
     if TRIANGLE.matches_extension(&source.path) {
-        return of(source, &TRIANGLE);
+        return reader_of(source, &TRIANGLE);
     }
     // Formats without first words are told by their ending if it is theirs alone. An STL in text must start with its
     // first word.
@@ -50,7 +50,7 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
         promised(family) && family.extensions != FREEFEM.extensions && !is_told_otherwise
     };
     match REGISTRY.iter().filter(|family| family.reader.is_some()).find(by_ending) {
-        Some(family) => of(source, family),
+        Some(family) => reader_of(source, family),
         None => detect_by_rows(source),
     }
 }
@@ -68,7 +68,7 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
         }
         Some([_, 2, _, 0..=1]) if second.len() > 2 => {
             return match triangle::files::names(source) {
-                Some(_) => of(source, &TRIANGLE),
+                Some(_) => reader_of(source, &TRIANGLE),
                 None => {
                     let problem = "the vertices of a Triangle mesh, without its triangles";
                     let wanted = file_name(&source.path.with_extension("ele"));
@@ -83,22 +83,22 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
             };
         }
         Some([_, 3 | 6, ..]) if triangle::files::names(source).is_some() => {
-            return of(source, &TRIANGLE);
+            return reader_of(source, &TRIANGLE);
         }
         _ => {}
     }
     if numbers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
-        return of(source, &FREEFEM);
+        return reader_of(source, &FREEFEM);
     }
     let [_, second, third] = first_rows(source, Syntax::FORTRAN);
     let counts = second.get(..2).and_then(numbers);
     if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
-        return of(source, &ADCIRC);
+        return reader_of(source, &ADCIRC);
     }
     // Formats that are not read may start with anything.
     match REGISTRY.iter().find(|family| !family.is_read() && family.matches_extension(&source.path))
     {
-        Some(family) => of(source, family),
+        Some(family) => reader_of(source, family),
         None => {
             let remedy = format!("{}. Convert it, with meshio or gmsh for example", formats_read());
             Err(source.error("the format is not recognized", remedy))
@@ -160,7 +160,11 @@ fn detect_by_magic(bytes: &[u8]) -> impl Iterator<Item = &'static &'static Forma
     REGISTRY.iter().filter(move |family| family.magic.iter().any(opens))
 }
 
-fn of(
+/// Returns the reader of an entry.
+///
+/// # Errors
+/// If the format is not read. The error names the format and a remedy.
+fn reader_of(
     source: &Source,
     family: &'static FormatEntry,
 ) -> Result<&'static ReaderFunctions, ReadError> {

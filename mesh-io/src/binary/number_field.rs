@@ -37,7 +37,7 @@ impl<'a> NumberField<'a> {
     }
 
     /// Whether this many records have this many numbers side by side.
-    pub(crate) fn holds(self, records: usize, numbers: usize) -> bool {
+    pub(crate) fn has_records(self, records: usize, numbers: usize) -> bool {
         let last = records.saturating_sub(1).checked_mul(self.stride);
         let end = last.and_then(|last| last.checked_add(numbers * self.width));
         self.stride > 0 && self.width > 0 && end.is_some_and(|end| end <= self.bytes.len())
@@ -72,7 +72,7 @@ impl<'a> NumberField<'a> {
 
     /// Whether `holds` is true for the real numbers of this many records. False if there are fewer.
     pub(crate) fn all_real(self, records: usize, holds: impl Fn(f64) -> bool + Sync) -> bool {
-        let fits = matches!(self.width, 4 | 8) && self.holds(records, 1);
+        let fits = matches!(self.width, 4 | 8) && self.has_records(records, 1);
         let each = |records| self.real(records).all(&holds);
         fits && map_ranges(records, CHUNK, each).into_iter().all(|all| all)
     }

@@ -1,19 +1,24 @@
 //! Groups by what tells them apart, with their numbers and names.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use std::collections::HashMap;
 
 /// Numbers groups in the order in which they are first met, and knows the names that files give to tags.
 #[derive(Default)]
 pub(crate) struct GroupKeys {
-    numbers: HashMap<(String, u8, Label), usize>,
+    numbers: HashMap<(String, u8, GroupLabel), usize>,
     /// The names of groups, by kind, dimension (`None` for all) and tag.
     names: HashMap<(String, Option<u8>, i64), String>,
 }
 
 impl GroupKeys {
     /// Returns the number of a group, from 0 on, and whether it is new.
-    pub(crate) fn number(&mut self, kind: &str, dimension: u8, label: &Label) -> (usize, bool) {
+    pub(crate) fn number(
+        &mut self,
+        kind: &str,
+        dimension: u8,
+        label: &GroupLabel,
+    ) -> (usize, bool) {
         let next = self.numbers.len();
         let key = (kind.to_owned(), dimension, label.clone());
         let number = *self.numbers.entry(key).or_insert(next);
@@ -26,8 +31,8 @@ impl GroupKeys {
     }
 
     /// Returns the name that the file gives to the tag of a group.
-    pub(crate) fn name_of(&self, kind: &str, dimension: u8, label: &Label) -> Option<String> {
-        let &Label::Tag(tag) = label else { return None };
+    pub(crate) fn name_of(&self, kind: &str, dimension: u8, label: &GroupLabel) -> Option<String> {
+        let &GroupLabel::Tag(tag) = label else { return None };
         let of = |dimension| self.names.get(&(kind.to_owned(), dimension, tag));
         of(Some(dimension)).or_else(|| of(None)).cloned()
     }

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 /// # fn f() -> Result<(), Box<dyn std::error::Error>> {
 /// let file = MeshFile::read(Path::new("part.msh"))?;
 /// let conversion = Conversion::new(&file, Format::Su2)?.ok_or("SU2 is not written")?;
-/// println!("lost: {}", conversion.lost().join("; "));
+/// println!("lost: {}", conversion.losses().join("; "));
 /// conversion.write(Path::new("part.su2"))?;
 /// # Ok(())
 /// # }

@@ -1,6 +1,6 @@
 //! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::export::capabilities::{Capabilities, join_first};
 use crate::export::content::{Content, ContentGroup};
 use crate::export::group_numbers::GroupNumbers;
@@ -31,7 +31,7 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     };
     let names: Vec<Option<String>> = content.groups.iter().enumerate().map(name).collect();
     // Lines and surfaces of one group, as formats have them that tell no dimensions, are one group again.
-    let mut places: HashMap<(&str, &Label, &str), usize> = HashMap::new();
+    let mut places: HashMap<(&str, &GroupLabel, &str), usize> = HashMap::new();
     let mut owners: Vec<usize> = Vec::new();
     let mut old: Vec<&str> = Vec::new();
     let mut place_of = vec![None; names.len()];
@@ -50,7 +50,9 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     let told: Vec<String> = changes
         .map(|((old, new), &owner)| match content.groups[owner].label {
             // Groups of one name are told apart by their numbers.
-            Label::Tag(tag) if *old != tag.to_string() => format!("`{old}` ({tag}) to `{new}`"),
+            GroupLabel::Tag(tag) if *old != tag.to_string() => {
+                format!("`{old}` ({tag}) to `{new}`")
+            }
             _ => format!("`{old}` to `{new}`"),
         })
         .collect();

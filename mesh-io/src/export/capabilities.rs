@@ -4,7 +4,7 @@ use super::content::{Content, ContentGroup, DataArray};
 use super::group_numbers::{GroupNumbers, determines};
 use super::name_rules::NameRules;
 use super::sides;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::precision::Precision;
 use crate::visit::items::CellKind;
 
@@ -125,7 +125,7 @@ impl Capabilities {
                 lost.push(format!("names of groups of vertices, which become numbers: {names}"));
             }
         }
-        let is_negative = |group: &&ContentGroup| matches!(group.label, Label::Tag(..0));
+        let is_negative = |group: &&ContentGroup| matches!(group.label, GroupLabel::Tag(..0));
         if !self.allows_negative_numbers && content.groups.iter().any(|group| is_negative(&group)) {
             let groups = group_names(content.groups.iter().filter(is_negative));
             lost.push(format!("negative numbers of groups, which become others: {groups}"));
@@ -292,8 +292,8 @@ fn group_names<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
         .map(|group| match (group.name(), &group.label) {
             (Some(name), _) => name.to_owned(),
             (None, label) => match label {
-                Label::Tag(tag) => tag.to_string(),
-                Label::Name(name) => name.clone(),
+                GroupLabel::Tag(tag) => tag.to_string(),
+                GroupLabel::Name(name) => name.clone(),
             },
         })
         .collect();

@@ -1,6 +1,6 @@
 //! A mesh in memory with all that its file says of it, independent of any format.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::visit::items::CellKind;
 
 /// A mesh with its cells of all kinds, groups and data, independent of a format. Made by
@@ -72,7 +72,7 @@ pub struct ContentGroup {
     /// The kind of group, such as `physical`. It is the same for formats that mean the same.
     pub(crate) kind: String,
     pub(crate) dimension: u8,
-    pub(crate) label: Label,
+    pub(crate) label: GroupLabel,
     pub(crate) name: Option<String>,
 }
 
@@ -91,16 +91,16 @@ impl ContentGroup {
     /// Returns the number of the group. `None` if the file identifies the group by its name.
     pub fn tag(&self) -> Option<i64> {
         match self.label {
-            Label::Tag(tag) => Some(tag),
-            Label::Name(_) => None,
+            GroupLabel::Tag(tag) => Some(tag),
+            GroupLabel::Name(_) => None,
         }
     }
 
     /// Returns the name of the group, if the file gives one.
     pub fn name(&self) -> Option<&str> {
         match (&self.name, &self.label) {
-            (Some(name), _) | (None, Label::Name(name)) => Some(name),
-            (None, Label::Tag(_)) => None,
+            (Some(name), _) | (None, GroupLabel::Name(name)) => Some(name),
+            (None, GroupLabel::Tag(_)) => None,
         }
     }
 }
@@ -241,7 +241,7 @@ impl Content {
         const LAST: [&str; 6] = ["reference", "block", "section", "family", "entity", "zone"];
         let is_number = |kind: &str| {
             let mut own = self.groups.iter().filter(|group| group.kind == kind);
-            own.any(|group| matches!(group.label, Label::Tag(_)))
+            own.any(|group| matches!(group.label, GroupLabel::Tag(_)))
         };
         let last = |kind: &str| LAST.iter().position(|last| *last == kind && is_number(kind));
         let mut group_kinds: Vec<&str> = Vec::new();

@@ -2,8 +2,8 @@
 
 use super::content::{Content, ContentGroup, DataArray};
 use crate::content::group_keys::GroupKeys;
+use crate::content::group_label::GroupLabel;
 use crate::content::id_index::IdIndexBuilder;
-use crate::content::label::Label;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -27,7 +27,7 @@ struct ContentBuilder {
     ids: IdIndexBuilder,
     columns: Vec<RegionAttribute>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
-    within: Vec<(String, Label, Option<u8>)>,
+    within: Vec<(String, GroupLabel, Option<u8>)>,
     keys: GroupKeys,
     vertex_keys: GroupKeys,
     sets: HashMap<Vec<u32>, u32>,
@@ -113,7 +113,7 @@ impl ContentBuilder {
         content
     }
 
-    fn group(&mut self, kind: &str, dimension: u8, label: Label) -> u32 {
+    fn group(&mut self, kind: &str, dimension: u8, label: GroupLabel) -> u32 {
         let kind = common_kind(kind);
         let (number, is_new) = self.keys.number(&kind, dimension, &label);
         if is_new {
@@ -248,7 +248,7 @@ impl MeshVisitor for ContentBuilder {
         self.last.clear();
     }
 
-    fn node_group(&mut self, node: u32, kind: &str, label: &Label) {
+    fn node_group(&mut self, node: u32, kind: &str, label: &GroupLabel) {
         let groups = &mut self.content.vertex_groups;
         let (number, is_new) = self.vertex_keys.number(kind, 0, label);
         if is_new {

@@ -1,7 +1,7 @@
 //! One group and number for each element, for formats that hold no more.
 
 use super::content::{Content, ContentGroup};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use std::collections::{HashMap, HashSet};
 
 /// The number that a writer gives to each group.
@@ -45,14 +45,14 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     let is_fit = |tag: i64| i32::try_from(tag).is_ok_and(|tag| negative || tag >= 0);
     let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();
     for group in groups {
-        if let Label::Tag(tag) = group.label {
+        if let GroupLabel::Tag(tag) = group.label {
             taken.insert((&group.kind, group.dimension, tag));
         }
     }
     let mut next: HashMap<(&str, u8), i64> = HashMap::new();
     let number = |group: &'_ ContentGroup| -> i64 {
         match group.label {
-            Label::Tag(tag) if is_fit(tag) => tag,
+            GroupLabel::Tag(tag) if is_fit(tag) => tag,
             _ => {
                 let (kind, dimension) = (shared_kind(groups, group), group.dimension);
                 let next = next.entry((kind, dimension)).or_insert(1);

@@ -3,7 +3,7 @@
 use super::capabilities::Capabilities;
 use super::content::{Content, ContentGroup, DataArray};
 use super::group_numbers::GroupNumbers;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::visit::items::CellKind;
 
 /// A mesh to be written in a format, with the capabilities of the format and the numbers of groups.
@@ -103,7 +103,7 @@ impl<'a> WriterInput<'a> {
     pub(crate) fn vertex_group_numbers(&self) -> Vec<i64> {
         let mut tags = vec![0; self.content.points.len()];
         for (group, vertices) in self.content.vertex_groups.iter().rev() {
-            if let Label::Tag(tag) = group.label {
+            if let GroupLabel::Tag(tag) = group.label {
                 vertices.iter().for_each(|&vertex| tags[vertex as usize] = tag);
             }
         }

@@ -5,7 +5,7 @@
 //! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
 //! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -92,7 +92,7 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
                     None => return,
                 }
             }
-            let label = Label::Name(format!("{word}{index}"));
+            let label = GroupLabel::Name(format!("{word}{index}"));
             visitor.group_scopes(&[GroupScope { kind: "boundary", label, dimension: Some(1) }]);
             // A node that does not exist is no reason to refuse the mesh.
             if visitor.polyline(cursor, 0, [0; 2], &nodes).is_err() {

@@ -58,7 +58,7 @@ impl<'a> Axes<'a> {
         let length = count * form.precision.bytes();
         let of_each = axes / arrays.len().max(1);
         // In the file itself, if they stand there as they are; else as what is written anew.
-        let places: Option<Vec<usize>> = arrays.iter().map(DatasetArray::place).collect();
+        let places: Option<Vec<usize>> = arrays.iter().map(DatasetArray::start).collect();
         if let Some(places) = places {
             let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
             let starts: Vec<usize> = places.into_iter().flat_map(of).collect();

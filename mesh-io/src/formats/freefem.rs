@@ -3,7 +3,7 @@
 //! The format: <https://doc.freefem.org/documentation/mesh-generation.html>, "Data Structures and Read/Write Statements
 //! for a Mesh". All numbers start at one.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -57,7 +57,7 @@ impl FormatReader for FreeFem {
                 let label = before.item(label, &mut None)?;
                 // A vertex without a label has the label 0.
                 if label != 0 {
-                    visitor.node_group(vertex as u32, "label", &Label::Tag(label));
+                    visitor.node_group(vertex as u32, "label", &GroupLabel::Tag(label));
                 }
             }
         }

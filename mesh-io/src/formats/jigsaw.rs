@@ -4,7 +4,7 @@
 //! `KEY=COUNT` and may stand in any order. Numbers are separated by semicolons, and points counted from zero. Each point and
 //! element ends in a tag.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -154,7 +154,7 @@ fn tags(
         cursor.tokens(dimensions);
         match tag(cursor)? {
             0 => {}
-            tag => visitor.node_group(point as u32, "tag", &Label::Tag(tag)),
+            tag => visitor.node_group(point as u32, "tag", &GroupLabel::Tag(tag)),
         }
     }
     Ok(())

@@ -4,7 +4,7 @@
 //! first row has the kind of data, its unit, the number of nodes and the projection; before 2012 only the latter two. A
 //! node has a height and a code: 0 inside, 1 at land, more at open boundaries.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -81,7 +81,7 @@ fn codes(
         cursor.tokens(4);
         let code = if cursor.is_at_end() { 0 } else { cursor.signed("the code of a node")? };
         if code != 0 {
-            visitor.node_group(node as u32, "code", &Label::Tag(code));
+            visitor.node_group(node as u32, "code", &GroupLabel::Tag(code));
         }
     }
     Ok(())
@@ -92,8 +92,8 @@ fn is_of_2012(row: &mut Cursor<'_>) -> bool {
     (0..3).all(|_| row.token().and_then(integer).is_some())
 }
 
-/// Whether the first two rows of a file may be those of such a mesh: numbers and a projection, then a node.
-pub(crate) fn opens(first: &[&[u8]], second: &[&[u8]]) -> bool {
+/// Returns whether the first two rows of a file may be those of MIKE: numbers and a projection, then a node.
+pub(crate) fn is_mike(first: &[&[u8]], second: &[&[u8]]) -> bool {
     let numbers = first.iter().take_while(|token| integer(token).is_some()).count();
     let is_projection = |token: &&[u8]| token.first().is_some_and(u8::is_ascii_alphabetic);
     let is_node = || {

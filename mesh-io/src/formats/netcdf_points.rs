@@ -111,7 +111,7 @@ impl<'h, 'a> PointData<'h, 'a> {
     /// The content of a variable, whose encoding is kept if the file does not have its numbers as they are.
     fn items(&mut self, variable: &'h Variable) -> Option<Items<'a>> {
         let mut items = self.header.items(variable).ok()?;
-        if items.place().is_none()
+        if items.start().is_none()
             && self.encoding(variable).is_none()
             && let (Some(file), Some(array)) = (&self.header.hdf5, items.take_array())
         {

@@ -4,7 +4,7 @@
 //! may also name them by negative numbers, counted back from the last vertex before. Texture coordinates and normals
 //! are not read.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::regions::Interner;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -180,7 +180,7 @@ impl<'a> CurrentGroups<'a> {
         let of = |what, names: &[&[u8]]| -> Vec<_> {
             let one = |name: &&[u8]| GroupScope {
                 kind: what,
-                label: Label::name(name),
+                label: GroupLabel::name(name),
                 dimension: Some(2),
             };
             names.iter().map(one).collect()

@@ -3,7 +3,7 @@
 //! The format: <https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm>. Rows start with a keyword and may stand in any
 //! order. Nodes of node strings (NS) stay fixed.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -63,7 +63,7 @@ impl FormatReader for Sms {
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
         let materials = || {
-            let label = |material| (material != NO_MATERIAL).then_some(Label::Tag(material));
+            let label = |material| (material != NO_MATERIAL).then_some(GroupLabel::Tag(material));
             vec![RegionAttribute { kind: "material".into(), from_dimension: 1, label }]
         };
         visitor.region_attributes(materials());
@@ -72,7 +72,7 @@ impl FormatReader for Sms {
                 Row::Element(element) => visitor.element(cursor, &element)?,
                 Row::String(nodes, end) => {
                     // A row that continues a string has the same label.
-                    let label = Label::Tag(string);
+                    let label = GroupLabel::Tag(string);
                     visitor.group_scopes(&[GroupScope {
                         kind: "nodestring",
                         label,

@@ -4,7 +4,7 @@
 //! mesh is read only if the user asks to join corners at the same place. Normals are not read.
 
 use crate::binary::byte_order::ByteOrder;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -269,7 +269,7 @@ fn send_mesh(
             let name = solids.get(solid as usize).filter(|name| !name.is_empty());
             let group = |name: &&[u8]| GroupScope {
                 kind: "solid",
-                label: Label::name(name),
+                label: GroupLabel::name(name),
                 dimension: None,
             };
             visitor.group_scopes(name.map(group).as_slice());

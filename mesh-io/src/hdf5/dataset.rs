@@ -238,13 +238,13 @@ impl DatasetStorage {
 
 impl DatasetArray<'_> {
     /// Where in the file the first of its items stands, if all stand there as they are, one after another.
-    pub(crate) fn place(&self) -> Option<usize> {
+    pub(crate) fn start(&self) -> Option<usize> {
         self.storage.whole().map(|range| range.start)
     }
 
     /// The byte of the file at or near which an item stands, for messages, given where it is among the bytes of all.
     pub(crate) fn byte_of(&self, at: usize) -> usize {
-        match (self.place(), self.storage.chunks.first()) {
+        match (self.start(), self.storage.chunks.first()) {
             (Some(start), _) => start + at,
             (None, Some(chunk)) => chunk.range.start,
             (None, None) => 0,

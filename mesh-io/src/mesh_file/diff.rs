@@ -169,7 +169,7 @@ impl MeshFile {
 
     /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
     fn preserves_offsets(&self, file_index: usize, fields: &[PointField]) -> bool {
-        let of = |field: &PointField| match field.stored()? {
+        let of = |field: &PointField| match field.location()? {
             ArrayLocation { space: ByteSpace::Encoded(array), file_index: own, .. } => {
                 Some(*own == file_index && array.preserves_offsets())
             }
@@ -195,9 +195,9 @@ impl MeshFile {
             ranges.extend(named_at.cloned());
         }
         let own = |field: &&PointField| {
-            field.stored().is_some_and(|stored| stored.file_index == file_index)
+            field.location().is_some_and(|stored| stored.file_index == file_index)
         };
-        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.space));
+        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.location()?.space));
         let arrays = homes().filter_map(|home| match home {
             ByteSpace::Encoded(array) => Some(&**array),
             _ => None,
@@ -248,7 +248,8 @@ fn number_ranges(
 ) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     for field in fields {
-        let Some(stored @ ArrayLocation { offsets: places, encoding, .. }) = field.stored() else {
+        let Some(stored @ ArrayLocation { offsets: places, encoding, .. }) = field.location()
+        else {
             continue;
         };
         if !in_these(stored) {

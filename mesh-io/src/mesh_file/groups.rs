@@ -50,7 +50,7 @@ impl MeshFile {
     /// [`ReadError`] if the list cannot be read, holds anything but whole numbers, or has a number that no vertex has.
     pub fn read_vertices(&self, list: &Path) -> Result<Vec<u32>, ReadError> {
         let list = &Source::load(list)?;
-        let labels = self.vertex_labels()?;
+        let labels = self.vertex_ids()?;
         // Each label belongs to one vertex, as files with repeated labels are refused.
         let map = IdIndex::new(&labels).ok();
         let cursor = &mut Cursor::new(list);
@@ -72,7 +72,8 @@ impl MeshFile {
         format!("Its vertices are numbered from {least} to {most}")
     }
 
-    fn vertex_labels(&self) -> Result<Vec<u64>, ReadError> {
-        group_visitor::labels(self.reader(), self.source())
+    /// Returns the id of each vertex in the file.
+    fn vertex_ids(&self) -> Result<Vec<u64>, ReadError> {
+        group_visitor::vertex_ids(self.reader(), self.source())
     }
 }

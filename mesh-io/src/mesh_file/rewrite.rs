@@ -59,7 +59,7 @@ impl MeshFile {
     ) -> Result<(), WriteError> {
         self.check_points(path, points)?;
         self.check_destination(path)?;
-        let packs = self.packs(path);
+        let packs = self.compression_of(path);
         let renamed = &(self.reader().renames)(self.source(), path);
         let file_write = |(part, destination)| -> FileWrite<'_> {
             let edits = Edits { points, fields };
@@ -144,9 +144,9 @@ impl MeshFile {
         )
     }
 
-    /// Returns the compression of what is written to a path, by its ending. A file that was compressed without such an
-    /// ending stays compressed under any name.
-    fn packs(&self, path: &Path) -> Option<Compression> {
+    /// Returns the compression of a file that is written to `path`, by the extension. If neither `path` nor the file
+    /// that was read has the extension of a compression, the compression of the file that was read stays.
+    fn compression_of(&self, path: &Path) -> Option<Compression> {
         let source = self.source();
         match Compression::of(path) {
             None if Compression::of(&source.path).is_none() => {
@@ -209,10 +209,10 @@ impl MeshFile {
                 Ok(())
             };
         let own =
-            |field: &&PointField| field.stored().is_some_and(|stored| stored.file_index == part);
+            |field: &&PointField| field.location().is_some_and(|stored| stored.file_index == part);
         for field in fields.iter().filter(own).filter(|field| field.is_changed()) {
             let (Some(column), Some(ArrayLocation { space: home, .. })) =
-                (field.column(), field.stored())
+                (field.column(), field.location())
             else {
                 continue;
             };
@@ -238,7 +238,7 @@ impl MeshFile {
             }
         }
         let homes = fields.iter().filter(own);
-        let homes = homes.filter_map(|field| field.stored().map(|stored| &stored.space));
+        let homes = homes.filter_map(|field| field.location().map(|stored| &stored.space));
         let arrays = encoded.into_iter().chain(homes.filter_map(|home| match home {
             ByteSpace::Encoded(array) => Some(&**array),
             _ => None,

@@ -107,8 +107,8 @@ impl<'a> Items<'a> {
     }
 
     /// Where in the file it starts, if it stands there as it is.
-    pub(crate) fn place(&self) -> Option<usize> {
-        self.array.as_ref().map_or(Some(self.first), DatasetArray::place)
+    pub(crate) fn start(&self) -> Option<usize> {
+        self.array.as_ref().map_or(Some(self.first), DatasetArray::start)
     }
 
     /// Takes out what it is, with its bytes, if these are not those of the file.
@@ -145,7 +145,7 @@ impl<'a> Header<'a> {
     }
 
     /// Near which byte a variable stands, for messages.
-    pub(crate) fn place(&self, variable: &Variable) -> usize {
+    pub(crate) fn start_of(&self, variable: &Variable) -> usize {
         match &variable.content {
             Content::Bytes { begin, .. } => *begin,
             Content::Dataset(dataset) => dataset.at,

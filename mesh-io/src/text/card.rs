@@ -25,11 +25,11 @@ pub(crate) struct CardLine<'a> {
     has_tabs: bool,
 }
 
-/// The name of a card in capital letters, without an asterisk and with zeros behind.
-pub(crate) type Name = [u8; SMALL_FIELD_WIDTH];
+/// The name of a card in capital letters, without an asterisk and padded with zeros.
+pub(crate) type CardName = [u8; SMALL_FIELD_WIDTH];
 
 /// Returns the name of a card without the zeros that pad it to 8 bytes.
-pub(crate) fn name_bytes(name: &Name) -> &[u8] {
+pub(crate) fn name_bytes(name: &CardName) -> &[u8] {
     &name[..memchr(0, name).unwrap_or(SMALL_FIELD_WIDTH)]
 }
 
@@ -55,8 +55,8 @@ impl<'a> CardLine<'a> {
     }
 
     /// The card that the line starts, if it is no continuation.
-    pub(crate) fn name(&self) -> Name {
-        let mut name = Name::default();
+    pub(crate) fn name(&self) -> CardName {
+        let mut name = CardName::default();
         let letters = self.bytes[self.start..self.end].iter();
         let letters = letters.take_while(|byte| !matches!(byte, b',' | b'*' | 0..=b' '));
         for (to, letter) in name.iter_mut().zip(letters) {

@@ -2,7 +2,7 @@
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::text::continued::{continued_end, is_left_out};
+use crate::text::continuation::{continued_end, is_left_out};
 use crate::text::syntax::{Commas, Items, Syntax};
 use crate::text::token::line_end;
 use std::ops::Range;

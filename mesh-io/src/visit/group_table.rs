@@ -2,7 +2,7 @@
 
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::visit::items::CellKind;
 use std::collections::HashMap;
 
@@ -22,12 +22,12 @@ struct GroupMembers {
 
 impl GroupTable {
     /// Returns the number of a group, after adding it if it is new.
-    pub(crate) fn number(&mut self, kind: &str, dimension: u8, label: &Label) -> usize {
+    pub(crate) fn number(&mut self, kind: &str, dimension: u8, label: &GroupLabel) -> usize {
         let (number, is_new) = self.keys.number(kind, dimension, label);
         if is_new {
             let (name, tag) = match label {
-                Label::Tag(tag) => (None, Some(*tag)),
-                Label::Name(name) => (Some(name.clone()), None),
+                GroupLabel::Tag(tag) => (None, Some(*tag)),
+                GroupLabel::Name(name) => (Some(name.clone()), None),
             };
             let group = Group {
                 kind: kind.to_owned(),
@@ -69,9 +69,9 @@ impl GroupTable {
 
     /// Names groups that are known or are added later. A group with a name exists even if it has no element.
     pub(crate) fn name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
-        let Label::Name(name) = Label::name(name) else { return };
+        let GroupLabel::Name(name) = GroupLabel::name(name) else { return };
         if let Some(dimension) = dimension {
-            self.number(kind, dimension, &Label::Tag(tag));
+            self.number(kind, dimension, &GroupLabel::Tag(tag));
         }
         self.keys.set_name(kind, dimension, tag, name);
     }
@@ -97,7 +97,7 @@ impl GroupTable {
         }
         for GroupMembers { group, .. } in &mut self.groups {
             let Some(tag) = group.tag else { continue };
-            group.name = self.keys.name_of(&group.kind, group.dimension, &Label::Tag(tag));
+            group.name = self.keys.name_of(&group.kind, group.dimension, &GroupLabel::Tag(tag));
         }
         let mut groups: Vec<Group> =
             self.groups.into_iter().map(|gathered| gathered.group).collect();

@@ -1,7 +1,7 @@
 //! Visitors for a second reading of a file: for its groups, and for the ids of its vertices.
 
+use crate::content::group_label::GroupLabel;
 use crate::content::id_index::IdIndexBuilder;
-use crate::content::label::Label;
 use crate::content::regions::Interner;
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -19,7 +19,7 @@ pub(crate) fn groups(reader: &ReaderFunctions, source: &Source) -> Result<GroupT
 }
 
 /// Returns the file's number or tag of each vertex.
-pub(crate) fn labels(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u64>, ReadError> {
+pub(crate) fn vertex_ids(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u64>, ReadError> {
     let mut labels = VertexIdVisitor::default();
     (reader.visit)(source, &mut labels)?;
     Ok(labels.ids)
@@ -37,7 +37,7 @@ struct GroupVisitor {
     /// For each column, the group of each number that was met, if it has one.
     groups: Vec<Vec<Option<usize>>>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
-    within: Vec<(String, Label, Option<u8>)>,
+    within: Vec<(String, GroupLabel, Option<u8>)>,
     /// The groups of `within` for elements of each dimension, once such an element was met.
     within_groups: [Option<Vec<usize>>; 3],
     /// The groups of the current element.
@@ -63,7 +63,7 @@ impl GroupVisitor {
             of_element.extend(groups[name]);
         }
         let within = within_groups[usize::from(dimension)].get_or_insert_with(|| {
-            let number = |(kind, label, own): &(String, Label, Option<u8>)| {
+            let number = |(kind, label, own): &(String, GroupLabel, Option<u8>)| {
                 table.number(kind, own.unwrap_or(dimension), label)
             };
             within.iter().map(number).collect()
@@ -119,7 +119,7 @@ impl MeshVisitor for GroupVisitor {
         self.within_groups = [None, None, None];
     }
 
-    fn node_group(&mut self, node: u32, kind: &str, label: &Label) {
+    fn node_group(&mut self, node: u32, kind: &str, label: &GroupLabel) {
         let group = self.table.number(kind, 0, label);
         self.table.add_vertex(group, node);
     }

@@ -1,7 +1,7 @@
 //! The items that readers hand on: elements, groups, periodic pairs, and numbers of points.
 
 use crate::content::constraints::Affine;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::visit::storage::ArrayLocation;
 
 /// The kinds of cells. A line of several segments becomes several cells.
@@ -76,18 +76,22 @@ pub(crate) struct RegionAttribute {
     /// The least dimension of elements that have this number.
     pub(crate) from_dimension: u8,
     /// Returns the label that a number stands for; `None` if it stands for no group.
-    pub(crate) label: fn(i64) -> Option<Label>,
+    pub(crate) label: fn(i64) -> Option<GroupLabel>,
 }
 
 impl RegionAttribute {
     /// Makes a column of tags that all stand for groups.
     pub(crate) fn tags(kind: &str, from_dimension: u8) -> RegionAttribute {
-        RegionAttribute { kind: kind.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
+        RegionAttribute {
+            kind: kind.into(),
+            from_dimension,
+            label: |tag| Some(GroupLabel::Tag(tag)),
+        }
     }
 
     /// Makes a column of tags in which 0 stands for no group.
     pub(crate) fn tags_from_one(kind: &str) -> RegionAttribute {
-        let label = |tag| (tag != 0).then_some(Label::Tag(tag));
+        let label = |tag| (tag != 0).then_some(GroupLabel::Tag(tag));
         RegionAttribute { kind: kind.into(), from_dimension: 0, label }
     }
 }
@@ -98,7 +102,7 @@ impl RegionAttribute {
 pub(crate) struct GroupScope<'w> {
     /// The format's word for the kind of group.
     pub(crate) kind: &'w str,
-    pub(crate) label: Label,
+    pub(crate) label: GroupLabel,
     /// The dimension of the group, if it differs from that of its elements.
     pub(crate) dimension: Option<u8>,
 }

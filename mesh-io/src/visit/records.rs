@@ -52,11 +52,12 @@ impl NodeRecords<'_> {
         places: &mut OffsetsBuilder,
     ) -> usize {
         let &NodeRecords { count, x, y, .. } = self;
-        let fits =
-            x.holds(count, 1) && y.holds(count, 1) && matches!((x.width, y.width), (4, 4) | (8, 8));
+        let fits = x.has_records(count, 1)
+            && y.has_records(count, 1)
+            && matches!((x.width, y.width), (4, 4) | (8, 8));
         let has_ids = match self.ids {
             NodeIds::Consecutive(_) => true,
-            NodeIds::Field(field) => field.holds(count, 1),
+            NodeIds::Field(field) => field.has_records(count, 1),
         };
         if count < MIN_PARALLEL_RECORDS || !fits || !has_ids {
             return 0;
@@ -152,10 +153,10 @@ impl TriangleRecords<'_> {
         let &TriangleRecords { count, nodes: corners, .. } = self;
         let mut fields = self.required_fields.iter().map(|&(field, _)| field);
         let has_regions = self.regions.iter().all(|region| match region {
-            Region::Field(field) => field.holds(count, 1),
+            Region::Field(field) => field.has_records(count, 1),
             _ => true,
         });
-        let fits = corners.holds(count, 3) && fields.all(|field| field.holds(count, 1));
+        let fits = corners.has_records(count, 3) && fields.all(|field| field.has_records(count, 1));
         // If the first chunk fails, it is not worth trying more.
         if count < MIN_PARALLEL_RECORDS
             || !fits

@@ -1,6 +1,6 @@
 //! The visitor that readers call for each item of a file.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -96,7 +96,7 @@ pub(crate) trait MeshVisitor {
     fn group_scopes(&mut self, _groups: &[GroupScope<'_>]) {}
     /// Visits a group of one node. `node` is the 0-based index of the node in file order, `kind` and `label` identify
     /// the group.
-    fn node_group(&mut self, _node: u32, _kind: &str, _label: &Label) {}
+    fn node_group(&mut self, _node: u32, _kind: &str, _label: &GroupLabel) {}
     /// Visits the name of the group with a kind and a tag. `dimension` is 0, 1 or 2; `None` if the name holds for all
     /// dimensions.
     fn group_name(&mut self, _kind: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}

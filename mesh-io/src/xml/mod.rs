@@ -30,7 +30,7 @@ pub(crate) struct XmlTag<'a> {
     source: &'a Source,
     start: BytesStart<'a>,
     /// The range of the tag in the file, with its angle brackets.
-    place: Range<usize>,
+    range: Range<usize>,
 }
 
 impl<'a> XmlTags<'a> {
@@ -57,7 +57,7 @@ impl<'a> XmlTags<'a> {
                 Event::Eof => return Ok(None),
                 Event::End(_) => _ = self.open.pop(),
                 Event::Start(start) | Event::Empty(start) => {
-                    let tag = XmlTag { source: self.source, start, place: at..self.at() };
+                    let tag = XmlTag { source: self.source, start, range: at..self.at() };
                     if !tag.is_empty() {
                         if self.open.len() == MAX_DEPTH {
                             let problem = format!("elements are nested more than {MAX_DEPTH} deep");
@@ -89,17 +89,17 @@ impl<'a> XmlTag<'a> {
 
     /// Whether the element has no content, as its tag ends in a slash.
     pub(crate) fn is_empty(&self) -> bool {
-        self.source.bytes[self.place.clone()].ends_with(b"/>")
+        self.source.bytes[self.range.clone()].ends_with(b"/>")
     }
 
     /// Returns the offset of the tag.
     pub(crate) fn at(&self) -> usize {
-        self.place.start
+        self.range.start
     }
 
     /// Returns the offset after the tag.
     pub(crate) fn end(&self) -> usize {
-        self.place.end
+        self.range.end
     }
 
     /// Returns the range of the text between the tag and the next one; `None` if no tag follows.
@@ -143,8 +143,8 @@ impl<'a> XmlTag<'a> {
     }
 
     /// Returns the range of an attribute's value in the file. The tag must have the attribute.
-    pub(crate) fn place_of_value(&self, name: &str) -> Result<Range<usize>, ReadError> {
-        let tag = &self.source.bytes[self.place.clone()];
+    pub(crate) fn value_range(&self, name: &str) -> Result<Range<usize>, ReadError> {
+        let tag = &self.source.bytes[self.range.clone()];
         let found = memchr::memmem::find_iter(tag, name).find_map(|at| {
             let blank_before = at > 0 && tag[at - 1] <= b' ';
             let rest = &tag[at + name.len()..];
@@ -206,7 +206,7 @@ mod tests {
             found.push((tag.name().into_owned(), parent, tag.at(), tag.is_empty()));
             if tag.name() == "b" {
                 assert_eq!(tag.attribute("c").unwrap().as_deref(), Some("<"));
-                assert_eq!(&source.bytes[tag.place_of_value("c").unwrap()], b"&lt;");
+                assert_eq!(&source.bytes[tag.value_range("c").unwrap()], b"&lt;");
             }
             if tag.name() == "d" {
                 assert_eq!(&source.bytes[tag.text().unwrap()], b"\n1 2");

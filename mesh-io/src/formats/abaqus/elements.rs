@@ -5,7 +5,7 @@ use super::deck::Deck;
 use super::lists::List;
 use super::sets::{IdPositions, Sets, WorkBudget};
 use super::{rows, types};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -224,7 +224,7 @@ impl ElementGroups {
             cursor.seek(*at);
             visitor.group_scopes(&[GroupScope {
                 kind: "surface",
-                label: Label::name(name),
+                label: GroupLabel::name(name),
                 dimension: Some(1),
             }]);
             for &(_, [a, b]) in of_surface {
@@ -247,7 +247,7 @@ fn send_scopes<'f>(
     let groups = |all: &'f [(u32, u32)]| all.iter().map(|&(_, group)| group);
     if !groups(told).eq(groups(now)) {
         let within = |group: u32| {
-            let label = Label::name(&names[group as usize]);
+            let label = GroupLabel::name(&names[group as usize]);
             GroupScope { kind: "elset", label, dimension: None }
         };
         visitor.group_scopes(&groups(now).map(within).collect::<Vec<_>>());

@@ -14,7 +14,7 @@ mod sets;
 mod types;
 pub(crate) mod write;
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -160,7 +160,9 @@ impl Nodes {
             if !nodes.is_empty() {
                 visitor.group_name("nset", Some(0), tag, &name);
             }
-            nodes.into_iter().for_each(|node| visitor.node_group(node, "nset", &Label::Tag(tag)));
+            nodes
+                .into_iter()
+                .for_each(|node| visitor.node_group(node, "nset", &GroupLabel::Tag(tag)));
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Writes input files of Abaqus and CalculiX, `.inp`, with the mesh alone.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::export::name_rules::{NameRules, distinct};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
@@ -46,8 +46,8 @@ pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
     let number = |place: usize| {
         let (group, _) = &content.vertex_groups[place];
         match &group.label {
-            Label::Tag(tag) => tag.to_string(),
-            Label::Name(name) => name.clone(),
+            GroupLabel::Tag(tag) => tag.to_string(),
+            GroupLabel::Name(name) => name.clone(),
         }
     };
     let names =

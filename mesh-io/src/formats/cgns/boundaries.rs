@@ -1,7 +1,7 @@
 //! Boundary conditions of a zone, and the families that these are of: groups of elements or of vertices.
 
 use super::file::{File, labeled};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::hdf5::Object;
 use crate::visit::items::GroupScope;
 use crate::visit::visitor::MeshVisitor;
@@ -51,7 +51,7 @@ impl Boundaries {
             let names = own.iter().flat_map(|&number| &self.all[number].names);
             let within = |(what, name): &'_ (&'static str, String)| GroupScope {
                 kind: what,
-                label: Label::Name(name.clone()),
+                label: GroupLabel::Name(name.clone()),
                 dimension: None,
             };
             let groups: Vec<GroupScope<'_>> = names.map(within).collect();
@@ -94,7 +94,7 @@ impl<'a> File<'a> {
                             tag += 1;
                             visitor.group_name(what, Some(0), tag, name.as_bytes());
                             for vertex in (1..=vertices).filter(|&v| points.has(v as i64)) {
-                                visitor.node_group(vertex as u32 - 1, what, &Label::Tag(tag));
+                                visitor.node_group(vertex as u32 - 1, what, &GroupLabel::Tag(tag));
                             }
                         }
                     }

@@ -104,7 +104,7 @@ impl<'a> File<'a> {
                 let each = array.bytes.chunks_exact(precision.bytes()).take(vertices);
                 let numbers = each.map(|number| order.real(precision, number)).collect();
                 let (form, stride) = (NumberEncoding::Binary(order, precision), precision.bytes());
-                let (start, home) = match array.place() {
+                let (start, home) = match array.start() {
                     Some(start) => (start, ByteSpace::File),
                     None => {
                         let encoding = Hdf5Arrays::new(self.hdf5, vec![array]);

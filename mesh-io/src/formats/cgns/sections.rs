@@ -4,7 +4,7 @@ use super::boundaries::Boundaries;
 use super::file::{File, labeled};
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
 use crate::hdf5::{DatasetArray, Datatype, Object};
 use crate::text::cursor::{CORRECT, Cursor};
@@ -50,7 +50,7 @@ impl<'a> File<'a> {
         boundaries: &Boundaries,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
-        let label = |section| Some(Label::Tag(section));
+        let label = |section| Some(GroupLabel::Tag(section));
         visitor.region_attributes(vec![RegionAttribute {
             kind: "section".into(),
             from_dimension: 0,

@@ -85,7 +85,7 @@ impl<'a> File<'a> {
         before: u64,
         variable: &Variable,
     ) -> Result<Block<'a>, ReadError> {
-        let start = self.header.place(variable);
+        let start = self.header.start_of(variable);
         let cursor = Cursor::at_byte_offset(self.source, start);
         let found = (&variable.shape[..], variable.number, variable.is_record);
         let (&[count, corners], NumberType::Whole(width), false) = found else {

@@ -8,7 +8,7 @@ mod data;
 mod sets;
 pub(crate) mod write;
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
@@ -61,7 +61,7 @@ impl FormatReader for Exodus {
         }
         let file = File { source, header, nodes: nodes as usize };
         let layout = file.axes()?.send(Format::Exodus, file.nodes, 1, visitor)?;
-        let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
+        let label = |block| (block != NO_BLOCK).then_some(GroupLabel::Tag(block));
         visitor.region_attributes(vec![RegionAttribute {
             kind: "block".into(),
             from_dimension: 0,

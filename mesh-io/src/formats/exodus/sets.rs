@@ -2,7 +2,7 @@
 
 use super::blocks::Block;
 use super::{File, NO_BLOCK};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::items::{CellKind, Element, GroupScope};
@@ -18,7 +18,7 @@ impl File<'_> {
         let ids = self.named("sideset", ["ss_prop1", "ss_names"], 1, visitor);
         for (number, elements) in self.header.numbered("elem_ss") {
             let sides = self.header.variable(&format!("side_ss{number}"));
-            let start = self.header.place(elements);
+            let start = self.header.start_of(elements);
             let cursor = Cursor::at_byte_offset(self.source, start);
             let found = sides.filter(|sides| !sides.is_record && !elements.is_record);
             let lists = found.and_then(|sides| {
@@ -29,7 +29,7 @@ impl File<'_> {
                     format!("side set {number} does not have one side for each of its elements");
                 return Err(cursor.error(problem, CORRECT));
             };
-            let label = Label::Tag(self.id(&ids, number));
+            let label = GroupLabel::Tag(self.id(&ids, number));
             visitor.group_scopes(&[GroupScope { kind: "sideset", label, dimension: Some(1) }]);
             for (&element, &side) in elements.iter().zip(&sides) {
                 let Some(ends) = self.side(blocks, element, side) else {
@@ -78,11 +78,11 @@ impl File<'_> {
             for node in nodes.unwrap_or_default() {
                 let index = u32::try_from(node - 1).ok().filter(|&i| (i as usize) < self.nodes);
                 let Some(index) = index else {
-                    let cursor = Cursor::at_byte_offset(self.source, header.place(variable));
+                    let cursor = Cursor::at_byte_offset(self.source, header.start_of(variable));
                     let problem = format!("node set {number} has node {node}");
                     return Err(cursor.error(problem, "There is no such node: correct the set"));
                 };
-                visitor.node_group(index, "nodeset", &Label::Tag(id));
+                visitor.node_group(index, "nodeset", &GroupLabel::Tag(id));
             }
         }
         Ok(())

@@ -2,7 +2,7 @@
 //!
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::export::content::ContentGroup;
 use crate::export::sides::{pair, sides};
 use crate::export::writer_input::WriterInput;
@@ -239,8 +239,8 @@ fn sets(out: &mut NetCdfWriter, input: &WriterInput<'_>, side_sets: &[SideSet], 
     let groups = &content.vertex_groups;
     if !groups.is_empty() {
         let own = numbers(groups.iter().map(|(group, _)| match group.label {
-            Label::Tag(tag) => Some(tag),
-            Label::Name(_) => None,
+            GroupLabel::Tag(tag) => Some(tag),
+            GroupLabel::Name(_) => None,
         }));
         let names: Vec<&str> = groups.iter().map(|(group, _)| group.name().unwrap_or("")).collect();
         let told = ["num_node_sets", "ns_status", "ns_prop1", "ns_names"];

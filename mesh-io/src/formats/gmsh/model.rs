@@ -4,7 +4,7 @@ use super::encoding::{FileEncoding, Version};
 use super::lists::row;
 use super::words::{Progress, Words};
 use crate::binary::byte_order::ByteOrder;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::in_quotes;
@@ -57,8 +57,11 @@ impl Model {
     /// Returns the groups of an entity's elements. Physical groups are known only after `$Entities` was read.
     pub(super) fn groups_of(&self, kind: CellKind, entity: i64) -> Vec<GroupScope<'static>> {
         let known = self.entities.get(&(kind.dimension(), entity));
-        let within =
-            |what, tag: i64| GroupScope { kind: what, label: Label::Tag(tag), dimension: None };
+        let within = |what, tag: i64| GroupScope {
+            kind: what,
+            label: GroupLabel::Tag(tag),
+            dimension: None,
+        };
         let physical = known.into_iter().flat_map(|entity| &entity.physical);
         let mut groups: Vec<_> = physical.map(|&tag| within("physical", tag)).collect();
         let entity = known.map_or(entity, |entity| entity.tag);

@@ -1,6 +1,6 @@
 //! The families of a MED file, and the groups that each is of.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::hdf5::{Hdf5, Object};
 use crate::visit::items::GroupScope;
 use crate::visit::visitor::MeshVisitor;
@@ -56,7 +56,7 @@ impl Families {
     pub(super) fn of_elements(&self, family: i64, visitor: &mut dyn MeshVisitor) {
         let within = |&group: &usize| GroupScope {
             kind: "group",
-            label: Label::name(&self.names[group]),
+            label: GroupLabel::name(&self.names[group]),
             dimension: None,
         };
         let groups: Vec<GroupScope<'_>> = self.of(family).iter().map(within).collect();
@@ -66,7 +66,7 @@ impl Families {
     /// Tells that a node is of a family.
     pub(super) fn of_node(&self, node: u32, family: i64, visitor: &mut dyn MeshVisitor) {
         for &group in self.of(family) {
-            visitor.node_group(node, "group", &Label::Tag(group as i64 + 1));
+            visitor.node_group(node, "group", &GroupLabel::Tag(group as i64 + 1));
         }
     }
 

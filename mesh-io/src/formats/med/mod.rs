@@ -7,7 +7,7 @@ mod families;
 
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -101,7 +101,7 @@ impl<'a> File<'a> {
     fn read(&self, visitor: &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError> {
         let (axes, count) = self.nodes()?;
         let layout = axes.send(Format::Med, count, 1, visitor)?;
-        let label = |family| (family != 0).then_some(Label::Tag(family));
+        let label = |family| (family != 0).then_some(GroupLabel::Tag(family));
         visitor.region_attributes(vec![RegionAttribute {
             kind: "family".into(),
             from_dimension: 0,

@@ -6,7 +6,7 @@
 
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, NumberEncoding};
 use crate::error::ReadError;
@@ -245,7 +245,7 @@ fn vertices(
             let reference = widths.order.signed(&vertex[item - widths.integer..]);
             // A vertex without a reference has the reference 0.
             if reference != 0 {
-                visitor.node_group(index, "reference", &Label::Tag(reference));
+                visitor.node_group(index, "reference", &GroupLabel::Tag(reference));
             }
         }
     }
@@ -259,7 +259,8 @@ fn elements(
 ) -> Result<(), ReadError> {
     let List { cursor, bytes, kind, referred, name } = list;
     // Points have no reference. The list they stand in is their group.
-    let within = GroupScope { kind: "list", label: Label::name(name.as_bytes()), dimension: None };
+    let within =
+        GroupScope { kind: "list", label: GroupLabel::name(name.as_bytes()), dimension: None };
     visitor.group_scopes(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;

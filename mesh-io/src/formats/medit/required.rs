@@ -1,6 +1,6 @@
 //! Triangles that are not to be changed, which both of Medit's formats list by their numbers.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -23,7 +23,7 @@ pub(super) fn send_required_corners<'a>(
     required.sort_unstable();
     required.dedup();
     visitor.remark(Remark::elements(required.len() as u64, "required triangle", ""));
-    let label = Label::name(b"RequiredTriangles");
+    let label = GroupLabel::name(b"RequiredTriangles");
     visitor.group_scopes(&[GroupScope { kind: "list", label, dimension: None }]);
     let mut before = 0;
     for (list, &count) in counts.iter().enumerate() {

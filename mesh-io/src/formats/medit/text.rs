@@ -4,7 +4,7 @@
 //! mmg and libMeshb. Edges, corners, required vertices and the vertices of required triangles stay fixed. Required
 //! edges and ridges need no reading, as they are among the edges.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -40,7 +40,7 @@ impl<'a> List<'a> {
     fn send(self, visitor: &mut dyn MeshVisitor) -> Result<Cursor<'a>, ReadError> {
         let List { mut cursor, count, kind, keyword } = self;
         // Points have no reference. The list they stand in is their group.
-        let list = GroupScope { kind: "list", label: Label::name(keyword), dimension: None };
+        let list = GroupScope { kind: "list", label: GroupLabel::name(keyword), dimension: None };
         visitor.group_scopes(if kind == CellKind::Point {
             std::slice::from_ref(&list)
         } else {
@@ -242,7 +242,7 @@ fn vertices(
             let reference = before.item(reference, &mut None)?;
             // A vertex without a reference has the reference 0.
             if reference != 0 {
-                visitor.node_group(vertex as u32, "reference", &Label::Tag(reference));
+                visitor.node_group(vertex as u32, "reference", &GroupLabel::Tag(reference));
             }
         }
     }

@@ -5,7 +5,7 @@ use super::types::{Class, RigidFields, class};
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::card;
-use crate::text::card::{CardLine, Name, name_bytes};
+use crate::text::card::{CardLine, CardName, name_bytes};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
 use crate::visit::items::{CellKind, Element, RegionAttribute};
@@ -17,9 +17,9 @@ use std::collections::{BTreeSet, HashSet};
 enum Card {
     Element(Element),
     /// The name of an element that constrains its nodes, and the ids of these nodes.
-    Constrains(Name, Vec<u64>),
+    Constrains(CardName, Vec<u64>),
     Node(u64),
-    Other(Name),
+    Other(CardName),
 }
 
 /// Hands on all elements.

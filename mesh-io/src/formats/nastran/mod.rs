@@ -46,8 +46,9 @@ impl FormatReader for Nastran {
 /// Number of rows by which the format is recognized.
 const MAX_DETECTION_ROWS: usize = 1000;
 
-/// Whether the first rows of a file are those of Nastran: a statement that only its files have, or a card of a node or an element.
-pub(crate) fn opens(source: &Source) -> bool {
+/// Returns whether the first rows of a file are those of Nastran: a statement that only its files have, or a card of
+/// a node or an element.
+pub(crate) fn is_nastran(source: &Source) -> bool {
     let mut cursor = Cursor::new(source).with_syntax(Syntax::CARDS);
     (0..MAX_DETECTION_ROWS).any(|_| cursor.next_row() && is_of_nastran(&cursor))
 }

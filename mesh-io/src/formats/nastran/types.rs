@@ -1,6 +1,6 @@
 //! The cards of elements, by their names.
 
-use crate::text::card::{Name, name_bytes};
+use crate::text::card::{CardName, name_bytes};
 use crate::visit::items::CellKind;
 
 /// What elements are in a mesh of the plane.
@@ -31,7 +31,7 @@ pub(super) enum RigidFields {
 }
 
 /// Returns what the elements of a card are; `None` if it is not known as one of elements.
-pub(super) fn class(name: &Name) -> Option<Class> {
+pub(super) fn class(name: &CardName) -> Option<Class> {
     Some(match name_bytes(name) {
         b"CTRIA3" | b"CTRIAR" | b"CTRIA1" | b"CTRIA2" | b"CTRMEM" | b"CTRPLT" | b"CTRBSC"
         | b"CPLSTN3" | b"CPLSTS3" | b"CTRAX3" => Class::Of(CellKind::Triangle),

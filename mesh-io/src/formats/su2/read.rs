@@ -3,7 +3,7 @@
 //! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list. The index
 //! at the end of its row is not read. Each zone of a multi-zone mesh has its own points, numbered from 0.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -119,7 +119,7 @@ impl FormatReader for Su2 {
             visitor.periodic_pairs(motions.finish());
         }
         if zones.len() > 1 {
-            let label = |zone| Some(Label::Tag(zone + 1));
+            let label = |zone| Some(GroupLabel::Tag(zone + 1));
             visitor.region_attributes(vec![RegionAttribute {
                 kind: "zone".into(),
                 from_dimension: 2,
@@ -127,8 +127,11 @@ impl FormatReader for Su2 {
             }]);
         }
         for List { mut cursor, ahead, count, zone, marker } in lists {
-            let within =
-                |name| GroupScope { kind: "marker", label: Label::name(name), dimension: None };
+            let within = |name| GroupScope {
+                kind: "marker",
+                label: GroupLabel::name(name),
+                dimension: None,
+            };
             visitor.group_scopes(marker.map(within).as_slice());
             let last = zones.get(zone + 1).copied().unwrap_or(points);
             elements(&mut cursor, &ahead, count, zone, zones[zone]..last, visitor)?;

@@ -3,7 +3,7 @@
 //! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this reader ignores text after the
 //! announced rows and columns.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::regions::Interner;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
@@ -11,7 +11,7 @@ use crate::edit::numbers;
 use crate::error::{ReadError, WriteError};
 use crate::format::Format;
 use crate::formats::triangle::files;
-use crate::formats::triangle::rows::{Numbers, header, rows, vertex_header};
+use crate::formats::triangle::rows::{VertexNumbering, header, rows, vertex_header};
 use crate::formats::triangle::segments::{Segments, listed_vertices};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
@@ -57,7 +57,7 @@ impl FormatReader for Triangle {
 
 /// The list of vertices of a `.node`.
 struct Vertices<'s> {
-    numbers: Numbers,
+    numbers: VertexNumbering,
     /// The number of attributes of each vertex.
     attributes: u64,
     has_markers: bool,
@@ -85,7 +85,7 @@ impl<'s> Vertices<'s> {
         let before = cursor.clone();
         visitor.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
         let listed = poly.map_or(0, listed_vertices);
-        let mut numbers = Numbers { first: 0, count };
+        let mut numbers = VertexNumbering { first: 0, count };
         if !visitor.asks_for_nodes() {
             // The first row tells how vertices are numbered.
             if cursor.next_row() {
@@ -144,12 +144,12 @@ fn column_name(column: u64, columns: u64) -> String {
 }
 
 /// Returns the label that an attribute stands for.
-fn attribute(token: &[u8]) -> Label {
-    float(token).map_or_else(|| Label::name(token), Label::number)
+fn attribute(token: &[u8]) -> GroupLabel {
+    float(token).map_or_else(|| GroupLabel::name(token), GroupLabel::number)
 }
 
 /// Returns the label that a marker stands for. Zero is no marker.
-fn marker(token: &[u8]) -> Option<Label> {
+fn marker(token: &[u8]) -> Option<GroupLabel> {
     (float(token) != Some(0.0)).then(|| attribute(token))
 }
 
@@ -157,7 +157,7 @@ fn marker(token: &[u8]) -> Option<Label> {
 fn triangles(
     ele: &Source,
     node: &Source,
-    numbers: &Numbers,
+    numbers: &VertexNumbering,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     let cursor = &mut rows(ele);
@@ -200,7 +200,7 @@ fn triangles(
 fn triangle<'a>(
     cursor: &mut Cursor<'a>,
     node: &Source,
-    numbers: &Numbers,
+    numbers: &VertexNumbering,
     columns: u64,
 ) -> Result<(u64, [u64; 3], &'a [u8]), ReadError> {
     let number = cursor.integer("the number of a triangle")?;
@@ -290,7 +290,7 @@ fn normalized(attributes: &[u8]) -> String {
 fn segments(
     poly: &Source,
     node: &Source,
-    numbers: &Numbers,
+    numbers: &VertexNumbering,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     let mut segments = Segments::new(poly, node, numbers)?;

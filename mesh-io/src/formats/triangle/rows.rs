@@ -12,12 +12,12 @@ pub(super) fn rows(source: &Source) -> Cursor<'_> {
 }
 
 /// The numbering of a file's vertices: `count` consecutive numbers from `first` on.
-pub(super) struct Numbers {
+pub(super) struct VertexNumbering {
     pub(super) first: u64,
     pub(super) count: u64,
 }
 
-impl Numbers {
+impl VertexNumbering {
     /// Reads the number of a vertex of `owner`, which `list` must have.
     #[inline]
     pub(super) fn vertex(

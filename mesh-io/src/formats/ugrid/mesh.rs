@@ -63,7 +63,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
                 "the mesh {} has no variable that its face_node_connectivity names, so no faces",
                 quoted(&own.name)
             );
-            let place = Cursor::at_byte_offset(header.source, header.place(own));
+            let place = Cursor::at_byte_offset(header.source, header.start_of(own));
             return Err(place.error(problem, REMEDY));
         };
         Ok(Mesh { header, own, x, y, nodes, face_nodes })
@@ -112,7 +112,7 @@ fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variab
                 "the mesh {} has no two variables that its node_coordinates names",
                 quoted(&own.name)
             );
-            let place = Cursor::at_byte_offset(header.source, header.place(own));
+            let place = Cursor::at_byte_offset(header.source, header.start_of(own));
             Err(place.error(problem, REMEDY))
         }
     }
@@ -148,7 +148,7 @@ fn node_count(header: &Header<'_>, [x, y]: [&Variable; 2]) -> Result<usize, Read
     let is_same = (x.number, x.order, &x.shape) == (y.number, y.order, &y.shape);
     match x.shape[..] {
         [count] if is_real && is_same && !x.is_record && !y.is_record && x.name != y.name => {
-            Cursor::at_byte_offset(header.source, header.place(x)).check_vertex_count(count)?;
+            Cursor::at_byte_offset(header.source, header.start_of(x)).check_vertex_count(count)?;
             Ok(count as usize)
         }
         _ => Err(unfit(header, [x, y])),
@@ -162,5 +162,5 @@ fn unfit(header: &Header<'_>, [x, y]: [&Variable; 2]) -> ReadError {
         quoted(&x.name),
         quoted(&y.name)
     );
-    Cursor::at_byte_offset(header.source, header.place(x)).error(problem, REMEDY)
+    Cursor::at_byte_offset(header.source, header.start_of(x)).error(problem, REMEDY)
 }

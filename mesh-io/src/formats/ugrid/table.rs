@@ -65,7 +65,7 @@ impl<'h, 'a> Table<'h, 'a> {
         let wrong = |problem: &str| {
             let name = quoted(&variable.name);
             let problem = format!("{name}, the nodes of the {several}, {problem}");
-            Cursor::at_byte_offset(header.source, header.place(variable)).error(problem, CORRECT)
+            Cursor::at_byte_offset(header.source, header.start_of(variable)).error(problem, CORRECT)
         };
         let is_numeric = matches!(variable.number, NumberType::Whole(_) | NumberType::Real(_));
         let (&[rows, columns], true, false) = (&variable.shape[..], is_numeric, variable.is_record)
@@ -136,11 +136,11 @@ impl<'h, 'a> Table<'h, 'a> {
 
     /// The place of a face or an edge in the file.
     pub(super) fn cursor(&self, element: usize) -> Cursor<'a> {
-        Cursor::at_byte_offset(self.header.source, self.items.byte_of(self.place(element, 0)))
+        Cursor::at_byte_offset(self.header.source, self.items.byte_of(self.position(element, 0)))
     }
 
     /// Where the number of a corner stands among the bytes.
-    fn place(&self, element: usize, corner: usize) -> usize {
+    fn position(&self, element: usize, corner: usize) -> usize {
         let item = match self.has_rows {
             true => element * self.corners + corner,
             false => corner * self.count + element,
@@ -149,7 +149,7 @@ impl<'h, 'a> Table<'h, 'a> {
     }
 
     fn corner(&self, element: usize, corner: usize) -> Corner {
-        let at = self.place(element, corner);
+        let at = self.position(element, corner);
         let own = &self.items.bytes[at..at + self.variable.number.bytes()];
         let number = match self.variable.number {
             NumberType::Real(precision) => self.variable.order.real(precision, own),

@@ -26,10 +26,11 @@ fn array_name(what: &str) -> &str {
 pub(crate) struct Array {
     pub(crate) name: String,
     pub(crate) components: usize,
-    pub(crate) numbers: Numbers,
+    pub(crate) numbers: ArrayValues,
 }
 
-pub(crate) enum Numbers {
+/// The values of an array.
+pub(crate) enum ArrayValues {
     Real(Vec<f64>),
     Whole(Vec<i64>),
 }
@@ -46,14 +47,14 @@ impl Array {
         };
         let is_whole = !data.is_real && values.iter().all(|value| value.is_finite());
         let numbers = match is_whole {
-            true => Numbers::Whole(values.into_iter().map(|value| value as i64).collect()),
-            false => Numbers::Real(values),
+            true => ArrayValues::Whole(values.into_iter().map(|value| value as i64).collect()),
+            false => ArrayValues::Real(values),
         };
         Array { name: data.name.clone(), components: each, numbers }
     }
 
     fn whole(name: &str, numbers: Vec<i64>) -> Array {
-        Array { name: name.to_owned(), components: 1, numbers: Numbers::Whole(numbers) }
+        Array { name: name.to_owned(), components: 1, numbers: ArrayValues::Whole(numbers) }
     }
 }
 
@@ -120,10 +121,10 @@ pub(crate) fn write_legacy(input: &WriterInput<'_>) -> String {
         put!(out, "{keyword} {count}\nFIELD FieldData {}\n", arrays.len());
         for Array { name, components, numbers } in arrays {
             let (kind, words): (_, Vec<String>) = match numbers {
-                Numbers::Real(numbers) => {
+                ArrayValues::Real(numbers) => {
                     ("double", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
                 }
-                Numbers::Whole(numbers) => {
+                ArrayValues::Whole(numbers) => {
                     let small = numbers.iter().all(|&number| i32::try_from(number).is_ok());
                     let kind = if small { "int" } else { "long" };
                     (kind, numbers.iter().map(i64::to_string).collect())
@@ -165,7 +166,7 @@ pub(crate) fn write_xml(input: &WriterInput<'_>) -> String {
     let coordinates = Array {
         name: "Points".into(),
         components: 3,
-        numbers: Numbers::Real((0..points).flat_map(at).collect()),
+        numbers: ArrayValues::Real((0..points).flat_map(at).collect()),
     };
     let connectivity = cells.iter().flat_map(|&cell| content.cells.of(cell));
     let connectivity = connectivity.map(|&vertex| i64::from(vertex)).collect();
@@ -193,10 +194,10 @@ pub(crate) fn write_xml(input: &WriterInput<'_>) -> String {
         put!(out, "<{section}>\n");
         for Array { name, components, numbers } in arrays {
             let (kind, bytes): (_, Vec<u8>) = match numbers {
-                Numbers::Real(numbers) => {
+                ArrayValues::Real(numbers) => {
                     ("Float64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
                 }
-                Numbers::Whole(numbers) => {
+                ArrayValues::Whole(numbers) => {
                     ("Int64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
                 }
             };

@@ -88,7 +88,7 @@ impl<'a> HeavyData<'a> {
                     return Err(cursor.error(problem, "Save the mesh again"));
                 };
                 let mut array = tree.array(&dataset)?;
-                let (start, at) = (array.place(), array.byte_of(0));
+                let (start, at) = (array.start(), array.byte_of(0));
                 let bytes = std::mem::take(&mut array.bytes);
                 let number = dataset.datatype;
                 HeavyArray {
@@ -146,7 +146,7 @@ impl<'a> HeavyData<'a> {
 
     /// The file and the bytes that the numbers of an item take there, of those in chunks the first one of their header. None if they
     /// stand in the XML or cannot be read.
-    pub(super) fn place(&self, item: &Item) -> Option<(usize, Range<usize>)> {
+    pub(super) fn range_of(&self, item: &Item) -> Option<(usize, Range<usize>)> {
         let (Content::Hdf5 { file, .. } | Content::Raw { file, .. }) = &item.content else {
             return None;
         };

@@ -135,7 +135,7 @@ impl<'a> File<'a> {
         let mut known: Vec<(usize, Range<usize>)> = Vec::new();
         for section in ["Geometry", "Topology"] {
             let numbers = match visitor.asks_for_data() {
-                true => self.heavy.place(self.only(section)?),
+                true => self.heavy.range_of(self.only(section)?),
                 false => None,
             };
             known.extend(numbers);
@@ -145,7 +145,7 @@ impl<'a> File<'a> {
             if visitor.point_array(item.name.as_bytes(), components, is_real)
                 && let Ok(mut numbers) = self.numbers(item)
             {
-                if let Some((part, range)) = self.heavy.place(item) {
+                if let Some((part, range)) = self.heavy.range_of(item) {
                     let is_other = |(known, own): &(usize, Range<usize>)| {
                         *known != part || own.end <= range.start || range.end <= own.start
                     };

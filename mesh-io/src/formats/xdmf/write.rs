@@ -2,7 +2,7 @@
 
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
-use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
+use crate::formats::vtk::write::{Array, ArrayValues, of_cells, of_points};
 use crate::visit::items::CellKind;
 use std::fmt::Write;
 
@@ -58,10 +58,10 @@ fn attribute(array: &Array, center: &str, count: usize, out: &mut String) {
     };
     let (number, words): (_, Vec<String>) = match numbers {
         // NaN is written so that readers in C parse it.
-        Numbers::Real(numbers) => {
+        ArrayValues::Real(numbers) => {
             ("Float", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
         }
-        Numbers::Whole(numbers) => ("Int", numbers.iter().map(i64::to_string).collect()),
+        ArrayValues::Whole(numbers) => ("Int", numbers.iter().map(i64::to_string).collect()),
     };
     let dimensions = match components {
         1 => count.to_string(),

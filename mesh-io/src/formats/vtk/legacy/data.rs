@@ -2,7 +2,7 @@
 //! Others are skipped.
 
 use crate::binary::byte_order::ByteOrder;
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::edit::numbers::{NumberEncoding, Offsets};
 use crate::formats::vtk::legacy::skip::{array_name, size_of, skip_section, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
@@ -154,7 +154,7 @@ impl Data<'_> {
         }
         let what = String::from_utf8_lossy(name).into_owned();
         // The number of each cell's region, or the bits of the number if the array has real numbers.
-        let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<Label>);
+        let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<GroupLabel>);
         if self.binary {
             let size = size_of(kind)?;
             // Real numbers are told apart by their bits, but a negative zero is zero.
@@ -232,19 +232,19 @@ fn decoded(name: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(decoded)
 }
 
-fn number_of_bits(bits: i64) -> Option<Label> {
-    Some(Label::number(f64::from_bits(bits.cast_unsigned())))
+fn number_of_bits(bits: i64) -> Option<GroupLabel> {
+    Some(GroupLabel::number(f64::from_bits(bits.cast_unsigned())))
 }
 
 /// Returns a function from the bits of a number of this type, as a signed whole number, to its label.
-fn label_of(kind: &[u8]) -> fn(i64) -> Option<Label> {
+fn label_of(kind: &[u8]) -> fn(i64) -> Option<GroupLabel> {
     match kind.to_ascii_lowercase().as_slice() {
-        b"float" => |bits| Some(Label::number(f64::from(f32::from_bits(bits as u32)))),
+        b"float" => |bits| Some(GroupLabel::number(f64::from(f32::from_bits(bits as u32)))),
         b"double" => number_of_bits,
-        b"unsigned_char" => |number| Some(Label::Tag(number & 0xff)),
-        b"unsigned_short" => |number| Some(Label::Tag(number & 0xffff)),
-        b"unsigned_int" => |number| Some(Label::Tag(number & 0xffff_ffff)),
-        _ => |number| Some(Label::Tag(number)),
+        b"unsigned_char" => |number| Some(GroupLabel::Tag(number & 0xff)),
+        b"unsigned_short" => |number| Some(GroupLabel::Tag(number & 0xffff)),
+        b"unsigned_int" => |number| Some(GroupLabel::Tag(number & 0xffff_ffff)),
+        _ => |number| Some(GroupLabel::Tag(number)),
     }
 }
 

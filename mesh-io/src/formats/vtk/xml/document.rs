@@ -193,7 +193,7 @@ fn array(tag: &XmlTag<'_>, section: String, piece: usize) -> Result<Array, ReadE
         ArrayFormat::Appended => {
             let value = tag.number("offset")?;
             let offset = usize::try_from(value).unwrap_or(usize::MAX);
-            Some((offset, tag.place_of_value("offset")?))
+            Some((offset, tag.value_range("offset")?))
         }
         _ => None,
     };
