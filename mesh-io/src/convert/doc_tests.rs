@@ -1,6 +1,6 @@
 //! Makes the tables of docs/formats.md from the rows of formats and targets, and tests that the document has them.
 //!
-//! After a change, `UPDATE_DOCS=1 cargo test --lib documented` writes them anew.
+//! After a change, `UPDATE_DOCS=1 cargo test --lib doc_tests` writes them anew.
 
 use super::tables;
 use super::targets::TARGETS;
@@ -338,7 +338,7 @@ fn the_document_has_the_tables_of_the_code() {
     }
     let differs =
         expected.lines().zip(document.lines()).find(|(expected, found)| expected != found);
-    let remedy = "UPDATE_DOCS=1 cargo test -p mesh-io --lib documented writes the tables of docs/formats.md anew";
+    let remedy = "UPDATE_DOCS=1 cargo test -p mesh-io --lib doc_tests writes the tables of docs/formats.md anew";
     assert_eq!(differs, None, "{remedy}");
     assert_eq!(document.len(), expected.len(), "{remedy}");
 }
@@ -347,7 +347,7 @@ fn the_document_has_the_tables_of_the_code() {
 fn every_format_has_one_row() {
     for format in Format::ALL {
         let rows = ROWS.iter().filter(|row| row.formats.contains(&format)).count();
-        assert_eq!(rows, 1, "ROWS of mesh-io/src/convert/documented.rs needs one row for {format}");
+        assert_eq!(rows, 1, "ROWS of mesh-io/src/convert/doc_tests.rs needs one row for {format}");
     }
 }
 

@@ -94,8 +94,8 @@ fn every_format_is_tried_and_documented() {
         let name = format.to_string();
         assert!(
             names.contains(name.as_str()),
-            "{name} has no row in docs/formats.md: add one to ROWS of mesh-io/src/convert/documented.rs, \
-             and run UPDATE_DOCS=1 cargo test -p mesh-io --lib documented"
+            "{name} has no row in docs/formats.md: add one to ROWS of mesh-io/src/convert/doc_tests.rs, \
+             and run UPDATE_DOCS=1 cargo test -p mesh-io --lib doc_tests"
         );
         let elsewhere = ["Triangle", "gmsh 2.2", "gmsh 4.1", "VTK XML", "STL", "MED", "CGNS"];
         assert!(
