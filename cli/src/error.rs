@@ -248,7 +248,7 @@ mod tests {
             assert_eq!((error.kind, error.to_string()), (ErrorKind::Input, text));
             assert!(error.remedy().is_some());
         }
-        let error = mesh_io::atomic::check(Path::new("none/out.msh")).err().unwrap();
+        let error = mesh_io::atomic::ensure_writable(Path::new("none/out.msh")).err().unwrap();
         let text = error.to_string();
         let error = CliError::from(error);
         assert_eq!((error.kind, error.to_string()), (ErrorKind::Output, text));

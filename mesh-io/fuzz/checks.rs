@@ -85,8 +85,8 @@ fn use_file(file: &MeshFile) {
     let constrained = file.constraints().vertices.iter();
     let mut named = file.triangles().iter().flatten().chain(constrained).chain(&between);
     assert!(named.all(|&v| (v as usize) < vertices), "a vertex that does not exist");
-    assert_eq!(file.vertex_places(0..vertices as u32).len(), vertices);
-    assert_eq!(file.triangle_places(0..file.triangles().len()).len(), file.triangles().len());
+    assert_eq!(file.vertex_locations(0..vertices as u32).len(), vertices);
+    assert_eq!(file.triangle_locations(0..file.triangles().len()).len(), file.triangles().len());
     if let Ok(groups) = file.groups() {
         for group in groups.iter() {
             assert!(group.vertices().iter().all(|&v| (v as usize) < vertices));
@@ -109,7 +109,8 @@ fn use_file(file: &MeshFile) {
                 let points: Vec<_> = file.points().iter().map(stored).collect();
                 assert!(again.points() == points, "other points, written as {name}");
                 let mut lists = [again.triangles(), file.triangles()].map(<[_]>::to_vec);
-                if conversion.lost().iter().any(|lost| lost.starts_with("the order of triangles")) {
+                if conversion.losses().iter().any(|lost| lost.starts_with("the order of triangles"))
+                {
                     lists.iter_mut().for_each(|list| list.sort_unstable());
                 }
                 assert!(lists[0] == lists[1], "other triangles, written as {name}");

@@ -2,61 +2,61 @@
 
 use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
-use crate::families::{ADCIRC, FAMILIES, FREEFEM, Family, MIKE, NASTRAN, STL, TRIANGLE, XDMF};
 use crate::format::Format;
 use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
+use crate::registry::{ADCIRC, FREEFEM, FormatEntry, MIKE, NASTRAN, REGISTRY, STL, TRIANGLE, XDMF};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
-use crate::visit::reader::Reader;
+use crate::visit::reader::ReaderFunctions;
 use std::path::{Path, PathBuf};
 
 /// Finds the format of a file. If no reader exists for it, the error names the format if it is known.
-pub(crate) fn reader(source: &Source) -> Result<&'static Reader, ReadError> {
+pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let head = head(&source.bytes, b"%");
     if head.is_empty() {
         return Err(source.error("the file is empty", "Write the mesh again"));
     }
     // The title of such a grid may start with anything.
-    if ADCIRC.has_ending_of(&source.path) {
-        return of(source, &ADCIRC);
+    if ADCIRC.matches_extension(&source.path) {
+        return reader_of(source, &ADCIRC);
     }
-    let promised = |family: &&&Family| family.has_ending_of(&source.path);
-    let by_content = || by_first_words(&source.bytes);
+    let promised = |family: &&&FormatEntry| family.matches_extension(&source.path);
+    let by_content = || detect_by_magic(&source.bytes);
     let known = by_content().find(promised).or_else(|| by_content().next());
     // Nastran's may start with anything, such as a title.
-    if known.is_none_or(|family| !family.is_read()) && nastran::opens(source) {
-        return of(source, &NASTRAN);
+    if known.is_none_or(|family| !family.is_read()) && nastran::is_nastran(source) {
+        return reader_of(source, &NASTRAN);
     }
     if let Some(family) = known {
-        return of(source, family);
+        return reader_of(source, family);
     }
     // Files of MIKE may start with any numbers. Their ending is also that of Medit.
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
-    if mike::opens(&first, &second) {
-        return of(source, &MIKE);
+    if mike::is_mike(&first, &second) {
+        return reader_of(source, &MIKE);
     }
-    if TRIANGLE.has_ending_of(&source.path) {
-        return of(source, &TRIANGLE);
+    if TRIANGLE.matches_extension(&source.path) {
+        return reader_of(source, &TRIANGLE);
     }
     // Formats without first words are told by their ending if it is theirs alone. An STL in text must start with its
     // first word.
     let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
-    let by_ending = |family: &&&Family| {
+    let by_ending = |family: &&&FormatEntry| {
         let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
-        promised(family) && family.endings != FREEFEM.endings && !is_told_otherwise
+        promised(family) && family.extensions != FREEFEM.extensions && !is_told_otherwise
     };
-    match FAMILIES.iter().filter(|family| family.reader.is_some()).find(by_ending) {
-        Some(family) => of(source, family),
-        None => by_rows(source),
+    match REGISTRY.iter().filter(|family| family.reader.is_some()).find(by_ending) {
+        Some(family) => reader_of(source, family),
+        None => detect_by_rows(source),
     }
 }
 
-/// Tells apart formats of plain rows of numbers, by how many numbers the first rows have.
-fn by_rows(source: &Source) -> Result<&'static Reader, ReadError> {
+/// Finds the format of a file of plain numbers by the counts of numbers in its first rows.
+fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
         |row: &[&[u8]]| row.iter().map(|token| integer(token)).collect::<Option<Vec<_>>>();
@@ -68,7 +68,7 @@ fn by_rows(source: &Source) -> Result<&'static Reader, ReadError> {
         }
         Some([_, 2, _, 0..=1]) if second.len() > 2 => {
             return match triangle::files::names(source) {
-                Some(_) => of(source, &TRIANGLE),
+                Some(_) => reader_of(source, &TRIANGLE),
                 None => {
                     let problem = "the vertices of a Triangle mesh, without its triangles";
                     let wanted = file_name(&source.path.with_extension("ele"));
@@ -83,21 +83,22 @@ fn by_rows(source: &Source) -> Result<&'static Reader, ReadError> {
             };
         }
         Some([_, 3 | 6, ..]) if triangle::files::names(source).is_some() => {
-            return of(source, &TRIANGLE);
+            return reader_of(source, &TRIANGLE);
         }
         _ => {}
     }
     if numbers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
-        return of(source, &FREEFEM);
+        return reader_of(source, &FREEFEM);
     }
     let [_, second, third] = first_rows(source, Syntax::FORTRAN);
     let counts = second.get(..2).and_then(numbers);
     if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
-        return of(source, &ADCIRC);
+        return reader_of(source, &ADCIRC);
     }
     // Formats that are not read may start with anything.
-    match FAMILIES.iter().find(|family| !family.is_read() && family.has_ending_of(&source.path)) {
-        Some(family) => of(source, family),
+    match REGISTRY.iter().find(|family| !family.is_read() && family.matches_extension(&source.path))
+    {
+        Some(family) => reader_of(source, family),
         None => {
             let remedy = format!("{}. Convert it, with meshio or gmsh for example", formats_read());
             Err(source.error("the format is not recognized", remedy))
@@ -105,27 +106,29 @@ fn by_rows(source: &Source) -> Result<&'static Reader, ReadError> {
     }
 }
 
-/// Returns the name of the format whose files end as this path does, whether it is read or not.
-pub(crate) fn owner_of_ending(path: &Path) -> Option<&'static str> {
-    let family = FAMILIES.iter().find(|family| family.has_ending_of(path));
+/// Returns the name of the format with the extension of `path`, whether the format is read or not; `None` if no
+/// format has the extension.
+pub(crate) fn format_name_of_extension(path: &Path) -> Option<&'static str> {
+    let family = REGISTRY.iter().find(|family| family.matches_extension(path));
     family.map(|family| family.name)
 }
 
 impl Format {
-    /// Returns the endings of the names of files in this format, the usual one first. Some endings are whole names, such as `fort.14`.
-    pub fn endings(self) -> &'static [&'static str] {
-        Family::of(self).endings
+    /// Returns the endings of file names of the format, the usual one first. Some endings are whole names, such as
+    /// `fort.14`.
+    pub fn extensions(self) -> &'static [&'static str] {
+        FormatEntry::of(self).extensions
     }
 
     /// Returns a name of the formats that are read alike: `gmsh` for all of its versions, as text and in binary.
     pub fn family(self) -> &'static str {
-        Family::of(self).name
+        FormatEntry::of(self).name
     }
 
-    /// Returns the name of a format whose files end as `path` does, compressed or not, in capital or small letters. The format
-    /// need not be one that is read. `None` if the ending is that of no mesh.
-    pub fn name_of_ending(path: &Path) -> Option<&'static str> {
-        owner_of_ending(path)
+    /// Returns the name of the format with the extension of `path`, before the extension of a compression, in capital
+    /// or small letters. The format need not be one that is read. `None` if no format has the extension.
+    pub fn name_of_extension(path: &Path) -> Option<&'static str> {
+        format_name_of_extension(path)
     }
 
     /// Lists the files of the mesh that has a file of this name, as far as names tell: `.node`, `.ele` and `.poly` of Triangle,
@@ -134,7 +137,7 @@ impl Format {
         if let Some(Names { node, ele, poly }) = Names::of_file(path) {
             return vec![node, ele, poly];
         }
-        match XDMF.has_ending_of(path) {
+        match XDMF.matches_extension(path) {
             true => vec![path.to_owned(), path.with_extension("h5")],
             false => vec![path.to_owned()],
         }
@@ -143,25 +146,32 @@ impl Format {
     /// Returns the name of a format whose files begin with the first words or bytes of `head`, which may be the beginning of a
     /// file. The format need not be one that is read. `None` also for formats that only begin with numbers, such as Triangle.
     pub fn name_of_content(head: &[u8]) -> Option<&'static str> {
-        by_first_words(head).next().map(|family| family.name)
+        detect_by_magic(head).next().map(|family| family.name)
     }
 }
 
 /// Finds the formats whose files begin with the first words of some bytes.
-fn by_first_words(bytes: &[u8]) -> impl Iterator<Item = &'static &'static Family> {
+fn detect_by_magic(bytes: &[u8]) -> impl Iterator<Item = &'static &'static FormatEntry> {
     let head = head(bytes, b"%");
     // Comment lines that start with `#` may come before the format's first words, but `# vtk` is itself the first line
     // of VTK.
     let heads = [head, bytes, self::head(head, b"%#"), after_prolog(head)];
     let opens = move |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
-    FAMILIES.iter().filter(move |family| family.opens.iter().any(opens))
+    REGISTRY.iter().filter(move |family| family.magic.iter().any(opens))
 }
 
-fn of(source: &Source, family: &'static Family) -> Result<&'static Reader, ReadError> {
+/// Returns the reader of an entry.
+///
+/// # Errors
+/// If the format is not read. The error names the format and a remedy.
+fn reader_of(
+    source: &Source,
+    family: &'static FormatEntry,
+) -> Result<&'static ReaderFunctions, ReadError> {
     match &family.reader {
         Some(reader) => Ok(reader),
         None => {
-            let remedy = match family.instead {
+            let remedy = match family.hint {
                 "" => formats_read(),
                 instead => instead.to_owned(),
             };
@@ -171,7 +181,7 @@ fn of(source: &Source, family: &'static Family) -> Result<&'static Reader, ReadE
 }
 
 fn formats_read() -> String {
-    let read = FAMILIES.iter().filter(|family| family.is_read());
+    let read = REGISTRY.iter().filter(|family| family.is_read());
     let names: Vec<_> = read.map(|family| family.name).collect();
     format!("Formats read: {}", names.join(", "))
 }
@@ -201,7 +211,7 @@ fn after_prolog(bytes: &[u8]) -> &[u8] {
 fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
     // No format that is told apart here has longer rows.
     const TOKENS: usize = 8;
-    let mut cursor = Cursor::new(source).of(syntax);
+    let mut cursor = Cursor::new(source).with_syntax(syntax);
     std::array::from_fn(|_| {
         let row = cursor.next_row();
         std::iter::from_fn(|| if row { cursor.token() } else { None }).take(TOKENS).collect()
@@ -218,15 +228,16 @@ mod tests {
         let source = Source {
             path: name.into(),
             bytes: content_bytes.to_vec(),
-            packed: None,
+            compressed: None,
             options: ReadOptions::new(),
             known: KnownState::default(),
             companions: Vec::new(),
         };
         match reader(&source) {
             Ok(reader) => {
-                let of = |f: &&&Family| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
-                FAMILIES.iter().find(of).unwrap().name.into()
+                let of =
+                    |f: &&&FormatEntry| f.reader.as_ref().is_some_and(|r| std::ptr::eq(r, reader));
+                REGISTRY.iter().find(of).unwrap().name.into()
             }
             Err(ReadError::Format { problem, .. }) => problem,
             Err(error) => error.to_string(),
@@ -293,7 +304,7 @@ mod tests {
 
     #[test]
     fn a_file_ending_belongs_to_one_format() {
-        let owner = |name: &str| owner_of_ending(Path::new(name));
+        let owner = |name: &str| format_name_of_extension(Path::new(name));
         assert_eq!(owner("a/B.VTK"), Some("legacy VTK"));
         assert_eq!(owner("la.1.ele"), Some("Triangle .node/.ele"));
         assert_eq!(owner("fort.14"), Some("ADCIRC or SCHISM grid"));
@@ -307,7 +318,7 @@ mod tests {
         assert_eq!(name(b"$MeshFormat\n4.1 0 8\n"), Some("gmsh"));
         assert_eq!(name(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Unst"), Some("VTK XML"));
         assert_eq!(name(b"# made by hand\n*NODE\n"), Some("Abaqus"));
-        assert_eq!(Format::name_of_ending(Path::new("a.vtu.gz")), Some("VTK XML"));
+        assert_eq!(Format::name_of_extension(Path::new("a.vtu.gz")), Some("VTK XML"));
         for head in
             [&b"{ \"engine\": 1 }"[..], b"\x89PNG\r\n", b"<svg xmlns", b"<!DOCTYPE html><html>"]
         {

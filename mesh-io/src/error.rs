@@ -135,35 +135,35 @@ pub enum WriteError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GroupError {
     /// No group has this name.
-    #[error("{}", unknown(spelling, known))]
+    #[error("{}", unknown(name, known))]
     Unknown {
         /// The name that was given.
-        spelling: String,
+        name: String,
         /// The names of all groups, the most similar first.
         known: Vec<String>,
     },
     /// Several groups have this name.
-    #[error("'{spelling}' is ambiguous: it may be {}", first_of(spellings, " or "))]
+    #[error("'{name}' is ambiguous: it may be {}", join_first(candidates, " or "))]
     Ambiguous {
         /// The name that was given.
-        spelling: String,
-        /// For each of these groups, a spelling that no other group shares.
-        spellings: Vec<String>,
+        name: String,
+        /// For each of these groups, a name that no other group has.
+        candidates: Vec<String>,
     },
 }
 
-fn unknown(spelling: &str, known: &[String]) -> String {
+fn unknown(name: &str, known: &[String]) -> String {
     match known {
-        [] => format!("no group is called '{spelling}': the file names none"),
-        _ => format!("no group is called '{spelling}'; there are {}", first_of(known, ", ")),
+        [] => format!("no group is called '{name}': the file names none"),
+        _ => format!("no group is called '{name}'; there are {}", join_first(known, ", ")),
     }
 }
 
 /// Joins the first names of a list, and says how many more there are.
-fn first_of(names: &[String], between: &str) -> String {
-    const TOLD: usize = 12;
-    let told = names[..names.len().min(TOLD)].join(between);
-    match names.len().saturating_sub(TOLD) {
+fn join_first(names: &[String], between: &str) -> String {
+    const MAX_NAMES: usize = 12;
+    let told = names[..names.len().min(MAX_NAMES)].join(between);
+    match names.len().saturating_sub(MAX_NAMES) {
         0 => told,
         more => format!("{told} and {more} more"),
     }

@@ -25,7 +25,6 @@ mod disk;
 mod edit;
 mod error;
 mod export;
-mod families;
 mod format;
 mod formats;
 mod hdf5;
@@ -33,6 +32,7 @@ mod mesh_file;
 mod netcdf;
 mod parallel;
 mod precision;
+mod registry;
 mod text;
 mod visit;
 mod xml;
@@ -43,20 +43,21 @@ pub use crate::content::remark::Remark;
 pub use crate::convert::Conversion;
 pub use crate::disk::source::ReadOptions;
 pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
-pub use crate::export::content::{Cell, CellKind, Content, ContentGroup, Data};
+pub use crate::export::content::{Cell, Content, ContentGroup, DataArray};
 pub use crate::format::Format;
-pub use crate::formats::side::solution::Solution;
-pub use crate::formats::side::view::View;
-pub use crate::mesh_file::compare::Difference;
+pub use crate::formats::side::gmsh_view::GmshView;
+pub use crate::formats::side::medit_solution::MeditSolution;
+pub use crate::mesh_file::diff::Difference;
+pub use crate::mesh_file::locate::SourceLocation;
 pub use crate::mesh_file::mesh::MeshFile;
-pub use crate::mesh_file::place::Place;
 pub use crate::precision::Precision;
 pub use crate::visit::field::PointField;
+pub use crate::visit::items::CellKind;
 
 /// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
 pub mod atomic {
+    pub use crate::disk::atomic::{BlockedWrites, discard_pending_writes, ensure_writable, write};
     pub use crate::disk::paths::same_file;
-    pub use crate::disk::replace::{AbandonedWrites, abandon_writes, check, replace};
 }
 
 /// Compiles the code of the README with the tests.

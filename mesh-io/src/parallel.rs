@@ -36,8 +36,8 @@ pub(crate) fn map_ranges<T: Send>(
     map_parts(starts.map(|start| start..count.min(start + size)), |_, range| task(range))
 }
 
-/// Runs two tasks at the same time: `here` on this thread, and `there` on any thread.
-pub(crate) fn meanwhile(there: &mut (dyn FnMut() + Send), here: &mut dyn FnMut()) {
+/// Runs `there` on another thread, if there is one, while `here` runs on the current thread.
+pub(crate) fn run_both(there: &mut (dyn FnMut() + Send), here: &mut dyn FnMut()) {
     rayon::in_place_scope(|scope| {
         scope.spawn(|_| there());
         here();
@@ -71,7 +71,7 @@ mod tests {
     fn two_tasks_run_at_the_same_time() {
         let (sender, receiver) = std::sync::mpsc::channel();
         let mut received = 0;
-        meanwhile(&mut || sender.send(7).unwrap(), &mut || received = receiver.recv().unwrap());
+        run_both(&mut || sender.send(7).unwrap(), &mut || received = receiver.recv().unwrap());
         assert_eq!(received, 7);
     }
 }

@@ -54,10 +54,11 @@ impl Precision {
     }
 }
 
-/// How many characters a number may have.
-const MOST: usize = 20;
-/// The largest number that has so few characters, if rounding to their digits would give infinity.
-const LARGEST: f64 = 1.797_693_134_862_3e308;
+/// Number of characters that a number of [`Precision::Text20`] may have.
+const MAX_CHARACTERS: usize = 20;
+/// The largest number that has at most 20 characters. Larger doubles are rounded to this number, as their rounding to
+/// 20 characters would be infinite.
+const MAX_TEXT20: f64 = 1.797_693_134_862_3e308;
 
 /// Returns the number that [`short_text`] stands for.
 fn rounded_to_short(number: f64) -> f64 {
@@ -66,19 +67,19 @@ fn rounded_to_short(number: f64) -> f64 {
         return number;
     }
     let rounded = short_text(number).parse().unwrap_or(number);
-    if f64::is_infinite(rounded) { LARGEST.copysign(number) } else { rounded }
+    if f64::is_infinite(rounded) { MAX_TEXT20.copysign(number) } else { rounded }
 }
 
 /// Writes a finite number with as many digits as fit, but no more than it needs. The first zero of a fraction is left out where it
 /// takes the room of a digit.
 pub(crate) fn short_text(number: f64) -> String {
     let shortest = format!("{number:?}");
-    if shortest.len() <= MOST {
+    if shortest.len() <= MAX_CHARACTERS {
         return shortest;
     }
     let all = format!("{number:e}");
     let digits = all.bytes().take_while(|&byte| byte != b'e').filter(u8::is_ascii_digit).count();
-    let fits = |text: &String| text.len() <= MOST;
+    let fits = |text: &String| text.len() <= MAX_CHARACTERS;
     (1..=digits)
         .rev()
         .find_map(|digits| {
@@ -92,8 +93,9 @@ pub(crate) fn short_text(number: f64) -> String {
 /// zeros after the point.
 fn plain(scientific: &str) -> Option<String> {
     let (mantissa, exponent) = scientific.split_once('e')?;
-    let zeros =
-        usize::try_from(-1 - exponent.parse::<i32>().ok()?).ok().filter(|&zeros| zeros < MOST)?;
+    let zeros = usize::try_from(-1 - exponent.parse::<i32>().ok()?)
+        .ok()
+        .filter(|&zeros| zeros < MAX_CHARACTERS)?;
     let (sign, mantissa) = match mantissa.strip_prefix('-') {
         Some(mantissa) => ("-", mantissa),
         None => ("", mantissa),
@@ -126,7 +128,7 @@ mod tests {
         ] {
             let text = short_text(number);
             assert_eq!(text, expected);
-            assert!(text.len() <= MOST, "{text}");
+            assert!(text.len() <= MAX_CHARACTERS, "{text}");
         }
     }
 
@@ -153,7 +155,7 @@ mod tests {
             }
             let short = rounded_to_short(number);
             let text = short_text(short);
-            assert!(text.len() <= MOST, "{text}");
+            assert!(text.len() <= MAX_CHARACTERS, "{text}");
             assert_eq!(text.parse::<f64>().map(f64::to_bits), Ok(short.to_bits()), "{text}");
             assert_eq!(rounded_to_short(short).to_bits(), short.to_bits(), "{number:e}");
             let error = ((short - number) / number).abs();
@@ -166,7 +168,10 @@ mod tests {
                 assert_eq!(short, number);
             }
         }
-        assert_eq!([rounded_to_short(f64::MAX), rounded_to_short(f64::MIN)], [LARGEST, -LARGEST]);
+        assert_eq!(
+            [rounded_to_short(f64::MAX), rounded_to_short(f64::MIN)],
+            [MAX_TEXT20, -MAX_TEXT20]
+        );
         assert!(
             rounded_to_short(f64::NAN).is_nan() && rounded_to_short(f64::INFINITY).is_infinite()
         );

@@ -136,7 +136,7 @@ fn every_kind_of_use_and_of_circle_is_found() {
 
 /// Functions that take a tuple apart in their signature, each with the tuple that is one thing: a number with its offset
 /// in a file.
-const TAKES_A_TUPLE_APART: [&str; 1] = ["mesh-io/src/visit/heights.rs: see"];
+const TAKES_A_TUPLE_APART: [&str; 1] = ["mesh-io/src/visit/z_values.rs: push"];
 
 /// A tuple of unrelated values hides from a caller what each value means: a struct names them.
 #[test]

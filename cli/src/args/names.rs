@@ -93,7 +93,7 @@ pub(crate) fn measure_help() -> String {
 pub(crate) fn formats() -> String {
     let mut names: Vec<String> = Vec::new();
     for format in Format::ALL {
-        let (family, ending) = (format.family(), format.endings()[0]);
+        let (family, ending) = (format.family(), format.extensions()[0]);
         let name = match family.contains(ending) {
             true => family.to_owned(),
             false => format!("{family} {ending}"),

@@ -53,12 +53,12 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     problems.extend(proof.problem());
     let mut list = Vec::new();
     for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
-        list.push(format!("{place}: vertex {}", place.label));
+        list.push(format!("{place}: vertex {}", place.id));
     }
     for place in
-        after.source.triangle_places(bad.iter().map(|bad| bad.triangle).take(LISTED)).values()
+        after.source.triangle_locations(bad.iter().map(|bad| bad.triangle).take(LISTED)).values()
     {
-        list.push(format!("{place}: triangle {}", place.label));
+        list.push(format!("{place}: triangle {}", place.id));
     }
     if slide.is_none() && !held.is_empty() {
         list.push(
@@ -116,7 +116,7 @@ fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
     if let Some(vertex) = farthest {
         let place = after.vertex_place(vertex);
         let by = distance(&vertex);
-        text += &format!("\nthe farthest has moved by {by:.6}: vertex {} ({place})", place.label);
+        text += &format!("\nthe farthest has moved by {by:.6}: vertex {} ({place})", place.id);
     }
     text
 }

@@ -30,7 +30,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
             .with_remedy(known()));
     };
     conversion.set_creator("gpu-smooth");
-    let lost = conversion.lost();
+    let lost = conversion.losses();
     if !args.lossy && !lost.is_empty() {
         return Err(CliError::input(format!(
             "{path}: {format} does not hold all of this mesh; --lossy writes it without"
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     for what in lost {
         tell::note(show.quiet, &format!("lost: {what}"));
     }
-    for what in conversion.renamed() {
+    for what in conversion.renamings() {
         tell::note(show.quiet, &format!("renamed, as {format} cannot hold it so: {what}"));
     }
     if is_standard(&args.output) {

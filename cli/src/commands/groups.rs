@@ -16,7 +16,7 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     let groups = file.source.groups()?;
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {
-        let spellings = groups.spellings();
+        let spellings = groups.unique_names();
         let list: Vec<_> = groups
             .iter()
             .zip(&spellings)
@@ -48,8 +48,8 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
 fn as_json(group: &Group, spelling: &str) -> serde_json::Value {
     json!({
         "group": spelling,
-        "what": group.what,
-        "kind": group.kind(),
+        "what": group.kind,
+        "kind": group.dimension_name(),
         "dimension": group.dimension,
         "name": group.name,
         "tag": group.tag,
@@ -65,7 +65,7 @@ fn as_json(group: &Group, spelling: &str) -> serde_json::Value {
 fn table(groups: &Groups) -> String {
     let texts = |group: &Group, spelling: &String| {
         let tag = group.tag.map_or_else(|| "-".to_owned(), |tag| tag.to_string());
-        [spelling.clone(), format!("{} {}", group.what, group.kind()), tag]
+        [spelling.clone(), format!("{} {}", group.kind, group.dimension_name()), tag]
     };
     let counts = |group: &Group| {
         let (triangles, vertices) = (group.triangles().len(), group.vertices().len());
@@ -77,7 +77,7 @@ fn table(groups: &Groups) -> String {
     let head = ["group", "what", "tag"].map(str::to_owned).into_iter();
     let mut rows: Vec<Vec<String>> =
         vec![head.chain(used.iter().map(|&column| names[column].to_owned())).collect()];
-    for (group, spelling) in groups.iter().zip(groups.spellings()) {
+    for (group, spelling) in groups.iter().zip(groups.unique_names()) {
         let counts = counts(group);
         let numbers = used.iter().map(|&column| counts[column].to_string());
         rows.push(texts(group, &spelling).into_iter().chain(numbers).collect());

@@ -42,7 +42,7 @@ pub(crate) fn man(args: &ManArgs) -> Result<(), CliError> {
 
 fn write(directory: &Path, name: &str, command: Command) -> Result<(), CliError> {
     let path = directory.join(format!("{name}.1"));
-    Ok(atomic::replace(&path, &page(command)?)?)
+    Ok(atomic::write(&path, &page(command)?)?)
 }
 
 /// Returns a page in roff, the language of manuals.

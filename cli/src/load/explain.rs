@@ -6,7 +6,7 @@ use gpu_smooth::{
     MeshError, Topology,
     topology::{BadTriangle, Crossing, HangingNode},
 };
-use mesh_io::{Format, Location, Place};
+use mesh_io::{Format, Location, SourceLocation};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -29,7 +29,7 @@ pub(crate) struct BadTriangleReport {
     /// `inverted` or `flat`.
     problem: &'static str,
     #[serde(skip)]
-    place: Place,
+    place: SourceLocation,
 }
 
 impl BadTriangleReport {
@@ -44,10 +44,10 @@ impl BadTriangleReport {
 pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTriangleReport> {
     // The order of the file: the library may have reversed windings.
     let corners = |bad: &BadTriangle| file.mesh().triangles[bad.triangle];
-    let places = file.source.triangle_places(bad.iter().map(|bad| bad.triangle));
+    let places = file.source.triangle_locations(bad.iter().map(|bad| bad.triangle));
     let names = file.vertex_places(bad.iter().flat_map(corners));
-    let one = |(bad, place): (&BadTriangle, Place)| BadTriangleReport {
-        triangle: place.label,
+    let one = |(bad, place): (&BadTriangle, SourceLocation)| BadTriangleReport {
+        triangle: place.id,
         file: place.path.display().to_string(),
         line: match place.location {
             Location::Line(line) => Some(line),
@@ -57,7 +57,7 @@ pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTr
             Location::Line(_) | Location::Unknown => None,
             Location::Byte(byte) => Some(byte),
         },
-        vertices: corners(bad).map(|v| names[&v].label),
+        vertices: corners(bad).map(|v| names[&v].id),
         problem: bad.problem(),
         place,
     };
@@ -82,7 +82,7 @@ pub(crate) fn crossings(file: &LoadedMesh, topology: &Topology<'_>) -> Option<Cl
     let line = |crossing: &Crossing| {
         let [[a, b], [c, d]] = crossing.edges;
         let place = &places[&a];
-        let [a, b, c, d] = [a, b, c, d].map(|v| places[&v].label);
+        let [a, b, c, d] = [a, b, c, d].map(|v| places[&v].id);
         format!("{place}: the edge between vertices {a} and {b} crosses that between {c} and {d}")
     };
     let mut list: Vec<String> = found.iter().take(TOLD).map(line).collect();
@@ -114,7 +114,7 @@ pub(crate) fn hanging(file: &LoadedMesh, nodes: &[HangingNode]) -> Option<String
     let HangingNode { vertex, edge: [a, b] } = *nodes.first()?;
     let names = file.vertex_places([vertex, a, b]);
     let place = &names[&vertex];
-    let [v, a, b] = [vertex, a, b].map(|v| names[&v].label);
+    let [v, a, b] = [vertex, a, b].map(|v| names[&v].id);
     let first = format!(
         "vertex {v} ({place}) is inside the edge between vertices {} and {}",
         a.min(b),
@@ -157,7 +157,7 @@ pub(crate) fn nothing_free(file: &LoadedMesh) -> MeshError {
 
 /// Words an error in the terms of a file: file, place, problem and remedy, in one line unless several triangles are listed.
 pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
-    let name = |v: u32| file.vertex_place(v).label;
+    let name = |v: u32| file.vertex_place(v).id;
     let path = file.source.path().display();
     match *error {
         MeshError::Infeasible { ref triangles } => {
@@ -192,16 +192,16 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             CliError::input(text).with_remedy(remedy).with_details(details)
         }
         MeshError::Closed { triangle } => {
-            let place = file.source.triangle_place(triangle);
+            let place = file.source.triangle_location(triangle);
             CliError::input(format!(
                 "{place}: triangle {} belongs to a part of the mesh without boundary: a closed surface in space",
-                place.label
+                place.id
             ))
             .with_remedy("Only meshes of the plane of x and y are smoothed")
         }
         MeshError::EdgeOfThree { edge, ref triangles } => {
-            let places = file.source.triangle_places(triangles.iter().copied());
-            let labels: Vec<_> = places.values().map(|place| place.label.to_string()).collect();
+            let places = file.source.triangle_locations(triangles.iter().copied());
+            let labels: Vec<_> = places.values().map(|place| place.id.to_string()).collect();
             let mut ends = edge.map(name);
             ends.sort_unstable();
             let [a, b] = ends;
@@ -241,11 +241,11 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
         ))
         .with_remedy("Only meshes that lie flat are smoothed: separate the layers there"),
         MeshError::BeyondPrecision { triangle, metric } => {
-            let place = file.source.triangle_place(triangle);
+            let place = file.source.triangle_location(triangle);
             CliError::input(format!(
                 "{place}: triangle {} is too flat, or too small beside the others, for double precision: \
                  {metric} cannot judge it",
-                place.label
+                place.id
             ))
             .with_remedy(
                 "Open it with --untangle if one of its vertices is free, correct it, or smooth by area or rms first",
@@ -254,13 +254,13 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
         MeshError::Target { vertex, problem } => {
             let vertex = vertex as u32;
             let place = file.vertex_place(vertex);
-            CliError::input(format!("{place}: vertex {}: {problem}", place.label))
+            CliError::input(format!("{place}: vertex {}: {problem}", place.id))
         }
         MeshError::Pole { triangle } => {
-            let place = file.source.triangle_place(triangle);
+            let place = file.source.triangle_location(triangle);
             CliError::input(format!(
                 "{place}: triangle {} has a pole of the sphere inside of it or on an edge, where there is no direction east",
-                place.label
+                place.id
             ))
             .with_remedy("Smooth the mesh in a projection around that pole, or with a vertex at the pole itself")
         }

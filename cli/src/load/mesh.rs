@@ -6,7 +6,7 @@ use gpu_smooth::{
     precision::{Precision, Rounding},
     slide::Periodic,
 };
-use mesh_io::{MeshFile, Place, PointField, WriteError};
+use mesh_io::{MeshFile, PointField, SourceLocation, WriteError};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -189,8 +189,8 @@ impl LoadedMesh {
     ///
     /// # Panics
     /// If there is no such vertex.
-    pub(crate) fn vertex_place(&self, index: u32) -> Place {
-        self.source.vertex_place(self.owner(index))
+    pub(crate) fn vertex_place(&self, index: u32) -> SourceLocation {
+        self.source.vertex_location(self.owner(index))
     }
 
     /// Finds where the file has the coordinates of vertices, in one search of the file. Vertices that do not exist are left
@@ -198,9 +198,9 @@ impl LoadedMesh {
     pub(crate) fn vertex_places(
         &self,
         indices: impl IntoIterator<Item = u32>,
-    ) -> BTreeMap<u32, Place> {
+    ) -> BTreeMap<u32, SourceLocation> {
         let wanted: Vec<u32> = indices.into_iter().collect();
-        let found = self.source.vertex_places(wanted.iter().map(|&v| self.owner(v)));
+        let found = self.source.vertex_locations(wanted.iter().map(|&v| self.owner(v)));
         let place = |&v: &u32| Some((v, found.get(&self.owner(v))?.clone()));
         wanted.iter().filter_map(place).collect()
     }
@@ -232,7 +232,7 @@ impl LoadedMesh {
         points: &[[f64; 2]],
         fields: &[PointField],
     ) -> Result<(), WriteError> {
-        self.source.write_with(path, &self.given(points), fields)
+        self.source.write_with_fields(path, &self.given(points), fields)
     }
 
     /// Writes the file to a stream, as [`write_with`](Self::write_with) does to a path. `name` stands for the stream in messages.
@@ -246,7 +246,7 @@ impl LoadedMesh {
         points: &[[f64; 2]],
         fields: &[PointField],
     ) -> Result<(), WriteError> {
-        self.source.write_to_with(name, out, &self.given(points), fields)
+        self.source.write_to_with_fields(name, out, &self.given(points), fields)
     }
 }
 

@@ -10,7 +10,7 @@ use gpu_smooth::{
     precision::Precision,
     targets::{Outside, Surface},
 };
-use mesh_io::{MeshFile, ReadError, Solution, View};
+use mesh_io::{GmshView, MeditSolution, MeshFile, ReadError};
 
 use crate::load::{explain, lay_out};
 use crate::request::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};
@@ -144,7 +144,7 @@ fn field_of_mesh(
 
 /// Reads the sizes in a view of gmsh.
 fn field_of_view(path: &Path, surface: Surface) -> Result<TargetField, CliError> {
-    let view = View::read(path).map_err(|error| of_background(error.into()))?;
+    let view = GmshView::read(path).map_err(|error| of_background(error.into()))?;
     let name = path.display();
     let told_of = |error: MeshError| {
         let text = format!("{name}: {error} (counted from 0, in the order of the file)");
@@ -190,7 +190,7 @@ fn of_background(error: CliError) -> CliError {
 fn given(file: &LoadedMesh, source: &str, components: usize) -> Result<Vec<f64>, CliError> {
     let (found, values) = match Path::new(source).exists() {
         true => {
-            let solution = Solution::read(Path::new(source))?;
+            let solution = MeditSolution::read(Path::new(source))?;
             (solution.components(), solution.values().to_vec())
         }
         false => {

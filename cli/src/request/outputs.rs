@@ -230,7 +230,7 @@ impl Outputs {
                 return Err(CliError::output(text).with_remedy(role.remedy()));
             }
             let cannot = |error| CliError::from(error).within(role.cannot_be_written());
-            atomic::check(path).map_err(cannot)?;
+            atomic::ensure_writable(path).map_err(cannot)?;
         }
         Ok(())
     }
@@ -239,7 +239,7 @@ impl Outputs {
     pub(crate) fn check_report(&self) -> Result<(), CliError> {
         let Some(report) = &self.report else { return Ok(()) };
         let cannot = |error| CliError::from(error).within(Role::Report.cannot_be_written());
-        atomic::check(report).map_err(cannot)
+        atomic::ensure_writable(report).map_err(cannot)
     }
 
     /// Refuses a checkpoint that would replace the checkpoint of another run, or any other file. `head` is the beginning of
@@ -329,7 +329,7 @@ fn is_page(path: &Path) -> bool {
 /// Whether a name ends as files of a format of meshes do, or as the outline beside a Triangle mesh.
 fn is_named_like_a_mesh(path: &Path) -> bool {
     let is_outline = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly"));
-    is_outline || Format::name_of_ending(path).is_some()
+    is_outline || Format::name_of_extension(path).is_some()
 }
 
 /// Checks that the folder of a mesh exists. The other checks of its files need the format of the mesh.
@@ -337,7 +337,7 @@ fn check_folder(path: &Path) -> Result<(), CliError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder.is_none_or(Path::is_dir) {
         true => Ok(()),
-        false => Ok(atomic::check(path)?),
+        false => Ok(atomic::ensure_writable(path)?),
     }
 }
 

@@ -80,7 +80,7 @@ impl CheckpointPolicy for CheckpointKeeper<'_, '_> {
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) {
         let Some(plan) = self.plan else { return };
-        match atomic::replace(&plan.file, &checkpoint.to_bytes()) {
+        match atomic::write(&plan.file, &checkpoint.to_bytes()) {
             Ok(()) => self.saved.set(true),
             Err(error) => {
                 let text = format!("no checkpoint was saved: {error}. The run goes on");

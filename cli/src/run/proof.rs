@@ -43,7 +43,7 @@ impl Proof {
         let (before, after) = (before.file, after.file);
         let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
         let (mut slid, mut pairs) = (0, 0);
-        let difference = before.source.difference_besides(&after.source, fields);
+        let difference = before.source.difference_ignoring(&after.source, fields);
         if difference.is_none() {
             let topology = Topology::new(before.mesh())?;
             let (old, new) = (&before.mesh().points, &after.mesh().points);
@@ -69,9 +69,9 @@ impl Proof {
 
     /// Words what is wrong, in a sentence; `None` if nothing is.
     pub(crate) fn problem(&self) -> Option<String> {
-        if let Some(Difference { place, other_place, what }) = &self.difference {
+        if let Some(Difference { location, other_location, description }) = &self.difference {
             return Some(format!(
-                "{place} and {other_place}: the files differ in more than coordinates: {what}"
+                "{location} and {other_location}: the files differ in more than coordinates: {description}"
             ));
         }
         let mut problems = Vec::new();

@@ -93,7 +93,7 @@ const PERHAPS: &str = ". Perhaps fixed vertices leave no room, or the boundary w
 /// Words that no triangle is inverted, but that those around a vertex wind more than once around it.
 fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     let place = file.vertex_place(vertex);
-    let vertex = place.label;
+    let vertex = place.id;
     CliError::input(format!(
         "{place}: after {} of untangling no triangle is inverted, but those around vertex {vertex} wind more than once around \
          it{PERHAPS}{KEPT}",

@@ -85,7 +85,7 @@ fn received(signal: i32, quiet: bool) {
     if has_result && set(0).is_ok() {
         return;
     }
-    let _mesh = mesh_io::atomic::abandon_writes();
+    let _mesh = mesh_io::atomic::discard_pending_writes();
     let _other = uninterrupted();
     tell::leave_bar();
     let text = if has_result {

@@ -222,10 +222,10 @@ fn regions_have_statistics_of_their_own() {
     let topology = Topology::new(&mesh).unwrap();
     let shapes = Measured::new(file.points(), &topology).unwrap().values(Measure::Shape);
     for (i, range) in [0..60, 60..160].into_iter().enumerate() {
-        let first = file.triangle_place(range.start);
+        let first = file.triangle_location(range.start);
         let list = first.path.file_name().unwrap().display();
         let region = &told["regions"][i];
-        assert_eq!(region["first_triangle"], first.label);
+        assert_eq!(region["first_triangle"], first.id);
         let least = shapes[range.clone()].iter().copied().fold(1.0, f64::min);
         assert!((number(&region["measures"]["shape"]["min"]) / least - 1.0).abs() < 1e-12);
         // The name that `--only` takes.
@@ -240,7 +240,7 @@ fn regions_have_statistics_of_their_own() {
             &text,
             &[
                 "\nshape by region\n",
-                &format!("\n{} {} {tag} ", i + 1, found.what)[..16],
+                &format!("\n{} {} {tag} ", i + 1, found.kind)[..16],
                 &format!("\nregion {}: {found}", i + 1),
                 &format!("; {} triangles, the first at ", range.len()),
                 &format!("the first at {list}{}\n", first.location),

@@ -1,4 +1,4 @@
-//! What a user can name in a mesh file: groups of elements and vertices, and how one of them is spelled.
+//! Groups of elements and vertices of a mesh file, and the names by which users refer to them.
 
 use crate::error::GroupError;
 use std::collections::HashMap;
@@ -6,14 +6,14 @@ use std::fmt;
 
 /// Elements and vertices that a mesh file gives a tag or a name of their own.
 ///
-/// Displayed as what it is, its kind, and its name or tag: `physical line inlet`.
+/// Displayed as its kind, the name of its dimension, and its name or tag: `physical line inlet`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// What the format calls such a group, in one word: `physical` and `entity` of gmsh, `marker` and `zone` of SU2,
+    /// The format's word for groups of its kind: `physical` and `entity` of gmsh, `marker` and `zone` of SU2,
     /// `reference` and `list` of Medit, `label` of FreeFem, `material` and `nodestring` of SMS, `boundary` of ADCIRC, `material`, `object` and
     /// `group` of OBJ, `attribute` and `marker` of Triangle, `block`, `sideset` and `nodeset` of Exodus, `solid` of STL, `elset`, `nset` and `surface` of Abaqus, `property` of Nastran, and in VTK and XDMF the name of
     /// the array of cell data.
-    pub what: String,
+    pub kind: String,
     /// 0 for a group of points, 1 for lines, 2 for triangles and quadrilaterals.
     pub dimension: u8,
     /// Its name, if the file gives it one.
@@ -42,8 +42,8 @@ impl Group {
         &self.vertices
     }
 
-    /// The word for its dimension: `point`, `line` or `surface`.
-    pub fn kind(&self) -> &'static str {
+    /// Returns the word for the group's dimension: `point`, `line` or `surface`.
+    pub fn dimension_name(&self) -> &'static str {
         match self.dimension {
             0 => "point",
             1 => "line",
@@ -51,21 +51,22 @@ impl Group {
         }
     }
 
-    /// Ways to name it, the preferred one first. Others may be named the same.
-    fn spellings(&self) -> impl Iterator<Item = String> {
+    /// Returns the names that [`Groups::find`] takes for the group, from the label alone to `kind:dimension:label`. Other groups may
+    /// have the same names.
+    fn qualified_names(&self) -> impl Iterator<Item = String> {
         let tag = self.tag.map(|tag| tag.to_string());
         let labels = [self.name.clone(), tag].into_iter().flatten();
         labels.flat_map(|label| {
-            let (what, kind) = (&self.what, self.kind());
-            let full = format!("{what}:{kind}:{label}");
-            [label.clone(), format!("{what}:{label}"), format!("{kind}:{label}"), full]
+            let (kind, dimension) = (&self.kind, self.dimension_name());
+            let full = format!("{kind}:{dimension}:{label}");
+            [label.clone(), format!("{kind}:{label}"), format!("{dimension}:{label}"), full]
         })
     }
 }
 
 impl fmt::Display for Group {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {} ", self.what, self.kind())?;
+        write!(f, "{} {} ", self.kind, self.dimension_name())?;
         match (&self.name, self.tag) {
             (Some(name), _) => f.write_str(name),
             (None, Some(tag)) => write!(f, "{tag}"),
@@ -74,9 +75,9 @@ impl fmt::Display for Group {
     }
 }
 
-/// All groups of a mesh file, by what they are, then by dimension and tag.
+/// All groups of a mesh file, sorted by kind, then by dimension and tag.
 ///
-/// A group is spelled by its name or its tag; before it may stand what the group is, its kind, or both, each followed
+/// A user names a group by its name or its tag. The kind of the group, the name of its dimension, or both may precede, each followed
 /// by a colon: `inlet`, `1`, `physical:1`, `line:1`, `physical:line:1`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Groups {
@@ -99,50 +100,50 @@ impl Groups {
         self.groups.is_empty()
     }
 
-    /// The shortest spelling of each group that no other shares, in their order.
-    pub fn spellings(&self) -> Vec<String> {
+    /// Returns for each group, in the order of [`iter`](Self::iter), the shortest of its names that no other group has.
+    pub fn unique_names(&self) -> Vec<String> {
         let mut uses: HashMap<String, usize> = HashMap::new();
         for group in &self.groups {
-            let mut all: Vec<_> = group.spellings().collect();
+            let mut all: Vec<_> = group.qualified_names().collect();
             // A name that is a number may be its own tag.
             all.sort_unstable();
             all.dedup();
-            for spelling in all {
-                *uses.entry(spelling).or_default() += 1;
+            for name in all {
+                *uses.entry(name).or_default() += 1;
             }
         }
         let own = |group: &Group| {
-            let found = group.spellings().find(|spelling| uses[spelling] == 1);
-            found.or_else(|| group.spellings().last()).unwrap_or_default()
+            let found = group.qualified_names().find(|name| uses[name] == 1);
+            found.or_else(|| group.qualified_names().last()).unwrap_or_default()
         };
         self.groups.iter().map(own).collect()
     }
 
-    /// The group that is spelled so.
+    /// Returns the group that has `name` among its names.
     ///
     /// # Errors
-    /// [`GroupError::Unknown`] if there is none, [`GroupError::Ambiguous`] if there are several.
-    pub fn find(&self, spelling: &str) -> Result<&Group, GroupError> {
+    /// [`GroupError::Unknown`] if no group has the name, [`GroupError::Ambiguous`] if several groups have it.
+    pub fn find(&self, name: &str) -> Result<&Group, GroupError> {
         let fits = |group: &Group| {
-            // Every spelling ends so. This is quick where there are very many groups.
-            let ends_as = |label: &str| spelling.ends_with(label);
+            // Every name of a group ends in its label. The comparison is quick where there are very many groups.
+            let ends_as = |label: &str| name.ends_with(label);
             let may_fit = group.name.as_deref().is_some_and(ends_as)
                 || group.tag.is_some_and(|tag| ends_as(&tag.to_string()));
-            may_fit && group.spellings().any(|own| own == spelling)
+            may_fit && group.qualified_names().any(|own| own == name)
         };
         let found: Vec<usize> =
             (0..self.len()).filter(|&index| fits(&self.groups[index])).collect();
         match found[..] {
             [index] => Ok(&self.groups[index]),
             [] => {
-                let mut known = self.spellings();
-                known.sort_by_cached_key(|own| distance(own, spelling));
-                Err(GroupError::Unknown { spelling: spelling.into(), known })
+                let mut known = self.unique_names();
+                known.sort_by_cached_key(|own| distance(own, name));
+                Err(GroupError::Unknown { name: name.into(), known })
             }
             _ => {
-                let own = self.spellings();
-                let spellings = found.into_iter().map(|index| own[index].clone()).collect();
-                Err(GroupError::Ambiguous { spelling: spelling.into(), spellings })
+                let own = self.unique_names();
+                let candidates = found.into_iter().map(|index| own[index].clone()).collect();
+                Err(GroupError::Ambiguous { name: name.into(), candidates })
             }
         }
     }
@@ -177,12 +178,12 @@ pub(crate) fn distance(a: &str, b: &str) -> usize {
 mod tests {
     use super::*;
 
-    fn group(what: &str, dimension: u8, name: Option<&str>, tag: Option<i64>) -> Group {
+    fn group(kind: &str, dimension: u8, name: Option<&str>, tag: Option<i64>) -> Group {
         let name = name.map(str::to_owned);
         let (points, lines, quadrilaterals) = (0, 0, 0);
         let (triangles, vertices) = (Vec::new(), Vec::new());
         Group {
-            what: what.into(),
+            kind: kind.into(),
             dimension,
             name,
             tag,
@@ -210,9 +211,9 @@ mod tests {
     }
 
     #[test]
-    fn each_group_has_a_spelling_of_its_own() {
+    fn each_group_has_a_unique_name() {
         let groups = gmsh();
-        let spellings = [
+        let names = [
             "inlet",
             "steel",
             "physical:2",
@@ -222,9 +223,9 @@ mod tests {
             "-3",
             "1.5",
         ];
-        assert_eq!(groups.spellings(), spellings);
-        for (spelling, group) in spellings.iter().zip(&groups) {
-            assert_eq!(groups.find(spelling), Ok(group));
+        assert_eq!(groups.unique_names(), names);
+        for (name, group) in names.iter().zip(&groups) {
+            assert_eq!(groups.find(name), Ok(group));
         }
         assert_eq!(
             groups.find("physical:surface:1").unwrap().to_string(),
@@ -244,7 +245,7 @@ mod tests {
                 group("marker", 1, Some("7"), Some(7)),
             ],
         };
-        assert_eq!(groups.spellings(), ["1", "physical:2", "marker:2", "7"]);
+        assert_eq!(groups.unique_names(), ["1", "physical:2", "marker:2", "7"]);
     }
 
     #[test]
@@ -252,10 +253,10 @@ mod tests {
         let groups = gmsh();
         let Err(GroupError::Unknown { known, .. }) = groups.find("Inlt") else { panic!() };
         assert_eq!((known.len(), known[0].as_str()), (8, "inlet"));
-        let Err(GroupError::Ambiguous { spellings, .. }) = groups.find("1") else { panic!() };
-        assert_eq!(spellings, ["inlet", "steel", "entity:line:1", "entity:surface:1"]);
-        let Err(GroupError::Ambiguous { spellings, .. }) = groups.find("line:1") else { panic!() };
-        assert_eq!(spellings, ["inlet", "entity:line:1"]);
+        let Err(GroupError::Ambiguous { candidates, .. }) = groups.find("1") else { panic!() };
+        assert_eq!(candidates, ["inlet", "steel", "entity:line:1", "entity:surface:1"]);
+        let Err(GroupError::Ambiguous { candidates, .. }) = groups.find("line:1") else { panic!() };
+        assert_eq!(candidates, ["inlet", "entity:line:1"]);
     }
 
     #[test]

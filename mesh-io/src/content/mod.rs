@@ -3,7 +3,7 @@
 pub(crate) mod constraints;
 pub(crate) mod group;
 pub(crate) mod group_keys;
-pub(crate) mod label;
+pub(crate) mod group_label;
+pub(crate) mod id_index;
 pub(crate) mod regions;
 pub(crate) mod remark;
-pub(crate) mod tags;

@@ -1,22 +1,22 @@
 //! The region of each triangle, and the vertices between regions.
 //!
-//! A reader names the region of each triangle by what its format has: a tag, a group, attributes. [`Regions`] takes
+//! A reader names the region of each triangle by what its format has: a tag, a group, attributes. [`TriangleRegions`] takes
 //! these names, and the rest is the same for all formats.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// Numbers names from 0, in the order in which they are first met.
+/// Numbers distinct values by first occurrence, counted from 0.
 #[derive(Default)]
-pub(crate) struct Numbering<N> {
+pub(crate) struct Interner<N> {
     numbers: HashMap<N, u32>,
     /// The last name and its number, as the next name is mostly the same.
     last: Option<(N, u32)>,
 }
 
-impl<N: Clone + Eq + Hash> Numbering<N> {
+impl<N: Clone + Eq + Hash> Interner<N> {
     #[inline]
-    pub(crate) fn number(&mut self, name: N) -> u32 {
+    pub(crate) fn intern(&mut self, name: N) -> u32 {
         match &self.last {
             Some((last, number)) if *last == name => *number,
             _ => self.look_up(name),
@@ -32,15 +32,15 @@ impl<N: Clone + Eq + Hash> Numbering<N> {
     }
 }
 
-/// The regions of the triangles read so far. It needs memory only if there are several regions.
+/// The region of each triangle, stored only if there are several regions.
 #[derive(Default)]
-pub(crate) struct Regions {
+pub(crate) struct TriangleRegions {
     triangles: usize,
     /// The region of each triangle; empty as long as all are of region 0.
     numbers: Vec<u32>,
 }
 
-impl Regions {
+impl TriangleRegions {
     /// Adds a triangle that belongs to a region. The first triangle must be of region 0.
     #[inline]
     pub(crate) fn push(&mut self, region: u32) {
@@ -92,21 +92,21 @@ mod tests {
 
     #[test]
     fn names_are_numbered_as_they_come() {
-        let mut numbering = Numbering::default();
-        let numbers = [7, 7, -1, 7, 3, -1, 3].map(|name| numbering.number(name));
+        let mut numbering = Interner::default();
+        let numbers = [7, 7, -1, 7, 3, -1, 3].map(|name| numbering.intern(name));
         assert_eq!(numbers, [0, 0, 1, 0, 2, 1, 2]);
     }
 
     #[test]
     fn one_region_takes_no_memory() {
         let of = |numbers: &[u32]| {
-            let mut regions = Regions::default();
+            let mut regions = TriangleRegions::default();
             numbers.iter().for_each(|&number| regions.push(number));
             regions.finish()
         };
         assert_eq!(of(&[0, 0, 0]), None);
         assert_eq!(of(&[0, 0, 1, 0]), Some(vec![0, 0, 1, 0]));
-        let mut regions = Regions::default();
+        let mut regions = TriangleRegions::default();
         (0..1000).for_each(|_| regions.push(0));
         assert_eq!(regions.numbers.capacity(), 0);
     }

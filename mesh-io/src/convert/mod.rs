@@ -1,9 +1,9 @@
-//! Writes a mesh of one format in another. A reader's walk makes the [`content`](mod@crate::export::content) of a mesh, a row of
+//! Writes a mesh of one format in another. A reader and a visitor make the [`content`](mod@crate::export::content) of a mesh, a row of
 //! [`targets`] says which parts the format holds, and a writer writes these parts.
 
 mod conversion;
 #[cfg(test)]
-mod documented;
+mod doc_tests;
 mod names;
 #[cfg(test)]
 mod tables;

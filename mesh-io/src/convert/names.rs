@@ -1,43 +1,43 @@
 //! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
+use crate::export::capabilities::{Capabilities, join_first};
 use crate::export::content::{Content, ContentGroup};
-use crate::export::holds::{Holds, first};
-use crate::export::spelling::{Spelling, distinct};
-use crate::export::tags::Tags;
+use crate::export::group_numbers::GroupNumbers;
+use crate::export::name_rules::{NameRules, distinct};
 use crate::formats::ugrid;
 use std::collections::HashMap;
 
 /// Changes the names that the format holds to what it can hold. Names that were different stay so, and where the
 /// format tells groups by their names alone, groups of one name get different ones: the later ones end in `_2`, `_3` and
 /// so on. Returns what was changed, one line for groups and for each kind of data.
-pub(crate) fn fit(holds: &Holds, content: &mut Content) -> Vec<String> {
-    match holds.spelling {
-        Spelling::Any => Vec::new(),
+pub(crate) fn fit(holds: &Capabilities, content: &mut Content) -> Vec<String> {
+    match holds.name_rules {
+        NameRules::Any => Vec::new(),
         _ => [groups(holds, content), data(holds, content)].concat(),
     }
 }
 
-fn groups(holds: &Holds, content: &mut Content) -> Vec<String> {
-    let tags = Tags::new(content, holds.negative);
-    let main = [0, 1, 2].map(|dimension| content.whats(dimension).first().copied());
+fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
+    let tags = GroupNumbers::new(content, holds.allows_negative_numbers);
+    let main = [0, 1, 2].map(|dimension| content.group_kinds(dimension).first().copied());
     // Where names are words, a group without one is called by its number.
     let name = |(place, group): (usize, &ContentGroup)| {
         let dimension = usize::from(group.dimension);
-        let is_held = holds.names[dimension] && main[dimension] == Some(&group.what);
+        let is_held = holds.names[dimension] && main[dimension] == Some(&group.kind);
         let number = || tags.number(place as u32).to_string();
-        let by_number = || holds.spelling.is_word().then(number);
+        let by_number = || holds.name_rules.is_word().then(number);
         group.name().map(str::to_owned).or_else(by_number).filter(|_| is_held)
     };
     let names: Vec<Option<String>> = content.groups.iter().enumerate().map(name).collect();
     // Lines and surfaces of one group, as formats have them that tell no dimensions, are one group again.
-    let mut places: HashMap<(&str, &Label, &str), usize> = HashMap::new();
+    let mut places: HashMap<(&str, &GroupLabel, &str), usize> = HashMap::new();
     let mut owners: Vec<usize> = Vec::new();
     let mut old: Vec<&str> = Vec::new();
     let mut place_of = vec![None; names.len()];
     for (owner, (group, name)) in content.groups.iter().zip(&names).enumerate() {
         let Some(name) = name else { continue };
-        let place = *places.entry((&group.what, &group.label, name)).or_insert(old.len());
+        let place = *places.entry((&group.kind, &group.label, name)).or_insert(old.len());
         if place == old.len() {
             old.push(name);
             owners.push(owner);
@@ -45,12 +45,14 @@ fn groups(holds: &Holds, content: &mut Content) -> Vec<String> {
         place_of[owner] = Some(place);
     }
     let number = |place: usize| tags.number(owners[place] as u32).to_string();
-    let new = distinct(&old, holds.spelling, &[], number);
+    let new = distinct(&old, holds.name_rules, &[], number);
     let changes = old.iter().zip(&new).zip(&owners).filter(|((old, new), _)| old != new);
     let told: Vec<String> = changes
         .map(|((old, new), &owner)| match content.groups[owner].label {
             // Groups of one name are told apart by their numbers.
-            Label::Tag(tag) if *old != tag.to_string() => format!("`{old}` ({tag}) to `{new}`"),
+            GroupLabel::Tag(tag) if *old != tag.to_string() => {
+                format!("`{old}` ({tag}) to `{new}`")
+            }
             _ => format!("`{old}` to `{new}`"),
         })
         .collect();
@@ -65,11 +67,11 @@ fn groups(holds: &Holds, content: &mut Content) -> Vec<String> {
     line("groups", &told)
 }
 
-fn data(holds: &Holds, content: &mut Content) -> Vec<String> {
-    let mut taken: Vec<String> = match holds.spelling {
+fn data(holds: &Capabilities, content: &mut Content) -> Vec<String> {
+    let mut taken: Vec<String> = match holds.name_rules {
         // The coordinates are properties of vertices like data of one number.
-        Spelling::Word => ["x", "y", "z"].map(String::from).to_vec(),
-        Spelling::Variable => ugrid::write::NAMES.map(String::from).to_vec(),
+        NameRules::Word => ["x", "y", "z"].map(String::from).to_vec(),
+        NameRules::Variable => ugrid::write::NAMES.map(String::from).to_vec(),
         _ => Vec::new(),
     };
     let mut changed = Vec::new();
@@ -77,11 +79,11 @@ fn data(holds: &Holds, content: &mut Content) -> Vec<String> {
         ("data of vertices", holds.point_data, &mut content.point_data),
         ("data of elements", holds.cell_data, &mut content.cell_data),
     ] {
-        let mut data: Vec<_> = data.iter_mut().filter(|data| held.holds(data)).collect();
+        let mut data: Vec<_> = data.iter_mut().filter(|data| held.supports(data)).collect();
         let names: Vec<&str> = data.iter().map(|data| data.name.as_str()).collect();
         let all: Vec<&str> = taken.iter().map(String::as_str).collect();
-        let new = distinct(&names, holds.spelling, &all, |at| format!("data{}", at + 1));
-        if holds.spelling == Spelling::Variable {
+        let new = distinct(&names, holds.name_rules, &all, |at| format!("data{}", at + 1));
+        if holds.name_rules == NameRules::Variable {
             // Variables of vertices and of elements stand side by side.
             taken.extend_from_slice(&new);
         }
@@ -98,5 +100,5 @@ fn data(holds: &Holds, content: &mut Content) -> Vec<String> {
 /// Makes a line of the first changes, and counts the rest.
 fn line(what: &str, told: &[String]) -> Vec<String> {
     let told: Vec<&str> = told.iter().map(String::as_str).collect();
-    if told.is_empty() { Vec::new() } else { vec![format!("{what}: {}", first(&told))] }
+    if told.is_empty() { Vec::new() } else { vec![format!("{what}: {}", join_first(&told))] }
 }

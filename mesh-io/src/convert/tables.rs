@@ -1,9 +1,9 @@
 //! Makes the table of conversions in docs/formats.md from what each target holds.
 
 use super::targets::TARGETS;
-use crate::export::holds::{Elements, Groups, Holds, Numbers};
-use crate::families::Family;
+use crate::export::capabilities::{Capabilities, DataSupport, ElementSupport, GroupSupport};
 use crate::format::Format;
+use crate::registry::FormatEntry;
 use std::fmt::Write;
 
 /// Returns the name of a format in conversions, if it is a target.
@@ -19,21 +19,21 @@ pub(crate) fn targets() -> String {
                      |---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
     for target in TARGETS {
-        let holds = &target.holds;
-        let ending = Family::of(target.format).endings[0];
+        let holds = &target.capabilities;
+        let ending = FormatEntry::of(target.format).extensions[0];
         let yes = |held: bool| if held { "yes" } else { "–" };
         writeln!(
             table,
             "| `{}` | `{ending}` | {} | {} | {} | {} | {} | {} | {} | {} |",
             target.name,
             elements(holds),
-            yes(holds.heights),
-            yes(holds.labels),
+            yes(holds.z),
+            yes(holds.keeps_vertex_ids),
             groups(holds.groups),
             names(holds),
             match (holds.vertex_groups, holds.groups) {
                 _ if holds.vertex_sets => "node sets, with names",
-                (true, Groups::Blocks) => "node sets, with names",
+                (true, GroupSupport::Blocks) => "node sets, with names",
                 (true, _) => "one per vertex",
                 (false, _) => "–",
             },
@@ -49,11 +49,11 @@ fn joined(words: &[&str]) -> String {
     if words.is_empty() { "–".into() } else { words.join(", ") }
 }
 
-fn elements(holds: &Holds) -> String {
+fn elements(holds: &Capabilities) -> String {
     let held = |elements, all, some| match elements {
-        Elements::None => None,
-        Elements::All => Some(all),
-        Elements::OfGroups => Some(some),
+        ElementSupport::None => None,
+        ElementSupport::All => Some(all),
+        ElementSupport::OfGroups => Some(some),
     };
     let words = [
         held(holds.points, "points", "points of groups"),
@@ -64,33 +64,33 @@ fn elements(holds: &Holds) -> String {
     joined(&words.into_iter().flatten().collect::<Vec<_>>())
 }
 
-fn groups(groups: Groups) -> &'static str {
+fn groups(groups: GroupSupport) -> &'static str {
     match groups {
-        Groups::None => "–",
-        Groups::One => "one per element",
-        Groups::OneOfLines => "one per line",
-        Groups::PhysicalAndEntity => "a physical group and an entity per element",
-        Groups::Each => "one of every kind per element",
-        Groups::Blocks => "a block per element, side sets",
+        GroupSupport::None => "–",
+        GroupSupport::One => "one per element",
+        GroupSupport::OneOfLines => "one per line",
+        GroupSupport::PhysicalAndEntity => "a physical group and an entity per element",
+        GroupSupport::Each => "one of every kind per element",
+        GroupSupport::Blocks => "a block per element, side sets",
     }
 }
 
-fn names(holds: &Holds) -> String {
+fn names(holds: &Capabilities) -> String {
     let words = ["points", "lines", "surfaces"].into_iter().zip(holds.names);
     let held: Vec<&str> = words.filter(|(_, held)| *held).map(|(word, _)| word).collect();
-    match (held.is_empty(), holds.own) {
+    match (held.is_empty(), holds.builtin_group_kind) {
         (false, _) => joined(&held),
         (true, "") => "–".into(),
         (true, own) => format!("only of a {own}"),
     }
 }
 
-fn numbers(numbers: Numbers, owner: &str) -> String {
+fn numbers(numbers: DataSupport, owner: &str) -> String {
     match numbers {
-        Numbers::None => "–".into(),
-        Numbers::All => "all".into(),
-        Numbers::Scalars => format!("one number {owner}"),
-        Numbers::Unnamed => format!("one number {owner}, without names"),
-        Numbers::Only(name) => format!("`{name}`"),
+        DataSupport::None => "–".into(),
+        DataSupport::All => "all".into(),
+        DataSupport::Scalars => format!("one number {owner}"),
+        DataSupport::Unnamed => format!("one number {owner}, without names"),
+        DataSupport::Only(name) => format!("`{name}`"),
     }
 }

@@ -1,8 +1,8 @@
 //! The table of formats that meshes are converted to.
 
-use crate::export::holds::{Elements, Groups, Holds, Numbers};
-use crate::export::job::Job;
-use crate::export::spelling::Spelling;
+use crate::export::capabilities::{Capabilities, DataSupport, ElementSupport, GroupSupport};
+use crate::export::name_rules::NameRules;
+use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::{
     abaqus, exodus, gmsh, medit, ply, su2, triangle, ugrid, vtk, write_grids, write_surface, xdmf,
@@ -14,56 +14,56 @@ pub(crate) struct Target {
     pub(crate) format: Format,
     /// A short name, to choose a format that the ending of a file name does not stand for.
     pub(crate) name: &'static str,
-    pub(crate) holds: Holds,
-    pub(crate) write: Write,
+    pub(crate) capabilities: Capabilities,
+    pub(crate) write: WriteFunction,
 }
 
 /// How a format is written.
-pub(crate) enum Write {
+pub(crate) enum WriteFunction {
     /// As one file of text.
-    One(fn(&Job<'_>) -> String),
+    One(fn(&WriterInput<'_>) -> String),
     /// As one binary file.
-    Binary(fn(&Job<'_>) -> Vec<u8>),
+    Binary(fn(&WriterInput<'_>) -> Vec<u8>),
     /// As several files of text.
-    Several(fn(&Job<'_>) -> Vec<String>),
+    Several(fn(&WriterInput<'_>) -> Vec<String>),
 }
 
-const GMSH: Holds = Holds {
-    points: Elements::All,
-    lines: Elements::All,
+const GMSH: Capabilities = Capabilities {
+    points: ElementSupport::All,
+    lines: ElementSupport::All,
     quadrilaterals: true,
-    heights: true,
-    labels: true,
-    groups: Groups::PhysicalAndEntity,
+    z: true,
+    keeps_vertex_ids: true,
+    groups: GroupSupport::PhysicalAndEntity,
     names: [true; 3],
-    spelling: Spelling::Quoted,
-    negative: false,
-    point_data: Numbers::All,
-    cell_data: Numbers::All,
-    ..Holds::TRIANGLES
+    name_rules: NameRules::Quoted,
+    allows_negative_numbers: false,
+    point_data: DataSupport::All,
+    cell_data: DataSupport::All,
+    ..Capabilities::TRIANGLES
 };
-const VTK: Holds = Holds {
-    points: Elements::All,
-    lines: Elements::All,
+const VTK: Capabilities = Capabilities {
+    points: ElementSupport::All,
+    lines: ElementSupport::All,
     quadrilaterals: true,
     polygons: true,
-    heights: true,
-    groups: Groups::Each,
+    z: true,
+    groups: GroupSupport::Each,
     vertex_groups: true,
-    point_data: Numbers::All,
-    cell_data: Numbers::All,
-    ..Holds::TRIANGLES
+    point_data: DataSupport::All,
+    cell_data: DataSupport::All,
+    ..Capabilities::TRIANGLES
 };
 
-const MEDIT: Holds = Holds {
-    points: Elements::OfGroups,
-    lines: Elements::All,
+const MEDIT: Capabilities = Capabilities {
+    points: ElementSupport::OfGroups,
+    lines: ElementSupport::All,
     quadrilaterals: true,
-    heights: true,
-    groups: Groups::One,
-    own: "list",
+    z: true,
+    groups: GroupSupport::One,
+    builtin_group_kind: "list",
     vertex_groups: true,
-    ..Holds::TRIANGLES
+    ..Capabilities::TRIANGLES
 };
 
 /// All targets. Of formats whose files end the same way, the usual one comes first.
@@ -71,192 +71,192 @@ pub(crate) static TARGETS: &[Target] = &[
     Target {
         format: Format::Gmsh41,
         name: "gmsh41",
-        holds: GMSH,
-        write: Write::One(gmsh::write::write_41),
+        capabilities: GMSH,
+        write: WriteFunction::One(gmsh::write::write_41),
     },
     Target {
         format: Format::Gmsh22,
         name: "gmsh22",
-        holds: GMSH,
-        write: Write::One(gmsh::write::write_22),
+        capabilities: GMSH,
+        write: WriteFunction::One(gmsh::write::write_22),
     },
     Target {
         format: Format::Vtu,
         name: "vtu",
-        holds: VTK,
-        write: Write::One(vtk::write::write_xml),
+        capabilities: VTK,
+        write: WriteFunction::One(vtk::write::write_xml),
     },
     Target {
         format: Format::Xdmf,
         name: "xdmf",
-        holds: VTK,
-        write: Write::One(xdmf::write::write_xdmf),
+        capabilities: VTK,
+        write: WriteFunction::One(xdmf::write::write_xdmf),
     },
     Target {
         format: Format::Vtk,
         name: "vtk",
-        holds: VTK,
-        write: Write::One(vtk::write::write_legacy),
+        capabilities: VTK,
+        write: WriteFunction::One(vtk::write::write_legacy),
     },
     Target {
         format: Format::Ugrid,
         name: "ugrid",
-        holds: Holds {
+        capabilities: Capabilities {
             quadrilaterals: true,
             polygons: true,
-            spelling: Spelling::Variable,
-            point_data: Numbers::All,
-            cell_data: Numbers::All,
-            ..Holds::TRIANGLES
+            name_rules: NameRules::Variable,
+            point_data: DataSupport::All,
+            cell_data: DataSupport::All,
+            ..Capabilities::TRIANGLES
         },
-        write: Write::Binary(ugrid::write::write_ugrid),
+        write: WriteFunction::Binary(ugrid::write::write_ugrid),
     },
     Target {
         format: Format::Exodus,
         name: "exodus",
-        holds: Holds {
-            points: Elements::All,
-            lines: Elements::All,
+        capabilities: Capabilities {
+            points: ElementSupport::All,
+            lines: ElementSupport::All,
             quadrilaterals: true,
-            heights: true,
-            groups: Groups::Blocks,
+            z: true,
+            groups: GroupSupport::Blocks,
             names: [true; 3],
-            negative: false,
+            allows_negative_numbers: false,
             vertex_groups: true,
-            point_data: Numbers::Scalars,
-            cell_data: Numbers::Scalars,
-            ..Holds::TRIANGLES
+            point_data: DataSupport::Scalars,
+            cell_data: DataSupport::Scalars,
+            ..Capabilities::TRIANGLES
         },
-        write: Write::Binary(exodus::write::write_exodus),
+        write: WriteFunction::Binary(exodus::write::write_exodus),
     },
     Target {
         format: Format::Su2,
         name: "su2",
-        holds: Holds {
-            lines: Elements::OfGroups,
+        capabilities: Capabilities {
+            lines: ElementSupport::OfGroups,
             quadrilaterals: true,
-            groups: Groups::OneOfLines,
+            groups: GroupSupport::OneOfLines,
             names: [false, true, false],
-            spelling: Spelling::Word,
-            ..Holds::TRIANGLES
+            name_rules: NameRules::Word,
+            ..Capabilities::TRIANGLES
         },
-        write: Write::One(su2::write::write),
+        write: WriteFunction::One(su2::write::write),
     },
     Target {
         format: Format::Medit,
         name: "medit",
-        holds: MEDIT,
-        write: Write::One(medit::write::write_medit),
+        capabilities: MEDIT,
+        write: WriteFunction::One(medit::write::write_medit),
     },
     Target {
         format: Format::MeditBinary,
         name: "meshb",
-        holds: MEDIT,
-        write: Write::Binary(medit::write::write_meshb),
+        capabilities: MEDIT,
+        write: WriteFunction::Binary(medit::write::write_meshb),
     },
     Target {
         format: Format::Triangle,
         name: "triangle",
-        holds: Holds {
-            lines: Elements::All,
-            groups: Groups::One,
+        capabilities: Capabilities {
+            lines: ElementSupport::All,
+            groups: GroupSupport::One,
             vertex_groups: true,
-            point_data: Numbers::Unnamed,
-            ..Holds::TRIANGLES
+            point_data: DataSupport::Unnamed,
+            ..Capabilities::TRIANGLES
         },
-        write: Write::Several(triangle::write::write),
+        write: WriteFunction::Several(triangle::write::write),
     },
     Target {
         format: Format::Obj,
         name: "obj",
-        holds: Holds {
-            points: Elements::All,
-            lines: Elements::All,
+        capabilities: Capabilities {
+            points: ElementSupport::All,
+            lines: ElementSupport::All,
             quadrilaterals: true,
             polygons: true,
-            heights: true,
-            groups: Groups::One,
+            z: true,
+            groups: GroupSupport::One,
             names: [true; 3],
-            spelling: Spelling::Word,
-            ..Holds::TRIANGLES
+            name_rules: NameRules::Word,
+            ..Capabilities::TRIANGLES
         },
-        write: Write::One(write_surface::write_obj),
+        write: WriteFunction::One(write_surface::write_obj),
     },
     Target {
         format: Format::Off,
         name: "off",
-        holds: Holds { quadrilaterals: true, heights: true, ..Holds::TRIANGLES },
-        write: Write::One(write_surface::write_off),
+        capabilities: Capabilities { quadrilaterals: true, z: true, ..Capabilities::TRIANGLES },
+        write: WriteFunction::One(write_surface::write_off),
     },
     Target {
         format: Format::Ply,
         name: "ply",
-        holds: Holds {
-            lines: Elements::All,
+        capabilities: Capabilities {
+            lines: ElementSupport::All,
             quadrilaterals: true,
             polygons: true,
-            heights: true,
-            spelling: Spelling::Word,
-            point_data: Numbers::Scalars,
-            ..Holds::TRIANGLES
+            z: true,
+            name_rules: NameRules::Word,
+            point_data: DataSupport::Scalars,
+            ..Capabilities::TRIANGLES
         },
-        write: Write::One(ply::write::write_ply),
+        write: WriteFunction::One(ply::write::write_ply),
     },
     Target {
         format: Format::Sms2dm,
         name: "2dm",
-        holds: Holds {
-            lines: Elements::All,
+        capabilities: Capabilities {
+            lines: ElementSupport::All,
             quadrilaterals: true,
-            heights: true,
-            labels: true,
-            groups: Groups::One,
+            z: true,
+            keeps_vertex_ids: true,
+            groups: GroupSupport::One,
             names: [false, true, true],
-            spelling: Spelling::Quoted,
-            ..Holds::TRIANGLES
+            name_rules: NameRules::Quoted,
+            ..Capabilities::TRIANGLES
         },
-        write: Write::One(write_grids::write_sms),
+        write: WriteFunction::One(write_grids::write_sms),
     },
     Target {
         format: Format::Adcirc,
         name: "adcirc",
-        holds: Holds {
-            lines: Elements::OfGroups,
+        capabilities: Capabilities {
+            lines: ElementSupport::OfGroups,
             quadrilaterals: true,
-            labels: true,
-            groups: Groups::OneOfLines,
-            own: "boundary",
-            point_data: Numbers::Only("depth"),
-            ..Holds::TRIANGLES
+            keeps_vertex_ids: true,
+            groups: GroupSupport::OneOfLines,
+            builtin_group_kind: "boundary",
+            point_data: DataSupport::Only("depth"),
+            ..Capabilities::TRIANGLES
         },
-        write: Write::One(write_grids::write_adcirc),
+        write: WriteFunction::One(write_grids::write_adcirc),
     },
     Target {
         format: Format::FreeFem,
         name: "freefem",
-        holds: Holds {
-            lines: Elements::All,
-            groups: Groups::One,
+        capabilities: Capabilities {
+            lines: ElementSupport::All,
+            groups: GroupSupport::One,
             vertex_groups: true,
-            ..Holds::TRIANGLES
+            ..Capabilities::TRIANGLES
         },
-        write: Write::One(medit::write::write_freefem),
+        write: WriteFunction::One(medit::write::write_freefem),
     },
     Target {
         format: Format::Abaqus,
         name: "abaqus",
-        holds: Holds {
-            lines: Elements::All,
+        capabilities: Capabilities {
+            lines: ElementSupport::All,
             quadrilaterals: true,
-            heights: true,
-            labels: true,
-            groups: Groups::One,
+            z: true,
+            keeps_vertex_ids: true,
+            groups: GroupSupport::One,
             names: [false, true, true],
-            spelling: Spelling::Label,
+            name_rules: NameRules::Label,
             vertex_sets: true,
             precision: Precision::Text20,
-            ..Holds::TRIANGLES
+            ..Capabilities::TRIANGLES
         },
-        write: Write::One(abaqus::write::write_inp),
+        write: WriteFunction::One(abaqus::write::write_inp),
     },
 ];

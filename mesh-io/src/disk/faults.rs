@@ -1,7 +1,7 @@
 //! Tests of writing on disks that fail: each request fails once, and each pair of requests.
 
-use crate::disk::replace::{Job, replace_all_if};
-use crate::disk::system::{Disk, NewFile, System};
+use crate::disk::atomic::{FileWrite, write_all_if};
+use crate::disk::file_system::{FileSystem, NewFile, OsFileSystem};
 use std::fs::{self, Permissions};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -31,16 +31,16 @@ impl Faults {
     }
 }
 
-impl Disk for Faults {
+impl FileSystem for Faults {
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn NewFile>> {
         self.ask(true)?;
-        Ok(Box::new(Faulty { file: System.create_new(path)?, faults: self.clone() }))
+        Ok(Box::new(Faulty { file: OsFileSystem.create_new(path)?, faults: self.clone() }))
     }
 
     fn hard_link(&self, path: &Path, second: &Path) -> io::Result<()> {
         self.ask(true)?;
         match self.has_links {
-            true => System.hard_link(path, second),
+            true => OsFileSystem.hard_link(path, second),
             false => Err(ErrorKind::Unsupported.into()),
         }
     }
@@ -48,18 +48,18 @@ impl Disk for Faults {
     fn copy(&self, from: &Path, to: &Path) -> io::Result<()> {
         let done = self.ask(true);
         // A copy that fails may have been made in part.
-        System.copy(from, to)?;
+        OsFileSystem.copy(from, to)?;
         done
     }
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.ask(false)?;
-        System.rename(from, to)
+        OsFileSystem.rename(from, to)
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
         // If this fails, nothing can be cleared up.
-        System.remove(path)
+        OsFileSystem.remove(path)
     }
 
     fn sync_directory(&self, path: &Path) -> io::Result<()> {
@@ -114,13 +114,13 @@ fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
     for (path, _) in paths.iter().zip(old).filter(|(_, old)| *old) {
         fs::write(path, old_content(path)).unwrap();
     }
-    let job = |path: &Path| -> Job<'_> {
+    let file_write = |path: &Path| -> FileWrite<'_> {
         let text = content(path);
         (path.to_owned(), Box::new(move |out| out.write_all(text.as_bytes())))
     };
-    let jobs: Vec<_> = paths.iter().map(|path| job(path)).collect();
-    let done = replace_all_if(faults, &jobs, &|| Ok(()));
-    drop(jobs);
+    let writes: Vec<_> = paths.iter().map(|path| file_write(path)).collect();
+    let done = write_all_if(faults, &writes, &|| Ok(()));
+    drop(writes);
     let told = format!("{done:?} after {:?} of {old:?}", faults.failing);
     let message = done.as_ref().err().map(|error| error.to_string()).unwrap_or_default();
     // Counts the old contents that could not be restored.

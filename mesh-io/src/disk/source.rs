@@ -1,7 +1,6 @@
 //! The bytes of a file, with the other files of the same mesh.
 
-use crate::compress::packed;
-use crate::compress::packed::{Packed, Unpackable};
+use crate::compress::file::{CompressedFile, DecompressError, decompress};
 use crate::disk::paths::directory_of;
 use crate::disk::stamp::KnownState;
 use crate::error::{Location, ReadError};
@@ -54,7 +53,7 @@ pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
     /// The compressed bytes of the file, if it is compressed.
-    pub(crate) packed: Option<Packed>,
+    pub(crate) compressed: Option<CompressedFile>,
     pub(crate) options: ReadOptions,
     /// The state of the file on the disk when it was read, or last written by this process.
     pub(crate) known: KnownState,
@@ -101,18 +100,18 @@ impl Source {
         let source = Source {
             path: path.to_owned(),
             bytes,
-            packed: None,
+            compressed: None,
             options: ReadOptions::new(),
             known: KnownState::default(),
             companions: Vec::new(),
         };
-        match packed::unpack(&source.bytes) {
+        match decompress(&source.bytes) {
             Ok(None) => Ok(source),
-            Ok(Some((packing, content))) => {
-                let packed = Some(Packed { packing, bytes: source.bytes });
-                Ok(Source { bytes: content, packed, ..source })
+            Ok(Some((compression, content))) => {
+                let compressed = Some(CompressedFile { compression, bytes: source.bytes });
+                Ok(Source { bytes: content, compressed, ..source })
             }
-            Err(Unpackable { problem, remedy }) => Err(source.error(problem, remedy)),
+            Err(DecompressError { problem, remedy }) => Err(source.error(problem, remedy)),
         }
     }
 
@@ -172,11 +171,11 @@ impl Source {
 
     /// Returns the bytes that the file had when it was read, compressed if it is compressed.
     pub(crate) fn stored(&self) -> &[u8] {
-        self.packed.as_ref().map_or(&self.bytes, |packed| &packed.bytes)
+        self.compressed.as_ref().map_or(&self.bytes, |packed| &packed.bytes)
     }
 
     /// Returns the files of the mesh: this file, then its companions.
-    pub(crate) fn parts(&self) -> impl Iterator<Item = &Source> {
+    pub(crate) fn files(&self) -> impl Iterator<Item = &Source> {
         std::iter::once(self).chain(self.companions.iter().map(|companion| &companion.source))
     }
 

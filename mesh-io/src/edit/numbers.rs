@@ -1,75 +1,76 @@
 //! How coordinates and other numbers are stored in a file.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::precision::{Precision, short_text};
 use crate::text::card;
-use crate::text::field_text::{ALL, field_text};
+use crate::text::field_text::{MAX_LENGTH, field_text};
 use crate::text::token::{number_end, skip_to_number};
 use std::io::Write;
 use std::ops::Range;
 
-/// How the coordinates of a vertex are stored in its file, from the offset of x on.
+/// Encoding of the two coordinates of a vertex, relative to the offset of x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Numbers {
+pub(crate) enum CoordinateEncoding {
     /// As text. y is the token after x. Programs that read the format may know only single precision.
     Text { precision: Precision },
     /// As text in the fields of a card of Nastran. y is in the field after that of x.
     Fields { precision: Precision },
     /// In binary. y is `y_after` bytes after x; before x, if that is negative.
-    Binary { order: Order, precision: Precision, y_after: isize },
+    Binary { order: ByteOrder, precision: Precision, y_after: isize },
 }
 
-impl Numbers {
+impl CoordinateEncoding {
     /// Text of double precision.
-    pub(crate) const TEXT: Numbers = Numbers::Text { precision: Precision::Double };
+    pub(crate) const TEXT: CoordinateEncoding =
+        CoordinateEncoding::Text { precision: Precision::Double };
 
     /// Numbers in binary, with y right after x.
-    pub(crate) fn adjacent(order: Order, precision: Precision) -> Numbers {
-        Numbers::Binary { order, precision, y_after: precision.bytes() as isize }
+    pub(crate) fn adjacent(order: ByteOrder, precision: Precision) -> CoordinateEncoding {
+        CoordinateEncoding::Binary { order, precision, y_after: precision.bytes() as isize }
     }
 
     pub(crate) fn precision(self) -> Precision {
         match self {
-            Numbers::Text { precision }
-            | Numbers::Fields { precision }
-            | Numbers::Binary { precision, .. } => precision,
+            CoordinateEncoding::Text { precision }
+            | CoordinateEncoding::Fields { precision }
+            | CoordinateEncoding::Binary { precision, .. } => precision,
         }
     }
 }
 
-/// How a single number is stored in a file.
+/// Encoding of a single number in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
+pub(crate) enum NumberEncoding {
     /// As a token of text. Programs that read the format may know only single precision.
     Text(Precision),
     /// As text in a field of a card of Nastran.
     Field(Precision),
     /// In binary.
-    Binary(Order, Precision),
+    Binary(ByteOrder, Precision),
 }
 
-impl Form {
+impl NumberEncoding {
     pub(crate) fn precision(self) -> Precision {
         match self {
-            Form::Text(precision) | Form::Field(precision) | Form::Binary(_, precision) => {
-                precision
-            }
+            NumberEncoding::Text(precision)
+            | NumberEncoding::Field(precision)
+            | NumberEncoding::Binary(_, precision) => precision,
         }
     }
 
     /// Returns the end of a number, with the characters that stand for it, and how many its place must have if that is given.
     pub(crate) fn extent(self, bytes: &[u8], at: usize) -> (usize, usize) {
         match self {
-            Form::Text(_) => (number_end(bytes, at), 0),
-            Form::Field(_) => card::extent(bytes, at),
-            Form::Binary(_, precision) => (at + precision.bytes(), 0),
+            NumberEncoding::Text(_) => (number_end(bytes, at), 0),
+            NumberEncoding::Field(_) => card::extent(bytes, at),
+            NumberEncoding::Binary(_, precision) => (at + precision.bytes(), 0),
         }
     }
 
     /// Returns where y starts, given where x ends. Of text only.
     pub(crate) fn next(self, bytes: &[u8], end: usize) -> usize {
         match self {
-            Form::Field(_) => card::next_field(bytes, end),
+            NumberEncoding::Field(_) => card::next_field(bytes, end),
             _ => skip_to_number(bytes, end),
         }
     }
@@ -77,62 +78,67 @@ impl Form {
     /// Writes a number, which is rounded to the precision. Text has the fewest digits that parse back to the same bits.
     pub(crate) fn write(self, value: f64, out: &mut Vec<u8>) {
         match self {
-            Form::Field(precision) => {
+            NumberEncoding::Field(precision) => {
                 let most = match precision {
                     Precision::Text8 => 8,
                     Precision::Text16 => 16,
-                    _ => ALL,
+                    _ => MAX_LENGTH,
                 };
                 out.extend_from_slice(field_text(value, most).as_bytes());
             }
-            Form::Text(Precision::Single) => {
+            NumberEncoding::Text(Precision::Single) => {
                 write!(out, "{:?}", value as f32).expect("memory takes what is written to it");
             }
-            Form::Text(Precision::Text20) => out.extend_from_slice(short_text(value).as_bytes()),
-            Form::Text(_) => {
+            NumberEncoding::Text(Precision::Text20) => {
+                out.extend_from_slice(short_text(value).as_bytes())
+            }
+            NumberEncoding::Text(_) => {
                 write!(out, "{value:?}").expect("memory takes what is written to it");
             }
-            Form::Binary(order, Precision::Single) => {
+            NumberEncoding::Binary(order, Precision::Single) => {
                 out.extend_from_slice(&order.single_bytes(value as f32));
             }
-            Form::Binary(order, _) => out.extend_from_slice(&order.bytes(value)),
+            NumberEncoding::Binary(order, _) => out.extend_from_slice(&order.bytes(value)),
         }
     }
 }
 
-impl From<Numbers> for Form {
-    fn from(numbers: Numbers) -> Form {
+impl From<CoordinateEncoding> for NumberEncoding {
+    fn from(numbers: CoordinateEncoding) -> NumberEncoding {
         match numbers {
-            Numbers::Text { precision } => Form::Text(precision),
-            Numbers::Fields { precision } => Form::Field(precision),
-            Numbers::Binary { order, precision, .. } => Form::Binary(order, precision),
+            CoordinateEncoding::Text { precision } => NumberEncoding::Text(precision),
+            CoordinateEncoding::Fields { precision } => NumberEncoding::Field(precision),
+            CoordinateEncoding::Binary { order, precision, .. } => {
+                NumberEncoding::Binary(order, precision)
+            }
         }
     }
 }
 
-/// The offsets of an array's numbers, ascending.
+/// Byte offsets of the numbers of an array, ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Places {
+pub(crate) enum Offsets {
     /// An offset for each number.
     List(Vec<usize>),
     /// One number every `stride` bytes.
     Regular { start: usize, stride: usize },
 }
 
-impl Places {
+impl Offsets {
     /// Returns the offset of the number with this index.
     #[inline]
     pub(crate) fn at(&self, index: usize) -> usize {
         match self {
-            Places::List(list) => list[index],
-            Places::Regular { start, stride } => start + index * stride,
+            Offsets::List(list) => list[index],
+            Offsets::Regular { start, stride } => start + index * stride,
         }
     }
 }
 
-/// Collects the offsets of numbers as they are found. It needs memory only if they are not evenly spaced.
+/// Builder of [`Offsets`]. Stores start, stride and count while offsets are evenly spaced, and a list of all offsets
+/// from the first one that is not.
 #[derive(Default)]
-pub(crate) struct FoundPlaces {
+pub(crate) struct OffsetsBuilder {
     start: usize,
     stride: usize,
     count: usize,
@@ -142,7 +148,7 @@ pub(crate) struct FoundPlaces {
     expected: usize,
 }
 
-impl FoundPlaces {
+impl OffsetsBuilder {
     pub(crate) fn expect(&mut self, more: usize) {
         self.expected = self.count + more;
     }
@@ -194,47 +200,49 @@ impl FoundPlaces {
         }
     }
 
-    pub(crate) fn finish(self) -> Places {
+    pub(crate) fn finish(self) -> Offsets {
         match self.list.is_empty() {
-            true => Places::Regular { start: self.start, stride: self.stride },
-            false => Places::List(self.list),
+            true => Offsets::Regular { start: self.start, stride: self.stride },
+            false => Offsets::List(self.list),
         }
     }
 }
 
-/// Bytes that replace a range of a file.
+/// A range of a file and the bytes that replace the range.
 #[derive(Clone)]
-pub(crate) struct Splice {
+pub(crate) struct ByteEdit {
     pub(crate) range: Range<usize>,
     pub(crate) bytes: Vec<u8>,
 }
 
-/// A number in a file that says how far from the start of the appended data an array stands.
+/// A number in a VTK XML file that gives the distance of an array from the start of the appended data, in bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Offset {
+pub(crate) struct AppendedOffset {
     pub(crate) value: usize,
     /// The offset of the array in the file.
-    pub(crate) array_at: usize,
-    /// Where the number stands in the file.
-    pub(crate) place: Range<usize>,
+    pub(crate) array_start: usize,
+    /// The bytes of the number in the file.
+    pub(crate) range: Range<usize>,
 }
 
-/// Arrays of numbers that are encoded in their file: in base64, or compressed.
-pub(crate) trait Encoded: Send + Sync {
+/// Arrays of numbers that a file stores in base64, or compressed, or both.
+pub(crate) trait EncodedArrays: Send + Sync {
     /// Returns the decoded numbers in binary, as they were read.
     fn bytes(&self) -> &[u8];
     /// Returns the ranges of the file that hold the encoded arrays.
     fn ranges(&self) -> Vec<Range<usize>>;
-    /// What of the file is replaced if these become the numbers. `end` is where the file ends, with what was put behind it so far; what
-    /// is put there is a splice at its end as it was read.
-    fn splices(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<Splice>;
-    /// What else is replaced in a file, once all is known that its arrays replace and where it ends then. What several arrays say
-    /// of one range is the same.
-    fn follow(&self, file: &[u8], splices: &[Splice], end: usize) -> Vec<Splice>;
-    /// Where that may be in a file of which nothing changes before this byte.
-    fn followers(&self, first: usize) -> Vec<Range<usize>>;
-    /// Whether everything else stays at its place in the file, whatever the lengths of the arrays.
-    fn keeps_places(&self) -> bool;
+    /// Returns the edits that store the decoded bytes `new`. `end` is the length of the file with all bytes appended
+    /// so far; appended bytes are an edit at the end of the original file, and increase `end`.
+    fn edits(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<ByteEdit>;
+    /// Returns the edits that follow from `edits`: offsets of appended arrays (VTK XML), or the end address and
+    /// checksums (HDF5). `end` is the length of the file with all edits applied. Arrays that share such a range
+    /// return equal bytes for the range.
+    fn dependent_edits(&self, file: &[u8], edits: &[ByteEdit], end: usize) -> Vec<ByteEdit>;
+    /// Returns the ranges that [`dependent_edits`](Self::dependent_edits) may edit if no array before byte `first`
+    /// changes its length.
+    fn dependent_ranges(&self, first: usize) -> Vec<Range<usize>>;
+    /// Returns whether bytes outside of the arrays keep their offsets, whatever the lengths of the arrays.
+    fn preserves_offsets(&self) -> bool;
 }
 
 #[cfg(test)]
@@ -255,7 +263,7 @@ mod tests {
             (&[(7, 0, 1), (10, 0, 1), (14, 0, 1), (18, 5, 3), (40, 0, 0)], false),
         ];
         for (runs, is_regular) in cases {
-            let mut found = FoundPlaces::default();
+            let mut found = OffsetsBuilder::default();
             let mut expected = Vec::new();
             for &(start, stride, count) in runs {
                 match count {
@@ -267,7 +275,7 @@ mod tests {
             let all: Vec<usize> = (0..expected.len()).map(|index| found.at(index)).collect();
             assert_eq!(all, expected, "{runs:?}");
             let places = found.finish();
-            assert_eq!(matches!(places, Places::Regular { .. }), is_regular, "{runs:?}");
+            assert_eq!(matches!(places, Offsets::Regular { .. }), is_regular, "{runs:?}");
             let all: Vec<usize> = (0..expected.len()).map(|index| places.at(index)).collect();
             assert_eq!(all, expected, "{runs:?}");
         }

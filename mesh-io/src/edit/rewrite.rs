@@ -1,32 +1,32 @@
 //! Writes a file again with some of its numbers replaced.
 
-use crate::edit::column::{Change, Column};
-use crate::edit::numbers::Splice;
+use crate::edit::column::{EditableColumn, NumberEdit};
+use crate::edit::numbers::ByteEdit;
 use crate::parallel::map_parts;
 use std::io::{self, Write};
 use std::ops::Range;
 
 /// Bytes that one thread rewrites at a time.
-const BLOCK: usize = 1 << 17;
+const BLOCK_BYTES: usize = 1 << 17;
 
 /// A file's content, with the numbers that may be replaced.
 pub(crate) struct Rewrite<'a> {
     /// The content as it was read.
     pub(crate) bytes: &'a [u8],
     /// The numbers in the content that may be replaced.
-    pub(crate) columns: &'a [Column<'a>],
+    pub(crate) columns: &'a [EditableColumn<'a>],
     /// Replacements of whole ranges, ascending. The ranges hold no number of the columns.
-    pub(crate) splices: &'a [Splice],
+    pub(crate) edits: &'a [ByteEdit],
 }
 
 impl Rewrite<'_> {
-    /// Writes the content to `out`, with changed numbers and splices replaced.
+    /// Writes the content to `out`, with changed numbers and edits replaced.
     pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
         let mut at = 0;
-        for splice in self.splices {
-            self.write_range(at..splice.range.start, out)?;
-            out.write_all(&splice.bytes)?;
-            at = splice.range.end;
+        for edit in self.edits {
+            self.write_range(at..edit.range.start, out)?;
+            out.write_all(&edit.bytes)?;
+            at = edit.range.end;
         }
         self.write_range(at..self.bytes.len(), out)
     }
@@ -35,8 +35,8 @@ impl Rewrite<'_> {
         if self.columns.is_empty() {
             return out.write_all(&self.bytes[range]);
         }
-        let count = range.len().div_ceil(BLOCK);
-        let cut = |block: usize| range.end.min(self.cut(range.start + block * BLOCK));
+        let count = range.len().div_ceil(BLOCK_BYTES);
+        let cut = |block: usize| range.end.min(self.cut(range.start + block * BLOCK_BYTES));
         write_blocks(out, count, |block| {
             // The first block starts where the range starts, even within a number.
             let start = if block == 0 { range.start } else { cut(block) };
@@ -73,10 +73,10 @@ impl Rewrite<'_> {
         }
         let mut out = Vec::with_capacity(range.len() + range.len() / 4);
         let mut copied = range.start;
-        for Change { range, value, form, width } in changes {
+        for NumberEdit { range, value, encoding, width } in changes {
             out.extend_from_slice(&self.bytes[copied..range.start]);
             let start = out.len();
-            form.write(value, &mut out);
+            encoding.write(value, &mut out);
             let blanks = std::iter::repeat_n(b' ', (start + width).saturating_sub(out.len()));
             // What stood at the end of its field stays there.
             let is_right = width > 0 && self.bytes[..range.end].last().is_some_and(|&b| b > b' ');
@@ -114,15 +114,15 @@ fn write_blocks(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::binary::order::Order;
-    use crate::edit::numbers::{Form, Numbers, Places};
+    use crate::binary::byte_order::ByteOrder;
+    use crate::edit::numbers::{CoordinateEncoding, NumberEncoding, Offsets};
     use crate::precision::Precision;
 
     fn rewritten(bytes: &[u8], x_at: &[usize], old: &[[f64; 2]], new: &[[f64; 2]]) -> Vec<u8> {
-        let places = Places::List(x_at.to_vec());
-        let columns = Column::of_points(&places, None, Numbers::TEXT, old, new);
+        let places = Offsets::List(x_at.to_vec());
+        let columns = EditableColumn::of_points(&places, None, CoordinateEncoding::TEXT, old, new);
         let mut out = Vec::new();
-        Rewrite { bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
+        Rewrite { bytes, columns: &columns, edits: &[] }.write(&mut out).unwrap();
         out
     }
 
@@ -177,13 +177,14 @@ mod tests {
             bytes.extend_from_slice(b"tail 1 2 3");
             expected.extend_from_slice(b"tail 1 2 3");
             assert!(rewritten(&bytes, &x_at, &old, &old) == bytes, "{vertices} vertices");
-            let x_at = Places::List(x_at);
-            let mut columns = Column::of_points(&x_at, None, Numbers::TEXT, &old, &new);
-            let places = Places::List(z_at);
-            let form = Form::Text(Precision::Double);
-            columns.push(Column::of_array(&places, form, &z_old, &z_new));
+            let x_at = Offsets::List(x_at);
+            let mut columns =
+                EditableColumn::of_points(&x_at, None, CoordinateEncoding::TEXT, &old, &new);
+            let places = Offsets::List(z_at);
+            let encoding = NumberEncoding::Text(Precision::Double);
+            columns.push(EditableColumn::of_array(&places, encoding, &z_old, &z_new));
             let mut out = Vec::new();
-            Rewrite { bytes: &bytes, columns: &columns, splices: &[] }.write(&mut out).unwrap();
+            Rewrite { bytes: &bytes, columns: &columns, edits: &[] }.write(&mut out).unwrap();
             assert!(out == expected, "{vertices} vertices");
         }
     }
@@ -192,7 +193,7 @@ mod tests {
     #[test]
     fn numbers_in_binary_are_replaced_where_they_stand() {
         let count = 40_000;
-        let order = Order::Big;
+        let order = ByteOrder::Big;
         let row = |x: f64, y: f64, z: f32| {
             [&order.bytes(x)[..], &order.bytes(y), &order.single_bytes(z)].concat()
         };
@@ -202,16 +203,23 @@ mod tests {
         let z_new: Vec<f64> = (0..count).map(|v| f64::from(v % 3)).collect();
         let rows: Vec<u8> = old.iter().flat_map(|[x, y]| row(*x, *y, 2.0)).collect();
         let bytes = [b"head", &rows[..], b"tail"].concat();
-        let x_at = Places::Regular { start: 4, stride: 20 };
-        let mut columns =
-            Column::of_points(&x_at, None, Numbers::adjacent(order, Precision::Double), &old, &new);
-        let places = Places::Regular { start: 20, stride: 20 };
-        let form = Form::Binary(order, Precision::Single);
-        columns.push(Column::of_array(&places, form, &z_old, &z_new));
-        let splices =
-            [Splice { range: 0..2, bytes: b"HHH".into() }, Splice { range: 3..4, bytes: vec![] }];
+        let x_at = Offsets::Regular { start: 4, stride: 20 };
+        let mut columns = EditableColumn::of_points(
+            &x_at,
+            None,
+            CoordinateEncoding::adjacent(order, Precision::Double),
+            &old,
+            &new,
+        );
+        let places = Offsets::Regular { start: 20, stride: 20 };
+        let encoding = NumberEncoding::Binary(order, Precision::Single);
+        columns.push(EditableColumn::of_array(&places, encoding, &z_old, &z_new));
+        let edits = [
+            ByteEdit { range: 0..2, bytes: b"HHH".into() },
+            ByteEdit { range: 3..4, bytes: vec![] },
+        ];
         let mut out = Vec::new();
-        Rewrite { bytes: &bytes, columns: &columns, splices: &splices }.write(&mut out).unwrap();
+        Rewrite { bytes: &bytes, columns: &columns, edits: &edits }.write(&mut out).unwrap();
         let rows: Vec<u8> =
             new.iter().zip(&z_new).flat_map(|([x, y], z)| row(*x, *y, *z as f32)).collect();
         assert!(out == [b"HHHa", &rows[..], b"tail"].concat());

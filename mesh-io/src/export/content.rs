@@ -1,7 +1,7 @@
 //! A mesh in memory with all that its file says of it, independent of any format.
 
-use crate::content::label::Label;
-use crate::visit::items::Kind;
+use crate::content::group_label::GroupLabel;
+use crate::visit::items::CellKind;
 
 /// A mesh with its cells of all kinds, groups and data, independent of a format. Made by
 /// [`MeshFile::content`](crate::MeshFile::content).
@@ -21,35 +21,36 @@ use crate::visit::items::Kind;
 pub struct Content {
     /// x and y of each vertex.
     pub(crate) points: Vec<[f64; 2]>,
-    /// The third coordinate of each vertex; empty if all are the same, which is then `height`.
-    pub(crate) heights: Vec<f64>,
-    pub(crate) height: f64,
-    /// The file's number or tag of each vertex.
-    pub(crate) labels: Vec<u64>,
+    /// The third coordinate of each vertex; empty if all are `common_z`.
+    pub(crate) z_values: Vec<f64>,
+    /// The third coordinate of all vertices, if `z_values` is empty.
+    pub(crate) common_z: f64,
+    /// The id of each vertex in the file.
+    pub(crate) vertex_ids: Vec<u64>,
     pub(crate) cells: Cells,
     pub(crate) groups: Vec<ContentGroup>,
     /// Sets of groups. Cells that belong to the same groups have the same index, in [`Cells::sets`].
     pub(crate) sets: Vec<Vec<u32>>,
     /// Groups of vertices, each with its vertices.
     pub(crate) vertex_groups: Vec<(ContentGroup, Vec<u32>)>,
-    pub(crate) point_data: Vec<Data>,
-    pub(crate) cell_data: Vec<Data>,
-    /// Other things that the file has, in a few words each.
-    pub(crate) left_out: Vec<String>,
+    pub(crate) point_data: Vec<DataArray>,
+    pub(crate) cell_data: Vec<DataArray>,
+    /// Short descriptions of other parts of the file.
+    pub(crate) unsupported: Vec<String>,
 }
 
 /// Elements of all kinds in the order of the file.
 #[derive(Default)]
 pub(crate) struct Cells {
-    /// The kind of each cell. [`Kind::Corner`] stands for a polygon of more than four corners.
-    pub(crate) kinds: Vec<Kind>,
+    /// The kind of each cell.
+    pub(crate) kinds: Vec<CellKind>,
     /// The end of each cell's vertices in `vertices`.
     pub(crate) ends: Vec<usize>,
     pub(crate) vertices: Vec<u32>,
     /// The index of each cell's groups in [`Content::sets`].
     pub(crate) sets: Vec<u32>,
-    /// The tag of each cell's element, by which cell data are given.
-    pub(crate) tags: Vec<u64>,
+    /// The id of each cell in the file, to which cell data refer.
+    pub(crate) ids: Vec<u64>,
 }
 
 /// A cell of a [`Content`].
@@ -65,29 +66,13 @@ pub struct Cell<'c> {
     set: u32,
 }
 
-/// The kinds of cells. A line of several segments becomes several cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum CellKind {
-    /// One vertex.
-    Point,
-    /// Two vertices.
-    Line,
-    /// Three vertices.
-    Triangle,
-    /// Four vertices.
-    Quadrilateral,
-    /// Five or more vertices.
-    Polygon,
-}
-
 /// The identity of a group of cells or vertices in a [`Content`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContentGroup {
     /// The kind of group, such as `physical`. It is the same for formats that mean the same.
-    pub(crate) what: String,
+    pub(crate) kind: String,
     pub(crate) dimension: u8,
-    pub(crate) label: Label,
+    pub(crate) label: GroupLabel,
     pub(crate) name: Option<String>,
 }
 
@@ -95,7 +80,7 @@ impl ContentGroup {
     /// Returns the kind of group, such as `physical`, `reference` or `nodeset`. Formats that mean the same have the same
     /// kind.
     pub fn kind(&self) -> &str {
-        &self.what
+        &self.kind
     }
 
     /// Returns the dimension of the cells of the group: 0 for points and vertices, 1 for lines, 2 for surfaces.
@@ -106,22 +91,22 @@ impl ContentGroup {
     /// Returns the number of the group. `None` if the file identifies the group by its name.
     pub fn tag(&self) -> Option<i64> {
         match self.label {
-            Label::Tag(tag) => Some(tag),
-            Label::Name(_) => None,
+            GroupLabel::Tag(tag) => Some(tag),
+            GroupLabel::Name(_) => None,
         }
     }
 
     /// Returns the name of the group, if the file gives one.
     pub fn name(&self) -> Option<&str> {
         match (&self.name, &self.label) {
-            (Some(name), _) | (None, Label::Name(name)) => Some(name),
-            (None, Label::Tag(_)) => None,
+            (Some(name), _) | (None, GroupLabel::Name(name)) => Some(name),
+            (None, GroupLabel::Tag(_)) => None,
         }
     }
 }
 
-/// Numbers for each vertex or cell of a [`Content`].
-pub struct Data {
+/// Numbers of the vertices or cells of a mesh, with a name.
+pub struct DataArray {
     pub(crate) name: String,
     pub(crate) components: usize,
     /// Whether the values are real numbers, not whole ones.
@@ -130,7 +115,7 @@ pub struct Data {
     pub(crate) values: Vec<f64>,
 }
 
-impl Data {
+impl DataArray {
     /// Returns the name. Later time steps of a result have a number after their name.
     pub fn name(&self) -> &str {
         &self.name
@@ -171,16 +156,16 @@ impl Cells {
         &self.vertices[start..self.ends[cell]]
     }
 
-    pub(crate) fn push(&mut self, kind: Kind, vertices: &[u32], set: u32, tag: u64) {
+    pub(crate) fn push(&mut self, kind: CellKind, vertices: &[u32], set: u32, id: u64) {
         self.kinds.push(kind);
         self.vertices.extend_from_slice(vertices);
         self.ends.push(self.vertices.len());
         self.sets.push(set);
-        self.tags.push(tag);
+        self.ids.push(id);
     }
 
     /// Lists the cells of a kind, in the order of the file.
-    pub(crate) fn all(&self, kind: Kind) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn all(&self, kind: CellKind) -> impl Iterator<Item = usize> + '_ {
         (0..self.len()).filter(move |&cell| self.kinds[cell] == kind)
     }
 }
@@ -193,20 +178,14 @@ impl Content {
 
     /// Returns the number that the file gives each vertex; without numbers in the file, the position in the file's list.
     pub fn vertex_ids(&self) -> &[u64] {
-        &self.labels
+        &self.vertex_ids
     }
 
     /// Lists the cells in the order of the file.
     pub fn cells(&self) -> impl Iterator<Item = Cell<'_>> {
         (0..self.cells.len()).map(|cell| Cell {
-            kind: match self.cells.kinds[cell] {
-                Kind::Point => CellKind::Point,
-                Kind::Line => CellKind::Line,
-                Kind::Triangle => CellKind::Triangle,
-                Kind::Quadrilateral => CellKind::Quadrilateral,
-                Kind::Corner => CellKind::Polygon,
-            },
-            id: self.cells.tags[cell],
+            kind: self.cells.kinds[cell],
+            id: self.cells.ids[cell],
             vertices: self.cells.of(cell),
             content: self,
             set: self.cells.sets[cell],
@@ -219,58 +198,59 @@ impl Content {
     }
 
     /// Returns the data of vertices. Third coordinates are not among them: see [`z`](Self::z).
-    pub fn point_data(&self) -> &[Data] {
+    pub fn point_data(&self) -> &[DataArray] {
         &self.point_data
     }
 
     /// Returns the data of cells, with numbers in the order of [`cells`](Self::cells). Data that tell groups are groups
     /// instead.
-    pub fn cell_data(&self) -> &[Data] {
+    pub fn cell_data(&self) -> &[DataArray] {
         &self.cell_data
     }
 
     /// Lists the parts of the file that are not in the content, in a few words each.
-    pub fn left_out(&self) -> &[String] {
-        &self.left_out
+    pub fn unsupported(&self) -> &[String] {
+        &self.unsupported
     }
 
     /// Returns the third coordinate of a vertex, 0 if the file has none.
     pub fn z(&self, vertex: usize) -> f64 {
-        self.heights.get(vertex).copied().unwrap_or(self.height)
+        self.z_values.get(vertex).copied().unwrap_or(self.common_z)
     }
 
     /// Returns the number of the first vertex, if the vertices are numbered consecutively.
-    pub(crate) fn first_label(&self) -> Option<u64> {
-        let first = *self.labels.first()?;
-        let follow = self.labels.iter().zip(first..).all(|(&label, expected)| label == expected);
+    pub(crate) fn first_vertex_id(&self) -> Option<u64> {
+        let first = *self.vertex_ids.first()?;
+        let follow =
+            self.vertex_ids.iter().zip(first..).all(|(&label, expected)| label == expected);
         follow.then_some(first)
     }
 
     /// Returns for each cell its first group of this kind, if it has one.
-    pub(crate) fn column(&self, what: &str) -> Vec<Option<u32>> {
+    pub(crate) fn column(&self, kind: &str) -> Vec<Option<u32>> {
         let of_set = |set: &Vec<u32>| {
-            set.iter().copied().find(|&group| self.groups[group as usize].what == what)
+            set.iter().copied().find(|&group| self.groups[group as usize].kind == kind)
         };
         let found: Vec<_> = self.sets.iter().map(of_set).collect();
         self.cells.sets.iter().map(|&set| found[set as usize]).collect()
     }
 
     /// Lists the kinds of groups of a dimension, the most important first.
-    pub(crate) fn whats(&self, dimension: u8) -> Vec<&str> {
+    pub(crate) fn group_kinds(&self, dimension: u8) -> Vec<&str> {
         // What users give names to comes before what programs number.
         const LAST: [&str; 6] = ["reference", "block", "section", "family", "entity", "zone"];
-        let is_number = |what: &str| {
-            let mut own = self.groups.iter().filter(|group| group.what == what);
-            own.any(|group| matches!(group.label, Label::Tag(_)))
+        let is_number = |kind: &str| {
+            let mut own = self.groups.iter().filter(|group| group.kind == kind);
+            own.any(|group| matches!(group.label, GroupLabel::Tag(_)))
         };
-        let last = |what: &str| LAST.iter().position(|last| *last == what && is_number(what));
-        let mut whats: Vec<&str> = Vec::new();
+        let last = |kind: &str| LAST.iter().position(|last| *last == kind && is_number(kind));
+        let mut group_kinds: Vec<&str> = Vec::new();
         for group in self.groups.iter().filter(|group| group.dimension == dimension) {
-            if !whats.contains(&group.what.as_str()) {
-                whats.push(&group.what);
+            if !group_kinds.contains(&group.kind.as_str()) {
+                group_kinds.push(&group.kind);
             }
         }
-        whats.sort_by_key(|what| last(what).map_or(0, |at| at + 1));
-        whats
+        group_kinds.sort_by_key(|kind| last(kind).map_or(0, |at| at + 1));
+        group_kinds
     }
 }

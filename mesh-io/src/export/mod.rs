@@ -7,12 +7,12 @@ macro_rules! put {
     };
 }
 
-pub(crate) mod collector;
+pub(crate) mod capabilities;
 pub(crate) mod content;
-pub(crate) mod holds;
-pub(crate) mod job;
+pub(crate) mod content_builder;
+pub(crate) mod group_numbers;
+pub(crate) mod name_rules;
 pub(crate) mod sides;
-pub(crate) mod spelling;
-pub(crate) mod tags;
+pub(crate) mod writer_input;
 
 pub(crate) use put;

@@ -1,8 +1,8 @@
 //! Finds lines that are sides of elements, and what is lost of a mesh whose elements stand in blocks.
 
-use super::content::{Content, Data};
-use super::tags::Tags;
-use crate::visit::items::Kind;
+use super::content::{Content, DataArray};
+use super::group_numbers::GroupNumbers;
+use crate::visit::items::CellKind;
 use std::collections::HashSet;
 
 /// Returns the two ends of a line in ascending order.
@@ -13,40 +13,41 @@ pub(crate) fn pair(a: u32, b: u32) -> (u32, u32) {
 /// Finds the lines with a group that are sides of triangles or quadrilaterals.
 pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> HashSet<usize> {
     let mut of_elements = HashSet::new();
-    for kind in [Kind::Triangle, Kind::Quadrilateral] {
+    for kind in [CellKind::Triangle, CellKind::Quadrilateral] {
         for corners in content.cells.all(kind).map(|cell| content.cells.of(cell)) {
             let next = corners.iter().cycle().skip(1);
             of_elements.extend(corners.iter().zip(next).map(|(&a, &b)| pair(a, b)));
         }
     }
     // Lines that the file has in a block stay in it.
-    let is_of_block = |group: u32| content.groups[group as usize].what == "block";
+    let is_of_block = |group: u32| content.groups[group as usize].kind == "block";
     let is_side = |&line: &usize| match (group(line), content.cells.of(line)) {
         (Some(group), &[a, b]) => !is_of_block(group) && of_elements.contains(&pair(a, b)),
         _ => false,
     };
-    content.cells.all(Kind::Line).filter(is_side).collect()
+    content.cells.all(CellKind::Line).filter(is_side).collect()
 }
 
 /// Lists what is lost if elements stand in blocks, one line each.
 pub(crate) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
-    let tags = Tags::new(content, false);
+    let tags = GroupNumbers::new(content, false);
     let group = |cell: usize| tags.group(content, cell);
     let mut last = None;
     let mut seen: HashSet<Option<u32>> = HashSet::new();
-    let is_apart = content.cells.all(Kind::Triangle).any(|cell| {
+    let is_apart = content.cells.all(CellKind::Triangle).any(|cell| {
         let own = group(cell);
         last.replace(own) != Some(own) && !seen.insert(own)
     });
     if is_apart {
         lost.push("the order of triangles, which stand group by group".into());
     }
-    let quadrilaterals: HashSet<_> = content.cells.all(Kind::Quadrilateral).map(group).collect();
+    let quadrilaterals: HashSet<_> =
+        content.cells.all(CellKind::Quadrilateral).map(group).collect();
     if quadrilaterals.iter().any(|group| group.is_some() && seen.contains(group)) {
         lost.push("that groups have triangles and quadrilaterals, which become blocks each".into());
     }
     let sides = sides(content, group);
-    let has_value = |data: &&Data| {
+    let has_value = |data: &&DataArray| {
         let each = data.components.max(1);
         let own = |&line: &usize| data.values[line * each..(line + 1) * each].iter();
         sides.iter().flat_map(own).any(|value| !value.is_nan())

@@ -5,27 +5,30 @@
 //! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
 //! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::visit::items::{Element, Kind, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, GroupScope};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Adcirc;
 
-impl Walk for Adcirc {
+impl FormatReader for Adcirc {
     const VERTICES: &'static str = "the list of nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::FORTRAN);
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::FORTRAN);
         // The first line is a title of any text, or of none.
         cursor.line();
         cursor.row(0, 1, "lines of counts")?;
@@ -33,36 +36,37 @@ impl Walk for Adcirc {
             Ok((cursor.integer("the number of elements")?, cursor.vertex_count()?))
         };
         let (elements, count) = cursor.item(counts, &mut None)?;
-        let depths = numbered_nodes(cursor, count, false, sink)?;
-        sink.end_nodes(cursor)?;
-        depths.send("depth", Numbers::TEXT.into(), sink);
-        sink.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));
+        let depths = numbered_nodes(cursor, count, false, visitor)?;
+        visitor.end_nodes(cursor)?;
+        depths.send("depth", CoordinateEncoding::TEXT.into(), visitor);
+        visitor.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));
         each_row(
             cursor,
             elements,
             "elements",
-            sink,
+            visitor,
             |cursor| {
-                let tag = cursor.integer("the number of an element")?;
-                let corners = cursor.integer(format_args!("how many nodes element {tag} has"))?;
-                let Some(kind) = Kind::of_polygon(corners).filter(|kind| kind.nodes() > 2) else {
-                    let problem = format!("element {tag} has {corners} nodes");
+                let id = cursor.integer("the number of an element")?;
+                let corners = cursor.integer(format_args!("how many nodes element {id} has"))?;
+                let Some(kind) = CellKind::of_polygon(corners).filter(|kind| kind.nodes() > 2)
+                else {
+                    let problem = format!("element {id} has {corners} nodes");
                     return Err(cursor.error(problem, "Elements of three and four nodes are read"));
                 };
-                Ok(Element { tag, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
+                Ok(Element { id, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
             },
-            |cursor, sink, _, element| sink.element(cursor, &element),
+            |cursor, visitor, _, element| visitor.element(cursor, &element),
         )?;
-        if sink.asks_for_groups() {
-            boundaries(cursor, sink);
+        if visitor.asks_for_groups() {
+            boundaries(cursor, visitor);
         }
-        Ok(Layout::in_place(Format::Adcirc, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Adcirc, CoordinateEncoding::TEXT))
     }
 }
 
 /// Hands on the boundaries as lines: open ones, then those of land, whose islands are called `island`. Damaged lists
 /// end the search without an error, as the mesh does not depend on them.
-fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
+fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     for is_open in [true, false] {
         let Some(count) = number(cursor) else { return };
         // The number of nodes of all boundaries together.
@@ -79,7 +83,7 @@ fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
                 _ => "land",
             };
             if kind > 1 {
-                sink.leaves_out("types of boundaries, and what is told of weirs");
+                visitor.unsupported("types of boundaries, and what is told of weirs");
             }
             let mut nodes = Vec::new();
             for _ in 0..length {
@@ -88,13 +92,13 @@ fn boundaries(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) {
                     None => return,
                 }
             }
-            let label = Label::Name(format!("{word}{index}"));
-            sink.within(&[Within { what: "boundary", label, dimension: Some(1) }]);
+            let label = GroupLabel::Name(format!("{word}{index}"));
+            visitor.group_scopes(&[GroupScope { kind: "boundary", label, dimension: Some(1) }]);
             // A node that does not exist is no reason to refuse the mesh.
-            if sink.polyline(cursor, 0, [0; 2], &nodes).is_err() {
+            if visitor.polyline(cursor, 0, [0; 2], &nodes).is_err() {
                 return;
             }
-            sink.within(&[]);
+            visitor.group_scopes(&[]);
         }
     }
 }

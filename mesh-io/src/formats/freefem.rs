@@ -3,48 +3,51 @@
 //! The format: <https://doc.freefem.org/documentation/mesh-generation.html>, "Data Structures and Read/Write Statements
 //! for a Mesh". All numbers start at one.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::visit::items::{Column, Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct FreeFem;
 
-impl Walk for FreeFem {
+impl FormatReader for FreeFem {
     const VERTICES: &'static str = "the list of vertices";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         cursor.row(0, 1, "lines of counts")?;
         let vertices = cursor.vertex_count()?;
         let triangles = cursor.integer("the number of triangles")?;
         let edges = cursor.integer("the number of edges")?;
-        sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
+        visitor.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
         let before = &mut cursor.clone();
         each_row(
             cursor,
             vertices,
             "vertices",
-            sink,
+            visitor,
             |cursor| {
                 let point = cursor.point("a vertex")?;
                 cursor.signed("the label of a vertex")?;
                 Ok(point)
             },
-            |cursor, sink, done, (x_at, at)| {
-                sink.node(cursor, done + 1, 2, x_at, at);
+            |cursor, visitor, done, (x_at, at)| {
+                visitor.node(cursor, done + 1, 2, x_at, at);
                 Ok(())
             },
         )?;
-        if sink.asks_for_groups() {
+        if visitor.asks_for_groups() {
             for vertex in 0..vertices {
                 before.row(vertex, vertices, "vertices")?;
                 let label = |cursor: &mut Cursor<'_>| {
@@ -54,28 +57,28 @@ impl Walk for FreeFem {
                 let label = before.item(label, &mut None)?;
                 // A vertex without a label has the label 0.
                 if label != 0 {
-                    sink.node_within(vertex as u32, "label", &Label::Tag(label));
+                    visitor.node_group(vertex as u32, "label", &GroupLabel::Tag(label));
                 }
             }
         }
-        sink.end_nodes(cursor)?;
-        sink.columns(vec![Column::tags("label", 1)]);
-        sink.expect_elements(cursor.capacity(triangles, "1 2 3 0\n".len()));
+        visitor.end_nodes(cursor)?;
+        visitor.region_attributes(vec![RegionAttribute::tags("label", 1)]);
+        visitor.expect_elements(cursor.capacity(triangles, "1 2 3 0\n".len()));
         for (kind, count, what) in
-            [(Kind::Triangle, triangles, "triangles"), (Kind::Line, edges, "edges")]
+            [(CellKind::Triangle, triangles, "triangles"), (CellKind::Line, edges, "edges")]
         {
             each_row(
                 cursor,
                 count,
                 what,
-                sink,
+                visitor,
                 |cursor| Ok((nodes(cursor, kind)?, cursor.signed("a label")?)),
-                |cursor, sink, done, (nodes, label)| {
-                    let element = Element { tag: done + 1, kind, region: [label, 0], nodes };
-                    sink.element(cursor, &element)
+                |cursor, visitor, done, (nodes, label)| {
+                    let element = Element { id: done + 1, kind, region: [label, 0], nodes };
+                    visitor.element(cursor, &element)
                 },
             )?;
         }
-        Ok(Layout::in_place(Format::FreeFem, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::FreeFem, CoordinateEncoding::TEXT))
     }
 }

@@ -5,40 +5,43 @@
 //! is its depth. Other files of a case repeat coordinates; they are not read.
 
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value};
-use crate::visit::items::{Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Fvcom;
 
-impl Walk for Fvcom {
+impl FormatReader for Fvcom {
     const VERTICES: &'static str = "the list of nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::FORTRAN);
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::FORTRAN);
         let count = number_of(cursor, "Node Number")?;
         cursor.check_vertex_count(count)?;
         let cells = number_of(cursor, "Cell Number")?;
         // Cells stand before the nodes that they name, so they are read twice.
         let mut again = cursor.clone();
-        each_row(cursor, cells, "cells", sink, cell, |_, _, _, _| Ok(()))?;
-        let depths = numbered_nodes(cursor, count, true, sink)?;
-        sink.end_nodes(cursor)?;
-        depths.send("depth", Numbers::TEXT.into(), sink);
-        sink.expect_elements(again.capacity(cells, "1 1 2 3\n".len()));
-        each_row(&mut again, cells, "cells", sink, cell, |cursor, sink, _, cell| {
-            sink.element(cursor, &cell)
+        each_row(cursor, cells, "cells", visitor, cell, |_, _, _, _| Ok(()))?;
+        let depths = numbered_nodes(cursor, count, true, visitor)?;
+        visitor.end_nodes(cursor)?;
+        depths.send("depth", CoordinateEncoding::TEXT.into(), visitor);
+        visitor.expect_elements(again.capacity(cells, "1 1 2 3\n".len()));
+        each_row(&mut again, cells, "cells", visitor, cell, |cursor, visitor, _, cell| {
+            visitor.element(cursor, &cell)
         })?;
-        Ok(Layout::in_place(Format::Fvcom, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Fvcom, CoordinateEncoding::TEXT))
     }
 }
 
@@ -58,7 +61,7 @@ fn number_of(cursor: &mut Cursor<'_>, key: &str) -> Result<u64, ReadError> {
 /// Reads a cell. What stands behind its nodes is not used.
 #[inline]
 fn cell(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
-    let tag = cursor.integer("the number of a cell")?;
-    let kind = Kind::Triangle;
-    Ok(Element { tag, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
+    let id = cursor.integer("the number of a cell")?;
+    let kind = CellKind::Triangle;
+    Ok(Element { id, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
 }

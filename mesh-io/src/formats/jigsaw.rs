@@ -4,22 +4,22 @@
 //! `KEY=COUNT` and may stand in any order. Numbers are separated by semicolons, and points counted from zero. Each point and
 //! element ends in a tag.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::numbered_nodes::{Names, counted_nodes};
+use crate::formats::numbered_nodes::{NodeNames, counted_nodes};
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
-use crate::visit::heights::TextNumbers;
-use crate::visit::items::{Column, Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::TextNumbers;
 
 pub(crate) struct Jigsaw;
 
@@ -32,16 +32,19 @@ struct List<'a> {
 /// The lists of a file besides its points.
 #[derive(Default)]
 struct Lists<'a> {
-    elements: Vec<(Kind, List<'a>)>,
+    elements: Vec<(CellKind, List<'a>)>,
     /// The last list of values, with the numbers in each row.
     values: Option<(List<'a>, u64)>,
 }
 
-impl Walk for Jigsaw {
+impl FormatReader for Jigsaw {
     const VERTICES: &'static str = "POINT";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::SEMICOLONS);
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::SEMICOLONS);
         let mut lists = Lists::default();
         let (mut dimensions, mut points) = (2, None);
         while cursor.next_row() {
@@ -65,15 +68,15 @@ impl Walk for Jigsaw {
                     let count = number(cursor, &key, first)?;
                     cursor.check_vertex_count(count)?;
                     let start = cursor.clone();
-                    let names = Names { one: "a point", all: "points" };
-                    let heights = counted_nodes(cursor, count, dimensions, names, sink)?;
-                    points = Some((List { cursor: start, count }, heights));
+                    let names = NodeNames { one: "a point", all: "points" };
+                    let z_values = counted_nodes(cursor, count, dimensions, names, visitor)?;
+                    points = Some((List { cursor: start, count }, z_values));
                 }
                 b"EDGE2" | b"TRIA3" | b"QUAD4" => {
                     let kind = match key[0] {
-                        b'E' => Kind::Line,
-                        b'T' => Kind::Triangle,
-                        _ => Kind::Quadrilateral,
+                        b'E' => CellKind::Line,
+                        b'T' => CellKind::Triangle,
+                        _ => CellKind::Quadrilateral,
                     };
                     let count = number(cursor, &key, first)?;
                     lists.elements.push((kind, List { cursor: cursor.clone(), count }));
@@ -86,39 +89,39 @@ impl Walk for Jigsaw {
                     let components = number(cursor, &key, second)?;
                     lists.values = Some((List { cursor: cursor.clone(), count }, components));
                 }
-                _ if sink.asks_for_data() => {
-                    sink.leaves_out(&format!("what {}= is", quoted(&key)));
+                _ if visitor.asks_for_data() => {
+                    visitor.unsupported(&format!("what {}= is", quoted(&key)));
                 }
                 _ => {}
             }
         }
-        let Some((points, heights)) = points else {
+        let Some((points, z_values)) = points else {
             return Err(source.error("it has no POINT", "Save the mesh again"));
         };
-        if sink.asks_for_groups() {
-            tags(&points, dimensions, sink)?;
+        if visitor.asks_for_groups() {
+            tags(&points, dimensions, visitor)?;
         }
-        sink.end_nodes(cursor)?;
-        heights.send("z", Numbers::TEXT.into(), sink);
+        visitor.end_nodes(cursor)?;
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         if let Some((list, components)) = lists.values {
-            values(list, components, points.count, sink)?;
+            values(list, components, points.count, visitor)?;
         }
-        sink.columns(vec![Column::tags_from_one("tag")]);
+        visitor.region_attributes(vec![RegionAttribute::tags_from_one("tag")]);
         for (kind, List { mut cursor, count }) in lists.elements {
-            sink.expect_elements(cursor.capacity(count, "0;1;2;0\n".len()));
+            visitor.expect_elements(cursor.capacity(count, "0;1;2;0\n".len()));
             each_row(
                 &mut cursor,
                 count,
                 "elements",
-                sink,
+                visitor,
                 |cursor| Ok((nodes(cursor, kind)?, tag(cursor)?)),
-                |cursor, sink, done, (nodes, tag)| {
-                    let element = Element { tag: done, kind, region: [tag, 0], nodes };
-                    sink.element(cursor, &element)
+                |cursor, visitor, done, (nodes, tag)| {
+                    let element = Element { id: done, kind, region: [tag, 0], nodes };
+                    visitor.element(cursor, &element)
                 },
             )?;
         }
-        Ok(Layout::in_place(Format::Jigsaw, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Jigsaw, CoordinateEncoding::TEXT))
     }
 }
 
@@ -140,14 +143,18 @@ fn number(cursor: &Cursor<'_>, key: &[u8], value: &[u8]) -> Result<u64, ReadErro
 }
 
 /// Hands on the tags of points that are not 0.
-fn tags(points: &List<'_>, dimensions: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn tags(
+    points: &List<'_>,
+    dimensions: u64,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     let cursor = &mut points.cursor.clone();
     for point in 0..points.count {
         cursor.row(point, points.count, "points")?;
         cursor.tokens(dimensions);
         match tag(cursor)? {
             0 => {}
-            tag => sink.node_within(point as u32, "tag", &Label::Tag(tag)),
+            tag => visitor.node_group(point as u32, "tag", &GroupLabel::Tag(tag)),
         }
     }
     Ok(())
@@ -158,13 +165,13 @@ fn values(
     List { mut cursor, count }: List<'_>,
     components: u64,
     points: u64,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     if count != points || components == 0 {
-        sink.leaves_out("values that are not those of points");
+        visitor.unsupported("values that are not those of points");
         return Ok(());
     }
-    if !sink.point_array(b"value", components, true) {
+    if !visitor.point_array(b"value", components, true) {
         return Ok(());
     }
     let mut numbers = TextNumbers::default();
@@ -174,7 +181,7 @@ fn values(
             numbers.read(&mut cursor)?;
         }
     }
-    sink.point_numbers(numbers.finish(Precision::Double, None));
+    visitor.point_numbers(numbers.finish(Precision::Double, None));
     Ok(())
 }
 

@@ -4,18 +4,18 @@
 //! counted from zero. Curved meshes have their points in a finite element space instead, and are refused.
 
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::numbered_nodes::{Names, counted_nodes};
+use crate::formats::numbered_nodes::{NodeNames, counted_nodes};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
-use crate::visit::items::{Column, Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Mfem;
 
@@ -25,11 +25,14 @@ struct List<'a> {
     count: u64,
 }
 
-impl Walk for Mfem {
+impl FormatReader for Mfem {
     const VERTICES: &'static str = "the list of vertices";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         // The name of the format and its version.
         cursor.next_row();
         cursor.rest();
@@ -55,7 +58,7 @@ impl Walk for Mfem {
                     cursor.next_word();
                     let count = cursor.integer("the number of elements")?;
                     lists.push(List { cursor: cursor.clone(), count });
-                    each_row(cursor, count, "elements", sink, element, |_, _, _, _| Ok(()))?;
+                    each_row(cursor, count, "elements", visitor, element, |_, _, _, _| Ok(()))?;
                 }
                 b"attribute_sets" | b"bdr_attribute_sets" => skip_sets(cursor),
                 b"vertices" => break,
@@ -66,22 +69,29 @@ impl Walk for Mfem {
                 }
             }
         }
-        vertices(cursor, sink)?;
-        sink.columns(vec![Column::tags("attribute", 1)]);
+        vertices(cursor, visitor)?;
+        visitor.region_attributes(vec![RegionAttribute::tags("attribute", 1)]);
         for List { mut cursor, count } in lists {
-            sink.expect_elements(cursor.capacity(count, "1 2 0 1 2\n".len()));
-            each_row(&mut cursor, count, "elements", sink, element, |cursor, sink, done, read| {
-                let (kind, attribute, nodes) = read;
-                let region = [attribute, 0];
-                sink.element(cursor, &Element { tag: done, kind, region, nodes })
-            })?;
+            visitor.expect_elements(cursor.capacity(count, "1 2 0 1 2\n".len()));
+            each_row(
+                &mut cursor,
+                count,
+                "elements",
+                visitor,
+                element,
+                |cursor, visitor, done, read| {
+                    let (kind, attribute, nodes) = read;
+                    let region = [attribute, 0];
+                    visitor.element(cursor, &Element { id: done, kind, region, nodes })
+                },
+            )?;
         }
-        Ok(Layout::in_place(Format::Mfem, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Mfem, CoordinateEncoding::TEXT))
     }
 }
 
 /// Reads the vertices, of two or three coordinates each.
-fn vertices(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn vertices(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
     cursor.next_word();
     let count = cursor.vertex_count()?;
     cursor.next_word();
@@ -90,22 +100,22 @@ fn vertices(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadErro
         return Err(cursor.error(problem, "Save it as VTK: Mesh::PrintVTK of MFEM"));
     }
     let dimensions = cursor.integer("the number of coordinates")?;
-    let names = Names { one: "a vertex", all: "vertices" };
-    let heights = counted_nodes(cursor, count, dimensions, names, sink)?;
-    sink.end_nodes(cursor)?;
-    heights.send("z", Numbers::TEXT.into(), sink);
+    let names = NodeNames { one: "a vertex", all: "vertices" };
+    let z_values = counted_nodes(cursor, count, dimensions, names, visitor)?;
+    visitor.end_nodes(cursor)?;
+    z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
     Ok(())
 }
 
 /// Reads an element: its kind, attribute and vertices.
 #[inline]
-fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, i64, [u64; 4]), ReadError> {
+fn element(cursor: &mut Cursor<'_>) -> Result<(CellKind, i64, [u64; 4]), ReadError> {
     let attribute = cursor.signed("the attribute of an element")?;
     let kind = match cursor.integer("the geometry of an element")? {
-        0 => Kind::Point,
-        1 => Kind::Line,
-        2 => Kind::Triangle,
-        3 => Kind::Quadrilateral,
+        0 => CellKind::Point,
+        1 => CellKind::Line,
+        2 => CellKind::Triangle,
+        3 => CellKind::Quadrilateral,
         4..=7 => return Err(volume(cursor, "elements of a volume")),
         other => return Err(cursor.error(format!("{other} is no geometry"), CORRECT)),
     };

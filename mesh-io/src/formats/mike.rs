@@ -4,26 +4,29 @@
 //! first row has the kind of data, its unit, the number of nodes and the projection; before 2012 only the latter two. A
 //! node has a height and a code: 0 inside, 1 at land, more at open boundaries.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
 use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
-use crate::visit::items::{Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Mike;
 
-impl Walk for Mike {
+impl FormatReader for Mike {
     const VERTICES: &'static str = "the list of nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.row(0, 1, "lines of counts")?;
         let mut first = cursor.clone();
@@ -33,12 +36,12 @@ impl Walk for Mike {
         let count = cursor.vertex_count()?;
         cursor.rest();
         let before = &mut cursor.clone();
-        let heights = numbered_nodes(cursor, count, false, sink)?;
-        if sink.asks_for_groups() {
-            codes(before, count, sink)?;
+        let z_values = numbered_nodes(cursor, count, false, visitor)?;
+        if visitor.asks_for_groups() {
+            codes(before, count, visitor)?;
         }
-        sink.end_nodes(cursor)?;
-        heights.send("z", Numbers::TEXT.into(), sink);
+        visitor.end_nodes(cursor)?;
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         cursor.row(0, 1, "lines of the count of elements")?;
         let elements = cursor.integer("the number of elements")?;
         let most = cursor.integer("the largest number of nodes of an element")?;
@@ -47,34 +50,38 @@ impl Walk for Mike {
             return Err(cursor.error(problem, "Elements of three and four nodes are read"));
         }
         cursor.rest();
-        sink.expect_elements(cursor.capacity(elements, "1 1 2 3\n".len()));
-        each_row(cursor, elements, "elements", sink, element, |cursor, sink, _, element| {
-            sink.element(cursor, &element)
+        visitor.expect_elements(cursor.capacity(elements, "1 1 2 3\n".len()));
+        each_row(cursor, elements, "elements", visitor, element, |cursor, visitor, _, element| {
+            visitor.element(cursor, &element)
         })?;
-        Ok(Layout::in_place(Format::Mike, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Mike, CoordinateEncoding::TEXT))
     }
 }
 
 /// Reads an element. Among quadrilaterals, a triangle has 0 for a fourth node.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
-    let tag = cursor.integer("the number of an element")?;
-    let mut nodes = nodes(cursor, Kind::Triangle)?;
+    let id = cursor.integer("the number of an element")?;
+    let mut nodes = nodes(cursor, CellKind::Triangle)?;
     if !cursor.is_at_end() {
         nodes[3] = cursor.integer("a vertex of a quadrilateral")?;
     }
-    let kind = if nodes[3] == 0 { Kind::Triangle } else { Kind::Quadrilateral };
-    Ok(Element { tag, kind, region: [0; 2], nodes })
+    let kind = if nodes[3] == 0 { CellKind::Triangle } else { CellKind::Quadrilateral };
+    Ok(Element { id, kind, region: [0; 2], nodes })
 }
 
 /// Hands on the codes of nodes. They stand behind z, and inner nodes have the code 0.
-fn codes(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn codes(
+    cursor: &mut Cursor<'_>,
+    count: u64,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     for node in 0..count {
         cursor.row(node, count, "nodes")?;
         cursor.tokens(4);
         let code = if cursor.is_at_end() { 0 } else { cursor.signed("the code of a node")? };
         if code != 0 {
-            sink.node_within(node as u32, "code", &Label::Tag(code));
+            visitor.node_group(node as u32, "code", &GroupLabel::Tag(code));
         }
     }
     Ok(())
@@ -85,14 +92,14 @@ fn is_of_2012(row: &mut Cursor<'_>) -> bool {
     (0..3).all(|_| row.token().and_then(integer).is_some())
 }
 
-/// Whether the first two rows of a file may be those of such a mesh: numbers and a projection, then a node.
-pub(crate) fn opens(first: &[&[u8]], second: &[&[u8]]) -> bool {
+/// Returns whether the first two rows of a file may be those of MIKE: numbers and a projection, then a node.
+pub(crate) fn is_mike(first: &[&[u8]], second: &[&[u8]]) -> bool {
     let numbers = first.iter().take_while(|token| integer(token).is_some()).count();
     let is_projection = |token: &&[u8]| token.first().is_some_and(u8::is_ascii_alphabetic);
     let is_node = || {
-        let [tag, at @ .., code] = second else { return false };
+        let [id, at @ .., code] = second else { return false };
         at.len() == 3
-            && integer(tag).is_some()
+            && integer(id).is_some()
             && integer(code).is_some()
             && at.iter().all(|token| float(token).is_some())
     };

@@ -21,7 +21,7 @@ pub(crate) fn axes<'a>(
         let length = nodes * form.precision.bytes();
         let of_each = axes / items.len().max(1);
         let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
-        let starts: Vec<usize> = items.iter().filter_map(Items::place).flat_map(of).collect();
+        let starts: Vec<usize> = items.iter().filter_map(Items::start).flat_map(of).collect();
         return Ok(Axes::in_place(header.source, form, &starts, nodes));
     };
     let arrays = items.iter_mut().filter_map(Items::take_array).collect();

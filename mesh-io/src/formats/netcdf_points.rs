@@ -1,17 +1,17 @@
 //! Data of nodes: variables whose numbers are handed on record by record.
 
-use crate::edit::numbers::{Encoded, Form, Places};
-use crate::hdf5::Encoding;
-use crate::netcdf::{Header, Items, Number, Variable};
+use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
+use crate::hdf5::Hdf5Arrays;
+use crate::netcdf::{Header, Items, NumberType, Variable};
 use crate::visit::items::PointNumbers;
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
+use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which parts of each record of a variable are handed on, each with numbers for all nodes.
+/// The parts of each record of a variable that are visited. Each part has the numbers of all nodes.
 #[derive(Clone)]
-pub(crate) struct Parts {
+pub(crate) struct RecordParts {
     pub(crate) wanted: Range<usize>,
     /// How many equal parts a record consists of.
     pub(crate) all: usize,
@@ -19,15 +19,15 @@ pub(crate) struct Parts {
     pub(crate) components: u64,
 }
 
-impl Parts {
+impl RecordParts {
     /// A record has one number for each node.
-    pub(crate) const WHOLE: Parts = Parts { wanted: 0..1, all: 1, components: 1 };
+    pub(crate) const WHOLE: RecordParts = RecordParts { wanted: 0..1, all: 1, components: 1 };
 }
 
 /// Reads data of nodes or faces, and hands those of nodes on. What is encoded of a variable is shared by all of its parts and records.
 pub(crate) struct PointData<'h, 'a> {
     header: &'h Header<'a>,
-    encoded: Vec<(&'h [u8], Arc<Encoding>)>,
+    encoded: Vec<(&'h [u8], Arc<Hdf5Arrays>)>,
     /// The content of the variable that was read last.
     last: Option<(&'h [u8], Items<'a>)>,
 }
@@ -43,17 +43,17 @@ impl<'h, 'a> PointData<'h, 'a> {
         &mut self,
         name: &[u8],
         variable: &'h Variable,
-        parts: &Parts,
+        parts: &RecordParts,
         missing: Option<f64>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) {
-        let is_real = matches!(variable.number, Number::Real(_));
+        let is_real = matches!(variable.number, NumberType::Real(_));
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
-                if sink.point_array(name, parts.components, is_real)
+                if visitor.point_array(name, parts.components, is_real)
                     && let Some(numbers) = self.numbers(variable, record, part, parts, missing)
                 {
-                    sink.point_numbers(numbers);
+                    visitor.point_numbers(numbers);
                 }
             }
         }
@@ -65,13 +65,13 @@ impl<'h, 'a> PointData<'h, 'a> {
         variable: &'h Variable,
         record: usize,
         part: usize,
-        parts: &Parts,
+        parts: &RecordParts,
         missing: Option<f64>,
     ) -> Option<PointNumbers> {
         let precision = match variable.number {
-            Number::Real(precision) => Some(precision),
-            Number::Whole(_) => None,
-            Number::Text | Number::Other(_) => return None,
+            NumberType::Real(precision) => Some(precision),
+            NumberType::Whole(_) => None,
+            NumberType::Text | NumberType::Other(_) => return None,
         };
         if self.last.as_ref().is_none_or(|(name, _)| *name != variable.name) {
             self.last = Some((&variable.name, self.items(variable)?));
@@ -83,22 +83,27 @@ impl<'h, 'a> PointData<'h, 'a> {
         let size = range.len() / parts.all.max(1);
         let range = range.start + part * size..range.start + (part + 1) * size;
         let (start, home) = match encoding {
-            None => (items.byte_of(range.start), Home::File),
+            None => (items.byte_of(range.start), ByteSpace::File),
             Some(encoding) => {
-                (range.start, Home::Encoded(Arc::clone(encoding) as Arc<dyn Encoded>))
+                (range.start, ByteSpace::Encoded(Arc::clone(encoding) as Arc<dyn EncodedArrays>))
             }
         };
         let mut numbers = variable.numbers(bytes.get(range).unwrap_or_default());
         let is_missing = |number: &&mut f64| Some(**number) == missing;
         numbers.iter_mut().filter(is_missing).for_each(|number| *number = f64::NAN);
         let stored = precision.map(|precision| {
-            let places = Places::Regular { start, stride: precision.bytes() };
-            Stored { places, form: Form::Binary(variable.order, precision), home, part: 0 }
+            let offsets = Offsets::Regular { start, stride: precision.bytes() };
+            ArrayLocation {
+                offsets,
+                encoding: NumberEncoding::Binary(variable.order, precision),
+                space: home,
+                file_index: 0,
+            }
         });
-        Some(PointNumbers { numbers, nodes: None, stored })
+        Some(PointNumbers { numbers, nodes: None, location: stored })
     }
 
-    fn encoding(&self, variable: &Variable) -> Option<&Arc<Encoding>> {
+    fn encoding(&self, variable: &Variable) -> Option<&Arc<Hdf5Arrays>> {
         let known = self.encoded.iter().find(|(known, _)| *known == variable.name);
         known.map(|(_, encoding)| encoding)
     }
@@ -106,11 +111,11 @@ impl<'h, 'a> PointData<'h, 'a> {
     /// The content of a variable, whose encoding is kept if the file does not have its numbers as they are.
     fn items(&mut self, variable: &'h Variable) -> Option<Items<'a>> {
         let mut items = self.header.items(variable).ok()?;
-        if items.place().is_none()
+        if items.start().is_none()
             && self.encoding(variable).is_none()
             && let (Some(file), Some(array)) = (&self.header.hdf5, items.take_array())
         {
-            let encoding = Arc::new(Encoding::new(file, vec![array]));
+            let encoding = Arc::new(Hdf5Arrays::new(file, vec![array]));
             self.encoded.push((&variable.name, encoding));
         }
         Some(items)

@@ -2,82 +2,82 @@
 
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::text::cursor_numbers::NO_HEIGHT;
-use crate::visit::heights::Heights;
+use crate::text::cursor_numbers::NO_Z;
 use crate::visit::rows::each_row;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
-/// Reads a list of nodes, each a number, x, y and a third coordinate or depth, and hands them to the sink. Returns the
+/// Reads a list of nodes, each a number, x, y and a third coordinate or depth, and hands them to the visitor. Returns the
 /// third numbers. If these are optional, a node may end after y.
 pub(crate) fn numbered_nodes(
     cursor: &mut Cursor<'_>,
     count: u64,
     is_third_optional: bool,
-    sink: &mut dyn Sink,
-) -> Result<Heights, ReadError> {
-    sink.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
-    let mut heights = Heights::new(sink);
+    visitor: &mut dyn MeshVisitor,
+) -> Result<ZValues, ReadError> {
+    visitor.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
+    let mut z_values = ZValues::new(visitor);
     each_row(
         cursor,
         count,
         "nodes",
-        sink,
+        visitor,
         |cursor| {
-            let tag = cursor.integer("the number of a node")?;
-            let point = cursor.point(format_args!("node {tag}"))?;
+            let id = cursor.integer("the number of a node")?;
+            let point = cursor.point(format_args!("node {id}"))?;
             let third = match is_third_optional {
-                true => cursor.height_if_any(format_args!("node {tag}"))?,
-                false => cursor.height(format_args!("node {tag}"))?,
+                true => cursor.z_if_any(format_args!("node {id}"))?,
+                false => cursor.z(format_args!("node {id}"))?,
             };
-            Ok((tag, point, third))
+            Ok((id, point, third))
         },
-        |cursor, sink, _, (tag, (x_at, at), third)| {
-            sink.node(cursor, tag, 2, x_at, at);
-            heights.see(third);
+        |cursor, visitor, _, (id, (x_at, at), third)| {
+            visitor.node(cursor, id, 2, x_at, at);
+            z_values.push(third);
             Ok(())
         },
     )?;
-    Ok(heights)
+    Ok(z_values)
 }
 
-/// What nodes are called in messages.
+/// Words for the nodes of a format, for messages.
 #[derive(Clone, Copy)]
-pub(crate) struct Names {
+pub(crate) struct NodeNames {
     /// A single node, with its article.
     pub(crate) one: &'static str,
     pub(crate) all: &'static str,
 }
 
-/// Reads a list of nodes of two or three coordinates each, counted from zero, and hands them to the sink. Returns the third
+/// Reads a list of nodes of two or three coordinates each, counted from zero, and hands them to the visitor. Returns the third
 /// coordinates.
 pub(crate) fn counted_nodes(
     cursor: &mut Cursor<'_>,
     count: u64,
     dimensions: u64,
-    names: Names,
-    sink: &mut dyn Sink,
-) -> Result<Heights, ReadError> {
-    let Names { one, all } = names;
+    names: NodeNames,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<ZValues, ReadError> {
+    let NodeNames { one, all } = names;
     if !(2..=3).contains(&dimensions) {
         let problem = format!("the {all} have {dimensions} coordinates");
         return Err(cursor.error(problem, "Those of 2 and 3 coordinates are read"));
     }
-    sink.expect_nodes(cursor.capacity(count, "0 0\n".len()));
-    let mut heights = Heights::new(sink);
+    visitor.expect_nodes(cursor.capacity(count, "0 0\n".len()));
+    let mut z_values = ZValues::new(visitor);
     each_row(
         cursor,
         count,
         all,
-        sink,
+        visitor,
         |cursor| {
             let point = cursor.point(one)?;
-            Ok((point, if dimensions == 3 { cursor.height(one)? } else { NO_HEIGHT }))
+            Ok((point, if dimensions == 3 { cursor.z(one)? } else { NO_Z }))
         },
-        |cursor, sink, index, ((x_at, at), z)| {
-            sink.node(cursor, index, 2, x_at, at);
-            heights.see(z);
+        |cursor, visitor, index, ((x_at, at), z)| {
+            visitor.node(cursor, index, 2, x_at, at);
+            z_values.push(z);
             Ok(())
         },
     )?;
-    Ok(heights)
+    Ok(z_values)
 }

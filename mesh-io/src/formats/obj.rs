@@ -4,21 +4,21 @@
 //! may also name them by negative numbers, counted back from the last vertex before. Texture coordinates and normals
 //! are not read.
 
-use crate::content::label::Label;
-use crate::content::regions::Numbering;
+use crate::content::group_label::GroupLabel;
+use crate::content::regions::Interner;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
-use crate::visit::heights::Heights;
-use crate::visit::items::{Element, Kind, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, GroupScope};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::all_rows;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 pub(crate) struct Obj;
 
@@ -66,42 +66,45 @@ impl Corners {
     }
 }
 
-impl Walk for Obj {
+impl FormatReader for Obj {
     const VERTICES: &'static str = "the list of v rows";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let start = rows(source);
         let cursor = &mut start.clone();
         let mut count = 0;
-        let mut heights = Heights::new(sink);
-        all_rows(cursor, sink, vertex, |cursor, sink, row| {
+        let mut z_values = ZValues::new(visitor);
+        all_rows(cursor, visitor, vertex, |cursor, visitor, row| {
             if let Row::Vertex(x_at, at, z) = row {
                 count += 1;
-                sink.node(cursor, count, 2, x_at, at);
-                heights.see(z);
+                visitor.node(cursor, count, 2, x_at, at);
+                z_values.push(z);
             }
             Ok(())
         })?;
         cursor.check_vertex_count(count)?;
-        sink.end_nodes(cursor)?;
-        if sink.asks_for_data() {
-            left_out(start.clone(), sink);
+        visitor.end_nodes(cursor)?;
+        if visitor.asks_for_data() {
+            left_out(start.clone(), visitor);
         }
-        heights.send("z", Numbers::TEXT.into(), sink);
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         let cursor = &mut start.clone();
         let (mut before, mut faces) = (0, 0);
-        let mut names = Numbering::default();
+        let mut names = Interner::default();
         let mut region = [0; 2];
-        let mut named = Named::default();
-        all_rows(cursor, sink, element, |cursor, sink, row| {
+        let mut named = CurrentGroups::default();
+        all_rows(cursor, visitor, element, |cursor, visitor, row| {
             match row {
                 Row::Vertex(..) => before += 1,
                 Row::Name(name) => {
-                    let number = i64::from(names.number(name.to_vec())) + 1;
+                    let number = i64::from(names.intern(name.to_vec())) + 1;
                     region[usize::from(!name.starts_with(b"usemtl"))] = number;
-                    if sink.asks_for_groups() {
+                    if visitor.asks_for_groups() {
                         named.enter(name);
-                        sink.within(&named.groups());
+                        visitor.group_scopes(&named.groups());
                     }
                 }
                 Row::Face(corners) => {
@@ -109,12 +112,12 @@ impl Walk for Obj {
                     match corners {
                         Corners::Few([a, b, c, _], 3) if a > 0 && b > 0 && c > 0 => {
                             let nodes = [a, b, c, 0].map(i64::unsigned_abs);
-                            let kind = Kind::Triangle;
-                            sink.element(cursor, &Element { tag, kind, region, nodes })?;
+                            let kind = CellKind::Triangle;
+                            visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
                         }
                         corners => {
                             let nodes = counted(cursor, corners.all(), before)?;
-                            face(cursor, sink, tag, region, &nodes)?;
+                            face(cursor, visitor, tag, region, &nodes)?;
                         }
                     }
                     faces = tag;
@@ -122,19 +125,19 @@ impl Walk for Obj {
                 Row::Points(points) => {
                     let nodes = counted(cursor, points.all(), before)?;
                     for &node in &nodes {
-                        let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
-                        sink.element(cursor, &Element { tag: 0, kind, region, nodes })?;
+                        let (kind, nodes) = (CellKind::Point, [node, 0, 0, 0]);
+                        visitor.element(cursor, &Element { id: 0, kind, region, nodes })?;
                     }
                 }
                 Row::Line(points) => {
                     let nodes = counted(cursor, points.all(), before)?;
-                    sink.polyline(cursor, 0, region, &nodes)?;
+                    visitor.polyline(cursor, 0, region, &nodes)?;
                 }
                 Row::Other => {}
             }
             Ok(())
         })?;
-        Ok(Layout::in_place(Format::Obj, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Obj, CoordinateEncoding::TEXT))
     }
 }
 
@@ -142,21 +145,21 @@ impl Walk for Obj {
 fn rows(source: &Source) -> Cursor<'_> {
     let ends_line = |at: usize| matches!(source.bytes[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
     match memchr::memchr_iter(b'\\', &source.bytes).any(ends_line) {
-        true => Cursor::new(source).of(Syntax::JOINED),
+        true => Cursor::new(source).with_syntax(Syntax::JOINED),
         false => Cursor::new(source),
     }
 }
 
-/// The material, object and groups of the current row.
+/// The material, object and groups to which the next elements belong.
 #[derive(Default)]
-struct Named<'a> {
+struct CurrentGroups<'a> {
     material: Option<&'a [u8]>,
     object: Option<&'a [u8]>,
     /// The groups; a row may name several.
     groups: Vec<&'a [u8]>,
 }
 
-impl<'a> Named<'a> {
+impl<'a> CurrentGroups<'a> {
     /// Takes a row that names the material, the object or the groups of the elements after it.
     fn enter(&mut self, row: &'a [u8]) {
         let split = row.iter().position(|&byte| byte <= b' ').unwrap_or(row.len());
@@ -173,9 +176,13 @@ impl<'a> Named<'a> {
     }
 
     /// Returns the groups of the elements that follow, which may have elements of any kind.
-    fn groups(&self) -> Vec<Within<'static>> {
+    fn groups(&self) -> Vec<GroupScope<'static>> {
         let of = |what, names: &[&[u8]]| -> Vec<_> {
-            let one = |name: &&[u8]| Within { what, label: Label::name(name), dimension: Some(2) };
+            let one = |name: &&[u8]| GroupScope {
+                kind: what,
+                label: GroupLabel::name(name),
+                dimension: Some(2),
+            };
             names.iter().map(one).collect()
         };
         let (material, object) = (self.material.as_slice(), self.object.as_slice());
@@ -200,30 +207,30 @@ fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64
 /// Hands on a face. The vertices of polygons with more than four corners stay fixed.
 fn face(
     cursor: &Cursor<'_>,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
     tag: u64,
     region: [i64; 2],
     corners: &[u64],
 ) -> Result<(), ReadError> {
-    match Kind::of_polygon(corners.len() as u64) {
-        Some(kind @ (Kind::Triangle | Kind::Quadrilateral)) => {
+    match CellKind::of_polygon(corners.len() as u64) {
+        Some(kind @ (CellKind::Triangle | CellKind::Quadrilateral)) => {
             let mut nodes = [0; 4];
             nodes[..corners.len()].copy_from_slice(corners);
-            sink.element(cursor, &Element { tag, kind, region, nodes })
+            visitor.element(cursor, &Element { id: tag, kind, region, nodes })
         }
-        _ => sink.polygon(cursor, tag, region, corners),
+        _ => visitor.polygon(cursor, tag, region, corners),
     }
 }
 
-/// Tells the sink which kinds of rows are not read.
+/// Tells the visitor which kinds of rows are not read.
 #[cold]
-fn left_out(mut cursor: Cursor<'_>, sink: &mut dyn Sink) {
+fn left_out(mut cursor: Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     while cursor.next_row() {
         match cursor.token() {
-            Some(b"vt") => sink.leaves_out("texture coordinates"),
-            Some(b"vn") => sink.leaves_out("normals"),
-            Some(b"mtllib") => sink.leaves_out("the name of a library of materials"),
-            Some(b"s") => sink.leaves_out("smoothing groups"),
+            Some(b"vt") => visitor.unsupported("texture coordinates"),
+            Some(b"vn") => visitor.unsupported("normals"),
+            Some(b"mtllib") => visitor.unsupported("the name of a library of materials"),
+            Some(b"s") => visitor.unsupported("smoothing groups"),
             _ => {}
         }
     }
@@ -236,7 +243,7 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
         return Ok(Row::Other);
     }
     let (x_at, at) = cursor.point("a vertex")?;
-    Ok(Row::Vertex(x_at, at, cursor.height_if_any("a vertex")?))
+    Ok(Row::Vertex(x_at, at, cursor.z_if_any("a vertex")?))
 }
 
 /// Reads a row unless it is that of a vertex.

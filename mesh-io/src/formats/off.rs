@@ -4,25 +4,28 @@
 //! anywhere on lines, and a face starts on a line of its own. Normals, colors and texture coordinates are not read.
 
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
-use crate::visit::heights::Heights;
-use crate::visit::items::{Element, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 pub(crate) struct Off;
 
-impl Walk for Off {
+impl FormatReader for Off {
     const VERTICES: &'static str = "the list of vertices";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.row(0, 1, "header lines")?;
         // Geomview reads a file without a header as plain OFF.
@@ -41,7 +44,7 @@ impl Walk for Off {
             }
         };
         if more > 0 {
-            sink.leaves_out("normals, colors or texture coordinates");
+            visitor.unsupported("normals, colors or texture coordinates");
         }
         if cursor.is_at(b'B') {
             return Err(cursor.error("binary OFF is not read", "Save as text"));
@@ -57,51 +60,51 @@ impl Walk for Off {
         }
         let syntax = layout(cursor, vertices, faces, more);
         let more = if syntax.is_of_words() { more } else { 0 };
-        *cursor = cursor.clone().of(syntax);
-        sink.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
-        let mut heights = Heights::new(sink);
+        *cursor = cursor.clone().with_syntax(syntax);
+        visitor.expect_nodes(cursor.capacity(vertices, "0 0 0\n".len()));
+        let mut z_values = ZValues::new(visitor);
         each_row(
             cursor,
             vertices,
             "vertices",
-            sink,
+            visitor,
             |cursor| {
                 let point = cursor.point("a vertex")?;
-                let z = cursor.height("a vertex")?;
+                let z = cursor.z("a vertex")?;
                 for _ in 0..more {
                     cursor.real("a normal, color or texture coordinate of a vertex")?;
                 }
                 Ok((point, z))
             },
-            |cursor, sink, done, ((x_at, at), z)| {
-                sink.node(cursor, done, 2, x_at, at);
-                heights.see(z);
+            |cursor, visitor, done, ((x_at, at), z)| {
+                visitor.node(cursor, done, 2, x_at, at);
+                z_values.push(z);
                 Ok(())
             },
         )?;
-        sink.end_nodes(cursor)?;
-        heights.send("z", Numbers::TEXT.into(), sink);
-        sink.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
+        visitor.end_nodes(cursor)?;
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
+        visitor.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
         // A color may follow the corners of a face on its row.
-        *cursor = cursor.clone().of(Syntax::RECORDS);
+        *cursor = cursor.clone().with_syntax(Syntax::RECORDS);
         each_row(
             cursor,
             faces,
             "faces",
-            sink,
+            visitor,
             |cursor| {
                 let corners = cursor.integer("the number of a face's vertices")?;
-                let Some(kind) = Kind::of_polygon(corners) else {
+                let Some(kind) = CellKind::of_polygon(corners) else {
                     let problem = format!("a face has {corners} vertices");
                     return Err(cursor.error(problem, "Split it into triangles"));
                 };
                 Ok((kind, nodes(cursor, kind)?))
             },
-            |cursor, sink, tag, (kind, nodes)| {
-                sink.element(cursor, &Element { tag, kind, region: [0; 2], nodes })
+            |cursor, visitor, id, (kind, nodes)| {
+                visitor.element(cursor, &Element { id, kind, region: [0; 2], nodes })
             },
         )?;
-        Ok(Layout::in_place(Format::Off, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Off, CoordinateEncoding::TEXT))
     }
 }
 

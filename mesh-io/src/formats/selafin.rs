@@ -3,32 +3,35 @@
 //! The format: TELEMAC-MASCARET's user manual, appendix on SERAFIN. A file is a sequence of Fortran records, each
 //! between two copies of its length. All x come before all y. The time steps after them are kept.
 
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::disk::source::Source;
-use crate::edit::numbers::{Form, Numbers, Places};
+use crate::edit::numbers::{CoordinateEncoding, NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
-use crate::visit::items::{Kind, PointNumbers};
-use crate::visit::reader::Walk;
-use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::items::{CellKind, PointNumbers};
+use crate::visit::reader::FormatReader;
+use crate::visit::records::{NodeIds, NodeRecords, Region};
 use crate::visit::rows::volume;
 use crate::visit::send::{ElementRecords, REWRITE};
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Layout, Stored};
+use crate::visit::storage::{ArrayLocation, CoordinateStorage};
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Selafin;
 
-impl Walk for Selafin {
+impl FormatReader for Selafin {
     const VERTICES: &'static str = "the list of points";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source);
         let order = match source.bytes.starts_with(&[0, 0, 0, 80]) {
-            true => Order::Big,
-            false => Order::Little,
+            true => ByteOrder::Big,
+            false => ByteOrder::Little,
         };
         let title = record(cursor, order, "the title", Some(80))?;
         let doubles = title.ends_with(b"SERAFIND");
@@ -50,8 +53,8 @@ impl Walk for Selafin {
         let sizes = integers(record(cursor, order, "the sizes", Some(16))?, order);
         let [triangles, points, corners] = [sizes[0], sizes[1], sizes[2]];
         let kind = match corners {
-            3 => Kind::Triangle,
-            4 => Kind::Quadrilateral,
+            3 => CellKind::Triangle,
+            4 => CellKind::Quadrilateral,
             6 => return Err(volume(cursor, "prisms")),
             other => {
                 let problem = format!("the elements have {other} corners");
@@ -67,42 +70,45 @@ impl Walk for Selafin {
             return Err(cursor.error("a size is negative", "Write the mesh again"));
         };
         let connectivity = record(cursor, order, "the elements", Some(listed))?;
-        let listed_at = cursor.taken();
+        let listed_at = cursor.last_taken();
         record(cursor, order, "the boundary numbers", Some(numbers / precision.bytes() * 4))?;
         let xs = record(cursor, order, "the x of all points", Some(numbers))?;
-        let x_at = cursor.taken();
+        let x_at = cursor.last_taken();
         let ys = record(cursor, order, "the y of all points", Some(numbers))?;
-        let y_after = (cursor.taken() - x_at) as isize;
+        let y_after = (cursor.last_taken() - x_at) as isize;
         let after_mesh = cursor.clone();
         let size = precision.bytes();
-        let [x, y] = [xs, ys].map(|bytes| Field::new(Some(bytes), size, size, order));
-        NodeRecords { count: points as usize, x, y, x_at, tags: Tags::From(1) }.send(
-            sink,
-            |index| Cursor::at_byte_of(source, x_at + index * size),
-            |index| {
-                let problem = format!("a coordinate of point {} is not a finite number", index + 1);
-                cursor.error(problem, REWRITE)
-            },
-        )?;
-        sink.end_nodes(cursor)?;
+        let [x, y] = [xs, ys].map(|bytes| NumberField::new(Some(bytes), size, size, order));
+        NodeRecords { count: points as usize, x, y, x_offset: x_at, ids: NodeIds::Consecutive(1) }
+            .send(
+                visitor,
+                |index| Cursor::at_byte_offset(source, x_at + index * size),
+                |index| {
+                    let problem =
+                        format!("a coordinate of point {} is not a finite number", index + 1);
+                    cursor.error(problem, REWRITE)
+                },
+            )?;
+        visitor.end_nodes(cursor)?;
         let stride = 4 * kind.nodes();
         let elements = ElementRecords {
             kind,
             count: triangles as usize,
             first_tag: 1,
-            nodes: Field::new(Some(connectivity), stride, 4, order),
+            nodes: NumberField::new(Some(connectivity), stride, 4, order),
             is_signed: true,
             regions: [Region::Same(0); 2],
         };
-        elements.send(sink, |index, _| Cursor::at_byte_of(source, listed_at + index * stride))?;
-        if sink.asks_for_data() {
-            sink.leaves_out("the title, the date, boundary numbers and times of a SELAFIN");
-            steps(after_mesh, order, precision, &names, numbers, sink);
+        elements
+            .send(visitor, |index, _| Cursor::at_byte_offset(source, listed_at + index * stride))?;
+        if visitor.asks_for_data() {
+            visitor.unsupported("the title, the date, boundary numbers and times of a SELAFIN");
+            steps(after_mesh, order, precision, &names, numbers, visitor);
         } else {
-            names.iter().for_each(|name| _ = sink.point_array(name, 1, true));
+            names.iter().for_each(|name| _ = visitor.point_array(name, 1, true));
         }
-        let numbers = Numbers::Binary { order, precision, y_after };
-        Ok(Layout::in_place(Format::Selafin, numbers))
+        let numbers = CoordinateEncoding::Binary { order, precision, y_after };
+        Ok(CoordinateStorage::in_place(Format::Selafin, numbers))
     }
 }
 
@@ -110,11 +116,11 @@ impl Walk for Selafin {
 /// reading without an error, as the mesh does not depend on it.
 fn steps(
     mut cursor: Cursor<'_>,
-    order: Order,
+    order: ByteOrder,
     precision: Precision,
     names: &[&[u8]],
     bytes: usize,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) {
     let cursor = &mut cursor;
     while record(cursor, order, "the time of a step", None).is_ok() {
@@ -122,22 +128,23 @@ fn steps(
             let Ok(values) = record(cursor, order, "the values of a variable", Some(bytes)) else {
                 return;
             };
-            if sink.point_array(name, 1, true) {
+            if visitor.point_array(name, 1, true) {
                 let size = precision.bytes();
                 let numbers = values.chunks_exact(size).map(|x| order.real(precision, x)).collect();
-                let places = Places::Regular { start: cursor.taken(), stride: size };
-                let stored = Stored::in_place(places, Form::Binary(order, precision));
-                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+                let places = Offsets::Regular { start: cursor.last_taken(), stride: size };
+                let stored =
+                    ArrayLocation::in_place(places, NumberEncoding::Binary(order, precision));
+                visitor.point_numbers(PointNumbers { numbers, nodes: None, location: stored });
             }
         }
     }
 }
 
-/// Takes a record, which must have `expected` bytes if that is known. [`Cursor::taken`] is then the offset of the
+/// Takes a record, which must have `expected` bytes if that is known. [`Cursor::last_taken`] is then the offset of the
 /// record's content.
 fn record<'a>(
     cursor: &mut Cursor<'a>,
-    order: Order,
+    order: ByteOrder,
     what: &str,
     expected: Option<usize>,
 ) -> Result<&'a [u8], ReadError> {
@@ -156,10 +163,10 @@ fn record<'a>(
         let problem = format!("the record of {what} ends with another length than it begins with");
         return Err(start.error(problem, "Write the mesh again"));
     }
-    cursor.pass(4);
+    cursor.skip_bytes(4);
     Ok(taken)
 }
 
-fn integers(bytes: &[u8], order: Order) -> Vec<i32> {
+fn integers(bytes: &[u8], order: ByteOrder) -> Vec<i32> {
     bytes.as_chunks().0.iter().map(|&bytes| order.i32(bytes)).collect()
 }

@@ -3,20 +3,20 @@
 //! The format: <https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm>. Rows start with a keyword and may stand in any
 //! order. Nodes of node strings (NS) stay fixed.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::unquoted;
-use crate::visit::heights::Heights;
-use crate::visit::items::{Column, Element, Kind, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{all_rows, nodes};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 pub(crate) struct Sms;
 
@@ -27,64 +27,71 @@ const NO_MATERIAL: i64 = i64::MIN;
 enum Row {
     Node(u64, usize, [f64; 2], (usize, f64)),
     Element(Element),
-    String(Vec<u64>, End),
+    String(Vec<u64>, NodestringEnd),
     /// The number and name of a material.
     Material(i64, Vec<u8>),
     Other,
 }
 
-/// How a row of a node string ends.
-enum End {
+/// The end of a row of a nodestring.
+enum NodestringEnd {
     /// The string continues in the next row.
     Open,
     /// The string ends here. The rest of the row is its name, if it has one.
     Last(Vec<u8>),
 }
 
-impl Walk for Sms {
+impl FormatReader for Sms {
     const VERTICES: &'static str = "the list of ND rows";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let nodes_first = &mut Cursor::new(source);
-        let mut heights = Heights::new(sink);
-        all_rows(nodes_first, sink, node, |cursor, sink, row| {
+        let mut z_values = ZValues::new(visitor);
+        all_rows(nodes_first, visitor, node, |cursor, visitor, row| {
             if let Row::Node(tag, x_at, at, z) = row {
-                sink.node(cursor, tag, 2, x_at, at);
-                heights.see(z);
+                visitor.node(cursor, tag, 2, x_at, at);
+                z_values.push(z);
             }
             Ok(())
         })?;
-        sink.end_nodes(nodes_first)?;
-        heights.send("z", Numbers::TEXT.into(), sink);
+        visitor.end_nodes(nodes_first)?;
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
         let materials = || {
-            let label = |material| (material != NO_MATERIAL).then_some(Label::Tag(material));
-            vec![Column { what: "material".into(), from_dimension: 1, label }]
+            let label = |material| (material != NO_MATERIAL).then_some(GroupLabel::Tag(material));
+            vec![RegionAttribute { kind: "material".into(), from_dimension: 1, label }]
         };
-        sink.columns(materials());
-        all_rows(cursor, sink, element, |cursor, sink, row| {
+        visitor.region_attributes(materials());
+        all_rows(cursor, visitor, element, |cursor, visitor, row| {
             match row {
-                Row::Element(element) => sink.element(cursor, &element)?,
+                Row::Element(element) => visitor.element(cursor, &element)?,
                 Row::String(nodes, end) => {
                     // A row that continues a string has the same label.
-                    let label = Label::Tag(string);
-                    sink.within(&[Within { what: "nodestring", label, dimension: Some(1) }]);
+                    let label = GroupLabel::Tag(string);
+                    visitor.group_scopes(&[GroupScope {
+                        kind: "nodestring",
+                        label,
+                        dimension: Some(1),
+                    }]);
                     // Node strings belong to no material.
-                    sink.columns(Vec::new());
-                    sink.polyline(cursor, 0, [0; 2], &nodes)?;
-                    sink.columns(materials());
-                    sink.within(&[]);
+                    visitor.region_attributes(Vec::new());
+                    visitor.polyline(cursor, 0, [0; 2], &nodes)?;
+                    visitor.region_attributes(materials());
+                    visitor.group_scopes(&[]);
                     strings.extend(nodes);
-                    if let End::Last(name) = end {
+                    if let NodestringEnd::Last(name) = end {
                         if !name.is_empty() {
-                            sink.name("nodestring", Some(1), string, &name);
+                            visitor.group_name("nodestring", Some(1), string, &name);
                         }
                         string += 1;
                     }
                 }
-                Row::Material(tag, name) => sink.name("material", Some(2), tag, &name),
+                Row::Material(tag, name) => visitor.group_name("material", Some(2), tag, &name),
                 _ => {}
             }
             Ok(())
@@ -92,9 +99,9 @@ impl Walk for Sms {
         if !strings.is_empty() {
             strings.sort_unstable();
             strings.dedup();
-            sink.remark(Remark::elements(strings.len() as u64, "node", " of node strings"));
+            visitor.remark(Remark::elements(strings.len() as u64, "node", " of node strings"));
         }
-        Ok(Layout::in_place(Format::Sms2dm, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Sms2dm, CoordinateEncoding::TEXT))
     }
 }
 
@@ -119,7 +126,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     }
     let tag = cursor.integer("the number of a node")?;
     let (x_at, at) = cursor.point(format_args!("node {tag}"))?;
-    Ok(Row::Node(tag, x_at, at, cursor.height_if_any(format_args!("node {tag}"))?))
+    Ok(Row::Node(tag, x_at, at, cursor.z_if_any(format_args!("node {tag}"))?))
 }
 
 /// Reads a row if it is that of an element, a node string or a material.
@@ -127,9 +134,9 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
 fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let (word, length) = keyword(cursor);
     let kind = match &word[..length] {
-        b"E3T" => Kind::Triangle,
-        b"E4Q" => Kind::Quadrilateral,
-        b"E2L" => Kind::Line,
+        b"E3T" => CellKind::Triangle,
+        b"E4Q" => CellKind::Quadrilateral,
+        b"E2L" => CellKind::Line,
         b"NS" => return string(cursor),
         b"MAT" => return Ok(material(cursor)),
         b"E6T" | b"E8Q" | b"E9Q" | b"E3L" => {
@@ -146,9 +153,9 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let nodes = nodes(cursor, kind)?;
     // A material is a number, which some programs leave out.
     let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
-    let of_none = kind == Kind::Line && material == 0;
+    let of_none = kind == CellKind::Line && material == 0;
     let region = [if of_none { NO_MATERIAL } else { material }, 0];
-    Ok(Row::Element(Element { tag, kind, region, nodes }))
+    Ok(Row::Element(Element { id: tag, kind, region, nodes }))
 }
 
 /// Reads the nodes in a row of a node string. The last node of a string is negative, and the string's name may follow.
@@ -160,11 +167,16 @@ fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
         nodes.push(node.unsigned_abs());
         match node {
             0 => return Err(cursor.error("a node string has node 0", CORRECT)),
-            ..0 => return Ok(Row::String(nodes, End::Last(unquoted(cursor.rest()).to_vec()))),
+            ..0 => {
+                return Ok(Row::String(
+                    nodes,
+                    NodestringEnd::Last(unquoted(cursor.rest()).to_vec()),
+                ));
+            }
             _ => {}
         }
     }
-    Ok(Row::String(nodes, End::Open))
+    Ok(Row::String(nodes, NodestringEnd::Open))
 }
 
 /// Reads the number and the name of a material. A row without them is ignored, as the mesh does not depend on it.

@@ -3,21 +3,21 @@
 //! The format: <https://www.fabbers.com/tech/STL_Format>. It lists the corners of each triangle and has no vertices. A
 //! mesh is read only if the user asks to join corners at the same place. Normals are not read.
 
-use crate::binary::order::Order;
-use crate::content::label::Label;
+use crate::binary::byte_order::ByteOrder;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{Element, Kind, PointNumbers, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, GroupScope, PointNumbers};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{all_rows, volume};
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Copies, Layout};
+use crate::visit::storage::{CoordinateStorage, RepeatedVertices};
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
 pub(crate) struct Stl;
@@ -31,7 +31,7 @@ const TRIANGLE: usize = 50;
 
 /// The triangles of a file, which share no vertices.
 #[derive(Default)]
-struct Soup<'a> {
+struct TriangleSoup<'a> {
     /// The offset of each triangle, and the number of its solid.
     triangles: Vec<(usize, u32)>,
     /// The offset of each corner's x, ascending, three for each triangle.
@@ -53,23 +53,29 @@ enum Row<'a> {
     Other,
 }
 
-impl Walk for Stl {
+impl FormatReader for Stl {
     const VERTICES: &'static str = "the list of corners";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         if !source.options.welds {
             return Err(ReadError::Unwelded { path: source.path.clone() });
         }
         let is_binary = is_binary(&source.bytes);
         let (soup, format, numbers) = match is_binary {
             true => {
-                let numbers = Numbers::adjacent(Order::Little, Precision::Single);
-                (binary(source, sink)?, Format::StlBinary, numbers)
+                let numbers = CoordinateEncoding::adjacent(ByteOrder::Little, Precision::Single);
+                (binary(source, visitor)?, Format::StlBinary, numbers)
             }
-            false => (text(source, sink)?, Format::Stl, Numbers::TEXT),
+            false => (text(source, visitor)?, Format::Stl, CoordinateEncoding::TEXT),
         };
-        let copies = hand_on(source, soup, is_binary, sink)?;
-        Ok(Layout { copies: Some(copies), ..Layout::in_place(format, numbers) })
+        let copies = send_mesh(source, soup, is_binary, visitor)?;
+        Ok(CoordinateStorage {
+            repeated_vertices: Some(copies),
+            ..CoordinateStorage::in_place(format, numbers)
+        })
     }
 }
 
@@ -83,13 +89,16 @@ fn is_binary(bytes: &[u8]) -> bool {
 /// Returns the number of triangles that a binary file announces.
 fn announced(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(HEADER..START)?;
-    usize::try_from(Order::Little.whole(count)).ok()
+    usize::try_from(ByteOrder::Little.whole(count)).ok()
 }
 
-fn binary<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadError> {
-    let order = Order::Little;
+fn binary<'a>(
+    source: &'a Source,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<TriangleSoup<'a>, ReadError> {
+    let order = ByteOrder::Little;
     let bytes = source.bytes.as_slice();
-    let at = |at: usize| Cursor::at_byte_of(source, at);
+    let at = |at: usize| Cursor::at_byte_offset(source, at);
     let Some(count) = announced(bytes) else {
         return Err(at(0).error("the file ends before its count", CUT_OFF));
     };
@@ -98,7 +107,7 @@ fn binary<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadE
         let problem = format!("the file ends before its {count} triangles");
         return Err(at(HEADER).error(problem, CUT_OFF));
     };
-    let mut soup = Soup::default();
+    let mut soup = TriangleSoup::default();
     soup.triangles.reserve_exact(count);
     soup.x_at.reserve_exact(3 * count);
     soup.corners.reserve_exact(3 * count);
@@ -118,17 +127,20 @@ fn binary<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadE
         }
         has_attributes |= triangle[48..] != [0, 0];
     }
-    if has_attributes && sink.asks_for_data() {
-        sink.leaves_out("attributes of an STL's triangles");
+    if has_attributes && visitor.asks_for_data() {
+        visitor.unsupported("attributes of an STL's triangles");
     }
     Ok(soup)
 }
 
-fn text<'a>(source: &'a Source, sink: &mut dyn Sink) -> Result<Soup<'a>, ReadError> {
+fn text<'a>(
+    source: &'a Source,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<TriangleSoup<'a>, ReadError> {
     let cursor = &mut Cursor::new(source);
-    let mut soup = Soup::default();
+    let mut soup = TriangleSoup::default();
     let mut is_open = false;
-    all_rows(cursor, sink, row, |cursor, _, row| {
+    all_rows(cursor, visitor, row, |cursor, _, row| {
         let missing = 3 * soup.triangles.len() - soup.x_at.len();
         match row {
             Row::Other => {}
@@ -182,7 +194,7 @@ fn row<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     }
 }
 
-impl Soup<'_> {
+impl TriangleSoup<'_> {
     /// Adds the next corner. Returns an error if its z differs from that of earlier corners.
     #[inline]
     fn corner(
@@ -201,68 +213,72 @@ impl Soup<'_> {
     }
 }
 
-/// Returns for each corner the first corner at the same place.
-fn first_there(corners: &[[f64; 2]]) -> Vec<u32> {
+/// Returns for each corner the index of the first corner with equal coordinates.
+fn first_equal_corners(corners: &[[f64; 2]]) -> Vec<u32> {
     let mut first = HashMap::new();
     // Adding zero makes a negative zero positive, so both are one place.
     let places = corners.iter().map(|corner| corner.map(|x| (x + 0.0).to_bits()));
     (0..).zip(places).map(|(corner, place)| *first.entry(place).or_insert(corner)).collect()
 }
 
-/// Joins corners at the same place, and hands on vertices and triangles. Vertices are in the order in which the file
-/// first has them. Returns where the copies of each vertex stand.
-fn hand_on(
+/// Merges corners with equal coordinates into vertices, in the order of their first corners, and visits vertices and
+/// triangles. Returns all corners of each vertex.
+fn send_mesh(
     source: &Source,
-    soup: Soup<'_>,
+    soup: TriangleSoup<'_>,
     is_binary: bool,
-    sink: &mut dyn Sink,
-) -> Result<Copies, ReadError> {
-    let Soup { triangles, x_at, corners, z, solids } = soup;
+    visitor: &mut dyn MeshVisitor,
+) -> Result<RepeatedVertices, ReadError> {
+    let TriangleSoup { triangles, x_at, corners, z, solids } = soup;
     let mut place = match is_binary {
-        true => Cursor::at_byte_of(source, 0),
+        true => Cursor::at_byte_offset(source, 0),
         false => Cursor::new(source),
     };
     place.check_vertex_count(corners.len() as u64)?;
-    let first = first_there(&corners);
+    let first = first_equal_corners(&corners);
     let count = (0..).zip(&first).filter(|&(corner, first)| corner == *first).count();
-    sink.expect_nodes(count);
+    visitor.expect_nodes(count);
     let mut vertices: Vec<u32> = Vec::with_capacity(corners.len());
     let mut next = 0;
     for (corner, &first) in first.iter().enumerate() {
         if first as usize == corner {
-            place.go_to(x_at[corner]);
+            place.seek(x_at[corner]);
             vertices.push(next);
             next += 1;
-            sink.node(&place, u64::from(next), 2, x_at[corner], corners[corner]);
+            visitor.node(&place, u64::from(next), 2, x_at[corner], corners[corner]);
         } else {
             vertices.push(vertices[first as usize]);
         }
     }
-    sink.remark(Remark::Text(format!("{} corners are joined to {count} vertices", corners.len())));
-    sink.end_nodes(&place)?;
+    visitor
+        .remark(Remark::Text(format!("{} corners are joined to {count} vertices", corners.len())));
+    visitor.end_nodes(&place)?;
     if let Some(z) = z.filter(|&z| z != 0.0)
-        && sink.asks_for_data()
-        && sink.height_array(b"z")
+        && visitor.asks_for_data()
+        && visitor.z_array(b"z")
     {
         // z is the same everywhere, so it never has to be replaced.
         let numbers = vec![z; count];
-        sink.point_numbers(PointNumbers { numbers, nodes: None, stored: None });
+        visitor.point_numbers(PointNumbers { numbers, nodes: None, location: None });
     }
-    sink.expect_elements(triangles.len());
-    place.go_to(0);
+    visitor.expect_elements(triangles.len());
+    place.seek(0);
     let mut last = None;
     for (index, (&(at, solid), corners)) in triangles.iter().zip(vertices.chunks(3)).enumerate() {
-        if sink.asks_for_groups() && last.replace(solid) != Some(solid) {
+        if visitor.asks_for_groups() && last.replace(solid) != Some(solid) {
             let name = solids.get(solid as usize).filter(|name| !name.is_empty());
-            let group =
-                |name: &&[u8]| Within { what: "solid", label: Label::name(name), dimension: None };
-            sink.within(name.map(group).as_slice());
+            let group = |name: &&[u8]| GroupScope {
+                kind: "solid",
+                label: GroupLabel::name(name),
+                dimension: None,
+            };
+            visitor.group_scopes(name.map(group).as_slice());
         }
-        place.go_to(at);
+        place.seek(at);
         let mut nodes = [0; 4];
         nodes.iter_mut().zip(corners).for_each(|(node, &v)| *node = u64::from(v) + 1);
-        let (tag, kind) = (index as u64 + 1, Kind::Triangle);
-        sink.element(&place, &Element { tag, kind, region: [i64::from(solid), 0], nodes })?;
+        let (id, kind) = (index as u64 + 1, CellKind::Triangle);
+        visitor.element(&place, &Element { id, kind, region: [i64::from(solid), 0], nodes })?;
     }
-    Ok(Copies { x_at, vertices })
+    Ok(RepeatedVertices { x_at, vertices })
 }

@@ -1,10 +1,10 @@
 //! Writes grids of coastal models: SMS's `.2dm`, and the grids of ADCIRC and SCHISM.
 
-use crate::export::content::{Content, Data};
-use crate::export::job::Job;
+use crate::export::content::{Content, DataArray};
 use crate::export::put;
+use crate::export::writer_input::WriterInput;
 use crate::format::Format;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
@@ -18,45 +18,45 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
         (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => {
             if let Some(at) = content.point_data.iter().position(|data| data.name == "depth") {
                 let depths = content.point_data.remove(at).values;
-                content.heights = depths.into_iter().map(minus).collect();
+                content.z_values = depths.into_iter().map(minus).collect();
             }
         }
         (Format::Sms2dm | Format::Mike, Format::Adcirc) => {
             let vertices = 0..content.points.len();
             let values = vertices.map(|vertex| minus(content.z(vertex))).collect();
-            (content.heights, content.height) = (Vec::new(), 0.0);
+            (content.z_values, content.common_z) = (Vec::new(), 0.0);
             content.point_data.push(of_vertices("depth", values));
         }
         (Format::Ugrid, Format::Sms2dm) => {
-            if let Some((heights, is_depth)) = take_heights(content) {
+            if let Some((z_values, is_depth)) = take_heights(content) {
                 let upwards = |number| if is_depth { minus(number) } else { number };
-                content.heights = heights.into_iter().map(upwards).collect();
+                content.z_values = z_values.into_iter().map(upwards).collect();
             }
         }
         (Format::Ugrid, Format::Adcirc) => {
-            if let Some((heights, is_depth)) = take_heights(content) {
+            if let Some((z_values, is_depth)) = take_heights(content) {
                 let downwards = |number| if is_depth { number } else { minus(number) };
-                let values = heights.into_iter().map(downwards).collect();
+                let values = z_values.into_iter().map(downwards).collect();
                 content.point_data.push(of_vertices("depth", values));
             }
         }
-        (_, Format::Ugrid) if !content.heights.is_empty() => {
-            let values = std::mem::take(&mut content.heights);
+        (_, Format::Ugrid) if !content.z_values.is_empty() => {
+            let values = std::mem::take(&mut content.z_values);
             content.point_data.push(of_vertices("z", values));
         }
         _ => {}
     }
 }
 
-fn of_vertices(name: &str, values: Vec<f64>) -> Data {
-    Data { name: name.to_owned(), components: 1, is_real: true, values }
+fn of_vertices(name: &str, values: Vec<f64>) -> DataArray {
+    DataArray { name: name.to_owned(), components: 1, is_real: true, values }
 }
 
 /// Takes the variable of nodes out that is z, or a depth, and tells whether it is a depth.
 fn take_heights(content: &mut Content) -> Option<(Vec<f64>, bool)> {
-    let is_z = |data: &Data| data.name == "z" || data.name.ends_with("node_z");
-    let is_depth = |data: &Data| data.name.to_ascii_lowercase().ends_with("depth");
-    let find = |is: &dyn Fn(&Data) -> bool| {
+    let is_z = |data: &DataArray| data.name == "z" || data.name.ends_with("node_z");
+    let is_depth = |data: &DataArray| data.name.to_ascii_lowercase().ends_with("depth");
+    let find = |is: &dyn Fn(&DataArray) -> bool| {
         content.point_data.iter().position(|data| data.components == 1 && is(data))
     };
     let (at, is_depth) =
@@ -64,36 +64,36 @@ fn take_heights(content: &mut Content) -> Option<(Vec<f64>, bool)> {
     Some((content.point_data.remove(at).values, is_depth))
 }
 
-pub(crate) fn write_sms(job: &Job<'_>) -> String {
-    let content = job.content;
+pub(crate) fn write_sms(input: &WriterInput<'_>) -> String {
+    let content = input.content;
     let mut out = "MESH2D\n".to_owned();
     let mut element = 0;
-    for cell in job.cells() {
+    for cell in input.cells() {
         let kind = match content.cells.kinds[cell] {
-            Kind::Triangle => "E3T",
-            Kind::Quadrilateral => "E4Q",
-            Kind::Line if !is_of_string(job, cell) => "E2L",
+            CellKind::Triangle => "E3T",
+            CellKind::Quadrilateral => "E4Q",
+            CellKind::Line if !is_of_string(input, cell) => "E2L",
             _ => continue,
         };
         element += 1;
-        put!(out, "{kind} {element} {} {}\n", job.numbers(cell), job.tag(cell));
+        put!(out, "{kind} {element} {} {}\n", input.vertex_ids(cell), input.group_number(cell));
     }
     for vertex in 0..content.points.len() {
-        put!(out, "ND {} {}\n", job.number(vertex), job.space(vertex));
+        put!(out, "ND {} {}\n", input.vertex_id(vertex), input.xyz(vertex));
     }
     let mut materials = BTreeMap::new();
-    for cell in job.cells() {
-        let Some(group) = job.tags.group(content, cell) else { continue };
-        let is_line = content.cells.kinds[cell] == Kind::Line;
+    for cell in input.cells() {
+        let Some(group) = input.group_numbers.group(content, cell) else { continue };
+        let is_line = content.cells.kinds[cell] == CellKind::Line;
         if let Some(name) = content.groups[group as usize].name().filter(|_| !is_line) {
-            materials.insert(job.tags.number(group), name);
+            materials.insert(input.group_numbers.number(group), name);
         }
     }
-    for (group, string) in strings(job) {
+    for (group, string) in strings(input) {
         let Some((last, before)) = string.split_last() else { continue };
         out.push_str("NS");
-        before.iter().for_each(|&vertex| put!(out, " {}", job.number(vertex as usize)));
-        put!(out, " -{}", job.number(*last as usize));
+        before.iter().for_each(|&vertex| put!(out, " {}", input.vertex_id(vertex as usize)));
+        put!(out, " -{}", input.vertex_id(*last as usize));
         match content.groups[group as usize].name() {
             Some(name) => put!(out, " \"{name}\"\n"),
             None => out.push('\n'),
@@ -140,21 +140,21 @@ fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
     chains
 }
 
-pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
-    let content = job.content;
-    let depth = job.point_data().next();
-    let is_inside = |cell: &usize| content.cells.kinds[*cell] != Kind::Line;
-    let elements = || job.cells().filter(is_inside);
+pub(crate) fn write_adcirc(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let depth = input.point_data().next();
+    let is_inside = |cell: &usize| content.cells.kinds[*cell] != CellKind::Line;
+    let elements = || input.cells().filter(is_inside);
     let mut out = format!("grid\n{} {}\n", elements().count(), content.points.len());
     for vertex in 0..content.points.len() {
         let value = depth.map_or(0.0, |depth| depth.values[vertex]);
-        put!(out, "{} {} {value:?}\n", job.number(vertex), job.plane(vertex));
+        put!(out, "{} {} {value:?}\n", input.vertex_id(vertex), input.xy(vertex));
     }
     for (cell, element) in elements().zip(1..) {
-        put!(out, "{element} {} {}\n", content.cells.of(cell).len(), job.numbers(cell));
+        put!(out, "{element} {} {}\n", content.cells.of(cell).len(), input.vertex_ids(cell));
     }
     // Boundaries whose names start with `open` are open; all others are land.
-    let strings = strings(job);
+    let strings = strings(input);
     let name = |group: u32| content.groups[group as usize].name().unwrap_or("");
     for (what, is_open) in [("open", true), ("land", false)] {
         let of = |(group, _): &&(u32, Vec<u32>)| name(*group).starts_with("open") == is_open;
@@ -168,23 +168,23 @@ pub(crate) fn write_adcirc(job: &Job<'_>) -> String {
                 put!(out, " {}", u8::from(name(*group).starts_with("island")));
             }
             put!(out, " = Number of nodes for {what} boundary\n");
-            string.iter().for_each(|&vertex| put!(out, "{}\n", job.number(vertex as usize)));
+            string.iter().for_each(|&vertex| put!(out, "{}\n", input.vertex_id(vertex as usize)));
         }
     }
     out
 }
 
 /// Whether a line belongs to a node string, not to an element of a material.
-fn is_of_string(job: &Job<'_>, line: usize) -> bool {
-    job.group(line).is_some_and(|group| group.what != "material")
+fn is_of_string(input: &WriterInput<'_>, line: usize) -> bool {
+    input.group(line).is_some_and(|group| group.kind != "material")
 }
 
 /// Returns the lines of each group as chains of vertices.
-fn strings(job: &Job<'_>) -> Vec<(u32, Vec<u32>)> {
+fn strings(input: &WriterInput<'_>) -> Vec<(u32, Vec<u32>)> {
     let mut lines: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
-    for cell in job.all(Kind::Line).filter(|&cell| is_of_string(job, cell)) {
+    for cell in input.all(CellKind::Line).filter(|&cell| is_of_string(input, cell)) {
         if let (Some(group), &[a, b]) =
-            (job.tags.group(job.content, cell), job.content.cells.of(cell))
+            (input.group_numbers.group(input.content, cell), input.content.cells.of(cell))
         {
             lines.entry(group).or_default().push([a, b]);
         }

@@ -1,18 +1,18 @@
 //! Attributes of objects.
 
 use super::btree;
-use super::bytes::{Bytes, Fault};
+use super::bytes::{ByteReader, Hdf5Error};
 use super::file::{Hdf5, Object};
+use super::file_bytes::FileBytes;
 use super::header::{ATTRIBUTE, ATTRIBUTE_INFO, Header};
-use super::heap::Heap;
-use super::raw::Raw;
+use super::heap::FractalHeap;
 use super::strings;
-use super::types::{Number, Space};
+use super::types::{Dataspace, Datatype};
 
 /// The content of an attribute.
 #[derive(Clone, Debug)]
 pub(crate) struct Attribute<'a> {
-    pub(crate) number: Number,
+    pub(crate) number: Datatype,
     pub(crate) bytes: &'a [u8],
 }
 
@@ -38,7 +38,7 @@ impl<'a> Hdf5<'a> {
 impl<'a> Attribute<'a> {
     /// Its text, up to where it ends.
     pub(crate) fn text(&self) -> Option<&'a [u8]> {
-        let Number::Text(_) = self.number else { return None };
+        let Datatype::Text(_) = self.number else { return None };
         self.bytes.split(|&byte| byte == 0).next()
     }
 }
@@ -46,13 +46,16 @@ impl<'a> Attribute<'a> {
 impl Attribute<'_> {
     /// The first of its whole numbers.
     pub(crate) fn whole(&self) -> Option<i64> {
-        let Number::Whole(size, order) = self.number else { return None };
+        let Datatype::Whole(size, order) = self.number else { return None };
         Some(order.signed(self.bytes.get(..size)?))
     }
 }
 
 /// Attributes of an object that has many, in a heap.
-fn elsewhere<'a>(raw: &Raw<'a>, header: &Header) -> Result<Vec<(&'a [u8], Attribute<'a>)>, Fault> {
+fn elsewhere<'a>(
+    raw: &FileBytes<'a>,
+    header: &Header,
+) -> Result<Vec<(&'a [u8], Attribute<'a>)>, Hdf5Error> {
     let mut all = Vec::new();
     for message in header.of(ATTRIBUTE_INFO) {
         let mut bytes = raw.at(message.content.start, "attributes").within(message.content.clone());
@@ -60,7 +63,7 @@ fn elsewhere<'a>(raw: &Raw<'a>, header: &Header) -> Result<Vec<(&'a [u8], Attrib
         let flags = bytes.byte()?;
         bytes.skip(if flags & 1 != 0 { 2 } else { 0 })?;
         if let (Some(heap), Some(tree)) = (bytes.address()?, bytes.address()?) {
-            let heap = Heap::read(raw, heap)?;
+            let heap = FractalHeap::read(raw, heap)?;
             for record in btree::records(raw, tree)? {
                 all.extend(heap.object(raw, record).and_then(|own| read(raw, own)).ok());
             }
@@ -70,7 +73,10 @@ fn elsewhere<'a>(raw: &Raw<'a>, header: &Header) -> Result<Vec<(&'a [u8], Attrib
 }
 
 /// The name and the content of an attribute message.
-fn read<'a>(raw: &Raw<'a>, mut bytes: Bytes<'a>) -> Result<(&'a [u8], Attribute<'a>), Fault> {
+fn read<'a>(
+    raw: &FileBytes<'a>,
+    mut bytes: ByteReader<'a>,
+) -> Result<(&'a [u8], Attribute<'a>), Hdf5Error> {
     let version = bytes.byte()?;
     let flags = bytes.byte()?;
     let sizes = [bytes.count(2)?, bytes.count(2)?, bytes.count(2)?];
@@ -86,10 +92,10 @@ fn read<'a>(raw: &Raw<'a>, mut bytes: Bytes<'a>) -> Result<(&'a [u8], Attribute<
     let (mut name, number, space) = (part(sizes[0])?, part(sizes[1])?, part(sizes[2])?);
     let name = name.take(sizes[0])?;
     let name = name.split(|&byte| byte == 0).next().unwrap_or_default();
-    let (number, space) = (Number::read(number)?, Space::read(space)?);
-    if number == Number::TextElsewhere(number.bytes()) && space.count() == Some(1) {
+    let (number, space) = (Datatype::read(number)?, Dataspace::read(space)?);
+    if number == Datatype::VariableText(number.bytes()) && space.count() == Some(1) {
         let text = strings::read(raw, bytes)?;
-        return Ok((name, Attribute { number: Number::Text(text.len()), bytes: text }));
+        return Ok((name, Attribute { number: Datatype::Text(text.len()), bytes: text }));
     }
     let size = space.count().and_then(|count| usize::try_from(count).ok());
     let size = size.and_then(|size| size.checked_mul(number.bytes())).unwrap_or(usize::MAX);

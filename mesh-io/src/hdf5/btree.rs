@@ -1,15 +1,15 @@
 //! Trees of both versions that tell where parts of a file stand.
 
-use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
-use super::sum::Sum;
+use super::bytes::{ByteReader, Hdf5Error};
+use super::checksum::Checksum;
+use super::file_bytes::FileBytes;
 
-/// How deep a tree may be. One of so many levels would have more leaves than there are bytes on any disk.
-const DEPTH: u8 = 32;
+/// Limit on the levels of a tree. A deeper tree would have more leaves than there are bytes on any disk.
+const MAX_DEPTH: u8 = 32;
 
 /// A tree of version 1.
 pub(super) struct Tree<'r, 'a> {
-    raw: &'r Raw<'a>,
+    raw: &'r FileBytes<'a>,
     kind: u8,
     /// How many bytes there are between the addresses of two nodes.
     key: usize,
@@ -17,12 +17,12 @@ pub(super) struct Tree<'r, 'a> {
 
 impl<'r, 'a> Tree<'r, 'a> {
     /// Of tables of links.
-    pub(super) fn of_groups(raw: &'r Raw<'a>) -> Self {
+    pub(super) fn of_groups(raw: &'r FileBytes<'a>) -> Self {
         Tree { raw, kind: 0, key: raw.widths.length }
     }
 
     /// Of the chunks of a dataset of so many dimensions.
-    pub(super) fn of_chunks(raw: &'r Raw<'a>, rank: usize) -> Self {
+    pub(super) fn of_chunks(raw: &'r FileBytes<'a>, rank: usize) -> Self {
         Tree { raw, kind: 1, key: 4 + 4 + 8 * (rank + 1) }
     }
 
@@ -30,15 +30,15 @@ impl<'r, 'a> Tree<'r, 'a> {
     pub(super) fn each(
         &self,
         root: usize,
-        take: &mut dyn FnMut(Bytes<'a>, usize, usize) -> Result<(), Fault>,
-    ) -> Result<(), Fault> {
+        take: &mut dyn FnMut(ByteReader<'a>, usize, usize) -> Result<(), Hdf5Error>,
+    ) -> Result<(), Hdf5Error> {
         // The nodes to be read, the next one last, and the level of each.
         let mut nodes = vec![(root, None)];
         while let Some((node, expected)) = nodes.pop() {
             let mut bytes = self.raw.at(node, "a tree of the HDF5 file");
             bytes.expect(b"TREE")?;
             let (kind, level, count) = (bytes.byte()?, bytes.byte()?, bytes.count(2)?);
-            let is_level = expected.is_none_or(|expected| expected == level) && level < DEPTH;
+            let is_level = expected.is_none_or(|expected| expected == level) && level < MAX_DEPTH;
             if kind != self.kind || !is_level {
                 return Err(bytes.damaged());
             }
@@ -55,14 +55,14 @@ impl<'r, 'a> Tree<'r, 'a> {
                 }
             }
             nodes.extend(children.into_iter().rev());
-            self.raw.take(node..bytes.at(), &bytes)?;
+            self.raw.claim(node..bytes.at(), &bytes)?;
         }
         Ok(())
     }
 }
 
 /// The records of a tree of version 2.
-pub(super) fn records<'a>(raw: &Raw<'a>, at: usize) -> Result<Vec<&'a [u8]>, Fault> {
+pub(super) fn records<'a>(raw: &FileBytes<'a>, at: usize) -> Result<Vec<&'a [u8]>, Hdf5Error> {
     let mut bytes = raw.at(at, "a tree of the HDF5 file");
     bytes.expect(b"BTHD\0")?;
     bytes.byte()?;
@@ -71,9 +71,9 @@ pub(super) fn records<'a>(raw: &Raw<'a>, at: usize) -> Result<Vec<&'a [u8]>, Fau
     let root = bytes.address()?;
     let first = bytes.count(2)?;
     bytes.length()?;
-    Sum::take(at, &mut bytes)?;
-    raw.take(at..bytes.at(), &bytes)?;
-    if record == 0 || depth > usize::from(DEPTH) || node > raw.bytes.len() {
+    Checksum::take(at, &mut bytes)?;
+    raw.claim(at..bytes.at(), &bytes)?;
+    if record == 0 || depth > usize::from(MAX_DEPTH) || node > raw.bytes.len() {
         return Err(bytes.damaged());
     }
     let Some(root) = root else { return Ok(Vec::new()) };
@@ -95,14 +95,14 @@ pub(super) fn records<'a>(raw: &Raw<'a>, at: usize) -> Result<Vec<&'a [u8]>, Fau
                 nodes.push((child, own, level - 1));
             }
         }
-        Sum::take(at, &mut bytes)?;
-        raw.take(at..bytes.at(), &bytes)?;
+        Checksum::take(at, &mut bytes)?;
+        raw.claim(at..bytes.at(), &bytes)?;
     }
     Ok(records)
 }
 
 /// How many bytes the number of records of a leaf has, and that of all below a node, by level.
-fn widths(raw: &Raw<'_>, [node, record, depth]: [usize; 3]) -> Vec<usize> {
+fn widths(raw: &FileBytes<'_>, [node, record, depth]: [usize; 3]) -> Vec<usize> {
     let width = |most: usize| most.max(1).ilog2() as usize / 8 + 1;
     let room = node.saturating_sub(10);
     // The most records of a leaf, and of all below a node of the level.

@@ -1,11 +1,11 @@
 //! The bytes that the metadata of a file consist of.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use std::ops::Range;
 
-/// What is wrong with a part of a file, or is not read of it.
+/// Damage or an unsupported feature of a part of an HDF5 file.
 #[derive(Clone, Debug)]
-pub(crate) struct Fault {
+pub(crate) struct Hdf5Error {
     /// The byte at which that part starts.
     pub(crate) at: usize,
     pub(crate) problem: String,
@@ -19,63 +19,68 @@ pub(super) const DAMAGED: &str =
 pub(super) const REPACK: &str =
     "Rewrite it with `h5repack -l CONTI -f NONE IN OUT`, or save it in another format";
 
-impl Fault {
+impl Hdf5Error {
     #[cold]
-    pub(super) fn damaged(at: usize, what: &str) -> Fault {
-        Fault { at, problem: format!("{what} is damaged"), remedy: DAMAGED }
+    pub(super) fn damaged(at: usize, what: &str) -> Hdf5Error {
+        Hdf5Error { at, problem: format!("{what} is damaged"), remedy: DAMAGED }
     }
 
     #[cold]
-    pub(super) fn unread(at: usize, problem: impl Into<String>) -> Fault {
-        Fault { at, problem: format!("cannot read {}", problem.into()), remedy: REPACK }
+    pub(super) fn unread(at: usize, problem: impl Into<String>) -> Hdf5Error {
+        Hdf5Error { at, problem: format!("cannot read {}", problem.into()), remedy: REPACK }
     }
 }
 
-/// How many bytes an address has, and a length.
+/// Widths of addresses and lengths in the file, in bytes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Widths {
+pub(super) struct FieldWidths {
     pub(super) address: usize,
     pub(super) length: usize,
 }
 
-/// Takes one item of metadata after another. Numbers have their lowest byte first.
+/// Reader of the fields of a metadata object. Numbers are little-endian.
 #[derive(Clone)]
-pub(super) struct Bytes<'a> {
+pub(super) struct ByteReader<'a> {
     all: &'a [u8],
     at: usize,
     end: usize,
-    widths: Widths,
+    widths: FieldWidths,
     /// What is read, for messages, and where it starts.
     what: &'static str,
     start: usize,
 }
 
-impl<'a> Bytes<'a> {
+impl<'a> ByteReader<'a> {
     /// Stands at a byte of the file, which need not be there.
-    pub(super) fn new(all: &'a [u8], at: usize, widths: Widths, what: &'static str) -> Bytes<'a> {
-        Bytes { all, at, end: all.len(), widths, what, start: at }
+    pub(super) fn new(
+        all: &'a [u8],
+        at: usize,
+        widths: FieldWidths,
+        what: &'static str,
+    ) -> ByteReader<'a> {
+        ByteReader { all, at, end: all.len(), widths, what, start: at }
     }
 
     /// Stands at the start of a range, of which it sees no more.
-    pub(super) fn within(&self, range: Range<usize>) -> Bytes<'a> {
-        Bytes { at: range.start, end: range.end.min(self.all.len()), ..*self }
+    pub(super) fn within(&self, range: Range<usize>) -> ByteReader<'a> {
+        ByteReader { at: range.start, end: range.end.min(self.all.len()), ..*self }
     }
 
     #[cold]
-    pub(super) fn damaged(&self) -> Fault {
-        Fault::damaged(self.start, self.what)
+    pub(super) fn damaged(&self) -> Hdf5Error {
+        Hdf5Error::damaged(self.start, self.what)
     }
 
     #[cold]
-    pub(super) fn unread(&self, problem: impl Into<String>) -> Fault {
-        Fault::unread(self.start, problem)
+    pub(super) fn unread(&self, problem: impl Into<String>) -> Hdf5Error {
+        Hdf5Error::unread(self.start, problem)
     }
 
     pub(super) fn at(&self) -> usize {
         self.at
     }
 
-    pub(super) fn widths(&self) -> Widths {
+    pub(super) fn widths(&self) -> FieldWidths {
         self.widths
     }
 
@@ -83,7 +88,7 @@ impl<'a> Bytes<'a> {
         self.end.saturating_sub(self.at)
     }
 
-    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Hdf5Error> {
         let end = self.at.checked_add(count).filter(|&end| end <= self.end);
         let taken = end.and_then(|end| self.all.get(self.at..end));
         let taken = taken.ok_or_else(|| self.damaged())?;
@@ -91,37 +96,38 @@ impl<'a> Bytes<'a> {
         Ok(taken)
     }
 
-    pub(super) fn skip(&mut self, count: usize) -> Result<(), Fault> {
+    pub(super) fn skip(&mut self, count: usize) -> Result<(), Hdf5Error> {
         self.take(count).map(drop)
     }
 
     /// Takes a number of up to eight bytes.
-    pub(super) fn number(&mut self, width: usize) -> Result<u64, Fault> {
-        Ok(Order::Little.whole(self.take(width)?))
+    pub(super) fn number(&mut self, width: usize) -> Result<u64, Hdf5Error> {
+        Ok(ByteOrder::Little.whole(self.take(width)?))
     }
 
     /// The same as a count or a place, the largest there is if it is beyond that.
-    pub(super) fn count(&mut self, width: usize) -> Result<usize, Fault> {
+    pub(super) fn count(&mut self, width: usize) -> Result<usize, Hdf5Error> {
         Ok(usize::try_from(self.number(width)?).unwrap_or(usize::MAX))
     }
 
-    pub(super) fn byte(&mut self) -> Result<u8, Fault> {
+    pub(super) fn byte(&mut self) -> Result<u8, Hdf5Error> {
         Ok(self.take(1)?[0])
     }
 
     /// Takes an address; none if it is that of nothing.
-    pub(super) fn address(&mut self) -> Result<Option<usize>, Fault> {
+    pub(super) fn address(&mut self) -> Result<Option<usize>, Hdf5Error> {
         let bytes = self.take(self.widths.address)?;
         let is_none = bytes.iter().all(|&byte| byte == 0xFF);
-        Ok((!is_none).then(|| usize::try_from(Order::Little.whole(bytes)).unwrap_or(usize::MAX)))
+        Ok((!is_none)
+            .then(|| usize::try_from(ByteOrder::Little.whole(bytes)).unwrap_or(usize::MAX)))
     }
 
-    pub(super) fn length(&mut self) -> Result<usize, Fault> {
+    pub(super) fn length(&mut self) -> Result<usize, Hdf5Error> {
         self.count(self.widths.length)
     }
 
     /// Takes a word that marks what follows.
-    pub(super) fn expect(&mut self, mark: &[u8]) -> Result<(), Fault> {
+    pub(super) fn expect(&mut self, mark: &[u8]) -> Result<(), Hdf5Error> {
         match self.take(mark.len())? == mark {
             true => Ok(()),
             false => Err(self.damaged()),
@@ -129,7 +135,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// Takes bytes up to the next multiple of so many, counted from a place.
-    pub(super) fn align(&mut self, from: usize, to: usize) -> Result<(), Fault> {
+    pub(super) fn align(&mut self, from: usize, to: usize) -> Result<(), Hdf5Error> {
         self.skip((to - (self.at - from) % to) % to)
     }
 }

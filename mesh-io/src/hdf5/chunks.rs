@@ -1,17 +1,17 @@
 //! The chunks of a dataset: where each stands, and which of the items it has.
 
 use super::btree::Tree;
-use super::bytes::Fault;
+use super::bytes::Hdf5Error;
+use super::checksum::Checksum;
 use super::entry::{Chunk, Entry};
+use super::file_bytes::FileBytes;
 use super::filters::Filter;
-use super::fixed_array::{self, Slot};
+use super::fixed_array::{self, FixedArrayElement};
 use super::layout::Index;
-use super::raw::Raw;
-use super::sum::Sum;
 
-/// A dataset as a lattice of chunks. One that is not in chunks is a single one.
+/// The division of a dataset into a grid of chunks. A dataset that is not chunked is one chunk.
 #[derive(Clone, Debug)]
-pub(super) struct Lattice {
+pub(super) struct ChunkGrid {
     /// How many items there are in each dimension, at least one of which there is, and how many in each of a chunk.
     shape: Vec<usize>,
     lengths: Vec<usize>,
@@ -19,17 +19,17 @@ pub(super) struct Lattice {
     item: usize,
     /// How many chunks there are in each dimension, and how many the index has room for.
     counts: Vec<usize>,
-    rooms: Vec<usize>,
+    max_counts: Vec<usize>,
 }
 
-impl Lattice {
+impl ChunkGrid {
     /// None if its sizes are no numbers. `most` are the lengths that the dataset may grow to.
     pub(super) fn new(
         shape: &[u64],
         most: &[u64],
         lengths: &[u64],
         item: usize,
-    ) -> Option<Lattice> {
+    ) -> Option<ChunkGrid> {
         let sizes = |numbers: &[u64]| {
             numbers.iter().map(|&n| usize::try_from(n).ok()).collect::<Option<Vec<usize>>>()
         };
@@ -40,15 +40,16 @@ impl Lattice {
             (shape, lengths, most) = (vec![1], vec![1], vec![1]);
         }
         let counts: Vec<usize> = shape.iter().zip(&lengths).map(|(n, l)| n.div_ceil(*l)).collect();
-        let rooms: Vec<usize> = most.iter().zip(&lengths).map(|(n, l)| n.div_ceil(*l)).collect();
-        let lattice = Lattice { shape, lengths, item, counts, rooms };
+        let max_counts: Vec<usize> =
+            most.iter().zip(&lengths).map(|(n, l)| n.div_ceil(*l)).collect();
+        let grid = ChunkGrid { shape, lengths, item, counts, max_counts };
         let product =
             |of: &[usize]| of.iter().try_fold(item.max(1), |all: usize, &n| all.checked_mul(n));
         // Both sizes are numbers, and so is the number of chunks.
-        product(&lattice.shape)?;
-        product(&lattice.lengths)?;
-        product(&lattice.counts)?;
-        Some(lattice)
+        product(&grid.shape)?;
+        product(&grid.lengths)?;
+        product(&grid.counts)?;
+        Some(grid)
     }
 
     /// How many bytes all items have.
@@ -75,21 +76,24 @@ impl Lattice {
         })
     }
 
-    /// Where the place of a chunk is in a list of as many as the dataset may grow to.
-    fn room(&self, number: usize) -> Option<usize> {
-        let places = self.places(number);
+    /// Returns the position of a chunk in the index of the chunks to which the dataset may grow.
+    fn index_position(&self, number: usize) -> Option<usize> {
+        let places = self.position(number);
         places
             .iter()
-            .zip(&self.rooms)
+            .zip(&self.max_counts)
             .try_fold(0, |all: usize, (place, room)| all.checked_mul(*room)?.checked_add(*place))
     }
 
-    /// How many chunks the dataset may grow to.
-    pub(super) fn rooms(&self) -> usize {
-        self.rooms.iter().try_fold(1, |all: usize, &n| all.checked_mul(n)).unwrap_or(usize::MAX)
+    /// Returns the number of chunks to which the dataset may grow.
+    pub(super) fn max_count(&self) -> usize {
+        self.max_counts
+            .iter()
+            .try_fold(1, |all: usize, &n| all.checked_mul(n))
+            .unwrap_or(usize::MAX)
     }
 
-    fn places(&self, number: usize) -> Vec<usize> {
+    fn position(&self, number: usize) -> Vec<usize> {
         let mut left = number;
         let mut places = vec![0; self.counts.len()];
         for (place, count) in places.iter_mut().zip(&self.counts).rev() {
@@ -107,7 +111,7 @@ impl Lattice {
         let last = rank - 1 - (1..rank).rev().take_while(whole).count();
         let inner = self.shape[last + 1..].iter().product::<usize>() * self.item;
         let starts: Vec<usize> =
-            self.places(number).iter().zip(&self.lengths).map(|(p, l)| p * l).collect();
+            self.position(number).iter().zip(&self.lengths).map(|(p, l)| p * l).collect();
         let extents: Vec<usize> =
             (0..rank).map(|d| self.lengths[d].min(self.shape[d] - starts[d])).collect();
         let mut at = vec![0; last];
@@ -130,14 +134,14 @@ impl Lattice {
     /// Finds the chunks of an index, in the order of their numbers. All have to be there.
     pub(super) fn chunks(
         &self,
-        raw: &Raw<'_>,
+        raw: &FileBytes<'_>,
         index: &Index,
         address: usize,
         filters: &[Filter],
-        sum: Option<&Sum>,
+        sum: Option<&Checksum>,
         at: usize,
-    ) -> Result<Vec<Chunk>, Fault> {
-        let damaged = || Fault::damaged(at, "a dataset of the HDF5 file");
+    ) -> Result<Vec<Chunk>, Hdf5Error> {
+        let damaged = || Hdf5Error::damaged(at, "a dataset of the HDF5 file");
         let whole = self.chunk_bytes();
         let mut chunks = Vec::new();
         match index {
@@ -173,18 +177,21 @@ impl Lattice {
             }
             Index::Implicit => {
                 for number in 0..self.count().min(raw.bytes.len()) {
-                    let before = self.room(number).and_then(|room| room.checked_mul(whole));
+                    let before =
+                        self.index_position(number).and_then(|room| room.checked_mul(whole));
                     let start = address.saturating_add(before.ok_or_else(damaged)?);
                     let range = start..start.saturating_add(whole);
                     chunks.push(Chunk { number, range, mask: 0, entry: None });
                 }
             }
             Index::FixedArray => {
-                let rooms = self.rooms();
-                let slots = fixed_array::read(raw, address, rooms, !filters.is_empty())?;
+                let max_count = self.max_count();
+                let slots = fixed_array::read(raw, address, max_count, !filters.is_empty())?;
                 for number in 0..self.count().min(slots.count()) {
-                    let room = self.room(number).ok_or_else(damaged)?;
-                    if let Some(Slot { address, length, mask, entry }) = slots.slot(raw, room)? {
+                    let room = self.index_position(number).ok_or_else(damaged)?;
+                    if let Some(FixedArrayElement { address, length, mask, entry }) =
+                        slots.slot(raw, room)?
+                    {
                         let range = address..address.saturating_add(length.unwrap_or(whole));
                         chunks.push(Chunk { number, range, mask, entry: Some(entry) });
                     }
@@ -195,14 +202,14 @@ impl Lattice {
         let numbers = chunks.iter().map(|chunk| chunk.number);
         if !numbers.eq(0..self.count()) {
             let problem = "a dataset of which parts were never written, or twice";
-            return Err(Fault::unread(at, problem));
+            return Err(Hdf5Error::unread(at, problem));
         }
         self.check(raw, &chunks, filters).ok_or_else(damaged)?;
         Ok(chunks)
     }
 
     /// Chunks lie in the file, and no two of them are the same bytes.
-    fn check(&self, raw: &Raw<'_>, chunks: &[Chunk], filters: &[Filter]) -> Option<()> {
+    fn check(&self, raw: &FileBytes<'_>, chunks: &[Chunk], filters: &[Filter]) -> Option<()> {
         let mut left = raw.bytes.len();
         for chunk in chunks {
             let is_inside = chunk.range.end <= raw.bytes.len();

@@ -1,15 +1,15 @@
 //! Datasets: what their headers say, and their numbers.
 
-use super::bytes::{DAMAGED, Fault};
-use super::chunks::Lattice;
+use super::bytes::{DAMAGED, Hdf5Error};
+use super::checksum::Checksum;
+use super::chunks::ChunkGrid;
 use super::entry::Chunk;
 use super::file::{Hdf5, Object};
+use super::file_bytes::FileBytes;
 use super::filters::{self, Filter};
 use super::header::{FILTERS, Header, LAYOUT, SPACE, TYPE};
 use super::layout::{Index, Layout};
-use super::raw::Raw;
-use super::sum::Sum;
-use super::types::{Number, Space};
+use super::types::{Dataspace, Datatype};
 use crate::error::ReadError;
 use crate::parallel::map_parts;
 use std::borrow::Cow;
@@ -19,33 +19,35 @@ use std::ops::Range;
 pub(crate) struct Dataset {
     /// Where its header stands.
     pub(crate) at: usize,
-    pub(crate) number: Number,
-    space: Space,
+    pub(crate) datatype: Datatype,
+    space: Dataspace,
     layout: Layout,
     filters: Vec<Filter>,
     /// The checksum that covers the layout.
-    sum: Option<Sum>,
+    sum: Option<Checksum>,
 }
 
-/// The items of a dataset, and where they stand.
-pub(crate) struct Array<'a> {
+/// The items of a dataset, with their location in the file.
+pub(crate) struct DatasetArray<'a> {
     /// One item after another, the last dimension first.
     pub(crate) bytes: Cow<'a, [u8]>,
-    pub(super) pieces: Pieces,
+    pub(super) storage: DatasetStorage,
 }
 
-/// Where the items of a dataset stand.
+/// Location of the items of a dataset in the file: its chunks with their filters, or one chunk for items that are not
+/// chunked.
 #[derive(Clone, Debug)]
-pub(super) struct Pieces {
-    pub(super) lattice: Option<Lattice>,
+pub(super) struct DatasetStorage {
+    /// The grid of chunks; `None` if the dataset has no items.
+    pub(super) grid: Option<ChunkGrid>,
     pub(super) chunks: Vec<Chunk>,
     pub(super) filters: Vec<Filter>,
     /// The checksum that covers the items themselves, where they stand in the header.
-    pub(super) sum: Option<Sum>,
+    pub(super) sum: Option<Checksum>,
 }
 
-/// How many chunks are unpacked at a time.
-const WAVE: usize = 64;
+/// Number of chunks that are decompressed at a time.
+const CHUNKS_PER_BATCH: usize = 64;
 
 impl Dataset {
     /// How many items there are in each dimension; none for a single item.
@@ -55,17 +57,17 @@ impl Dataset {
 
     /// Whether it may grow without limit in its first dimension.
     pub(crate) fn grows(&self) -> bool {
-        self.space.most.first() == Some(&u64::MAX)
+        self.space.max_shape.first() == Some(&u64::MAX)
     }
 }
 
 /// A message of the object, wherever it stands, and the checksum that covers it.
-fn type_of(raw: &Raw<'_>, header: &Header, at: usize) -> Result<Number, Fault> {
-    let damaged = || Fault::damaged(at, "the type of a dataset");
+fn type_of(raw: &FileBytes<'_>, header: &Header, at: usize) -> Result<Datatype, Hdf5Error> {
+    let damaged = || Hdf5Error::damaged(at, "the type of a dataset");
     let message = header.of(TYPE).next().ok_or_else(damaged)?;
     let mut bytes = raw.at(message.content.start, "the type of a dataset");
     if !message.is_shared {
-        return Number::read(bytes.within(message.content.clone()));
+        return Datatype::read(bytes.within(message.content.clone()));
     }
     // A named type, in the header of an object of its own.
     let (version, kind) = (bytes.byte()?, bytes.byte()?);
@@ -75,7 +77,7 @@ fn type_of(raw: &Raw<'_>, header: &Header, at: usize) -> Result<Number, Fault> {
     }
     let header = Header::read(raw, bytes.address()?.ok_or_else(damaged)?)?;
     let message = header.of(TYPE).find(|message| !message.is_shared).ok_or_else(damaged)?;
-    Number::read(bytes.within(message.content.clone()))
+    Datatype::read(bytes.within(message.content.clone()))
 }
 
 impl<'a> Hdf5<'a> {
@@ -87,8 +89,8 @@ impl<'a> Hdf5<'a> {
         self.dataset_of(object).map_err(|fault| self.error(fault))
     }
 
-    fn dataset_of(&self, object: &Object) -> Result<Option<Dataset>, Fault> {
-        let header = object.header.as_ref().map_err(Fault::clone)?;
+    fn dataset_of(&self, object: &Object) -> Result<Option<Dataset>, Hdf5Error> {
+        let header = object.header.as_ref().map_err(Hdf5Error::clone)?;
         let (raw, at) = (&self.raw, object.at);
         let (Some(space), Some(layout)) = (header.of(SPACE).next(), header.of(LAYOUT).next())
         else {
@@ -98,20 +100,20 @@ impl<'a> Hdf5<'a> {
             raw.at(content.start, "a dataset of the HDF5 file").within(content.clone())
         };
         let own = &space.content;
-        let space = Space::read(within(own))?;
+        let space = Dataspace::read(within(own))?;
         let number = type_of(raw, header, at)?;
         let filters =
             header.of(FILTERS).next().map(|message| filters::read(within(&message.content)));
         let sum = layout.sum.and_then(|sum| header.sums.get(sum)).cloned();
         let layout = Layout::read(within(&layout.content), space.shape.len())?;
         let filters = filters.transpose()?.unwrap_or_default();
-        Ok(Some(Dataset { at, number, space, layout, filters, sum }))
+        Ok(Some(Dataset { at, datatype: number, space, layout, filters, sum }))
     }
 
     /// The whole numbers of the dataset that an object is; none if it has none that can be read.
     pub(crate) fn integers(&self, object: &Object) -> Option<Vec<i64>> {
         let dataset = self.dataset(object).ok()??;
-        let Number::Whole(size, order) = dataset.number else { return None };
+        let Datatype::Whole(size, order) = dataset.datatype else { return None };
         let array = self.array(&dataset).ok()?;
         Some(array.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
     }
@@ -120,15 +122,15 @@ impl<'a> Hdf5<'a> {
     ///
     /// # Errors
     /// If they do not all stand in the file, or are damaged.
-    pub(crate) fn array(&self, dataset: &Dataset) -> Result<Array<'a>, ReadError> {
-        let array = dataset.pieces(&self.raw).and_then(|pieces| {
+    pub(crate) fn array(&self, dataset: &Dataset) -> Result<DatasetArray<'a>, ReadError> {
+        let array = dataset.storage(&self.raw).and_then(|storage| {
             // What stands in the header was read with it.
             if !matches!(dataset.layout, Layout::Compact(_)) {
-                let ranges = pieces.chunks.iter().map(|chunk| chunk.range.clone());
-                self.raw.take_data(ranges, dataset.at);
+                let ranges = storage.chunks.iter().map(|chunk| chunk.range.clone());
+                self.raw.claim_data(ranges, dataset.at);
             }
-            let bytes = pieces.items(self.raw.bytes, dataset.at)?;
-            Ok(Array { bytes, pieces })
+            let bytes = storage.items(self.raw.bytes, dataset.at)?;
+            Ok(DatasetArray { bytes, storage })
         });
         array.map_err(|fault| self.error(fault))
     }
@@ -136,76 +138,77 @@ impl<'a> Hdf5<'a> {
 
 impl Dataset {
     /// Finds where the items stand.
-    fn pieces(&self, raw: &Raw<'_>) -> Result<Pieces, Fault> {
+    fn storage(&self, raw: &FileBytes<'_>) -> Result<DatasetStorage, Hdf5Error> {
         let Dataset { space, filters, at, .. } = self;
-        let damaged = || Fault::damaged(*at, "a dataset of the HDF5 file");
-        let absent = || Fault {
+        let damaged = || Hdf5Error::damaged(*at, "a dataset of the HDF5 file");
+        let absent = || Hdf5Error {
             at: *at,
             problem: "a dataset without its numbers, which were never written".into(),
             remedy: "Write the mesh again",
         };
-        let size = self.number.bytes();
-        let mut pieces =
-            Pieces { lattice: None, chunks: Vec::new(), filters: Vec::new(), sum: None };
+        let size = self.datatype.bytes();
+        let mut storage =
+            DatasetStorage { grid: None, chunks: Vec::new(), filters: Vec::new(), sum: None };
         if space.count() == Some(0) {
-            return Ok(pieces);
+            return Ok(storage);
         }
         let lengths = match &self.layout {
             Layout::Chunked { lengths, .. } => lengths,
             _ => &space.shape,
         };
-        let lattice = Lattice::new(&space.shape, &space.most, lengths, size).ok_or_else(damaged)?;
+        let grid =
+            ChunkGrid::new(&space.shape, &space.max_shape, lengths, size).ok_or_else(damaged)?;
         let one = |start: usize, length: usize| {
             let range = start..start.saturating_add(length);
             let is_inside = range.end <= raw.bytes.len();
             is_inside.then(|| vec![Chunk { number: 0, range, mask: 0, entry: None }])
         };
-        pieces.chunks = match &self.layout {
+        storage.chunks = match &self.layout {
             Layout::Compact(range) => {
-                pieces.sum = self.sum.clone();
-                let fits = range.len() >= lattice.bytes();
-                fits.then(|| one(range.start, lattice.bytes())).flatten().ok_or_else(damaged)?
+                storage.sum = self.sum.clone();
+                let fits = range.len() >= grid.bytes();
+                fits.then(|| one(range.start, grid.bytes())).flatten().ok_or_else(damaged)?
             }
             Layout::Contiguous(address) => {
-                one(address.ok_or_else(absent)?, lattice.bytes()).ok_or_else(damaged)?
+                one(address.ok_or_else(absent)?, grid.bytes()).ok_or_else(damaged)?
             }
             Layout::Chunked { index, address, .. } => {
                 let address = address.ok_or_else(absent)?;
                 if matches!(index, Index::Implicit) && !filters.is_empty() {
                     return Err(damaged());
                 }
-                pieces.filters.clone_from(filters);
-                lattice.chunks(raw, index, address, filters, self.sum.as_ref(), *at)?
+                storage.filters.clone_from(filters);
+                grid.chunks(raw, index, address, filters, self.sum.as_ref(), *at)?
             }
         };
-        pieces.lattice = Some(lattice);
-        Ok(pieces)
+        storage.grid = Some(grid);
+        Ok(storage)
     }
 }
 
-impl Pieces {
+impl DatasetStorage {
     /// The items, from the bytes of the file.
-    fn items<'a>(&self, file: &'a [u8], at: usize) -> Result<Cow<'a, [u8]>, Fault> {
-        let Some(lattice) = &self.lattice else { return Ok(Cow::default()) };
+    fn items<'a>(&self, file: &'a [u8], at: usize) -> Result<Cow<'a, [u8]>, Hdf5Error> {
+        let Some(grid) = &self.grid else { return Ok(Cow::default()) };
         if let Some(range) = self.whole() {
             return Ok(Cow::Borrowed(&file[range]));
         }
-        let damaged = || Fault {
+        let damaged = || Hdf5Error {
             at,
             problem: "a dataset with a chunk that is damaged".into(),
             remedy: DAMAGED,
         };
         let mut all: Vec<u8> = Vec::new();
-        for (wave, chunks) in self.chunks.chunks(WAVE).enumerate() {
+        for (wave, chunks) in self.chunks.chunks(CHUNKS_PER_BATCH).enumerate() {
             let unpacked = map_parts(chunks, |_, chunk| self.chunk(file, chunk));
             if wave == 0 {
                 // Only once some of them are what they are said to be.
                 unpacked.iter().all(Option::is_some).then_some(()).ok_or_else(damaged)?;
-                all = vec![0; lattice.bytes()];
+                all = vec![0; grid.bytes()];
             }
             for (chunk, own) in chunks.iter().zip(unpacked) {
                 let own = own.ok_or_else(damaged)?;
-                lattice.runs(chunk.number, |to, from, length| {
+                grid.runs(chunk.number, |to, from, length| {
                     all[to..to + length].copy_from_slice(&own[from..from + length]);
                 });
             }
@@ -215,7 +218,7 @@ impl Pieces {
 
     /// The range of the file that holds all items as they are; none if they are in several, compressed or under a checksum.
     pub(super) fn whole(&self) -> Option<Range<usize>> {
-        let length = self.lattice.as_ref()?.bytes();
+        let length = self.grid.as_ref()?.bytes();
         match &self.chunks[..] {
             [chunk] if self.filters.is_empty() && chunk.range.len() == length => {
                 self.sum.is_none().then(|| chunk.range.clone())
@@ -226,22 +229,22 @@ impl Pieces {
 
     /// What a chunk holds; none if it is damaged.
     pub(super) fn chunk<'a>(&self, file: &'a [u8], chunk: &Chunk) -> Option<Cow<'a, [u8]>> {
-        let length = self.lattice.as_ref()?.chunk_bytes();
+        let length = self.grid.as_ref()?.chunk_bytes();
         let stored = file.get(chunk.range.clone())?;
         // One that is not in chunks may be followed by bytes that are not its own.
         filters::unfiltered(&self.filters, chunk.mask, stored, length)
     }
 }
 
-impl Array<'_> {
+impl DatasetArray<'_> {
     /// Where in the file the first of its items stands, if all stand there as they are, one after another.
-    pub(crate) fn place(&self) -> Option<usize> {
-        self.pieces.whole().map(|range| range.start)
+    pub(crate) fn start(&self) -> Option<usize> {
+        self.storage.whole().map(|range| range.start)
     }
 
     /// The byte of the file at or near which an item stands, for messages, given where it is among the bytes of all.
     pub(crate) fn byte_of(&self, at: usize) -> usize {
-        match (self.place(), self.pieces.chunks.first()) {
+        match (self.start(), self.storage.chunks.first()) {
             (Some(start), _) => start + at,
             (None, Some(chunk)) => chunk.range.start,
             (None, None) => 0,

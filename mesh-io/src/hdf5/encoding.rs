@@ -1,35 +1,35 @@
 //! What becomes of a file when numbers of its datasets change.
 
-use super::dataset::{Array, Pieces};
+use super::checksum::Checksum;
+use super::dataset::{DatasetArray, DatasetStorage};
 use super::entry::{Chunk, Entry};
 use super::file::Hdf5;
+use super::file_bytes::EndAddress;
 use super::filters;
-use super::raw::End;
-use super::sum::Sum;
-use crate::edit::numbers::{Encoded, Splice};
+use crate::edit::numbers::{ByteEdit, EncodedArrays};
 use std::ops::Range;
 
 /// Datasets whose numbers may change, one after another. A chunk that is compressed anew and is no longer than before takes the
 /// place it had, else it goes to the end of the file. Chunks of these datasets that lie at the end of the file already are put
 /// there one after another again, so that a file that is written in place many times does not grow without bound.
-pub(crate) struct Encoding {
-    parts: Vec<Part>,
+pub(crate) struct Hdf5Arrays {
+    parts: Vec<DatasetBytes>,
     /// The numbers of all of them.
     bytes: Vec<u8>,
-    end: End,
+    end: EndAddress,
     /// How many bytes an address has.
     address: usize,
 }
 
-struct Part {
-    pieces: Pieces,
+struct DatasetBytes {
+    storage: DatasetStorage,
     /// Its bytes among those of all.
     own: Range<usize>,
 }
 
-impl Encoding {
+impl Hdf5Arrays {
     /// Of some datasets of a file.
-    pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<Array<'_>>) -> Encoding {
+    pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<DatasetArray<'_>>) -> Hdf5Arrays {
         let mut bytes = Vec::new();
         let mut parts = Vec::new();
         for array in arrays {
@@ -38,15 +38,15 @@ impl Encoding {
                 true => bytes = array.bytes.into_owned(),
                 false => bytes.extend_from_slice(&array.bytes),
             }
-            parts.push(Part { pieces: array.pieces, own: start..bytes.len() });
+            parts.push(DatasetBytes { storage: array.storage, own: start..bytes.len() });
         }
-        Encoding { parts, bytes, end: file.raw.end.clone(), address: file.raw.widths.address }
+        Hdf5Arrays { parts, bytes, end: file.raw.end.clone(), address: file.raw.widths.address }
     }
 
     /// The byte of the file near which one of the bytes stands, for messages.
     pub(crate) fn byte_of(&self, at: usize) -> usize {
         let part = self.parts.iter().find(|part| part.own.end > at);
-        part.and_then(|part| part.pieces.chunks.first()).map_or(0, |chunk| chunk.range.start)
+        part.and_then(|part| part.storage.chunks.first()).map_or(0, |chunk| chunk.range.start)
     }
 
     /// The numbers of all of them.
@@ -55,13 +55,13 @@ impl Encoding {
     }
 
     fn chunks(&self) -> impl Iterator<Item = &Chunk> {
-        self.parts.iter().flat_map(|part| &part.pieces.chunks)
+        self.parts.iter().flat_map(|part| &part.storage.chunks)
     }
 
     /// The checksums that may change with what they cover.
-    fn sums(&self) -> impl Iterator<Item = &Sum> {
+    fn sums(&self) -> impl Iterator<Item = &Checksum> {
         let entries = self.chunks().filter_map(|chunk| chunk.entry.as_ref()?.sum.as_ref());
-        let items = self.parts.iter().filter_map(|part| part.pieces.sum.as_ref());
+        let items = self.parts.iter().filter_map(|part| part.storage.sum.as_ref());
         entries.chain(items).chain(&self.end.sum)
     }
 
@@ -69,14 +69,14 @@ impl Encoding {
         (value as u64).to_le_bytes()[..self.address.min(8)].to_vec()
     }
 
-    /// Puts the chunks that follow each other up to the end of the file there again, from the first one on that gets another
-    /// length, and takes their new bytes from `changed`. Does nothing if something else was put to the end before.
-    fn relay(
+    /// Rewrites the chunks at the end of the file that are adjacent, from the first one on that changes its length.
+    /// New bytes come from `changed`. Does nothing if bytes were appended to the file before.
+    fn rewrite_trailing_chunks(
         &self,
         changed: &mut [(&Chunk, Option<Vec<u8>>)],
         file: &[u8],
         end: &mut usize,
-        splices: &mut Vec<Splice>,
+        edits: &mut Vec<ByteEdit>,
     ) {
         if *end != file.len() {
             return;
@@ -108,11 +108,11 @@ impl Encoding {
         for &(chunk, at) in &chunks[first..] {
             let new = at.and_then(|at| changed[at].1.take());
             let own = new.as_deref().unwrap_or(&file[chunk.range.clone()]);
-            self.enter(chunk, start + bytes.len(), own.len(), splices);
+            self.update_index(chunk, start + bytes.len(), own.len(), edits);
             bytes.extend_from_slice(own);
         }
         *end = start + bytes.len();
-        splices.push(Splice { range: start..file.len(), bytes });
+        edits.push(ByteEdit { range: start..file.len(), bytes });
     }
 
     /// What replaces a chunk that becomes these bytes; `end` is where the file ends so far.
@@ -122,7 +122,7 @@ impl Encoding {
         bytes: Vec<u8>,
         file: &[u8],
         end: &mut usize,
-        splices: &mut Vec<Splice>,
+        edits: &mut Vec<ByteEdit>,
     ) {
         let (range, length) = (&chunk.range, bytes.len());
         let (mut start, mut place) = (range.start, range.start..range.start + length);
@@ -130,27 +130,27 @@ impl Encoding {
             (start, place) = (*end, file.len()..file.len());
             *end += length;
         }
-        self.enter(chunk, start, length, splices);
-        splices.push(Splice { range: place, bytes });
+        self.update_index(chunk, start, length, edits);
+        edits.push(ByteEdit { range: place, bytes });
     }
 
     /// Changes what the index says of a chunk that gets another place or length.
-    fn enter(&self, chunk: &Chunk, start: usize, length: usize, splices: &mut Vec<Splice>) {
+    fn update_index(&self, chunk: &Chunk, start: usize, length: usize, edits: &mut Vec<ByteEdit>) {
         let Chunk { range, entry, .. } = chunk;
         if let Some(Entry { address, size, .. }) = entry {
             if start != range.start {
                 let place = *address..*address + self.address;
-                splices.push(Splice { range: place, bytes: self.address_of(start) });
+                edits.push(ByteEdit { range: place, bytes: self.address_of(start) });
             }
             if let Some(place) = size.as_ref().filter(|_| length != range.len()) {
                 let value = (length as u64).to_le_bytes()[..place.len()].to_vec();
-                splices.push(Splice { range: place.clone(), bytes: value });
+                edits.push(ByteEdit { range: place.clone(), bytes: value });
             }
         }
     }
 }
 
-impl Encoded for Encoding {
+impl EncodedArrays for Hdf5Arrays {
     fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -162,63 +162,63 @@ impl Encoded for Encoding {
             ranges.push(entry.address..entry.address + self.address);
             ranges.extend(entry.size.clone());
         }
-        ranges.push(self.end.place.clone());
-        ranges.extend(self.sums().map(Sum::place));
+        ranges.push(self.end.range.clone());
+        ranges.extend(self.sums().map(Checksum::stored_range));
         ranges
     }
 
-    fn splices(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<Splice> {
+    fn edits(&self, file: &[u8], new: &[u8], end: &mut usize) -> Vec<ByteEdit> {
         let mut changed: Vec<(&Chunk, Option<Vec<u8>>)> = Vec::new();
-        for Part { pieces, own } in &self.parts {
+        for DatasetBytes { storage, own } in &self.parts {
             let (old, new) = (&self.bytes[own.clone()], &new[own.clone()]);
-            let Some(lattice) = pieces.lattice.as_ref().filter(|_| old != new) else { continue };
-            for chunk in &pieces.chunks {
+            let Some(grid) = storage.grid.as_ref().filter(|_| old != new) else { continue };
+            for chunk in &storage.chunks {
                 let mut is_same = true;
-                lattice.runs(chunk.number, |at, _, length| {
+                grid.runs(chunk.number, |at, _, length| {
                     is_same &= old[at..at + length] == new[at..at + length];
                 });
                 // What was read once can be read again.
-                let Some(mut bytes) = pieces.chunk(file, chunk).filter(|_| !is_same) else {
+                let Some(mut bytes) = storage.chunk(file, chunk).filter(|_| !is_same) else {
                     continue;
                 };
                 // What a chunk at the edge has beside the items stays.
-                lattice.runs(chunk.number, |at, to, length| {
+                grid.runs(chunk.number, |at, to, length| {
                     bytes.to_mut()[to..to + length].copy_from_slice(&new[at..at + length]);
                 });
-                let stored = filters::filtered(&pieces.filters, chunk.mask, bytes.into_owned());
+                let stored = filters::filtered(&storage.filters, chunk.mask, bytes.into_owned());
                 changed.push((chunk, Some(stored)));
             }
         }
-        let mut splices = Vec::new();
-        self.relay(&mut changed, file, end, &mut splices);
+        let mut edits = Vec::new();
+        self.rewrite_trailing_chunks(&mut changed, file, end, &mut edits);
         for (chunk, stored) in changed {
             if let Some(stored) = stored {
-                self.stored(chunk, stored, file, end, &mut splices);
+                self.stored(chunk, stored, file, end, &mut edits);
             }
         }
-        splices
+        edits
     }
 
-    fn follow(&self, file: &[u8], splices: &[Splice], end: usize) -> Vec<Splice> {
+    fn dependent_edits(&self, file: &[u8], edits: &[ByteEdit], end: usize) -> Vec<ByteEdit> {
         let mut more = Vec::new();
         if end != file.len() {
-            more.push(Splice { range: self.end.place.clone(), bytes: self.address_of(end) });
+            more.push(ByteEdit { range: self.end.range.clone(), bytes: self.address_of(end) });
         }
-        let mut sums: Vec<&Sum> = self.sums().collect();
+        let mut sums: Vec<&Checksum> = self.sums().collect();
         sums.dedup();
         for sum in sums {
-            if more.iter().all(|splice| splice.range != sum.place()) {
-                more.extend(sum.again(file, splices.iter().chain(&more)));
+            if more.iter().all(|edit| edit.range != sum.stored_range()) {
+                more.extend(sum.update(file, edits.iter().chain(&more)));
             }
         }
         more
     }
 
-    fn followers(&self, _first: usize) -> Vec<Range<usize>> {
+    fn dependent_ranges(&self, _first: usize) -> Vec<Range<usize>> {
         Vec::new()
     }
 
-    fn keeps_places(&self) -> bool {
+    fn preserves_offsets(&self) -> bool {
         true
     }
 }

@@ -1,6 +1,6 @@
 //! Where a chunk of a dataset stands, and where the file says so.
 
-use super::sum::Sum;
+use super::checksum::Checksum;
 use std::ops::Range;
 
 /// Where a chunk stands, and where the file says so.
@@ -24,5 +24,5 @@ pub(super) struct Entry {
     /// Where its size stands, if that is told.
     pub(super) size: Option<Range<usize>>,
     /// The checksum that covers these.
-    pub(super) sum: Option<Sum>,
+    pub(super) sum: Option<Checksum>,
 }

@@ -1,9 +1,9 @@
 //! A file as the tree of its groups and datasets.
 
-use super::bytes::{DAMAGED, Fault};
+use super::bytes::{DAMAGED, Hdf5Error};
+use super::file_bytes::{FileBytes, SIGNATURE};
 use super::groups::{self, Link, Target};
 use super::header::Header;
-use super::raw::{Raw, SIGNATURE};
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use std::collections::HashMap;
@@ -11,7 +11,7 @@ use std::collections::HashMap;
 /// A file with all its objects.
 pub(crate) struct Hdf5<'a> {
     pub(crate) source: &'a Source,
-    pub(super) raw: Raw<'a>,
+    pub(super) raw: FileBytes<'a>,
     /// The root group is the first.
     objects: Vec<Object>,
 }
@@ -20,7 +20,7 @@ pub(crate) struct Hdf5<'a> {
 pub(crate) struct Object {
     /// Where its header stands.
     pub(crate) at: usize,
-    pub(super) header: Result<Header, Fault>,
+    pub(super) header: Result<Header, Hdf5Error>,
     links: Vec<Link>,
 }
 
@@ -28,7 +28,7 @@ impl<'a> Hdf5<'a> {
     /// Reads the tree of a file. What is wrong with an object is told once it is asked for.
     pub(crate) fn open(source: &'a Source) -> Result<Hdf5<'a>, ReadError> {
         let told = |fault| error_of(source, fault);
-        let (raw, root) = Raw::new(&source.bytes).map_err(told)?;
+        let (raw, root) = FileBytes::new(&source.bytes).map_err(told)?;
         let mut objects: Vec<Object> = Vec::new();
         let mut known: HashMap<usize, usize> = HashMap::from([(root, 0)]);
         let mut found = vec![root];
@@ -48,7 +48,7 @@ impl<'a> Hdf5<'a> {
                     links.push(Link { name, target });
                     // Names that many links share are no program's work.
                     match letters > source.bytes.len() {
-                        true => Err(Fault::damaged(at, "a group with its names")),
+                        true => Err(Hdf5Error::damaged(at, "a group with its names")),
                         false => Ok(()),
                     }
                 })
@@ -56,7 +56,7 @@ impl<'a> Hdf5<'a> {
             }
             objects.push(Object { at, header, links });
         }
-        raw.read_again();
+        raw.allow_rereads();
         Ok(Hdf5 { source, raw, objects })
     }
 
@@ -102,7 +102,7 @@ impl<'a> Hdf5<'a> {
                 let from = if path.starts_with(b"/") { self.root() } else { self.at(group.at)? };
                 self.follow(from, path, left)
             }
-            Target::Elsewhere => None,
+            Target::OtherFile => None,
         }
     }
 
@@ -113,10 +113,11 @@ impl<'a> Hdf5<'a> {
     /// Follows a path over so many links to other paths.
     fn follow<'h>(&'h self, from: &'h Object, path: &[u8], left: &mut u32) -> Option<&'h Object> {
         // Longer paths are no program's work.
-        const NAMES: usize = 64;
+        /// Limit on the names of a path. Programs write no longer paths.
+        const MAX_PATH_NAMES: usize = 64;
         let mut object = from;
         for (number, name) in path.split(|&byte| byte == b'/').enumerate() {
-            if number == NAMES {
+            if number == MAX_PATH_NAMES {
                 return None;
             }
             if !name.is_empty() && name != b"." {
@@ -129,7 +130,7 @@ impl<'a> Hdf5<'a> {
 
     /// The error of a fault in this file.
     #[cold]
-    pub(crate) fn error(&self, fault: Fault) -> ReadError {
+    pub(crate) fn error(&self, fault: Hdf5Error) -> ReadError {
         error_of(self.source, fault)
     }
 
@@ -140,15 +141,15 @@ impl<'a> Hdf5<'a> {
     ) -> Result<T, ReadError> {
         let hdf5 = Hdf5::open(source)?;
         let found = read(&hdf5)?;
-        hdf5.check_apart()?;
+        hdf5.check_no_overlaps()?;
         Ok(found)
     }
 
     /// Checks that no two of the things that were read share bytes, so that what is written to one changes no other.
-    pub(crate) fn check_apart(&self) -> Result<(), ReadError> {
-        match self.raw.shared() {
+    pub(crate) fn check_no_overlaps(&self) -> Result<(), ReadError> {
+        match self.raw.first_overlap() {
             None => Ok(()),
-            Some(at) => Err(self.error(Fault {
+            Some(at) => Err(self.error(Hdf5Error {
                 at,
                 problem: "two parts of the HDF5 file overlap".into(),
                 remedy: DAMAGED,
@@ -158,6 +159,6 @@ impl<'a> Hdf5<'a> {
 }
 
 #[cold]
-fn error_of(source: &Source, Fault { at, problem, remedy }: Fault) -> ReadError {
+fn error_of(source: &Source, Hdf5Error { at, problem, remedy }: Hdf5Error) -> ReadError {
     source.error_at(Location::Byte(at.min(source.bytes.len())), problem, remedy)
 }

@@ -1,6 +1,6 @@
 //! What is done to a chunk before it is stored, and the way back.
 
-use super::bytes::{Bytes, Fault};
+use super::bytes::{ByteReader, Hdf5Error};
 use crate::compress::zlib;
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ pub(super) enum Filter {
 }
 
 /// Reads a filter message.
-pub(super) fn read(mut bytes: Bytes<'_>) -> Result<Vec<Filter>, Fault> {
+pub(super) fn read(mut bytes: ByteReader<'_>) -> Result<Vec<Filter>, Hdf5Error> {
     let version = bytes.byte()?;
     let count = bytes.byte()?;
     bytes.skip(if version == 1 { 6 } else { 0 })?;

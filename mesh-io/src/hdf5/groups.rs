@@ -1,10 +1,10 @@
 //! The links of a group, in each of the ways that files have them.
 
 use super::btree::{self, Tree};
-use super::bytes::{Bytes, Fault};
+use super::bytes::{ByteReader, Hdf5Error};
+use super::file_bytes::FileBytes;
 use super::header::{Header, LINK, LINK_INFO, SYMBOL_TABLE};
-use super::heap::Heap;
-use super::raw::Raw;
+use super::heap::FractalHeap;
 
 /// What a group calls one of its objects.
 pub(super) struct Link {
@@ -17,8 +17,8 @@ pub(super) enum Target<O> {
     Object(O),
     /// Another path.
     Soft(Vec<u8>),
-    /// Another file.
-    Elsewhere,
+    /// An object of another file, which is not read.
+    OtherFile,
 }
 
 impl<O> Target<O> {
@@ -26,16 +26,20 @@ impl<O> Target<O> {
         match self {
             Target::Object(object) => Target::Object(make(object)),
             Target::Soft(path) => Target::Soft(path),
-            Target::Elsewhere => Target::Elsewhere,
+            Target::OtherFile => Target::OtherFile,
         }
     }
 }
 
-/// Takes the name of a link, and the address of the header that it leads to.
-type Take<'t> = dyn FnMut(Vec<u8>, Target<usize>) -> Result<(), Fault> + 't;
+/// Called with the name and the target of each link of a group.
+type LinkVisitor<'t> = dyn FnMut(Vec<u8>, Target<usize>) -> Result<(), Hdf5Error> + 't;
 
 /// Hands on the links of a group; none if the object is no group.
-pub(super) fn links(raw: &Raw<'_>, header: &Header, take: &mut Take<'_>) -> Result<(), Fault> {
+pub(super) fn links(
+    raw: &FileBytes<'_>,
+    header: &Header,
+    take: &mut LinkVisitor<'_>,
+) -> Result<(), Hdf5Error> {
     for message in header.of(LINK) {
         let bytes = raw.at(message.content.start, "a link");
         link(bytes.within(message.content.clone()), take)?;
@@ -55,7 +59,7 @@ pub(super) fn links(raw: &Raw<'_>, header: &Header, take: &mut Take<'_>) -> Resu
         bytes.skip(if flags & 1 != 0 { 8 } else { 0 })?;
         let (heap, tree) = (bytes.address()?, bytes.address()?);
         if let (Some(heap), Some(tree)) = (heap, tree) {
-            let heap = Heap::read(raw, heap)?;
+            let heap = FractalHeap::read(raw, heap)?;
             // Each record is a hash of the name, and where the link is.
             for record in btree::records(raw, tree)? {
                 let id = record.get(4..).unwrap_or_default();
@@ -67,7 +71,7 @@ pub(super) fn links(raw: &Raw<'_>, header: &Header, take: &mut Take<'_>) -> Resu
 }
 
 /// A link message.
-fn link(mut bytes: Bytes<'_>, take: &mut Take<'_>) -> Result<(), Fault> {
+fn link(mut bytes: ByteReader<'_>, take: &mut LinkVisitor<'_>) -> Result<(), Hdf5Error> {
     bytes.expect(&[1])?;
     let flags = bytes.byte()?;
     let kind = if flags & 8 != 0 { bytes.byte()? } else { 0 };
@@ -82,20 +86,25 @@ fn link(mut bytes: Bytes<'_>, take: &mut Take<'_>) -> Result<(), Fault> {
             let length = bytes.count(2)?;
             Target::Soft(bytes.take(length)?.to_vec())
         }
-        _ => Target::Elsewhere,
+        _ => Target::OtherFile,
     };
     take(name, target)
 }
 
 /// The links of a group of the old style: a tree of tables, whose names stand in a heap.
-fn old_links(raw: &Raw<'_>, tree: usize, heap: usize, take: &mut Take<'_>) -> Result<(), Fault> {
+fn old_links(
+    raw: &FileBytes<'_>,
+    tree: usize,
+    heap: usize,
+    take: &mut LinkVisitor<'_>,
+) -> Result<(), Hdf5Error> {
     let mut bytes = raw.at(heap, "the names of a group");
     bytes.expect(b"HEAP\0\0\0\0")?;
     let size = bytes.length()?;
     bytes.length()?;
     let names = bytes.address()?.ok_or_else(|| bytes.damaged())?;
-    raw.take(heap..bytes.at(), &bytes)?;
-    raw.take(names..names.saturating_add(size), &bytes)?;
+    raw.claim(heap..bytes.at(), &bytes)?;
+    raw.claim(names..names.saturating_add(size), &bytes)?;
     let names = raw.bytes.get(names..names + size).ok_or_else(|| bytes.damaged())?;
     let mut tables = Vec::new();
     Tree::of_groups(raw).each(tree, &mut |_, child, _| {
@@ -124,7 +133,7 @@ fn old_links(raw: &Raw<'_>, tree: usize, heap: usize, take: &mut Take<'_>) -> Re
             };
             take(text(at).ok_or_else(|| object.damaged())?, target)?;
         }
-        raw.take(table..bytes.at(), &bytes)?;
+        raw.claim(table..bytes.at(), &bytes)?;
     }
     Ok(())
 }

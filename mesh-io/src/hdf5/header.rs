@@ -1,8 +1,8 @@
 //! The header of an object: its messages, which tell what it is.
 
-use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
-use super::sum::Sum;
+use super::bytes::{ByteReader, Hdf5Error};
+use super::checksum::Checksum;
+use super::file_bytes::FileBytes;
 use std::ops::Range;
 
 /// A message of a header.
@@ -20,7 +20,7 @@ pub(super) struct Message {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Header {
     pub(super) messages: Vec<Message>,
-    pub(super) sums: Vec<Sum>,
+    pub(super) sums: Vec<Checksum>,
 }
 
 /// The kinds of messages.
@@ -37,7 +37,7 @@ pub(super) const ATTRIBUTE_INFO: u16 = 21;
 
 impl Header {
     /// Reads the header at this address.
-    pub(super) fn read(raw: &Raw<'_>, at: usize) -> Result<Header, Fault> {
+    pub(super) fn read(raw: &FileBytes<'_>, at: usize) -> Result<Header, Hdf5Error> {
         match raw.bytes.get(at..).is_some_and(|bytes| bytes.starts_with(b"OHDR")) {
             true => Self::second(raw, at),
             false => Self::first(raw, at),
@@ -50,7 +50,7 @@ impl Header {
     }
 
     /// Version 1: messages that start at multiples of eight bytes, without checksums.
-    fn first(raw: &Raw<'_>, at: usize) -> Result<Header, Fault> {
+    fn first(raw: &FileBytes<'_>, at: usize) -> Result<Header, Hdf5Error> {
         let mut bytes = raw.at(at, "the header of an object");
         bytes.expect(&[1])?;
         bytes.skip(1 + 2 + 4)?;
@@ -58,13 +58,13 @@ impl Header {
         bytes.align(at, 8)?;
         let first = bytes.at()..bytes.at().saturating_add(size);
         let mut blocks = vec![first];
-        raw.take(at..bytes.at(), &bytes)?;
+        raw.claim(at..bytes.at(), &bytes)?;
         let mut header = Header::default();
         // Blocks are found while others are read.
         let mut next = 0;
         while let Some(block) = blocks.get(next).cloned() {
             next += 1;
-            raw.take(block.clone(), &bytes)?;
+            raw.claim(block.clone(), &bytes)?;
             let mut block = bytes.within(block);
             while block.left() >= 8 {
                 let (kind, size) = (block.number(2)? as u16, block.count(2)?);
@@ -80,7 +80,7 @@ impl Header {
     }
 
     /// Version 2: blocks with checksums.
-    fn second(raw: &Raw<'_>, at: usize) -> Result<Header, Fault> {
+    fn second(raw: &FileBytes<'_>, at: usize) -> Result<Header, Hdf5Error> {
         let mut bytes = raw.at(at, "the header of an object");
         bytes.expect(b"OHDR\x02")?;
         let flags = bytes.byte()?;
@@ -106,16 +106,16 @@ impl Header {
     /// Reads the messages of a block that starts at a place.
     fn block(
         &mut self,
-        raw: &Raw<'_>,
+        raw: &FileBytes<'_>,
         start: usize,
         messages: Range<usize>,
         flags: u8,
         blocks: &mut Vec<Range<usize>>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Hdf5Error> {
         let mut bytes = raw.at(start, "the header of an object");
         bytes.skip(messages.end - start)?;
-        let sum = Sum::take(start, &mut bytes)?;
-        raw.take(start..bytes.at(), &bytes)?;
+        let sum = Checksum::take(start, &mut bytes)?;
+        raw.claim(start..bytes.at(), &bytes)?;
         self.sums.push(sum);
         let number = self.sums.len() - 1;
         let mut block = bytes.within(messages);
@@ -138,9 +138,9 @@ impl Header {
     fn add(
         &mut self,
         message: Message,
-        bytes: &Bytes<'_>,
+        bytes: &ByteReader<'_>,
         blocks: &mut Vec<Range<usize>>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Hdf5Error> {
         match message.kind {
             0 => {}
             CONTINUATION => {

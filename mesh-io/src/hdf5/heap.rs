@@ -1,10 +1,10 @@
 //! Fractal heaps, which hold the links and attributes of objects that have many.
 
-use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
+use super::bytes::{ByteReader, Hdf5Error};
+use super::file_bytes::FileBytes;
 
-/// A heap, and where its blocks stand.
-pub(super) struct Heap {
+/// A fractal heap, with the addresses of its blocks.
+pub(super) struct FractalHeap {
     at: usize,
     /// How many bytes the place of an object has, and its length.
     widths: [usize; 2],
@@ -12,8 +12,8 @@ pub(super) struct Heap {
     blocks: Vec<(usize, usize, usize)>,
 }
 
-/// How large the blocks of a row are, and how many there are in one.
-struct Table {
+/// Sizes of the blocks in each row of a fractal heap.
+struct DoublingTable {
     width: usize,
     first: usize,
     /// The number of rows of blocks that hold objects; those after it hold tables of blocks.
@@ -22,12 +22,12 @@ struct Table {
     place: usize,
 }
 
-const WHAT: &str = "a heap of the HDF5 file";
+const OBJECT_NAME: &str = "a heap of the HDF5 file";
 
-impl Heap {
+impl FractalHeap {
     /// Reads where the blocks of a heap stand.
-    pub(super) fn read(raw: &Raw<'_>, at: usize) -> Result<Heap, Fault> {
-        let mut bytes = raw.at(at, WHAT);
+    pub(super) fn read(raw: &FileBytes<'_>, at: usize) -> Result<FractalHeap, Hdf5Error> {
+        let mut bytes = raw.at(at, OBJECT_NAME);
         bytes.expect(b"FRHP\0")?;
         bytes.skip(2)?;
         let filters = bytes.count(2)?;
@@ -54,11 +54,11 @@ impl Heap {
         if !is_sound {
             return Err(bytes.damaged());
         }
-        raw.take(at..bytes.at(), &bytes)?;
+        raw.claim(at..bytes.at(), &bytes)?;
         let direct = (largest.ilog2() - first.ilog2()) as usize + 2;
         let place = bits.div_ceil(8);
-        let table = Table { width, first, direct, place };
-        let mut heap = Heap { at, widths: [place, 0], blocks: Vec::new() };
+        let table = DoublingTable { width, first, direct, place };
+        let mut heap = FractalHeap { at, widths: [place, 0], blocks: Vec::new() };
         // The length of an object has as many bytes as places in the largest block, or as the size of the largest object.
         let of_place = largest.ilog2().div_ceil(8);
         heap.widths[1] = of_place.min(most.max(1).ilog2() / 8 + 1) as usize;
@@ -74,14 +74,14 @@ impl Heap {
     /// Reads tables of blocks, from the one with so many rows on.
     fn indirect(
         &mut self,
-        raw: &Raw<'_>,
-        table: &Table,
+        raw: &FileBytes<'_>,
+        table: &DoublingTable,
         root: usize,
         rows: usize,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Hdf5Error> {
         let mut left = vec![(root, rows, 0)];
         while let Some((at, rows, start)) = left.pop() {
-            let mut bytes = raw.at(at, WHAT);
+            let mut bytes = raw.at(at, OBJECT_NAME);
             if rows > 64 {
                 return Err(bytes.damaged());
             }
@@ -106,19 +106,23 @@ impl Heap {
                     place = usize::saturating_add(place, size);
                 }
             }
-            raw.take(at..bytes.at(), &bytes)?;
+            raw.claim(at..bytes.at(), &bytes)?;
         }
         Ok(())
     }
 
     /// The object of an identifier.
-    pub(super) fn object<'a>(&self, raw: &Raw<'a>, id: &[u8]) -> Result<Bytes<'a>, Fault> {
-        let damaged = || Fault::damaged(self.at, WHAT);
-        let mut own = Bytes::new(id, 0, raw.widths, WHAT);
+    pub(super) fn object<'a>(
+        &self,
+        raw: &FileBytes<'a>,
+        id: &[u8],
+    ) -> Result<ByteReader<'a>, Hdf5Error> {
+        let damaged = || Hdf5Error::damaged(self.at, OBJECT_NAME);
+        let mut own = ByteReader::new(id, 0, raw.widths, OBJECT_NAME);
         match own.byte().map_err(|_| damaged())? >> 4 & 3 {
             0 => {}
             // Objects beyond the size of a block, and some that stand in their identifiers.
-            _ => return Err(Fault::unread(self.at, "a group with names longer than a block")),
+            _ => return Err(Hdf5Error::unread(self.at, "a group with names longer than a block")),
         }
         let mut number = |width| own.count(width).map_err(|_| damaged());
         let (place, length) = (number(self.widths[0])?, number(self.widths[1])?);
@@ -134,7 +138,7 @@ impl Heap {
     }
 }
 
-impl Table {
+impl DoublingTable {
     /// The size of the blocks of a row.
     fn size(&self, row: usize) -> Option<usize> {
         self.first.checked_shl(row.saturating_sub(1) as u32).filter(|&size| size >= self.first)

@@ -1,6 +1,6 @@
 //! How the items of a dataset are laid out in the file.
 
-use super::bytes::{Bytes, Fault};
+use super::bytes::{ByteReader, Hdf5Error};
 use std::ops::Range;
 
 /// Where the items of a dataset stand.
@@ -32,7 +32,7 @@ pub(super) enum Index {
 
 impl Layout {
     /// Reads a layout message of a dataset of so many dimensions.
-    pub(super) fn read(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+    pub(super) fn read(mut bytes: ByteReader<'_>, rank: usize) -> Result<Layout, Hdf5Error> {
         match bytes.byte()? {
             1 | 2 => Self::first(bytes, rank),
             3 => Self::third(bytes, rank),
@@ -41,7 +41,7 @@ impl Layout {
         }
     }
 
-    fn first(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+    fn first(mut bytes: ByteReader<'_>, rank: usize) -> Result<Layout, Hdf5Error> {
         let dimensions = usize::from(bytes.byte()?);
         let class = bytes.byte()?;
         bytes.skip(5)?;
@@ -62,7 +62,7 @@ impl Layout {
         }
     }
 
-    fn third(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+    fn third(mut bytes: ByteReader<'_>, rank: usize) -> Result<Layout, Hdf5Error> {
         match bytes.byte()? {
             0 => {
                 let size = bytes.count(2)?;
@@ -80,7 +80,7 @@ impl Layout {
         }
     }
 
-    fn fourth(mut bytes: Bytes<'_>, rank: usize) -> Result<Layout, Fault> {
+    fn fourth(mut bytes: ByteReader<'_>, rank: usize) -> Result<Layout, Hdf5Error> {
         let mut own = bytes.clone();
         match own.byte()? {
             2 => {}
@@ -129,23 +129,27 @@ impl Layout {
         Self::chunked(&bytes, lengths, rank, index, address)
     }
 
-    fn lengths(bytes: &mut Bytes<'_>, count: usize, width: usize) -> Result<Vec<u64>, Fault> {
+    fn lengths(
+        bytes: &mut ByteReader<'_>,
+        count: usize,
+        width: usize,
+    ) -> Result<Vec<u64>, Hdf5Error> {
         (0..count).map(|_| bytes.number(width)).collect()
     }
 
-    fn compact(mut bytes: Bytes<'_>, size: usize) -> Result<Layout, Fault> {
+    fn compact(mut bytes: ByteReader<'_>, size: usize) -> Result<Layout, Hdf5Error> {
         let start = bytes.at();
         bytes.skip(size)?;
         Ok(Layout::Compact(start..bytes.at()))
     }
 
     fn chunked(
-        bytes: &Bytes<'_>,
+        bytes: &ByteReader<'_>,
         lengths: Vec<u64>,
         rank: usize,
         index: Index,
         address: Option<usize>,
-    ) -> Result<Layout, Fault> {
+    ) -> Result<Layout, Hdf5Error> {
         match lengths.len() == rank && rank > 0 && !lengths.contains(&0) {
             true => Ok(Layout::Chunked { lengths, index, address }),
             false => Err(bytes.damaged()),
@@ -153,7 +157,7 @@ impl Layout {
     }
 
     #[cold]
-    fn other(bytes: &Bytes<'_>, class: u8) -> Fault {
+    fn other(bytes: &ByteReader<'_>, class: u8) -> Hdf5Error {
         match class {
             3 => bytes.unread("a virtual dataset, made of those of other files"),
             _ => bytes.damaged(),

@@ -6,26 +6,26 @@
 mod attribute;
 mod btree;
 mod bytes;
+mod checksum;
 mod chunks;
 mod dataset;
 mod encoding;
 mod entry;
 mod file;
+mod file_bytes;
 mod filters;
 mod fixed_array;
 mod groups;
 mod header;
 mod heap;
 mod layout;
-mod raw;
 mod strings;
-mod sum;
 #[cfg(test)]
 mod tests;
 mod types;
 
-pub(crate) use dataset::{Array, Dataset};
-pub(crate) use encoding::Encoding;
+pub(crate) use dataset::{Dataset, DatasetArray};
+pub(crate) use encoding::Hdf5Arrays;
 pub(crate) use file::{Hdf5, Object};
-pub(crate) use raw::SIGNATURE;
-pub(crate) use types::Number;
+pub(crate) use file_bytes::SIGNATURE;
+pub(crate) use types::Datatype;

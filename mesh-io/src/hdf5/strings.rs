@@ -1,12 +1,15 @@
 //! Texts of attributes that stand elsewhere in the file, in a collection of a global heap, as h5py and h5netcdf write them.
 
-use super::bytes::{Bytes, Fault};
-use super::raw::Raw;
+use super::bytes::{ByteReader, Hdf5Error};
+use super::file_bytes::FileBytes;
 
-const WHAT: &str = "a text in the HDF5 file";
+const OBJECT_NAME: &str = "a text in the HDF5 file";
 
 /// Follows the place of a text: its length, the address of a collection, and its number there. Returns the text.
-pub(super) fn read<'a>(raw: &Raw<'a>, mut place: Bytes<'_>) -> Result<&'a [u8], Fault> {
+pub(super) fn read<'a>(
+    raw: &FileBytes<'a>,
+    mut place: ByteReader<'_>,
+) -> Result<&'a [u8], Hdf5Error> {
     let length = place.count(4)?;
     let collection = place.address()?;
     let number = place.count(4)?;
@@ -19,14 +22,14 @@ pub(super) fn read<'a>(raw: &Raw<'a>, mut place: Bytes<'_>) -> Result<&'a [u8], 
 }
 
 /// Finds an object of a collection.
-fn object<'a>(raw: &Raw<'a>, at: usize, number: usize) -> Result<Bytes<'a>, Fault> {
-    let mut bytes = raw.at(at, WHAT);
+fn object<'a>(raw: &FileBytes<'a>, at: usize, number: usize) -> Result<ByteReader<'a>, Hdf5Error> {
+    let mut bytes = raw.at(at, OBJECT_NAME);
     bytes.expect(b"GCOL\x01")?;
     bytes.skip(3)?;
     let size = bytes.length()?;
     let end = at.checked_add(size).ok_or_else(|| bytes.damaged())?;
     let start = bytes.at();
-    raw.take(at..start, &bytes)?;
+    raw.claim(at..start, &bytes)?;
     let mut bytes = bytes.within(start..end);
     loop {
         let start = bytes.at();
@@ -39,10 +42,10 @@ fn object<'a>(raw: &Raw<'a>, at: usize, number: usize) -> Result<Bytes<'a>, Faul
         }
         let content = bytes.at()..bytes.at().saturating_add(length);
         if own == number {
-            raw.take(start..content.end, &bytes)?;
+            raw.claim(start..content.end, &bytes)?;
             return Ok(bytes.within(content));
         }
-        raw.spend(bytes.at() - start, &bytes)?;
+        raw.count_metadata(bytes.at() - start, &bytes)?;
         bytes.skip(length)?;
         bytes.align(content.start, 8)?;
     }

@@ -1,8 +1,8 @@
 //! Files that other programs made, in `tests/formats/h5`.
 
-use super::{Encoding, Hdf5, Number};
+use super::{Datatype, Hdf5, Hdf5Arrays};
 use crate::disk::source::Source;
-use crate::edit::numbers::Encoded;
+use crate::edit::numbers::EncodedArrays;
 use crate::edit::rewrite::Rewrite;
 use std::path::Path;
 
@@ -38,7 +38,9 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
             let path = [&group[..], b"/", name].concat();
             match file.dataset(child) {
                 Ok(None) if path.len() < 200 => groups.push(path),
-                Ok(Some(dataset)) if matches!(dataset.number, Number::Real(..)) => found.push(path),
+                Ok(Some(dataset)) if matches!(dataset.datatype, Datatype::Real(..)) => {
+                    found.push(path)
+                }
                 _ => {}
             }
         }
@@ -46,9 +48,9 @@ fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
     found
 }
 
-fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::Array<'a>, Number)> {
+fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::DatasetArray<'a>, Datatype)> {
     let dataset = file.dataset(file.find(path)?).ok()??;
-    Some((file.array(&dataset).ok()?, dataset.number))
+    Some((file.array(&dataset).ok()?, dataset.datatype))
 }
 
 /// The file with all numbers of a dataset changed.
@@ -56,8 +58,8 @@ fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     let file = Hdf5::open(source).unwrap();
     let (array, number) = array(&file, path).unwrap();
     let size = number.bytes();
-    let encoding = Encoding::new(&file, vec![array]);
-    let mut new = Encoded::bytes(&encoding).to_vec();
+    let encoding = Hdf5Arrays::new(&file, vec![array]);
+    let mut new = EncodedArrays::bytes(&encoding).to_vec();
     for (k, number) in new.chunks_exact_mut(size).enumerate() {
         // Digits that no compressor makes shorter.
         let digits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).to_le_bytes();
@@ -65,12 +67,12 @@ fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     }
     let bytes = &source.bytes;
     let mut end = bytes.len();
-    let mut splices = encoding.splices(bytes, &new, &mut end);
-    let more = encoding.follow(bytes, &splices, end);
-    splices.extend(more);
-    splices.sort_by_key(|splice| splice.range.start);
+    let mut edits = encoding.edits(bytes, &new, &mut end);
+    let more = encoding.dependent_edits(bytes, &edits, end);
+    edits.extend(more);
+    edits.sort_by_key(|edit| edit.range.start);
     let mut out = Vec::new();
-    Rewrite { bytes, columns: &[], splices: &splices }.write(&mut out).unwrap();
+    Rewrite { bytes, columns: &[], edits: &edits }.write(&mut out).unwrap();
     assert_eq!(out.len(), end);
     (out, new)
 }
@@ -104,7 +106,7 @@ fn numbers_of_every_layout_are_replaced() {
                 assert!(before.bytes == after.bytes || is_own, "{shown}");
             }
             assert!(array(&after, path).is_some_and(|(array, _)| array.bytes == new), "{shown}");
-            after.check_apart().unwrap();
+            after.check_no_overlaps().unwrap();
             replaced += 1;
         }
     }
@@ -136,7 +138,7 @@ fn use_all(source: &Source) {
             changed(source, &path);
         }
     }
-    let _ = file.check_apart();
+    let _ = file.check_no_overlaps();
 }
 
 /// Checksums are not looked at in these tests, so that damage gets beyond them.

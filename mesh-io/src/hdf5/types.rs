@@ -1,47 +1,47 @@
 //! What a dataset consists of: its type and its lengths.
 
-use super::bytes::{Bytes, Fault};
-use crate::binary::order::Order;
+use super::bytes::{ByteReader, Hdf5Error};
+use crate::binary::byte_order::ByteOrder;
 use crate::precision::Precision;
 
-/// The types of numbers that are told apart.
+/// The type of the items of a dataset or attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Number {
+pub(crate) enum Datatype {
     /// Letters, so many to an item.
     Text(usize),
     /// Whole numbers of so many bytes.
-    Whole(usize, Order),
-    Real(Precision, Order),
-    /// The place of a text of any length, in so many bytes.
-    TextElsewhere(usize),
+    Whole(usize, ByteOrder),
+    Real(Precision, ByteOrder),
+    /// The address of a text of variable length, in this number of bytes.
+    VariableText(usize),
     /// Anything else of this size.
     Other(usize),
 }
 
-impl Number {
+impl Datatype {
     /// How many bytes an item has.
     pub(crate) fn bytes(self) -> usize {
         match self {
-            Number::Text(bytes)
-            | Number::Whole(bytes, _)
-            | Number::TextElsewhere(bytes)
-            | Number::Other(bytes) => bytes,
-            Number::Real(precision, _) => precision.bytes(),
+            Datatype::Text(bytes)
+            | Datatype::Whole(bytes, _)
+            | Datatype::VariableText(bytes)
+            | Datatype::Other(bytes) => bytes,
+            Datatype::Real(precision, _) => precision.bytes(),
         }
     }
 
     /// Reads a datatype message.
-    pub(super) fn read(mut bytes: Bytes<'_>) -> Result<Number, Fault> {
+    pub(super) fn read(mut bytes: ByteReader<'_>) -> Result<Datatype, Hdf5Error> {
         let class = bytes.byte()? & 15;
         let bits = bytes.number(3)?;
         let size = bytes.count(4)?;
-        let order = if bits & 1 == 0 { Order::Little } else { Order::Big };
+        let order = if bits & 1 == 0 { ByteOrder::Little } else { ByteOrder::Big };
         Ok(match (class, size) {
             (0, 1 | 2 | 4 | 8) => {
                 let (offset, precision) = (bytes.count(2)?, bytes.count(2)?);
                 match (offset, precision) == (0, 8 * size) {
-                    true => Number::Whole(size, order),
-                    false => Number::Other(size),
+                    true => Datatype::Whole(size, order),
+                    false => Datatype::Other(size),
                 }
             }
             (1, 4 | 8) if bits & 64 == 0 => {
@@ -50,32 +50,32 @@ impl Number {
                 let single = [0, 0, 32, 0, 23, 8, 0, 23, 127, 0, 0, 0];
                 let double = [0, 0, 64, 0, 52, 11, 0, 52, 255, 3, 0, 0];
                 match size {
-                    4 if own == single => Number::Real(Precision::Single, order),
-                    8 if own == double => Number::Real(Precision::Double, order),
-                    _ => Number::Other(size),
+                    4 if own == single => Datatype::Real(Precision::Single, order),
+                    8 if own == double => Datatype::Real(Precision::Double, order),
+                    _ => Datatype::Other(size),
                 }
             }
-            (3, 1..) => Number::Text(size),
-            (9, 1..) if bits & 15 == 1 => Number::TextElsewhere(size),
-            _ => Number::Other(size),
+            (3, 1..) => Datatype::Text(size),
+            (9, 1..) if bits & 15 == 1 => Datatype::VariableText(size),
+            _ => Datatype::Other(size),
         })
     }
 }
 
-/// The lengths of a dataset or attribute.
+/// The dimensions of a dataset or attribute.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Space {
+pub(super) struct Dataspace {
     /// One length for each dimension; none for a single item.
     pub(super) shape: Vec<u64>,
-    /// How large each may become; `u64::MAX` without a limit.
-    pub(super) most: Vec<u64>,
+    /// The largest length of each dimension; `u64::MAX` without a limit.
+    pub(super) max_shape: Vec<u64>,
     /// Whether there is no item at all.
     pub(super) is_null: bool,
 }
 
-impl Space {
+impl Dataspace {
     /// Reads a dataspace message.
-    pub(super) fn read(mut bytes: Bytes<'_>) -> Result<Space, Fault> {
+    pub(super) fn read(mut bytes: ByteReader<'_>) -> Result<Dataspace, Hdf5Error> {
         let widths = bytes.widths();
         let version = bytes.byte()?;
         let rank = usize::from(bytes.byte()?);
@@ -91,7 +91,7 @@ impl Space {
         if rank > 32 {
             return Err(bytes.damaged());
         }
-        let lengths = |bytes: &mut Bytes<'_>| -> Result<Vec<u64>, Fault> {
+        let lengths = |bytes: &mut ByteReader<'_>| -> Result<Vec<u64>, Hdf5Error> {
             (0..rank).map(|_| Ok(bytes.length()? as u64)).collect()
         };
         let shape = lengths(&mut bytes)?;
@@ -102,7 +102,7 @@ impl Space {
         };
         let mut most = if flags & 1 == 1 { lengths(&mut bytes)? } else { shape.clone() };
         most.iter_mut().for_each(unlimited);
-        Ok(Space { shape, most, is_null })
+        Ok(Dataspace { shape, max_shape: most, is_null })
     }
 
     /// How many items there are; none if that is no number.

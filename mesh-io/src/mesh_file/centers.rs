@@ -1,21 +1,22 @@
 //! Centers of faces and edges, which UGRID's files may have.
 
-use crate::content::tags::TagMap;
+use crate::content::id_index::IdIndex;
 use crate::error::FieldError;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
 use crate::visit::items::Centers;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
-/// How far a number may be from the center that it is taken for, as a share of how far the element reaches.
-const CLOSE: f64 = 1e-6;
+/// Relative tolerance for recognizing a stored center, in units of the distance between the computed center and the
+/// farthest corner along the axis.
+const CENTER_TOLERANCE: f64 = 1e-6;
 
 /// How a center follows from the corners of an element. `None` if it has none.
-type Recipe = fn(&[[f64; 2]]) -> Option<[f64; 2]>;
+type CenterFunction = fn(&[[f64; 2]]) -> Option<[f64; 2]>;
 
-/// What centers may be, the usual one first.
-const RECIPES: [Recipe; 3] = [mean, centroid, circumcenter];
+/// The centers that programs store, in the order in which arrays are compared with them.
+const CENTER_FUNCTIONS: [CenterFunction; 3] = [mean, centroid, circumcenter];
 
 /// An array of the file: one coordinate of the centers of some elements.
 struct Array {
@@ -26,7 +27,7 @@ struct Array {
 
 impl MeshFile {
     /// Returns the centers of faces and edges that the file has, updated for vertices at `points`, as fields for
-    /// [`write_with`](Self::write_with): one coordinate each, one number for each face or edge. An array is updated if all of its
+    /// [`write_with_fields`](Self::write_with_fields): one coordinate each, one number for each face or edge. An array is updated if all of its
     /// numbers are means of corners, or centroids, or circumcenters of triangles. Also returns the names of the other arrays.
     /// Without centers, both are empty.
     ///
@@ -40,16 +41,16 @@ impl MeshFile {
         if points.len() != old.len() {
             return Err(FieldError::PointCount { expected: old.len(), given: points.len() });
         }
-        let mut seeker = Seeker::default();
+        let mut visitor = CenterVisitor::default();
         if self.has_centers() {
             // Reading the file again cannot fail, as it was read before.
-            _ = (self.reader().walk)(self.source(), &mut seeker);
+            _ = (self.reader().visit)(self.source(), &mut visitor);
         }
-        let map = TagMap::new(&seeker.tags).unwrap_or(TagMap::Run { first: 0, count: 0 });
+        let map = IdIndex::new(&visitor.ids).unwrap_or(IdIndex::Run { first: 0, count: 0 });
         let (mut fields, mut others) = (Vec::new(), Vec::new());
-        for Array { name, axis, centers } in seeker.found {
+        for Array { name, axis, centers } in visitor.found {
             let new = Elements::of(&centers, &map).and_then(|elements| {
-                let stored = centers.numbers.stored.as_ref()?.form.precision();
+                let stored = centers.numbers.location.as_ref()?.encoding.precision();
                 let error = |size: f64| stored.error(size).max(self.precision().error(size));
                 elements.moved(&centers.numbers.numbers, axis, [old, points], error)
             });
@@ -75,7 +76,7 @@ struct Elements<'c> {
 
 impl<'c> Elements<'c> {
     /// `None` if a node is no vertex of the mesh.
-    fn of(centers: &'c Centers, map: &TagMap) -> Option<Elements<'c>> {
+    fn of(centers: &'c Centers, map: &IdIndex) -> Option<Elements<'c>> {
         let vertices = centers.nodes.iter().map(|&node| map.index(node)).collect::<Option<_>>()?;
         (centers.ends.len() == centers.numbers.numbers.len())
             .then_some(Elements { vertices, ends: &centers.ends })
@@ -95,24 +96,25 @@ impl<'c> Elements<'c> {
         error: impl Fn(f64) -> f64,
     ) -> Option<Vec<f64>> {
         let mut corners = Vec::new();
-        let mut at = |points: &[[f64; 2]], element: &[u32], recipe: Recipe| {
+        let mut at = |points: &[[f64; 2]], element: &[u32], recipe: CenterFunction| {
             corners.clear();
             corners.extend(element.iter().map(|&vertex| points[vertex as usize]));
             let center = recipe(&corners)?[axis];
             let far = corners.iter().map(|corner| (corner[axis] - center).abs());
             Some((center, far.fold(0.0, f64::max)))
         };
-        let mut fits = |recipe: Recipe| {
+        let mut fits = |recipe: CenterFunction| {
             self.each().zip(numbers).filter(|(element, _)| !element.is_empty()).all(
                 |(element, &number)| {
                     let found = at(old, element, recipe);
                     found.is_some_and(|(center, reach)| {
-                        (center - number).abs() <= CLOSE * reach + 4.0 * error(center.abs())
+                        (center - number).abs()
+                            <= CENTER_TOLERANCE * reach + 4.0 * error(center.abs())
                     })
                 },
             )
         };
-        let recipe = RECIPES.into_iter().find(|&recipe| fits(recipe))?;
+        let recipe = CENTER_FUNCTIONS.into_iter().find(|&recipe| fits(recipe))?;
         let updated = self.each().zip(numbers).map(|(element, &number)| {
             let has_moved =
                 |&v: &u32| old[v as usize].map(f64::to_bits) != new[v as usize].map(f64::to_bits);
@@ -154,21 +156,21 @@ fn circumcenter(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
     (doubled != 0.0).then(|| [a[0] + offset[0], a[1] + offset[1]])
 }
 
-/// Walks through a file for its centers.
+/// Visitor that collects arrays with the centers of elements.
 #[derive(Default)]
-struct Seeker {
-    tags: Vec<u64>,
+struct CenterVisitor {
+    ids: Vec<u64>,
     last: (String, usize),
     found: Vec<Array>,
 }
 
-impl Sink for Seeker {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for CenterVisitor {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn center_array(&mut self, name: &[u8], axis: usize) -> bool {

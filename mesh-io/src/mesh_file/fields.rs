@@ -6,7 +6,7 @@ use crate::mesh_file::mesh::MeshFile;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
 use crate::visit::point_data;
-use crate::visit::point_data::{PointData, Wanted};
+use crate::visit::point_data::{FieldSelection, PointData};
 
 impl MeshFile {
     /// Reads the real numbers that the file gives its vertices under these names, or all real numbers for `None`. The
@@ -21,7 +21,7 @@ impl MeshFile {
     /// [`ReadError`] if no data have one of the names, if their numbers are whole, or if they are damaged.
     pub fn point_fields(&self, names: Option<&[String]>) -> Result<Vec<PointField>, ReadError> {
         let PointData { fields, known } =
-            self.data_of(names.map_or(Wanted::Real, Wanted::Named))?;
+            self.data_of(names.map_or(FieldSelection::Real, FieldSelection::Named))?;
         let source = self.source();
         for name in names.unwrap_or_default() {
             let shown = quoted(name.as_bytes());
@@ -65,7 +65,8 @@ impl MeshFile {
     /// vertex.
     pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
         let source = self.source();
-        let PointData { fields, known } = self.data_of(Wanted::Named(&[name.to_owned()]))?;
+        let PointData { fields, known } =
+            self.data_of(FieldSelection::Named(&[name.to_owned()]))?;
         let vertices = self.points().len();
         let shown = quoted(name.as_bytes());
         match fields.first().map(|field| (field.components(), field.values())) {
@@ -83,7 +84,7 @@ impl MeshFile {
         }
     }
 
-    fn data_of(&self, wanted: Wanted<'_>) -> Result<PointData, ReadError> {
+    fn data_of(&self, wanted: FieldSelection<'_>) -> Result<PointData, ReadError> {
         point_data::point_data(self.reader(), self.source(), wanted)
     }
 

@@ -4,12 +4,12 @@ use crate::content::constraints::{Constraints, edges_between_regions};
 use crate::content::regions::interface_vertices;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
-use crate::edit::numbers::{Encoded, Numbers, Places};
+use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
-use crate::visit::parsed::Parsed;
-use crate::visit::reader::Reader;
+use crate::visit::parsed_mesh::ParsedMesh;
+use crate::visit::reader::ReaderFunctions;
 use std::fmt;
 use std::path::Path;
 
@@ -32,8 +32,8 @@ use std::path::Path;
 /// A mesh file never changes after it is read, and says nothing about which vertices may move. [`constraints`](Self::constraints) and
 /// [`regions`](Self::regions) are the facts by which a program decides.
 pub struct MeshFile {
-    parsed: Parsed,
-    reader: &'static Reader,
+    parsed: ParsedMesh,
+    reader: &'static ReaderFunctions,
     /// The main file, with its companions. The main file of a Triangle mesh is the `.node`.
     source: Source,
 }
@@ -44,8 +44,8 @@ impl MeshFile {
     /// # Errors
     /// [`ReadError::Format`] if there is no triangle.
     pub(crate) fn new(
-        parsed: Parsed,
-        reader: &'static Reader,
+        parsed: ParsedMesh,
+        reader: &'static ReaderFunctions,
         source: Source,
     ) -> Result<MeshFile, ReadError> {
         if parsed.triangles.is_empty() {
@@ -64,12 +64,12 @@ impl MeshFile {
     /// All files that were read: of a Triangle mesh its `.node`, `.ele` and, if there is one, `.poly`; of an XDMF the files beside it
     /// that it has numbers in.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
-        self.parts().into_iter().map(|source| source.path.as_path())
+        self.files().into_iter().map(|source| source.path.as_path())
     }
 
     /// Lists all files that were read, in the order of [`paths`](Self::paths), with their bytes.
     pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
-        self.parts().into_iter().map(|source| (source.path.as_path(), source.stored()))
+        self.files().into_iter().map(|source| (source.path.as_path(), source.stored()))
     }
 
     /// Returns x and y of each vertex, in the order of the file, in its unit.
@@ -116,7 +116,7 @@ impl MeshFile {
     }
 
     /// Returns the reader by which the file was read.
-    pub(crate) fn reader(&self) -> &'static Reader {
+    pub(crate) fn reader(&self) -> &'static ReaderFunctions {
         self.reader
     }
 
@@ -125,36 +125,36 @@ impl MeshFile {
         &self.source
     }
 
-    /// Returns all files of the mesh, the main file first.
-    pub(crate) fn parts(&self) -> Vec<&Source> {
-        self.source.parts().collect()
+    /// Returns the files of the mesh, the main file first.
+    pub(crate) fn files(&self) -> Vec<&Source> {
+        self.source.files().collect()
     }
 
-    /// Returns the index of the file that has the coordinates, in the order of [`parts`](Self::parts).
-    pub(crate) fn part(&self) -> usize {
-        self.parsed.part
+    /// Returns the index of the file with the coordinates, in the order of [`files`](Self::files).
+    pub(crate) fn file_index(&self) -> usize {
+        self.parsed.file_index
     }
 
-    pub(crate) fn x_at(&self) -> &Places {
-        &self.parsed.x_at
+    pub(crate) fn x_offsets(&self) -> &Offsets {
+        &self.parsed.x_offsets
     }
 
-    pub(crate) fn owners(&self) -> Option<&[u32]> {
+    pub(crate) fn offset_vertices(&self) -> Option<&[u32]> {
         self.parsed.owners.as_deref()
     }
 
-    pub(crate) fn numbers(&self) -> Numbers {
-        self.parsed.numbers
+    pub(crate) fn encoding(&self) -> CoordinateEncoding {
+        self.parsed.encoding
     }
 
     /// Returns the encoded points, if the file has them encoded.
-    pub(crate) fn encoded(&self) -> Option<&dyn Encoded> {
+    pub(crate) fn encoded_points(&self) -> Option<&dyn EncodedArrays> {
         self.parsed.encoded.as_deref()
     }
 
     /// Returns the precision of coordinates in the file, to which [`write`](Self::write) rounds.
     pub fn precision(&self) -> Precision {
-        self.parsed.numbers.precision()
+        self.parsed.encoding.precision()
     }
 
     /// Returns remarks for the user, such as on elements other than triangles.

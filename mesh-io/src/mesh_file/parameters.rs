@@ -5,12 +5,13 @@ use crate::mesh_file::mesh::MeshFile;
 use crate::mesh_file::parametric;
 use crate::visit::field::PointField;
 
-/// The most that parameters may deviate from those of a plane, as a share of their range.
-const FLAT: f64 = 1e-8;
+/// Largest deviation of parameters from a linear function of x and y on a plane, relative to the range of the
+/// parameters.
+const PLANE_TOLERANCE: f64 = 1e-8;
 
 impl MeshFile {
     /// Returns the parameters of vertices on plane surfaces of a model, updated for vertices at `points`, as fields for
-    /// [`write_with`](Self::write_with). On a plane, u and v are linear in x and y. Also returns the number of other
+    /// [`write_with_fields`](Self::write_with_fields). On a plane, u and v are linear in x and y. Also returns the number of other
     /// surfaces with parameters, which cannot be updated. Without parameters, both are empty.
     ///
     /// # Errors
@@ -85,7 +86,7 @@ fn slopes(points: &[[f64; 2]], parameters: &[f64]) -> Option<[[f64; 2]; 2]> {
     // If all vertices lie on a line, the slopes are NaN and this does not hold.
     let is_linear = centered().all(|([x, y], own)| {
         let far = |k: usize| (slopes[k][0] * x + slopes[k][1] * y - own[k]).abs();
-        far(0) <= FLAT * reach && far(1) <= FLAT * reach
+        far(0) <= PLANE_TOLERANCE * reach && far(1) <= PLANE_TOLERANCE * reach
     });
     (given.len() >= 3 && is_linear).then_some(slopes)
 }

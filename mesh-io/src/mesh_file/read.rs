@@ -5,8 +5,8 @@ use crate::disk::source::{ReadOptions, Source};
 use crate::error::ReadError;
 use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
-use crate::visit::assemble;
-use crate::visit::reader::Reader;
+use crate::visit::mesh_builder;
+use crate::visit::reader::ReaderFunctions;
 use std::path::Path;
 
 impl MeshFile {
@@ -60,14 +60,14 @@ impl ReadOptions {
 }
 
 /// Finds the reader of a file, or explains why the file has no format that is read.
-fn reader(given: &Source) -> Result<&'static Reader, ReadError> {
+fn reader(given: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     detect::reader(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
 }
 
-fn parsed(reader: &'static Reader, source: Source) -> Result<MeshFile, ReadError> {
+fn parsed(reader: &'static ReaderFunctions, source: Source) -> Result<MeshFile, ReadError> {
     // Formats that are read by words may have any line ends.
-    let ends = source.parts().find_map(ends_by_returns);
-    let read = assemble::parse(reader, &source);
+    let ends = source.files().find_map(ends_by_returns);
+    let read = mesh_builder::parse(reader, &source);
     let made = read.and_then(|parsed| MeshFile::new(parsed, reader, source));
     made.map_err(|error| ends.unwrap_or(error))
 }

@@ -1,20 +1,20 @@
 //! Attributes of variables.
 
-use super::types::Number;
-use crate::binary::order::Order;
+use super::types::NumberType;
+use crate::binary::byte_order::ByteOrder;
 
 /// An attribute: its name, and its content as it stands in the file.
 pub(super) struct Attribute {
     pub(super) name: Vec<u8>,
-    pub(super) number: Number,
-    pub(super) order: Order,
+    pub(super) number: NumberType,
+    pub(super) order: ByteOrder,
     pub(super) bytes: Vec<u8>,
 }
 
 impl Attribute {
     /// Returns its text, up to where it ends.
     pub(super) fn text(&self) -> Option<&[u8]> {
-        let is_text = self.number == Number::Text;
+        let is_text = self.number == NumberType::Text;
         let text = self.bytes.split(|&byte| byte == 0).next().unwrap_or_default();
         is_text.then(|| text.trim_ascii())
     }
@@ -23,16 +23,16 @@ impl Attribute {
     pub(super) fn real(&self) -> Option<f64> {
         let first = self.bytes.get(..self.number.bytes())?;
         match self.number {
-            Number::Whole(_) => Some(self.order.signed(first) as f64),
-            Number::Real(precision) => Some(self.order.real(precision, first)),
-            Number::Text | Number::Other(_) => None,
+            NumberType::Whole(_) => Some(self.order.signed(first) as f64),
+            NumberType::Real(precision) => Some(self.order.real(precision, first)),
+            NumberType::Text | NumberType::Other(_) => None,
         }
     }
 
     /// Returns the first of its numbers, if that is whole.
     pub(super) fn whole(&self) -> Option<i64> {
         match self.number {
-            Number::Whole(bytes) => Some(self.order.signed(self.bytes.get(..bytes)?)),
+            NumberType::Whole(bytes) => Some(self.order.signed(self.bytes.get(..bytes)?)),
             _ => self.real().filter(|x| x.fract() == 0.0 && x.abs() < 1e15).map(|x| x as i64),
         }
     }

@@ -5,29 +5,29 @@
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Variable};
-use super::types::{ATTRIBUTES, DIMENSIONS, Number, VARIABLES};
-use crate::binary::order::Order;
+use super::types::{ATTRIBUTES, DIMENSIONS, NumberType, VARIABLES};
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::{CUT_OFF, Cursor};
 
-const ORDER: Order = Order::Big;
+const ORDER: ByteOrder = ByteOrder::Big;
 
-/// A variable, and where it starts.
-struct Placed {
+/// A variable as the header of the file describes it.
+struct VariableEntry {
     name: Vec<u8>,
     shape: Vec<u64>,
     is_record: bool,
-    number: Number,
+    number: NumberType,
     attributes: Vec<Attribute>,
     begin: usize,
     size: usize,
 }
 
-impl Placed {
+impl VariableEntry {
     /// The variable, where each record starts so many bytes after the one before.
     fn with(self, stride: usize) -> Variable {
-        let Placed { name, shape, is_record, number, attributes, begin, size } = self;
+        let VariableEntry { name, shape, is_record, number, attributes, begin, size } = self;
         let content = Content::Bytes { begin, stride };
         Variable { name, shape, is_record, number, order: ORDER, attributes, size, content }
     }
@@ -35,14 +35,14 @@ impl Placed {
 
 /// Reads the header and checks that all variables lie in the file, each by itself.
 pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
-    let mut reader = Reader { cursor: Cursor::new(source), count: 4, offset: 4 };
+    let mut reader = HeaderReader { cursor: Cursor::new(source), count: 4, offset: 4 };
     match source.bytes.get(3) {
         Some(1) => {}
         Some(2) => reader.offset = 8,
         Some(5) => (reader.count, reader.offset) = (8, 8),
         _ => {
             let problem = "the version of netCDF is not known";
-            let start = Cursor::at_byte_of(source, 0);
+            let start = Cursor::at_byte_offset(source, 0);
             return Err(start.error(problem, "Versions 1, 2 and 5 are read"));
         }
     }
@@ -60,22 +60,22 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         variables.push(reader.variable(&dimensions)?);
     }
     let start = reader.cursor.at_byte();
-    let (records, stride) = placed(&variables, source, start, records, &reader)?;
+    let (records, stride) = variable_entries(&variables, source, start, records, &reader)?;
     let variables = variables.into_iter().map(|variable| variable.with(stride)).collect();
     Ok(Header { source, dimensions, variables, records, hdf5: None })
 }
 
 /// Finds how many records there are and how many bytes lie between two, and checks the places of all variables.
-fn placed(
-    variables: &[Placed],
+fn variable_entries(
+    variables: &[VariableEntry],
     source: &Source,
     start: usize,
     records: u64,
-    reader: &Reader<'_>,
+    reader: &HeaderReader<'_>,
 ) -> Result<(usize, usize), ReadError> {
     let length = source.bytes.len();
     let of_records = || variables.iter().filter(|variable| variable.is_record);
-    let padded = |variable: &Placed| variable.size.checked_next_multiple_of(4);
+    let padded = |variable: &VariableEntry| variable.size.checked_next_multiple_of(4);
     let stride = match of_records().count() {
         // The records of a single variable follow each other without a gap.
         1 => of_records().map(|variable| variable.size).sum(),
@@ -92,7 +92,7 @@ fn placed(
         records if records == unknown => length.saturating_sub(first) / stride,
         records => usize::try_from(records).unwrap_or(usize::MAX),
     };
-    let beyond = |variable: &Placed| {
+    let beyond = |variable: &VariableEntry| {
         let problem = format!("{} ends beyond the file", String::from_utf8_lossy(&variable.name));
         Err(reader.cursor.error(problem, CUT_OFF))
     };
@@ -131,15 +131,15 @@ fn placed(
     Ok((records, stride))
 }
 
-/// Takes what a header consists of.
-struct Reader<'a> {
+/// Reader of the fields of the header.
+struct HeaderReader<'a> {
     cursor: Cursor<'a>,
     /// How many bytes a count has, and an offset.
     count: usize,
     offset: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> HeaderReader<'a> {
     fn take(&mut self, bytes: usize) -> Result<&'a [u8], ReadError> {
         let start = self.cursor.clone();
         let taken = self.cursor.take(bytes);
@@ -173,9 +173,9 @@ impl<'a> Reader<'a> {
         Ok(self.padded(bytes)?.to_vec())
     }
 
-    fn number_type(&mut self) -> Result<Number, ReadError> {
+    fn number_type(&mut self) -> Result<NumberType, ReadError> {
         let number = self.number(4)? as u32;
-        Number::of_type(number).ok_or_else(|| {
+        NumberType::of_type(number).ok_or_else(|| {
             let problem = format!("numbers of the unknown type {number}");
             self.cursor.error(problem, "Write the mesh again")
         })
@@ -189,7 +189,7 @@ impl<'a> Reader<'a> {
         Ok(Attribute { name, number, order: ORDER, bytes })
     }
 
-    fn variable(&mut self, dimensions: &[(Vec<u8>, u64)]) -> Result<Placed, ReadError> {
+    fn variable(&mut self, dimensions: &[(Vec<u8>, u64)]) -> Result<VariableEntry, ReadError> {
         let name = self.name()?;
         let (mut shape, mut is_record) = (Vec::new(), false);
         for axis in 0..self.number(self.count)? {
@@ -215,6 +215,6 @@ impl<'a> Reader<'a> {
         let begin = usize::try_from(self.number(self.offset)?).unwrap_or(usize::MAX);
         let size = shape.iter().try_fold(number.bytes() as u64, |size, &n| size.checked_mul(n));
         let size = size.and_then(|size| usize::try_from(size).ok()).unwrap_or(usize::MAX);
-        Ok(Placed { name, shape, is_record, number, attributes, begin, size })
+        Ok(VariableEntry { name, shape, is_record, number, attributes, begin, size })
     }
 }

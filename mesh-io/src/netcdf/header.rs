@@ -1,11 +1,11 @@
 //! What a netCDF file holds, whichever format it is in: dimensions and variables by name.
 
 use super::attribute::Attribute;
-use super::types::Number;
-use crate::binary::order::Order;
+use super::types::NumberType;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::hdf5::{Array, Dataset, Hdf5};
+use crate::hdf5::{Dataset, DatasetArray, Hdf5};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -26,8 +26,8 @@ pub(crate) struct Variable {
     /// Its lengths, but for the record dimension.
     pub(crate) shape: Vec<u64>,
     pub(crate) is_record: bool,
-    pub(crate) number: Number,
-    pub(crate) order: Order,
+    pub(crate) number: NumberType,
+    pub(crate) order: ByteOrder,
     pub(super) attributes: Vec<Attribute>,
     /// How many bytes it has, in each record if it is of records.
     pub(crate) size: usize,
@@ -67,7 +67,7 @@ impl Variable {
     /// The real numbers in these bytes of it; none if it has others.
     pub(crate) fn reals(&self, bytes: &[u8]) -> Vec<f64> {
         match self.number {
-            Number::Real(_) => self.numbers(bytes),
+            NumberType::Real(_) => self.numbers(bytes),
             _ => Vec::new(),
         }
     }
@@ -76,9 +76,9 @@ impl Variable {
     pub(crate) fn numbers(&self, bytes: &[u8]) -> Vec<f64> {
         let each = bytes.chunks_exact(self.number.bytes().max(1));
         match self.number {
-            Number::Real(precision) => each.map(|x| self.order.real(precision, x)).collect(),
-            Number::Whole(_) => each.map(|x| self.order.signed(x) as f64).collect(),
-            Number::Text | Number::Other(_) => Vec::new(),
+            NumberType::Real(precision) => each.map(|x| self.order.real(precision, x)).collect(),
+            NumberType::Whole(_) => each.map(|x| self.order.signed(x) as f64).collect(),
+            NumberType::Text | NumberType::Other(_) => Vec::new(),
         }
     }
 }
@@ -91,7 +91,7 @@ pub(crate) struct Items<'a> {
     stride: usize,
     size: usize,
     /// What these bytes are, if they are not those of the file.
-    pub(crate) array: Option<Array<'a>>,
+    pub(crate) array: Option<DatasetArray<'a>>,
 }
 
 impl<'a> Items<'a> {
@@ -107,12 +107,12 @@ impl<'a> Items<'a> {
     }
 
     /// Where in the file it starts, if it stands there as it is.
-    pub(crate) fn place(&self) -> Option<usize> {
-        self.array.as_ref().map_or(Some(self.first), Array::place)
+    pub(crate) fn start(&self) -> Option<usize> {
+        self.array.as_ref().map_or(Some(self.first), DatasetArray::start)
     }
 
     /// Takes out what it is, with its bytes, if these are not those of the file.
-    pub(crate) fn take_array(&mut self) -> Option<Array<'a>> {
+    pub(crate) fn take_array(&mut self) -> Option<DatasetArray<'a>> {
         let mut array = self.array.take()?;
         array.bytes = std::mem::take(&mut self.bytes);
         Some(array)
@@ -145,7 +145,7 @@ impl<'a> Header<'a> {
     }
 
     /// Near which byte a variable stands, for messages.
-    pub(crate) fn place(&self, variable: &Variable) -> usize {
+    pub(crate) fn start_of(&self, variable: &Variable) -> usize {
         match &variable.content {
             Content::Bytes { begin, .. } => *begin,
             Content::Dataset(dataset) => dataset.at,
@@ -154,7 +154,7 @@ impl<'a> Header<'a> {
 
     /// The whole numbers of a variable; none if it has others.
     pub(crate) fn integers(&self, variable: &Variable) -> Option<Vec<i64>> {
-        let Number::Whole(bytes) = variable.number else { return None };
+        let NumberType::Whole(bytes) = variable.number else { return None };
         let items = self.items(variable).ok()?;
         Some(items.own().chunks_exact(bytes).map(|n| variable.order.signed(n)).collect())
     }
@@ -162,7 +162,7 @@ impl<'a> Header<'a> {
     /// The texts of a variable, the rows of a table of letters, without what fills them up.
     pub(crate) fn texts(&self, variable: &Variable) -> Vec<Vec<u8>> {
         let width = variable.shape.last().map_or(1, |&width| width as usize).max(1);
-        let is_table = variable.number == Number::Text && !variable.is_record;
+        let is_table = variable.number == NumberType::Text && !variable.is_record;
         let Some(items) = is_table.then(|| self.items(variable).ok()).flatten() else {
             return Vec::new();
         };

@@ -12,7 +12,7 @@ use crate::error::ReadError;
 use crate::hdf5::SIGNATURE;
 
 pub(crate) use header::{Header, Items, Variable};
-pub(crate) use types::Number;
+pub(crate) use types::NumberType;
 
 /// Reads the header of a file.
 ///

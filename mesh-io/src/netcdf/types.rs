@@ -2,9 +2,9 @@
 
 use crate::precision::Precision;
 
-/// The types of numbers that are told apart.
+/// The type of the numbers of a variable or attribute.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Number {
+pub(crate) enum NumberType {
     Text,
     Whole(usize),
     Real(Precision),
@@ -12,24 +12,24 @@ pub(crate) enum Number {
     Other(usize),
 }
 
-impl Number {
+impl NumberType {
     pub(crate) fn bytes(self) -> usize {
         match self {
-            Number::Text => 1,
-            Number::Whole(bytes) | Number::Other(bytes) => bytes,
-            Number::Real(precision) => precision.bytes(),
+            NumberType::Text => 1,
+            NumberType::Whole(bytes) | NumberType::Other(bytes) => bytes,
+            NumberType::Real(precision) => precision.bytes(),
         }
     }
     /// Returns what the number of a type stands for. Unsigned numbers are taken for signed ones.
-    pub(super) fn of_type(number: u32) -> Option<Number> {
+    pub(super) fn of_type(number: u32) -> Option<NumberType> {
         match number {
-            CHAR => Some(Number::Text),
-            BYTE | UBYTE => Some(Number::Whole(1)),
-            SHORT | USHORT => Some(Number::Whole(2)),
-            INT | UINT => Some(Number::Whole(4)),
-            INT64 | UINT64 => Some(Number::Whole(8)),
-            FLOAT => Some(Number::Real(Precision::Single)),
-            DOUBLE => Some(Number::Real(Precision::Double)),
+            CHAR => Some(NumberType::Text),
+            BYTE | UBYTE => Some(NumberType::Whole(1)),
+            SHORT | USHORT => Some(NumberType::Whole(2)),
+            INT | UINT => Some(NumberType::Whole(4)),
+            INT64 | UINT64 => Some(NumberType::Whole(8)),
+            FLOAT => Some(NumberType::Real(Precision::Single)),
+            DOUBLE => Some(NumberType::Real(Precision::Double)),
             _ => None,
         }
     }

@@ -5,8 +5,8 @@
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Variable};
-use super::types::Number;
-use crate::binary::order::Order;
+use super::types::NumberType;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::{self, Hdf5};
@@ -42,8 +42,8 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         if is_record {
             shape.remove(0);
         }
-        let (number, order) = match dataset.number {
-            hdf5::Number::Text(1) => (Number::Text, Order::Big),
+        let (number, order) = match dataset.datatype {
+            hdf5::Datatype::Text(1) => (NumberType::Text, ByteOrder::Big),
             other => number_of(other),
         };
         let size = shape.iter().try_fold(number.bytes() as u64, |size, &n| size.checked_mul(n));
@@ -51,7 +51,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         let attributes = file.attributes(object).into_iter().map(|(name, attribute)| {
             // A text of an attribute is a single item.
             let (number, order) = match attribute.number {
-                hdf5::Number::Text(_) => (Number::Text, Order::Big),
+                hdf5::Datatype::Text(_) => (NumberType::Text, ByteOrder::Big),
                 other => number_of(other),
             };
             Attribute { name: name.to_vec(), number, order, bytes: attribute.bytes.to_vec() }
@@ -75,12 +75,12 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
 }
 
 /// What numbers are called here, and the order of their bytes.
-fn number_of(number: hdf5::Number) -> (Number, Order) {
+fn number_of(number: hdf5::Datatype) -> (NumberType, ByteOrder) {
     match number {
-        hdf5::Number::Whole(bytes, order) => (Number::Whole(bytes), order),
-        hdf5::Number::Real(precision, order) => (Number::Real(precision), order),
-        hdf5::Number::Text(bytes)
-        | hdf5::Number::TextElsewhere(bytes)
-        | hdf5::Number::Other(bytes) => (Number::Other(bytes), Order::Big),
+        hdf5::Datatype::Whole(bytes, order) => (NumberType::Whole(bytes), order),
+        hdf5::Datatype::Real(precision, order) => (NumberType::Real(precision), order),
+        hdf5::Datatype::Text(bytes)
+        | hdf5::Datatype::VariableText(bytes)
+        | hdf5::Datatype::Other(bytes) => (NumberType::Other(bytes), ByteOrder::Big),
     }
 }

@@ -6,12 +6,12 @@
 use super::types::{ATTRIBUTES, CHAR, DIMENSIONS, DOUBLE, FLOAT, INT, VARIABLES};
 use std::collections::HashMap;
 
-/// A file under construction.
+/// A file in the classic netCDF format, to be written.
 #[derive(Default)]
-pub(crate) struct NetCdf {
+pub(crate) struct NetCdfWriter {
     dimensions: Vec<(String, usize)>,
     /// Where the dimension of a name is: a file of as many blocks as elements has as many dimensions.
-    places: HashMap<String, usize>,
+    dimension_indices: HashMap<String, usize>,
     attributes: Vec<(&'static str, Values)>,
     variables: Vec<Variable>,
 }
@@ -60,7 +60,7 @@ impl Values {
     }
 }
 
-impl NetCdf {
+impl NetCdfWriter {
     pub(crate) fn attribute(&mut self, name: &'static str, values: Values) {
         self.attributes.push((name, values));
     }
@@ -68,12 +68,12 @@ impl NetCdf {
     /// Adds a dimension. That of length zero is the dimension of records.
     pub(crate) fn dimension(&mut self, name: impl Into<String>, length: usize) {
         let name = name.into();
-        self.places.insert(name.clone(), self.dimensions.len());
+        self.dimension_indices.insert(name.clone(), self.dimensions.len());
         self.dimensions.push((name, length));
     }
 
     pub(crate) fn has_dimension(&self, name: &str) -> bool {
-        self.places.contains_key(name)
+        self.dimension_indices.contains_key(name)
     }
 
     /// Adds a variable of these dimensions, none for a single value.
@@ -84,7 +84,7 @@ impl NetCdf {
         attributes: Vec<(&'static str, Values)>,
         values: Values,
     ) {
-        let place = |name: &&str| self.places.get(*name).copied();
+        let place = |name: &&str| self.dimension_indices.get(*name).copied();
         let dimensions: Vec<usize> = dimensions.iter().filter_map(place).collect();
         let is_record = dimensions.first().is_some_and(|&first| self.dimensions[first].1 == 0);
         let name = name.into();

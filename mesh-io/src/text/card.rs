@@ -7,15 +7,15 @@ use memchr::{memchr, memchr2, memrchr};
 use std::ops::Range;
 
 /// Characters of the first and the last field of a line, and of a small field.
-const SMALL: usize = 8;
+const SMALL_FIELD_WIDTH: usize = 8;
 /// Characters of a large field.
-const LARGE: usize = 16;
-/// A comma within so many characters makes a line one in free field.
-const COMMA_WITHIN: usize = 10;
+const LARGE_FIELD_WIDTH: usize = 16;
+/// Number of characters at the start of a line in which a comma makes the line free-field.
+const MAX_COMMA_COLUMN: usize = 10;
 
-/// A line of a card.
+/// One line of a Nastran card.
 #[derive(Clone, Copy)]
-pub(crate) struct Line<'a> {
+pub(crate) struct CardLine<'a> {
     bytes: &'a [u8],
     start: usize,
     /// Where its comment starts, or its line end.
@@ -25,38 +25,38 @@ pub(crate) struct Line<'a> {
     has_tabs: bool,
 }
 
-/// The name of a card in capital letters, without an asterisk and with zeros behind.
-pub(crate) type Name = [u8; SMALL];
+/// The name of a card in capital letters, without an asterisk and padded with zeros.
+pub(crate) type CardName = [u8; SMALL_FIELD_WIDTH];
 
-/// Returns the letters of a name.
-pub(crate) fn letters(name: &Name) -> &[u8] {
-    &name[..memchr(0, name).unwrap_or(SMALL)]
+/// Returns the name of a card without the zeros that pad it to 8 bytes.
+pub(crate) fn name_bytes(name: &CardName) -> &[u8] {
+    &name[..memchr(0, name).unwrap_or(SMALL_FIELD_WIDTH)]
 }
 
-impl<'a> Line<'a> {
+impl<'a> CardLine<'a> {
     /// Takes the line that starts here.
-    pub(crate) fn starting_at(bytes: &'a [u8], start: usize) -> Line<'a> {
+    pub(crate) fn starting_at(bytes: &'a [u8], start: usize) -> CardLine<'a> {
         let rest = &bytes[start..];
         let rest = &rest[..memchr2(b'\n', b'$', rest).unwrap_or(rest.len())];
         let rest = rest.strip_suffix(b"\r").unwrap_or(rest);
-        let is_free = memchr(b',', &rest[..rest.len().min(COMMA_WITHIN)]).is_some();
-        let head = &rest[..rest.len().min(SMALL)];
+        let is_free = memchr(b',', &rest[..rest.len().min(MAX_COMMA_COLUMN)]).is_some();
+        let head = &rest[..rest.len().min(SMALL_FIELD_WIDTH)];
         let head = &head[..memchr(b',', head).unwrap_or(head.len())];
         let is_large = memchr(b'*', head).is_some();
         let has_tabs = !is_free && memchr(b'\t', rest).is_some();
-        Line { bytes, start, end: start + rest.len(), is_free, is_large, has_tabs }
+        CardLine { bytes, start, end: start + rest.len(), is_free, is_large, has_tabs }
     }
 
     /// Takes the line that has this byte.
-    fn of(bytes: &'a [u8], at: usize) -> Line<'a> {
+    fn of(bytes: &'a [u8], at: usize) -> CardLine<'a> {
         let mark = if bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
         let start = memrchr(b'\n', &bytes[..at]).map_or(mark, |before| before + 1);
-        Line::starting_at(bytes, start.min(at))
+        CardLine::starting_at(bytes, start.min(at))
     }
 
     /// The card that the line starts, if it is no continuation.
-    pub(crate) fn name(&self) -> Name {
-        let mut name = Name::default();
+    pub(crate) fn name(&self) -> CardName {
+        let mut name = CardName::default();
         let letters = self.bytes[self.start..self.end].iter();
         let letters = letters.take_while(|byte| !matches!(byte, b',' | b'*' | 0..=b' '));
         for (to, letter) in name.iter_mut().zip(letters) {
@@ -67,7 +67,7 @@ impl<'a> Line<'a> {
 
     /// Characters of a field, as far as its line has them.
     fn width(&self) -> usize {
-        if self.is_large { LARGE } else { SMALL }
+        if self.is_large { LARGE_FIELD_WIDTH } else { SMALL_FIELD_WIDTH }
     }
 
     /// How many fields of data a line has.
@@ -80,7 +80,7 @@ impl<'a> Line<'a> {
     pub(crate) fn fields(self) -> Fields<'a> {
         let at = match self.is_free {
             true => self.comma_from(self.start),
-            false => self.at_column(SMALL),
+            false => self.at_column(SMALL_FIELD_WIDTH),
         };
         Fields { line: self, at, index: 0 }
     }
@@ -113,13 +113,17 @@ impl<'a> Line<'a> {
 
     /// Returns the column after the byte that stands in a column.
     fn after(&self, column: usize, at: usize) -> usize {
-        if self.bytes[at] == b'\t' { (column / SMALL + 1) * SMALL } else { column + 1 }
+        if self.bytes[at] == b'\t' {
+            (column / SMALL_FIELD_WIDTH + 1) * SMALL_FIELD_WIDTH
+        } else {
+            column + 1
+        }
     }
 }
 
 /// The fields of data of a line.
 pub(crate) struct Fields<'a> {
-    line: Line<'a>,
+    line: CardLine<'a>,
     /// The comma before the next field, or where that starts.
     at: usize,
     index: usize,
@@ -151,7 +155,7 @@ impl Iterator for Fields<'_> {
             }
             let start = self.at;
             self.at = match line.has_tabs {
-                true => line.at_column(SMALL + (index + 1) * line.width()),
+                true => line.at_column(SMALL_FIELD_WIDTH + (index + 1) * line.width()),
                 false => line.end.min(start + line.width()),
             };
             return Some(start..self.at);
@@ -191,7 +195,7 @@ pub(crate) fn words(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = &[
 }
 
 /// Lists the lines of a card, without comments and blank lines between them.
-pub(crate) fn lines(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = Line<'_>> {
+pub(crate) fn lines(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = CardLine<'_>> {
     let mut at = card.start;
     std::iter::from_fn(move || {
         while at < card.end {
@@ -199,7 +203,7 @@ pub(crate) fn lines(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = Li
             at = memchr(b'\n', &bytes[start..card.end]).map_or(card.end, |end| start + end + 1);
             let text = bytes[start..at].trim_ascii_start();
             if !matches!(text.first(), None | Some(b'$' | b'#')) {
-                return Some(Line::starting_at(bytes, start));
+                return Some(CardLine::starting_at(bytes, start));
             }
         }
         None
@@ -209,7 +213,7 @@ pub(crate) fn lines(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = Li
 /// Returns the end of the field that starts here, and how many characters what is written there must have. That is none in free
 /// field, and where the line ends before the field.
 pub(crate) fn extent(bytes: &[u8], at: usize) -> (usize, usize) {
-    let line = Line::of(bytes, at);
+    let line = CardLine::of(bytes, at);
     if line.is_free {
         let end = line.comma_from(at.min(line.end));
         return (trimmed(bytes, at.min(end)..end).end.max(at), 0);
@@ -221,7 +225,7 @@ pub(crate) fn extent(bytes: &[u8], at: usize) -> (usize, usize) {
 
 /// Returns where the field starts that follows one which ends here.
 pub(crate) fn next_field(bytes: &[u8], end: usize) -> usize {
-    let line = Line::of(bytes, end);
+    let line = CardLine::of(bytes, end);
     let comma = line.comma_from(end.min(line.end));
     match line.is_free && comma < line.end {
         true => trimmed(bytes, comma + 1..line.comma_from(comma + 1)).start,
@@ -234,7 +238,7 @@ mod tests {
     use super::*;
 
     fn fields(line: &str) -> Vec<&str> {
-        let fields = Line::starting_at(line.as_bytes(), 0).fields();
+        let fields = CardLine::starting_at(line.as_bytes(), 0).fields();
         fields.map(|field| &line[field]).collect()
     }
 
@@ -263,8 +267,8 @@ mod tests {
             8
         );
         for (line, name) in [("\tGrid*, 1", ""), ("Grid*, 1", "GRID"), ("ctria3 *", "CTRIA3")] {
-            let own = Line::starting_at(line.as_bytes(), 0).name();
-            assert_eq!(letters(&own), name.as_bytes());
+            let own = CardLine::starting_at(line.as_bytes(), 0).name();
+            assert_eq!(name_bytes(&own), name.as_bytes());
         }
     }
 
@@ -298,7 +302,7 @@ mod tests {
             for head in ["", "$, comment\n", "\u{feff}"] {
                 let text = format!("{head}{line}\nEND");
                 let bytes = text.as_bytes();
-                let all: Vec<_> = Line::starting_at(bytes, head.len()).fields().collect();
+                let all: Vec<_> = CardLine::starting_at(bytes, head.len()).fields().collect();
                 for pair in all.windows(2) {
                     assert_eq!(extent(bytes, pair[0].start).0, pair[0].end, "{text:?}");
                     assert_eq!(next_field(bytes, pair[0].end), pair[1].start, "{text:?}");

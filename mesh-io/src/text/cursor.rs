@@ -2,7 +2,7 @@
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
-use crate::text::continued::{continued_end, is_left_out};
+use crate::text::continuation::{continued_end, is_left_out};
 use crate::text::syntax::{Commas, Items, Syntax};
 use crate::text::token::line_end;
 use std::ops::Range;
@@ -24,10 +24,10 @@ pub(crate) struct Cursor<'a> {
     /// `at`.
     line: usize,
     /// The offset of the bytes taken last. `None` in a text file.
-    taken: Option<usize>,
+    last_taken: Option<usize>,
     pub(crate) syntax: Syntax,
-    /// Whether line ends are blanks for the current item.
-    crosses: bool,
+    /// Whether line ends count as blanks for the current item.
+    crosses_line_ends: bool,
 }
 
 impl<'a> Cursor<'a> {
@@ -39,35 +39,35 @@ impl<'a> Cursor<'a> {
             bytes: &source.bytes,
             at,
             line: 0,
-            taken: None,
+            last_taken: None,
             syntax: Syntax::PLAIN,
-            crosses: false,
+            crosses_line_ends: false,
         }
     }
 
-    /// Makes a cursor on the line of a byte, for messages.
-    pub(crate) fn standing_at(source: &'a Source, at: usize) -> Self {
+    /// Makes a cursor on the line of the byte at offset `at`, for messages.
+    pub(crate) fn on_line_of(source: &'a Source, at: usize) -> Self {
         let mut cursor = Cursor::new(source);
         (cursor.at, cursor.line) = (at, source.line_of(at));
         cursor
     }
 
-    /// Makes a cursor before a byte of a binary file, for messages.
-    pub(crate) fn at_byte_of(source: &'a Source, at: usize) -> Self {
+    /// Makes a cursor before the byte at offset `at` of a binary file, for messages.
+    pub(crate) fn at_byte_offset(source: &'a Source, at: usize) -> Self {
         let mut cursor = Cursor::new(source);
-        (cursor.at, cursor.taken) = (at, Some(at));
+        (cursor.at, cursor.last_taken) = (at, Some(at));
         cursor
     }
 
     /// Makes a cursor before the first row of a range, beyond which it does not read.
     pub(crate) fn within(source: &'a Source, range: Range<usize>) -> Self {
-        let mut cursor = Cursor::standing_at(source, range.start);
+        let mut cursor = Cursor::on_line_of(source, range.start);
         cursor.bytes = &source.bytes[..range.end];
         cursor
     }
 
     /// Returns the cursor with another syntax.
-    pub(crate) fn of(self, syntax: Syntax) -> Self {
+    pub(crate) fn with_syntax(self, syntax: Syntax) -> Self {
         Cursor { syntax, ..self }
     }
 
@@ -89,7 +89,7 @@ impl<'a> Cursor<'a> {
         while parts.len() < count && at < self.bytes.len() {
             let end = self.part_end(self.bytes.len().min(at + size - 1));
             let bytes = &self.bytes[..end];
-            parts.push(Cursor { bytes, at, line: 0, taken: None, ..*self });
+            parts.push(Cursor { bytes, at, line: 0, last_taken: None, ..*self });
             at = end;
         }
         parts
@@ -104,9 +104,9 @@ impl<'a> Cursor<'a> {
     /// Returns the location: the current line, or the last one if there are no more rows. In a binary file, it is the
     /// offset of the bytes taken last.
     pub(crate) fn location(&self) -> Location {
-        match self.taken {
+        match self.last_taken {
             // The count is 0 if nothing was read so far, but editors count from 1.
-            None if self.syntax.joins || self.syntax.continues => {
+            None if self.syntax.joins_lines || self.syntax.continues_cards => {
                 Location::Line(self.source.line_of(self.at))
             }
             None => Location::Line(self.line.max(1)),
@@ -117,7 +117,7 @@ impl<'a> Cursor<'a> {
 
     /// Returns the location of the byte at offset `at`.
     pub(crate) fn location_of(&self, at: usize) -> Location {
-        match self.taken {
+        match self.last_taken {
             None => Location::Line(self.source.line_of(at)),
             Some(_) => Location::Byte(at),
         }
@@ -128,24 +128,25 @@ impl<'a> Cursor<'a> {
     #[inline]
     pub(crate) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let start = self.next_line();
-        (self.at, self.line, self.taken) = (start, 0, Some(start));
+        (self.at, self.line, self.last_taken) = (start, 0, Some(start));
         let taken = self.bytes[start..].get(..count)?;
         self.at += count;
         Some(taken)
     }
 
-    /// Returns the next `count` items of `size` bytes, without taking them, and their offset. `None` if there are
-    /// fewer.
-    pub(crate) fn ahead(&self, count: u64, size: usize) -> Option<(&'a [u8], usize)> {
+    /// Returns the next `count` items of `size` bytes, without taking them, and the offset of the first item. `None`
+    /// if the file has fewer.
+    pub(crate) fn peek(&self, count: u64, size: usize) -> Option<(&'a [u8], usize)> {
         let start = self.next_line();
         let length = usize::try_from(count).ok()?.checked_mul(size)?;
         Some((self.bytes[start..].get(..length)?, start))
     }
 
-    /// Moves to an offset of the file, for messages, and counts the lines up to it. Moving forward is fast.
-    pub(crate) fn go_to(&mut self, at: usize) {
-        match self.taken {
-            Some(_) => self.taken = Some(at),
+    /// Moves to the byte at offset `at`, for messages, and counts the lines up to the byte. Moving forward takes time
+    /// in proportion to the distance.
+    pub(crate) fn seek(&mut self, at: usize) {
+        match self.last_taken {
+            Some(_) => self.last_taken = Some(at),
             None if at < self.at || self.line == 0 => self.line = self.source.line_of(at),
             None => self.line += memchr::memchr_iter(b'\n', &self.bytes[self.at..at]).count(),
         }
@@ -157,8 +158,8 @@ impl<'a> Cursor<'a> {
         self.bytes.len() - self.at > 1 << 18
     }
 
-    /// Skips bytes that exist, without counting them as taken.
-    pub(crate) fn pass(&mut self, count: usize) {
+    /// Skips `count` bytes, which must exist, without counting them as taken.
+    pub(crate) fn skip_bytes(&mut self, count: usize) {
         self.at += count;
     }
 
@@ -169,8 +170,8 @@ impl<'a> Cursor<'a> {
 
     /// Returns the offset of the bytes taken last.
     #[inline]
-    pub(crate) fn taken(&self) -> usize {
-        self.taken.unwrap_or(self.at)
+    pub(crate) fn last_taken(&self) -> usize {
+        self.last_taken.unwrap_or(self.at)
     }
 
     #[inline]
@@ -182,7 +183,7 @@ impl<'a> Cursor<'a> {
     #[inline]
     pub(crate) fn row_end(&self, at: usize) -> usize {
         let end = line_end(self.bytes, at);
-        match (self.syntax.joins, self.syntax.continues) {
+        match (self.syntax.joins_lines, self.syntax.continues_cards) {
             (false, false) => end,
             (true, _) => self.joined_end(at, end),
             // A comment does not go on. If it did, each of many would look at all that follow.
@@ -199,7 +200,7 @@ impl<'a> Cursor<'a> {
 
     /// Returns the end of the row that has this byte, or that has lines before and after this one.
     fn part_end(&self, at: usize) -> usize {
-        match self.syntax.continues {
+        match self.syntax.continues_cards {
             true => continued_end(self.bytes, line_end(self.bytes, at), self.syntax.comment),
             false => self.row_end(at),
         }
@@ -222,7 +223,7 @@ impl<'a> Cursor<'a> {
         while at < bytes.len() && bytes[at] <= b' ' && bytes[at] != b'\n' {
             at += 1;
         }
-        let is_plain = self.syntax.is_plain && !self.crosses;
+        let is_plain = self.syntax.is_plain && !self.crosses_line_ends;
         if is_plain || !self.is_word_end(at) { at } else { self.skip_more(at) }
     }
 
@@ -237,15 +238,15 @@ impl<'a> Cursor<'a> {
         while let Some(&byte) = self.bytes.get(at) {
             match byte {
                 _ if Some(byte) == separator && !is_separated => is_separated = true,
-                b'\\' if self.syntax.joins => {
+                b'\\' if self.syntax.joins_lines => {
                     let end = line_end(self.bytes, at);
                     match self.bytes[at + 1..end].trim_ascii().is_empty() {
                         true => at = end - 1,
                         false => return at,
                     }
                 }
-                b'#' if self.crosses => at = line_end(self.bytes, at) - 1,
-                b'\n' if self.crosses => {}
+                b'#' if self.crosses_line_ends => at = line_end(self.bytes, at) - 1,
+                b'\n' if self.crosses_line_ends => {}
                 0..=b' ' if byte != b'\n' => {}
                 _ => return at,
             }
@@ -357,9 +358,9 @@ impl<'a> Cursor<'a> {
             Err(error) if self.syntax.items != Items::Rows => error,
             on_row => return on_row,
         };
-        longer.crosses = true;
+        longer.crosses_line_ends = true;
         let read = read(&mut longer);
-        longer.crosses = false;
+        longer.crosses_line_ends = false;
         match self.syntax.items {
             // If another item starts on the row that this one would end on, a number is missing.
             Items::Records if read.is_err() || !longer.is_at_end() => return Err(error),
@@ -368,7 +369,7 @@ impl<'a> Cursor<'a> {
             _ => {}
         }
         longer.line = self.line;
-        self.go_to(longer.at);
+        self.seek(longer.at);
         read
     }
 

@@ -7,7 +7,7 @@ use crate::text::token::{float, fortran_float, integer, parse_digits, quoted, sh
 use std::fmt::Display;
 
 /// The third coordinate of a point that has only two in the file.
-pub(crate) const NO_HEIGHT: (usize, f64) = (usize::MAX, 0.0);
+pub(crate) const NO_Z: (usize, f64) = (usize::MAX, 0.0);
 
 const WHOLE: &str = "a whole number from 0 to 2^64-1";
 const SIGNED: &str = "a whole number from -2^63 to 2^63-1";
@@ -135,14 +135,14 @@ impl<'a> Cursor<'a> {
 
     /// Reads z, which need not be finite, as programs write NaN for an unknown depth. Returns the offset of z, and z.
     #[inline]
-    pub(crate) fn height(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
+    pub(crate) fn z(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
         Ok((self.at(), self.real(format_args!("z of {owner}"))?))
     }
 
-    /// Reads z if the row has more than x and y. Otherwise returns [`NO_HEIGHT`].
+    /// Reads z if the row has more than x and y. Otherwise returns [`NO_Z`].
     #[inline]
-    pub(crate) fn height_if_any(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
-        if self.is_at_end() { Ok(NO_HEIGHT) } else { self.height(owner) }
+    pub(crate) fn z_if_any(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
+        if self.is_at_end() { Ok(NO_Z) } else { self.z(owner) }
     }
 
     /// Reads x and y. Returns the offset of x, and both coordinates.

@@ -6,7 +6,7 @@ pub(crate) fn source(text: &[u8]) -> Source {
     Source {
         path: "m.txt".into(),
         bytes: text.to_vec(),
-        packed: None,
+        compressed: None,
         options: crate::ReadOptions::new(),
         known: crate::disk::stamp::KnownState::default(),
         companions: Vec::new(),

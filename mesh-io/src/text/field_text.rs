@@ -2,8 +2,9 @@
 //!
 //! A real number has a point, and its exponent needs no letter: `1.5-3` is 0.0015, and `.5` is a half.
 
-/// Characters in which any number has all of its digits: a sign, a point, seventeen digits, and an exponent of five.
-pub(crate) const ALL: usize = 24;
+/// Number of characters in which any number has all of its digits: a sign, a point, seventeen digits, and an exponent
+/// of five.
+pub(crate) const MAX_LENGTH: usize = 24;
 
 /// Writes a finite number in at most `most` characters, 8 or more, with as many digits as fit, but no more than it needs.
 pub(crate) fn field_text(number: f64, most: usize) -> String {
@@ -14,7 +15,7 @@ pub(crate) fn field_text(number: f64, most: usize) -> String {
 
 /// Returns the number that [`field_text`] stands for.
 pub(crate) fn rounded_to_field(number: f64, most: usize) -> f64 {
-    if number == 0.0 || !number.is_finite() || most >= ALL {
+    if number == 0.0 || !number.is_finite() || most >= MAX_LENGTH {
         return number;
     }
     let (size, room) = (number.abs(), most - usize::from(number.is_sign_negative()));
@@ -202,7 +203,7 @@ mod tests {
             if !number.is_finite() {
                 continue;
             }
-            for most in [8, 16, ALL] {
+            for most in [8, 16, MAX_LENGTH] {
                 let rounded = rounded_to_field(number, most);
                 let text = field_text(rounded, most);
                 assert!(text.len() <= most && text.contains('.'), "{text}");
@@ -210,7 +211,7 @@ mod tests {
                 assert_eq!(rounded_to_field(rounded, most).to_bits(), rounded.to_bits());
                 let error = (rounded - number).abs();
                 assert!(error <= field_error(number.abs(), most), "{number:e} {text}");
-                assert!(most < ALL || rounded.to_bits() == number.to_bits());
+                assert!(most < MAX_LENGTH || rounded.to_bits() == number.to_bits());
                 // As near as what is written of the number itself, but where two are as near.
                 let direct = (read(&field_text(number, most)) - number).abs();
                 assert!((direct - error).abs() <= 2.0 * f64::EPSILON * number.abs(), "{number:e}");

@@ -4,13 +4,13 @@
 //! continues from there, and is the only one that returns errors.
 
 use crate::error::ReadError;
-use crate::parallel::{map_parts, meanwhile};
+use crate::parallel::{map_parts, run_both};
 use crate::text::cursor::Cursor;
 
 /// Bytes of text that one thread reads at a time.
-const CHUNK: usize = 1 << 17;
-/// Shorter lists are read as fast on one thread.
-const LONG: u64 = 1 << 14;
+const CHUNK_BYTES: usize = 1 << 17;
+/// Smallest number of rows that are read on several threads. Shorter lists are read as fast on one thread.
+const MIN_PARALLEL_ROWS: u64 = 1 << 14;
 
 /// Reads up to `count` rows by `read`, each with a cursor at its first token, and hands them to `take` in their order.
 /// Stops if a row cannot be read or `take` refuses it. Returns how many rows were taken.
@@ -23,10 +23,10 @@ pub(crate) fn take_rows<'a, T: Send>(
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
     take: impl FnMut(T) -> bool,
 ) -> u64 {
-    if count < LONG || !cursor.is_between_rows() {
+    if count < MIN_PARALLEL_ROWS || !cursor.is_between_rows() {
         return 0;
     }
-    take_chunks(cursor, count, CHUNK, read, take)
+    take_chunks(cursor, count, CHUNK_BYTES, read, take)
 }
 
 fn take_chunks<'a, T: Send>(
@@ -50,7 +50,7 @@ fn take_chunks<'a, T: Send>(
         };
         let mut next = Batch::new(parts, std::mem::take(&mut spare));
         let mut is_plain = true;
-        meanwhile(&mut || next.read(count, &read), &mut || {
+        run_both(&mut || next.read(count, &read), &mut || {
             is_plain = batch.take(cursor, count, &mut done, &mut take);
         });
         if !is_plain {

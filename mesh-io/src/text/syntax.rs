@@ -29,10 +29,11 @@ pub(crate) enum Commas {
 pub(crate) struct Syntax {
     pub(crate) items: Items,
     pub(crate) commas: Commas,
-    /// Whether a backslash at the end of a line joins it to the next one.
-    pub(crate) joins: bool,
-    /// Whether a line that starts with a blank, a comma, `+` or `*` belongs to the one before it.
-    pub(crate) continues: bool,
+    /// Whether a backslash at the end of a line joins the line to the next one.
+    pub(crate) joins_lines: bool,
+    /// Whether a line that starts with a blank, a comma, `+` or `*` continues the card of the line before, as in
+    /// Nastran.
+    pub(crate) continues_cards: bool,
     /// The byte that starts a comment, besides `#`.
     pub(crate) comment: u8,
     /// The bytes that end a word.
@@ -46,8 +47,8 @@ impl Syntax {
     pub(crate) const PLAIN: Syntax = Syntax {
         items: Items::Rows,
         commas: Commas::Letters,
-        joins: false,
-        continues: false,
+        joins_lines: false,
+        continues_cards: false,
         comment: b'#',
         ends: &PLAIN_ENDS,
         is_plain: true,
@@ -79,7 +80,8 @@ impl Syntax {
         ..Syntax::PLAIN
     };
     /// Nastran: cards of several lines, and comments after `$`.
-    pub(crate) const CARDS: Syntax = Syntax { continues: true, comment: b'$', ..Syntax::PLAIN };
+    pub(crate) const CARDS: Syntax =
+        Syntax { continues_cards: true, comment: b'$', ..Syntax::PLAIN };
     /// Each item starts on a new line.
     pub(crate) const RECORDS: Syntax = Syntax { items: Items::Records, ..Syntax::PLAIN };
     /// Items stand anywhere on lines.
@@ -88,7 +90,7 @@ impl Syntax {
     pub(crate) const TRAILING: Syntax = Syntax { commas: Commas::Trailing, ..Syntax::PLAIN };
     /// A line that ends in a backslash continues in the next one.
     pub(crate) const JOINED: Syntax =
-        Syntax { joins: true, ends: &JOINED_ENDS, is_plain: false, ..Syntax::PLAIN };
+        Syntax { joins_lines: true, ends: &JOINED_ENDS, is_plain: false, ..Syntax::PLAIN };
 
     /// Whether items stand anywhere on lines.
     pub(crate) fn is_of_words(&self) -> bool {

@@ -1,13 +1,13 @@
 //! Data of a file's vertices, and where the numbers stand in the file.
 
-use crate::edit::column::Column;
+use crate::edit::column::EditableColumn;
 use crate::error::FieldError;
 use crate::visit::items::PointNumbers;
-use crate::visit::storage::Stored;
+use crate::visit::storage::ArrayLocation;
 
 /// Real numbers that a mesh file gives its vertices: depths, third coordinates, point data.
 /// [`MeshFile::point_fields`](crate::MeshFile::point_fields) reads them. With new values,
-/// [`MeshFile::write_with`](crate::MeshFile::write_with) writes them.
+/// [`MeshFile::write_with_fields`](crate::MeshFile::write_with_fields) writes them.
 pub struct PointField {
     name: String,
     components: usize,
@@ -18,7 +18,7 @@ pub struct PointField {
     new: Vec<f64>,
     /// The vertex of each tuple of numbers; `None` if there is one for each vertex in order.
     vertices: Option<Vec<u32>>,
-    stored: Option<Stored>,
+    location: Option<ArrayLocation>,
 }
 
 impl PointField {
@@ -28,14 +28,14 @@ impl PointField {
         name: String,
         components: usize,
         count: usize,
-        PointNumbers { numbers: old, stored, .. }: PointNumbers,
+        PointNumbers { numbers: old, location: stored, .. }: PointNumbers,
         vertices: Option<Vec<u32>>,
     ) -> PointField {
         let values = match &vertices {
             None => old.clone(),
             Some(vertices) => scatter(&old, components, count, vertices.iter().copied()),
         };
-        PointField { name, components, values, new: old.clone(), old, vertices, stored }
+        PointField { name, components, values, new: old.clone(), old, vertices, location: stored }
     }
 
     /// Returns the name in the file: that of an array, `depth` in grids of ADCIRC and SCHISM, or `z` for third
@@ -73,7 +73,7 @@ impl PointField {
             let vertex = self.vertices.as_ref().map_or(tuple, |vertices| vertices[tuple] as usize);
             for (component, (new, old)) in new.iter_mut().zip(old).enumerate() {
                 let value = values.get(vertex * each + component);
-                let precision = self.stored.as_ref().map(|stored| stored.form.precision());
+                let precision = self.location.as_ref().map(|stored| stored.encoding.precision());
                 let is_finite = |value: &f64| match precision {
                     Some(precision) => precision.rounded(*value).is_finite(),
                     None => value.is_finite(),
@@ -96,22 +96,22 @@ impl PointField {
         self.old.len()
     }
 
-    /// Returns where the numbers stand in the file.
-    pub(crate) fn stored(&self) -> Option<&Stored> {
-        self.stored.as_ref()
+    /// Returns the location of the numbers in the file; `None` if the numbers cannot be replaced.
+    pub(crate) fn location(&self) -> Option<&ArrayLocation> {
+        self.location.as_ref()
     }
 
     /// Whether a number changes, after rounding to the precision of the file.
     pub(crate) fn is_changed(&self) -> bool {
-        let Some(stored) = &self.stored else { return false };
-        let bits = |x: f64| stored.form.precision().rounded(x).to_bits();
+        let Some(stored) = &self.location else { return false };
+        let bits = |x: f64| stored.encoding.precision().rounded(x).to_bits();
         self.new.iter().zip(&self.old).any(|(&new, &old)| bits(new) != old.to_bits())
     }
 
     /// Returns the numbers as a column for rewriting, if they stand in the file.
-    pub(crate) fn column(&self) -> Option<Column<'_>> {
-        let Stored { places, form, .. } = self.stored.as_ref()?;
-        Some(Column::of_array(places, *form, &self.old, &self.new))
+    pub(crate) fn column(&self) -> Option<EditableColumn<'_>> {
+        let ArrayLocation { offsets, encoding, .. } = self.location.as_ref()?;
+        Some(EditableColumn::of_array(offsets, *encoding, &self.old, &self.new))
     }
 }
 

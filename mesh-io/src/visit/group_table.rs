@@ -1,19 +1,20 @@
-//! Gathers the groups of a file during a walk through it.
+//! The groups of a file, collected while its items are visited.
 
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;
-use crate::content::label::Label;
-use crate::visit::items::Kind;
+use crate::content::group_label::GroupLabel;
+use crate::visit::items::CellKind;
 use std::collections::HashMap;
 
 /// The groups found so far. Their indices are their numbers.
 #[derive(Default)]
 pub(crate) struct GroupTable {
-    groups: Vec<Gathered>,
+    groups: Vec<GroupMembers>,
     keys: GroupKeys,
 }
 
-struct Gathered {
+/// A group, with the vertices of its elements that are not triangles.
+struct GroupMembers {
     group: Group,
     /// Vertices of elements other than triangles, unordered and with repeats.
     others: Vec<u32>,
@@ -21,15 +22,15 @@ struct Gathered {
 
 impl GroupTable {
     /// Returns the number of a group, after adding it if it is new.
-    pub(crate) fn number(&mut self, what: &str, dimension: u8, label: &Label) -> usize {
-        let (number, is_new) = self.keys.number(what, dimension, label);
+    pub(crate) fn number(&mut self, kind: &str, dimension: u8, label: &GroupLabel) -> usize {
+        let (number, is_new) = self.keys.number(kind, dimension, label);
         if is_new {
             let (name, tag) = match label {
-                Label::Tag(tag) => (None, Some(*tag)),
-                Label::Name(name) => (Some(name.clone()), None),
+                GroupLabel::Tag(tag) => (None, Some(*tag)),
+                GroupLabel::Name(name) => (Some(name.clone()), None),
             };
             let group = Group {
-                what: what.to_owned(),
+                kind: kind.to_owned(),
                 dimension,
                 name,
                 tag,
@@ -39,7 +40,7 @@ impl GroupTable {
                 triangles: Vec::new(),
                 vertices: Vec::new(),
             };
-            self.groups.push(Gathered { group, others: Vec::new() });
+            self.groups.push(GroupMembers { group, others: Vec::new() });
         }
         number
     }
@@ -50,13 +51,13 @@ impl GroupTable {
     }
 
     /// Adds the vertices of an element other than a triangle.
-    pub(crate) fn add(&mut self, group: usize, kind: Kind, vertices: &[u32]) {
-        let Gathered { group, others } = &mut self.groups[group];
+    pub(crate) fn add(&mut self, group: usize, kind: CellKind, vertices: &[u32]) {
+        let GroupMembers { group, others } = &mut self.groups[group];
         match kind {
-            Kind::Point => group.points += 1,
-            Kind::Line => group.lines += 1,
-            Kind::Triangle | Kind::Corner => {}
-            Kind::Quadrilateral => group.quadrilaterals += 1,
+            CellKind::Point => group.points += 1,
+            CellKind::Line => group.lines += 1,
+            CellKind::Triangle | CellKind::Polygon => {}
+            CellKind::Quadrilateral => group.quadrilaterals += 1,
         }
         others.extend_from_slice(vertices);
     }
@@ -67,25 +68,25 @@ impl GroupTable {
     }
 
     /// Names groups that are known or are added later. A group with a name exists even if it has no element.
-    pub(crate) fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
-        let Label::Name(name) = Label::name(name) else { return };
+    pub(crate) fn name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+        let GroupLabel::Name(name) = GroupLabel::name(name) else { return };
         if let Some(dimension) = dimension {
-            self.number(what, dimension, &Label::Tag(tag));
+            self.number(kind, dimension, &GroupLabel::Tag(tag));
         }
-        self.keys.set_name(what, dimension, tag, name);
+        self.keys.set_name(kind, dimension, tag, name);
     }
 
     /// Returns the groups of a mesh with these triangles and this many vertices.
     pub(crate) fn finish(mut self, triangles: &[[u32; 3]], vertices: usize) -> Groups {
         // Groups of one kind stand together, and kinds are in the order in which the file first has them.
         let mut order: HashMap<String, usize> = HashMap::new();
-        for Gathered { group, .. } in &self.groups {
+        for GroupMembers { group, .. } in &self.groups {
             let next = order.len();
-            order.entry(group.what.clone()).or_insert(next);
+            order.entry(group.kind.clone()).or_insert(next);
         }
         // For each vertex the last group that it was counted in.
         let mut last = vec![0; vertices];
-        for (number, Gathered { group, others }) in (1_u32..).zip(&mut self.groups) {
+        for (number, GroupMembers { group, others }) in (1_u32..).zip(&mut self.groups) {
             let of_triangles = group.triangles.iter().flat_map(|&t| triangles[t as usize]);
             for vertex in of_triangles.chain(others.drain(..)) {
                 if std::mem::replace(&mut last[vertex as usize], number) != number {
@@ -94,13 +95,13 @@ impl GroupTable {
             }
             group.vertices.sort_unstable();
         }
-        for Gathered { group, .. } in &mut self.groups {
+        for GroupMembers { group, .. } in &mut self.groups {
             let Some(tag) = group.tag else { continue };
-            group.name = self.keys.name_of(&group.what, group.dimension, &Label::Tag(tag));
+            group.name = self.keys.name_of(&group.kind, group.dimension, &GroupLabel::Tag(tag));
         }
         let mut groups: Vec<Group> =
             self.groups.into_iter().map(|gathered| gathered.group).collect();
-        groups.sort_by_key(|group| (order[&group.what], group.dimension, group.tag));
+        groups.sort_by_key(|group| (order[&group.kind], group.dimension, group.tag));
         Groups { groups }
     }
 }

@@ -1,52 +1,58 @@
 //! The items that readers hand on: elements, groups, periodic pairs, and numbers of points.
 
 use crate::content::constraints::Affine;
-use crate::content::label::Label;
-use crate::visit::storage::Stored;
+use crate::content::group_label::GroupLabel;
+use crate::visit::storage::ArrayLocation;
 
-/// The kinds of elements. The vertices of all elements but triangles are constraints.
+/// The kinds of cells. A line of several segments becomes several cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+#[non_exhaustive]
+pub enum CellKind {
+    /// One vertex.
     Point,
-    /// A corner of a polygon with more corners than a quadrilateral.
-    Corner,
+    /// Two vertices.
     Line,
+    /// Three vertices.
     Triangle,
+    /// Four vertices.
     Quadrilateral,
+    /// Five or more vertices.
+    Polygon,
 }
 
-impl Kind {
+impl CellKind {
+    /// Returns the number of nodes of an [`Element`] of the kind: 1 for a polygon, whose corners are elements.
     pub(crate) fn nodes(self) -> usize {
         match self {
-            Kind::Point | Kind::Corner => 1,
-            Kind::Line => 2,
-            Kind::Triangle => 3,
-            Kind::Quadrilateral => 4,
+            CellKind::Point | CellKind::Polygon => 1,
+            CellKind::Line => 2,
+            CellKind::Triangle => 3,
+            CellKind::Quadrilateral => 4,
         }
     }
 
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Kind::Point => "point",
-            Kind::Corner => "polygon",
-            Kind::Line => "line",
-            Kind::Triangle => "triangle",
-            Kind::Quadrilateral => "quadrilateral",
+            CellKind::Point => "point",
+            CellKind::Polygon => "polygon",
+            CellKind::Line => "line",
+            CellKind::Triangle => "triangle",
+            CellKind::Quadrilateral => "quadrilateral",
         }
     }
 
     /// Returns the dimension of the elements: 0 for points, 1 for lines, 2 for surfaces.
     pub(crate) fn dimension(self) -> u8 {
         match self {
-            Kind::Point => 0,
-            Kind::Line => 1,
-            Kind::Triangle | Kind::Quadrilateral | Kind::Corner => 2,
+            CellKind::Point => 0,
+            CellKind::Line => 1,
+            CellKind::Triangle | CellKind::Quadrilateral | CellKind::Polygon => 2,
         }
     }
 
     /// Returns the kind of a polygon by its number of corners.
-    pub(crate) fn of_polygon(corners: u64) -> Option<Kind> {
-        [Kind::Point, Kind::Line, Kind::Triangle, Kind::Quadrilateral]
+    pub(crate) fn of_polygon(corners: u64) -> Option<CellKind> {
+        [CellKind::Point, CellKind::Line, CellKind::Triangle, CellKind::Quadrilateral]
             .into_iter()
             .find(|kind| kind.nodes() as u64 == corners)
     }
@@ -55,50 +61,56 @@ impl Kind {
 /// An element of a file.
 pub(crate) struct Element {
     /// The file's number of the element. If it has none, its position in the list, counted as the file counts.
-    pub(crate) tag: u64,
-    pub(crate) kind: Kind,
+    pub(crate) id: u64,
+    pub(crate) kind: CellKind,
     /// Numbers that name the element's region; 0 where the format has none.
     pub(crate) region: [i64; 2],
     /// The tags of the nodes. Elements of fewer than four nodes leave the rest unused.
     pub(crate) nodes: [u64; 4],
 }
 
-/// The meaning of one number of [`Element::region`].
-pub(crate) struct Column {
+/// Maps one of the two integers of [`Element::region`] to a group.
+pub(crate) struct RegionAttribute {
     /// The kind of group that the number stands for: `physical`, `reference`, or the name of an array.
-    pub(crate) what: String,
+    pub(crate) kind: String,
     /// The least dimension of elements that have this number.
     pub(crate) from_dimension: u8,
     /// Returns the label that a number stands for; `None` if it stands for no group.
-    pub(crate) label: fn(i64) -> Option<Label>,
+    pub(crate) label: fn(i64) -> Option<GroupLabel>,
 }
 
-impl Column {
+impl RegionAttribute {
     /// Makes a column of tags that all stand for groups.
-    pub(crate) fn tags(what: &str, from_dimension: u8) -> Column {
-        Column { what: what.into(), from_dimension, label: |tag| Some(Label::Tag(tag)) }
+    pub(crate) fn tags(kind: &str, from_dimension: u8) -> RegionAttribute {
+        RegionAttribute {
+            kind: kind.into(),
+            from_dimension,
+            label: |tag| Some(GroupLabel::Tag(tag)),
+        }
     }
 
     /// Makes a column of tags in which 0 stands for no group.
-    pub(crate) fn tags_from_one(what: &str) -> Column {
-        let label = |tag| (tag != 0).then_some(Label::Tag(tag));
-        Column { what: what.into(), from_dimension: 0, label }
+    pub(crate) fn tags_from_one(kind: &str) -> RegionAttribute {
+        let label = |tag| (tag != 0).then_some(GroupLabel::Tag(tag));
+        RegionAttribute { kind: kind.into(), from_dimension: 0, label }
     }
 }
 
-/// A group whose elements stand together in the file.
+/// A group of all elements visited until the next call of `group_scopes`, such as the marker of an SU2 list or the
+/// entity of a gmsh block.
 #[derive(Clone, Debug)]
-pub(crate) struct Within<'w> {
+pub(crate) struct GroupScope<'w> {
     /// The format's word for the kind of group.
-    pub(crate) what: &'w str,
-    pub(crate) label: Label,
+    pub(crate) kind: &'w str,
+    pub(crate) label: GroupLabel,
     /// The dimension of the group, if it differs from that of its elements.
     pub(crate) dimension: Option<u8>,
 }
 
-/// Nodes that belong together in pairs, as in a periodic model.
+/// Pairs of nodes that a periodic model identifies, with the motion that maps the first node of each pair to the
+/// second.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Pairs {
+pub(crate) struct PeriodicNodes {
     /// The motion that takes the first node of each pair to the second, if the file gives it.
     pub(crate) motion: Option<Affine>,
     /// The tags of the two nodes of each pair; empty if the file gives only the motion.
@@ -111,8 +123,8 @@ pub(crate) struct PointNumbers {
     pub(crate) numbers: Vec<f64>,
     /// The tag of each tuple's node; `None` if there is a tuple for each node in order.
     pub(crate) nodes: Option<Vec<u64>>,
-    /// Where the numbers stand; `None` if they cannot be replaced.
-    pub(crate) stored: Option<Stored>,
+    /// The bytes of the numbers in the file; `None` if the numbers cannot be replaced.
+    pub(crate) location: Option<ArrayLocation>,
 }
 
 /// One coordinate of the centers of some elements: faces, edges, or single nodes.

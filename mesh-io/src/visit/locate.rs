@@ -3,82 +3,86 @@
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Element, Kind};
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, Element};
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 
-/// The list in which items are looked for.
+/// The list of a mesh in which items are located.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum List {
+pub(crate) enum ItemList {
     Nodes,
     Triangles,
 }
 
-/// Where an item stands.
+/// Location and id of an item of a file.
 #[derive(Clone, Copy)]
-pub(crate) struct Found {
-    /// [`Location::Unknown`] if the walk does not come to the item.
+pub(crate) struct ItemLocation {
+    /// [`Location::Unknown`] if the reader does not visit the item.
     pub(crate) location: Location,
     /// The file's number of the item; its index in the list if the location is unknown.
-    pub(crate) label: u64,
-    /// The index of the file, in the order of [`Source::parts`].
-    pub(crate) part: usize,
+    pub(crate) id: u64,
+    /// The index of the file, in the order of [`Source::files`].
+    pub(crate) file_index: usize,
 }
 
-/// Walks through the file and returns one place for each of these items of a list. `indices` are ascending.
+/// Reads the file again and returns the location of each of these items of a list. `indices` are ascending.
 pub(crate) fn locate(
-    reader: &Reader,
+    reader: &ReaderFunctions,
     source: &Source,
-    list: List,
+    list: ItemList,
     indices: &[usize],
-) -> Vec<Found> {
+) -> Vec<ItemLocation> {
     let found = Vec::with_capacity(indices.len());
-    let mut locator = Locator { list, left: indices, next: 0, found, source };
+    let mut locator = LocationVisitor { list, left: indices, next: 0, found, source };
     // The file was read before without an error. If there is one now, items after it are not found.
-    let _ = (reader.walk)(source, &mut locator);
-    let Locator { left, mut found, .. } = locator;
-    let unknown =
-        |&index: &usize| Found { location: Location::Unknown, label: index as u64, part: 0 };
+    let _ = (reader.visit)(source, &mut locator);
+    let LocationVisitor { left, mut found, .. } = locator;
+    let unknown = |&index: &usize| ItemLocation {
+        location: Location::Unknown,
+        id: index as u64,
+        file_index: 0,
+    };
     found.extend(left.iter().map(unknown));
     found
 }
 
-struct Locator<'a> {
-    list: List,
+/// Visitor that finds the locations of some items of a list, in ascending order of their indices.
+struct LocationVisitor<'a> {
+    list: ItemList,
     /// The indices not found yet, ascending.
     left: &'a [usize],
     /// The index of the next item of the list.
     next: usize,
-    found: Vec<Found>,
+    found: Vec<ItemLocation>,
     source: &'a Source,
 }
 
-impl Locator<'_> {
+impl LocationVisitor<'_> {
     /// Notes the place of the next item of the list, if the item is looked for.
     fn pass(&mut self, cursor: &Cursor<'_>, label: u64) {
         if self.left.first() == Some(&self.next) {
-            let mut parts = self.source.parts();
-            let part = parts.position(|part| std::ptr::eq(part, cursor.source)).unwrap_or(0);
-            self.found.push(Found { location: cursor.location(), label, part });
+            let mut files = self.source.files();
+            let file_index = files.position(|file| std::ptr::eq(file, cursor.source)).unwrap_or(0);
+            self.found.push(ItemLocation { location: cursor.location(), id: label, file_index });
             self.left = &self.left[1..];
         }
         self.next += 1;
     }
 
-    /// Ends the walk by an error, which nobody sees, once all items are found.
+    /// Stops the reader by an error, which is discarded, once all items are found.
     fn end_if_found(&self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
         if self.left.is_empty() { Err(cursor.error("", "")) } else { Ok(()) }
     }
 }
 
-impl Sink for Locator<'_> {
+impl MeshVisitor for LocationVisitor<'_> {
     fn asks_for_nodes(&self) -> bool {
-        self.list == List::Nodes
+        self.list == ItemList::Nodes
     }
 
-    fn node(&mut self, cursor: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        if self.list == List::Nodes {
-            self.pass(cursor, tag);
+    fn node(&mut self, cursor: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        if self.list == ItemList::Nodes {
+            self.pass(cursor, id);
         }
     }
 
@@ -87,8 +91,8 @@ impl Sink for Locator<'_> {
     }
 
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        if self.list == List::Triangles && element.kind == Kind::Triangle {
-            self.pass(cursor, element.tag);
+        if self.list == ItemList::Triangles && element.kind == CellKind::Triangle {
+            self.pass(cursor, element.id);
             return self.end_if_found(cursor);
         }
         Ok(())

@@ -1,17 +1,17 @@
-//! The protocol between readers and their listeners: what a reader hands on, and listeners that collect a mesh, groups or data.
+//! The protocol between readers and visitors: the items that a reader visits, and visitors that build a mesh, groups or data of them.
 
-pub(crate) mod assemble;
 pub(crate) mod field;
-pub(crate) mod gather;
 pub(crate) mod group_table;
-pub(crate) mod heights;
+pub(crate) mod group_visitor;
 pub(crate) mod items;
 pub(crate) mod locate;
-pub(crate) mod parsed;
+pub(crate) mod mesh_builder;
+pub(crate) mod parsed_mesh;
 pub(crate) mod point_data;
 pub(crate) mod reader;
 pub(crate) mod records;
 pub(crate) mod rows;
 pub(crate) mod send;
-pub(crate) mod sink;
 pub(crate) mod storage;
+pub(crate) mod visitor;
+pub(crate) mod z_values;

@@ -1,18 +1,18 @@
-//! Walks again through a file for arrays of point data.
+//! Visitor for a second reading of a file: for arrays of point data.
 
-use crate::content::tags::TagIndex;
+use crate::content::id_index::IdIndexBuilder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
 use crate::visit::items::PointNumbers;
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashSet;
 
-/// Which arrays are looked for.
+/// The arrays of point data to read.
 #[derive(Clone, Copy)]
-pub(crate) enum Wanted<'n> {
+pub(crate) enum FieldSelection<'n> {
     /// Arrays with these names, of real or whole numbers.
     Named(&'n [String]),
     /// All arrays of real numbers.
@@ -30,33 +30,34 @@ pub(crate) struct PointData {
 
 /// Reads the arrays of point data that are wanted.
 pub(crate) fn point_data(
-    reader: &Reader,
+    reader: &ReaderFunctions,
     source: &Source,
-    wanted: Wanted<'_>,
+    wanted: FieldSelection<'_>,
 ) -> Result<PointData, ReadError> {
-    let (last, tags, found) = (Default::default(), TagIndex::default(), PointData::default());
-    let mut seeker = Seeker { wanted, last, tags, found, named: HashSet::new() };
-    (reader.walk)(source, &mut seeker)?;
-    Ok(seeker.found)
+    let (last, ids, found) = (Default::default(), IdIndexBuilder::default(), PointData::default());
+    let mut visitor = PointDataVisitor { wanted, last, ids, found, named: HashSet::new() };
+    (reader.visit)(source, &mut visitor)?;
+    Ok(visitor.found)
 }
 
-struct Seeker<'n> {
-    wanted: Wanted<'n>,
+/// Visitor that collects arrays of point data.
+struct PointDataVisitor<'n> {
+    wanted: FieldSelection<'n>,
     /// The name of the array that was announced last, and its number of components.
     last: (String, usize),
-    tags: TagIndex,
+    ids: IdIndexBuilder,
     found: PointData,
     /// The names in `found.known`. A damaged file may announce any number of them.
     named: HashSet<String>,
 }
 
-impl Sink for Seeker<'_> {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for PointDataVisitor<'_> {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn asks_for_data(&self) -> bool {
@@ -66,8 +67,8 @@ impl Sink for Seeker<'_> {
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
         let name = String::from_utf8_lossy(name).into_owned();
         let wanted = match self.wanted {
-            Wanted::Named(names) => names.contains(&name),
-            Wanted::Real => is_real,
+            FieldSelection::Named(names) => names.contains(&name),
+            FieldSelection::Real => is_real,
         };
         if self.named.insert(name.clone()) {
             self.found.known.push((name.clone(), is_real));
@@ -77,10 +78,10 @@ impl Sink for Seeker<'_> {
     }
 
     fn point_numbers(&mut self, numbers: PointNumbers) {
-        let index = |&node: &u64| self.tags.index(node).unwrap_or(u32::MAX);
+        let index = |&node: &u64| self.ids.index(node).unwrap_or(u32::MAX);
         let vertices = numbers.nodes.as_ref().map(|nodes| nodes.iter().map(index).collect());
         let (name, components) = std::mem::take(&mut self.last);
-        let count = self.tags.len();
+        let count = self.ids.len();
         self.found.fields.push(PointField::new(name, components, count, numbers, vertices));
     }
 }

@@ -1,14 +1,14 @@
 //! The protocol of the reader of a format.
 
 use crate::disk::source::Source;
-use crate::edit::numbers::Splice;
+use crate::edit::numbers::ByteEdit;
 use crate::error::{ReadError, WriteError};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 use std::path::{Path, PathBuf};
 
-/// The reader of a format.
-pub(crate) trait Walk {
+/// The reader of one or more formats. The methods besides `visit` handle meshes of several files.
+pub(crate) trait FormatReader {
     /// Names the file's list of vertices in messages.
     const VERTICES: &'static str;
     /// Loads the other files of the mesh that `given` belongs to. Returns the main file, with the other files as
@@ -26,36 +26,39 @@ pub(crate) trait Walk {
     fn require_single(_source: &Source) -> Result<(), ReadError> {
         Ok(())
     }
-    /// Returns the files to which the mesh is written for `path`, in the order of [`Source::parts`].
+    /// Returns the files to which the mesh is written for `path`, in the order of [`Source::files`].
     ///
     /// # Errors
     /// If `path` does not suit the format, or if a file of another mesh is in the way.
     fn destinations(_source: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
         Ok(vec![path.to_owned()])
     }
-    /// Returns the edits of the main file that rename its companions for `path`.
-    fn renames(_source: &Source, _path: &Path) -> Vec<Splice> {
+    /// Returns the edits of the main file that rename its companions if the mesh is written to `path`.
+    fn renames(_source: &Source, _path: &Path) -> Vec<ByteEdit> {
         Vec::new()
     }
-    /// Feeds the nodes and elements of the mesh to the sink.
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError>;
+    /// Calls `visitor` for all items of the mesh. Returns how and where the file stores coordinates.
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError>;
 }
 
-/// The reader of a format, as a value: the functions of a [`Walk`] under their names. A file is read by this walk alone.
-/// It takes any sink, so that it is compiled once.
-pub(crate) struct Reader {
-    pub(crate) walk: fn(&Source, &mut dyn Sink) -> Result<Layout, ReadError>,
+/// The functions of a [`FormatReader`] as values, for the table of formats. `visit` takes a trait object, so that
+/// each reader is compiled once.
+pub(crate) struct ReaderFunctions {
+    pub(crate) visit: fn(&Source, &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError>,
     pub(crate) load_companions: fn(Source) -> Result<Source, ReadError>,
     pub(crate) require_single: fn(&Source) -> Result<(), ReadError>,
     pub(crate) destinations: fn(&Source, &Path) -> Result<Vec<PathBuf>, WriteError>,
-    pub(crate) renames: fn(&Source, &Path) -> Vec<Splice>,
+    pub(crate) renames: fn(&Source, &Path) -> Vec<ByteEdit>,
     pub(crate) vertices: &'static str,
 }
 
-impl Reader {
-    pub(crate) const fn of<W: Walk>() -> Reader {
-        Reader {
-            walk: W::walk,
+impl ReaderFunctions {
+    pub(crate) const fn of<W: FormatReader>() -> ReaderFunctions {
+        ReaderFunctions {
+            visit: W::visit,
             load_companions: W::load_companions,
             require_single: W::require_single,
             destinations: W::destinations,

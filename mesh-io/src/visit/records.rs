@@ -3,31 +3,31 @@
 //! A list is read in chunks, as long as these are plain. A reader hands on the other records one by one, and is the
 //! only one that returns errors.
 
-use crate::binary::number_field::Field;
-use crate::content::tags::{FoundTags, TagMap};
-use crate::edit::numbers::FoundPlaces;
+use crate::binary::number_field::NumberField;
+use crate::content::id_index::{IdIndex, IdList};
+use crate::edit::numbers::OffsetsBuilder;
 use crate::parallel::{map_parts, map_ranges};
 use std::ops::Range;
 
-/// Records that one thread reads at a time.
-const CHUNK: usize = 1 << 13;
-/// Shorter lists are read as fast on one thread.
-pub(crate) const LONG: usize = 1 << 14;
+/// Number of records that one thread reads at a time.
+const CHUNK_RECORDS: usize = 1 << 13;
+/// Smallest number of records that are read on several threads. Shorter lists are read as fast on one thread.
+pub(crate) const MIN_PARALLEL_RECORDS: usize = 1 << 14;
 
-/// The tags of a list's nodes.
+/// The ids of the nodes of a binary list.
 #[derive(Clone, Copy)]
-pub(crate) enum Tags<'a> {
-    /// Consecutive tags from this one on.
-    From(u64),
-    Listed(Field<'a>),
+pub(crate) enum NodeIds<'a> {
+    /// Consecutive ids from this one on.
+    Consecutive(u64),
+    Field(NumberField<'a>),
 }
 
-impl Tags<'_> {
-    /// Returns the tag of a node by its index. The field must hold it.
+impl NodeIds<'_> {
+    /// Returns the id of a node by its index. The field must hold it.
     pub(super) fn of(self, index: usize) -> u64 {
         match self {
-            Tags::From(first) => first + index as u64,
-            Tags::Listed(field) => field.order.whole(field.at(index)),
+            NodeIds::Consecutive(first) => first + index as u64,
+            NodeIds::Field(field) => field.order.whole(field.at(index)),
         }
     }
 }
@@ -36,11 +36,11 @@ impl Tags<'_> {
 pub(crate) struct NodeRecords<'a> {
     pub(crate) count: usize,
     /// The coordinates, single or double precision by the width of the fields.
-    pub(crate) x: Field<'a>,
-    pub(crate) y: Field<'a>,
+    pub(crate) x: NumberField<'a>,
+    pub(crate) y: NumberField<'a>,
     /// The offset of the first node's x, in the bytes that are written again.
-    pub(crate) x_at: usize,
-    pub(crate) tags: Tags<'a>,
+    pub(crate) x_offset: usize,
+    pub(crate) ids: NodeIds<'a>,
 }
 
 impl NodeRecords<'_> {
@@ -48,17 +48,18 @@ impl NodeRecords<'_> {
     pub(crate) fn read(
         &self,
         points: &mut Vec<[f64; 2]>,
-        tags: &mut FoundTags,
-        places: &mut FoundPlaces,
+        ids: &mut IdList,
+        places: &mut OffsetsBuilder,
     ) -> usize {
         let &NodeRecords { count, x, y, .. } = self;
-        let fits =
-            x.holds(count, 1) && y.holds(count, 1) && matches!((x.width, y.width), (4, 4) | (8, 8));
-        let has_tags = match self.tags {
-            Tags::From(_) => true,
-            Tags::Listed(field) => field.holds(count, 1),
+        let fits = x.has_records(count, 1)
+            && y.has_records(count, 1)
+            && matches!((x.width, y.width), (4, 4) | (8, 8));
+        let has_ids = match self.ids {
+            NodeIds::Consecutive(_) => true,
+            NodeIds::Field(field) => field.has_records(count, 1),
         };
-        if count < LONG || !fits || !has_tags {
+        if count < MIN_PARALLEL_RECORDS || !fits || !has_ids {
             return 0;
         }
         let (taken, _) = append(points, count, |records, points| {
@@ -68,36 +69,36 @@ impl NodeRecords<'_> {
                 is_finite &= x.is_finite() && y.is_finite();
                 *point = [x, y];
             }
-            let is_plain = match self.tags {
-                Tags::From(_) => true,
-                Tags::Listed(field) => field.whole(records).all(|tag| tag <= field.most()),
+            let is_plain = match self.ids {
+                NodeIds::Consecutive(_) => true,
+                NodeIds::Field(field) => field.whole(records).all(|id| id <= field.max()),
             };
             (is_finite && is_plain).then_some(())
         });
-        places.extend(self.x_at, x.stride, taken);
-        match self.tags {
-            Tags::From(first) => tags.extend(first, taken as u64),
-            Tags::Listed(field) => add_tags(field, taken, tags),
+        places.extend(self.x_offset, x.stride, taken);
+        match self.ids {
+            NodeIds::Consecutive(first) => ids.extend(first, taken as u64),
+            NodeIds::Field(field) => add_tags(field, taken, ids),
         }
         taken
     }
 }
 
-fn add_tags(field: Field<'_>, count: usize, tags: &mut FoundTags) {
+fn add_tags(field: NumberField<'_>, count: usize, ids: &mut IdList) {
     let first = field.whole(0..count.min(1)).next().unwrap_or(0);
     let are_consecutive = |records: Range<usize>| {
         let expected = records.clone().map(|record| first.checked_add(record as u64));
         field.whole(records).map(Some).eq(expected)
     };
-    match map_ranges(count, CHUNK, are_consecutive).into_iter().all(|are| are) {
-        true => tags.extend(first, count as u64),
-        false => field.whole(0..count).for_each(|tag| tags.push(tag)),
+    match map_ranges(count, CHUNK_RECORDS, are_consecutive).into_iter().all(|are| are) {
+        true => ids.extend(first, count as u64),
+        false => field.whole(0..count).for_each(|id| ids.push(id)),
     }
 }
 
-/// What the whole numbers of records must be for a triangle.
+/// Condition on an integer of each record of a binary list, by which plain triangles are recognized.
 #[derive(Clone, Copy)]
-pub(crate) enum Expected {
+pub(crate) enum FieldRule {
     /// Not negative.
     Natural,
     /// This number in each record.
@@ -111,7 +112,7 @@ pub(crate) enum Expected {
 pub(crate) enum Region<'a> {
     /// The same number for all triangles.
     Same(i64),
-    Field(Field<'a>),
+    Field(NumberField<'a>),
     /// A number for each triangle; 0 for triangles beyond the end of the list.
     List(&'a [i64]),
 }
@@ -131,13 +132,13 @@ impl Region<'_> {
 pub(crate) struct TriangleRecords<'a> {
     pub(crate) count: usize,
     /// The numbers of three nodes. Each must be less than `below`.
-    pub(crate) corners: Field<'a>,
-    /// This is added to a number to get the node's tag.
-    pub(crate) first: u64,
-    pub(crate) below: u64,
+    pub(crate) nodes: NumberField<'a>,
+    /// This is added to a number to get the node's id.
+    pub(crate) min_node: u64,
+    pub(crate) node_end: u64,
     pub(crate) regions: [Region<'a>; 2],
     /// Further conditions for a record to be a triangle.
-    pub(crate) expected: &'a [(Field<'a>, Expected)],
+    pub(crate) required_fields: &'a [(NumberField<'a>, FieldRule)],
 }
 
 impl TriangleRecords<'_> {
@@ -145,27 +146,31 @@ impl TriangleRecords<'_> {
     /// triangles have each. Returns how many triangles were read.
     pub(crate) fn read(
         &self,
-        map: &TagMap,
+        map: &IdIndex,
         triangles: &mut Vec<[u32; 3]>,
         mut region: impl FnMut([i64; 2], usize),
     ) -> usize {
-        let &TriangleRecords { count, corners, .. } = self;
-        let mut fields = self.expected.iter().map(|&(field, _)| field);
+        let &TriangleRecords { count, nodes: corners, .. } = self;
+        let mut fields = self.required_fields.iter().map(|&(field, _)| field);
         let has_regions = self.regions.iter().all(|region| match region {
-            Region::Field(field) => field.holds(count, 1),
+            Region::Field(field) => field.has_records(count, 1),
             _ => true,
         });
-        let fits = corners.holds(count, 3) && fields.all(|field| field.holds(count, 1));
+        let fits = corners.has_records(count, 3) && fields.all(|field| field.has_records(count, 1));
         // If the first chunk fails, it is not worth trying more.
-        if count < LONG || !fits || !has_regions || !self.is_expected(0..CHUNK) {
+        if count < MIN_PARALLEL_RECORDS
+            || !fits
+            || !has_regions
+            || !self.is_expected(0..CHUNK_RECORDS)
+        {
             return 0;
         }
         let (taken, same) = append(triangles, count, |records, triangles| {
             let is_plain = match *map {
-                TagMap::Run { first, count } => self.fill(records.clone(), triangles, |tag| {
-                    tag.checked_sub(first).filter(|&index| index < count).map(|index| index as u32)
+                IdIndex::Run { first, count } => self.fill(records.clone(), triangles, |id| {
+                    id.checked_sub(first).filter(|&index| index < count).map(|index| index as u32)
                 }),
-                _ => self.fill(records.clone(), triangles, |tag| map.index(tag)),
+                _ => self.fill(records.clone(), triangles, |id| map.index(id)),
             };
             (is_plain && self.is_expected(records.clone())).then(|| self.same_region(records))
         });
@@ -188,14 +193,14 @@ impl TriangleRecords<'_> {
         index: impl Fn(u64) -> Option<u32>,
     ) -> bool {
         let (most, width) =
-            (self.corners.most().min(self.below.saturating_sub(1)), self.corners.width);
-        for (triangle, bytes) in triangles.iter_mut().zip(self.corners.of(records)) {
+            (self.nodes.max().min(self.node_end.saturating_sub(1)), self.nodes.width);
+        for (triangle, bytes) in triangles.iter_mut().zip(self.nodes.of(records)) {
             for (corner, bytes) in triangle.iter_mut().zip(bytes.chunks_exact(width)) {
-                let tag = self.corners.order.whole(bytes);
-                if tag > most {
+                let id = self.nodes.order.whole(bytes);
+                if id > most {
                     return false;
                 }
-                let Some(index) = tag.checked_add(self.first).and_then(&index) else {
+                let Some(index) = id.checked_add(self.min_node).and_then(&index) else {
                     return false;
                 };
                 *corner = index;
@@ -209,12 +214,12 @@ impl TriangleRecords<'_> {
     }
 
     fn is_expected(&self, records: Range<usize>) -> bool {
-        self.expected.iter().all(|&(field, expected)| {
+        self.required_fields.iter().all(|&(field, expected)| {
             let mut numbers = field.whole(records.clone());
             match expected {
-                Expected::Natural => numbers.all(|number| number <= field.most()),
-                Expected::Is(one) => numbers.all(|number| number == one),
-                Expected::Steps { first, step } => {
+                FieldRule::Natural => numbers.all(|number| number <= field.max()),
+                FieldRule::Is(one) => numbers.all(|number| number == one),
+                FieldRule::Steps { first, step } => {
                     let more = |record: usize| first.checked_add(step.checked_mul(record as u64)?);
                     numbers.map(Some).eq(records.clone().map(more))
                 }
@@ -248,8 +253,8 @@ fn append<T: Copy + Default + Send, R: Send, const N: usize>(
         }
         _ => list.resize(before + count, [T::default(); N]),
     }
-    let filled = map_parts(list[before..].chunks_mut(CHUNK), |index, chunk| {
-        let start = index * CHUNK;
+    let filled = map_parts(list[before..].chunks_mut(CHUNK_RECORDS), |index, chunk| {
+        let start = index * CHUNK_RECORDS;
         let records = start..start + chunk.len();
         fill(records.clone(), chunk).map(|made| (records, made))
     });

@@ -12,40 +12,40 @@ use std::ops::Range;
 /// The most elements that may be nested. VTK and XDMF nest no more than ten, and each takes memory until it ends.
 const MAX_DEPTH: usize = 100;
 
-/// Reads the start tags of a file, in order.
-pub(crate) struct Tags<'a> {
+/// Iterator over the start tags of a document, with the elements that are open.
+pub(crate) struct XmlTags<'a> {
     source: &'a Source,
     /// The offset of the first byte that the parser gets.
     begin: usize,
     reader: Reader<&'a [u8]>,
     /// The tags of the elements around the next tag, the innermost last.
-    open: Vec<Tag<'a>>,
+    open: Vec<XmlTag<'a>>,
     /// The last tag, if its element has content and is thus around the next tag.
-    last: Option<Tag<'a>>,
+    last: Option<XmlTag<'a>>,
 }
 
-/// The start tag of an element.
+/// A start tag, with its range in the file.
 #[derive(Clone)]
-pub(crate) struct Tag<'a> {
+pub(crate) struct XmlTag<'a> {
     source: &'a Source,
     start: BytesStart<'a>,
     /// The range of the tag in the file, with its angle brackets.
-    place: Range<usize>,
+    range: Range<usize>,
 }
 
-impl<'a> Tags<'a> {
-    pub(crate) fn new(source: &'a Source) -> Tags<'a> {
+impl<'a> XmlTags<'a> {
+    pub(crate) fn new(source: &'a Source) -> XmlTags<'a> {
         let begin = source.begin();
         let mut reader = Reader::from_reader(&source.bytes[begin..]);
         reader.config_mut().check_end_names = false;
-        Tags { source, begin, reader, open: Vec::new(), last: None }
+        XmlTags { source, begin, reader, open: Vec::new(), last: None }
     }
 
     /// Returns the next start tag; `None` at the end of the file.
     ///
     /// # Errors
     /// If the file is not XML, or if elements are nested too deep.
-    pub(crate) fn next(&mut self) -> Result<Option<Tag<'a>>, ReadError> {
+    pub(crate) fn next(&mut self) -> Result<Option<XmlTag<'a>>, ReadError> {
         self.open.extend(self.last.take());
         loop {
             let at = self.at();
@@ -57,7 +57,7 @@ impl<'a> Tags<'a> {
                 Event::Eof => return Ok(None),
                 Event::End(_) => _ = self.open.pop(),
                 Event::Start(start) | Event::Empty(start) => {
-                    let tag = Tag { source: self.source, start, place: at..self.at() };
+                    let tag = XmlTag { source: self.source, start, range: at..self.at() };
                     if !tag.is_empty() {
                         if self.open.len() == MAX_DEPTH {
                             let problem = format!("elements are nested more than {MAX_DEPTH} deep");
@@ -73,7 +73,7 @@ impl<'a> Tags<'a> {
     }
 
     /// Returns the tag of the element around the last tag; `None` for the outermost element.
-    pub(crate) fn parent(&self) -> Option<&Tag<'a>> {
+    pub(crate) fn parent(&self) -> Option<&XmlTag<'a>> {
         self.open.last()
     }
 
@@ -82,24 +82,24 @@ impl<'a> Tags<'a> {
     }
 }
 
-impl<'a> Tag<'a> {
+impl<'a> XmlTag<'a> {
     pub(crate) fn name(&self) -> Cow<'_, str> {
         String::from_utf8_lossy(self.start.name().into_inner())
     }
 
     /// Whether the element has no content, as its tag ends in a slash.
     pub(crate) fn is_empty(&self) -> bool {
-        self.source.bytes[self.place.clone()].ends_with(b"/>")
+        self.source.bytes[self.range.clone()].ends_with(b"/>")
     }
 
     /// Returns the offset of the tag.
     pub(crate) fn at(&self) -> usize {
-        self.place.start
+        self.range.start
     }
 
     /// Returns the offset after the tag.
     pub(crate) fn end(&self) -> usize {
-        self.place.end
+        self.range.end
     }
 
     /// Returns the range of the text between the tag and the next one; `None` if no tag follows.
@@ -143,8 +143,8 @@ impl<'a> Tag<'a> {
     }
 
     /// Returns the range of an attribute's value in the file. The tag must have the attribute.
-    pub(crate) fn place_of_value(&self, name: &str) -> Result<Range<usize>, ReadError> {
-        let tag = &self.source.bytes[self.place.clone()];
+    pub(crate) fn value_range(&self, name: &str) -> Result<Range<usize>, ReadError> {
+        let tag = &self.source.bytes[self.range.clone()];
         let found = memchr::memmem::find_iter(tag, name).find_map(|at| {
             let blank_before = at > 0 && tag[at - 1] <= b' ';
             let rest = &tag[at + name.len()..];
@@ -200,13 +200,13 @@ mod tests {
     fn a_tag_is_given_with_its_place_and_the_tag_around_it() {
         let bytes = b"\xEF\xBB\xBF<a><b c='&lt;'/><d>\n1 2</d><e/></a>".to_vec();
         let source = Source::new("a.xml".as_ref(), bytes).unwrap();
-        let (mut tags, mut found) = (Tags::new(&source), Vec::new());
+        let (mut tags, mut found) = (XmlTags::new(&source), Vec::new());
         while let Some(tag) = tags.next().unwrap() {
             let parent = tags.parent().map(|parent| parent.name().into_owned());
             found.push((tag.name().into_owned(), parent, tag.at(), tag.is_empty()));
             if tag.name() == "b" {
                 assert_eq!(tag.attribute("c").unwrap().as_deref(), Some("<"));
-                assert_eq!(&source.bytes[tag.place_of_value("c").unwrap()], b"&lt;");
+                assert_eq!(&source.bytes[tag.value_range("c").unwrap()], b"&lt;");
             }
             if tag.name() == "d" {
                 assert_eq!(&source.bytes[tag.text().unwrap()], b"\n1 2");

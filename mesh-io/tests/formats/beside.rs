@@ -145,9 +145,9 @@ fn attributes_in_files_beside_a_mesh_are_read() {
     let file = MeshFile::read(&made("latest.xdmf")).unwrap();
     assert_eq!(file.data_names(), ["T", "u", "c", "w"]);
     assert_eq!(file.regions().unwrap()[29..31], [0, 1]);
-    assert_eq!(file.vertex_place(14).path, made("latest.h5"));
-    let place = MeshFile::read(&made("dolfin.xdmf")).unwrap().triangle_place(3);
-    assert_eq!((place.path, place.label), (made("dolfin.h5"), 3));
+    assert_eq!(file.vertex_location(14).path, made("latest.h5"));
+    let place = MeshFile::read(&made("dolfin.xdmf")).unwrap().triangle_location(3);
+    assert_eq!((place.path, place.id), (made("dolfin.h5"), 3));
     for name in ["meshio.xdmf", "latest.xdmf"] {
         let file = MeshFile::read(&made(name)).unwrap();
         for (_, format) in Conversion::targets() {

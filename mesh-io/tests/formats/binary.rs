@@ -99,21 +99,21 @@ fn places_in_binary_files_are_bytes() {
         let bytes = msh22(big);
         let (_folder, file) = read(&bytes);
         let nodes = find(&bytes, b"$Nodes\n6\n") + 9;
-        let place = file.vertex_place(3);
-        assert_eq!((place.location, place.label), (Location::Byte(nodes + 3 * 28), 70));
+        let place = file.vertex_location(3);
+        assert_eq!((place.location, place.id), (Location::Byte(nodes + 3 * 28), 70));
         assert!(place.to_string().ends_with(&format!("a.msh, byte {}", nodes + 3 * 28)), "{place}");
         let elements = find(&bytes, b"$Elements\n7\n") + 12;
-        let place = file.triangle_place(2);
-        assert_eq!((place.location, place.label), (Location::Byte(elements + 37 * 4), 5));
+        let place = file.triangle_location(2);
+        assert_eq!((place.location, place.id), (Location::Byte(elements + 37 * 4), 5));
 
         let bytes = msh41(big);
         let (_folder, file) = read(&bytes);
         let nodes = find(&bytes, b"\n$EndNodes\n$Elements\n");
-        let place = file.vertex_place(4);
-        assert_eq!((place.location, place.label), (Location::Byte(nodes - 40), 6));
+        let place = file.vertex_location(4);
+        assert_eq!((place.location, place.id), (Location::Byte(nodes - 40), 6));
         let elements = find(&bytes, b"\n$EndElements");
-        let place = file.triangle_place(3);
-        assert_eq!((place.location, place.label), (Location::Byte(elements - 32), 5));
+        let place = file.triangle_location(3);
+        assert_eq!((place.location, place.id), (Location::Byte(elements - 32), 5));
     }
 }
 
@@ -187,7 +187,7 @@ fn long_binary_files_come_back_but_for_what_moved() {
         assert!(fs::read(folder.path("out")).unwrap() == after);
 
         // A tag that is out of order, and a triangle that starts at another corner or is wound the other way.
-        let start = |triangle| match file.triangle_place(triangle).location {
+        let start = |triangle| match file.triangle_location(triangle).location {
             Location::Byte(at) => at,
             other => panic!("{other:?}"),
         };
@@ -203,8 +203,8 @@ fn long_binary_files_come_back_but_for_what_moved() {
         let (folder, file) = read(&odd);
         let [a, b, c] = mesh.triangles[60_000];
         assert_eq!(file.triangles()[60_000], [b, a, c]);
-        assert_eq!(file.triangle_place(49_999).label, 50_000);
-        assert_ne!(file.triangle_place(50_000).label, 50_001);
+        assert_eq!(file.triangle_location(49_999).id, 50_000);
+        assert_ne!(file.triangle_location(50_000).id, 50_001);
         file.write(&folder.path("out"), file.points()).unwrap();
         assert!(fs::read(folder.path("out")).unwrap() == odd);
     }

@@ -21,14 +21,14 @@ fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
 fn check(file: &MeshFile, folder: &Folder) -> usize {
     let mut clean = 0;
     for (name, format) in Conversion::targets() {
-        let out = format!("{name}{}", format.endings()[0]);
+        let out = format!("{name}{}", format.extensions()[0]);
         let conversion = Conversion::new(file, format).unwrap().unwrap();
         conversion.write(&folder.path(&out)).unwrap();
         let back = folder.read(&out);
         assert_eq!(back.format(), format);
         assert_eq!(back.points(), file.points(), "{name}");
         let (mut triangles, mut own) = (back.triangles().to_vec(), file.triangles().to_vec());
-        if conversion.lost().iter().any(|lost| lost.starts_with("the order of triangles")) {
+        if conversion.losses().iter().any(|lost| lost.starts_with("the order of triangles")) {
             triangles.sort_unstable();
             own.sort_unstable();
         }
@@ -40,8 +40,8 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         assert_eq!(differ, None, "{name}");
         assert_eq!(again_text.len(), text.len(), "{name}");
         assert!(again.bytes() == conversion.bytes(), "{name}");
-        assert_eq!(again.lost(), [""; 0], "{name}");
-        if !conversion.lost().is_empty() {
+        assert_eq!(again.losses(), [""; 0], "{name}");
+        if !conversion.losses().is_empty() {
             continue;
         }
         clean += 1;
@@ -55,7 +55,7 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
             // An OBJ has its lines in the groups of its faces, and chains of nodes count as points.
             let is_points =
                 is_points || (matches!(name, "obj" | "2dm" | "adcirc") && group.dimension < 2);
-            group.tag != Some(0) && !group.what.contains("entity") && !is_points
+            group.tag != Some(0) && !group.kind.contains("entity") && !is_points
         };
         for group in before.iter().filter(is_kept) {
             let own = held(group);
@@ -120,7 +120,7 @@ $EndPhysicalNames\n$Nodes\n6\n1 0 0 0.5\n2 1 0 1\n3 1 1 1\n4 0 1 1\n5 .5 .5 1\n6
 fn converted(name: &str, text: &str, to: Format) -> (String, String) {
     let folder = Folder::new(&[(name, text)]);
     let conversion = Conversion::new(&folder.read(name), to).unwrap().unwrap();
-    (conversion.text().unwrap(), conversion.lost().join("; "))
+    (conversion.text().unwrap(), conversion.losses().join("; "))
 }
 
 #[test]
@@ -265,7 +265,7 @@ fn depths_of_grids_are_heights_of_sms() {
     let convert = |from: &str, format, to: &str| {
         let conversion = Conversion::new(&folder.read(from), format).unwrap().unwrap();
         conversion.write(&folder.path(to)).unwrap();
-        conversion.lost().to_vec()
+        conversion.losses().to_vec()
     };
     assert_eq!(convert("a.14", Format::Sms2dm, "a.2dm"), [""; 0]);
     let nodes = "ND 1 0.0 0.0 -1.5\nND 2 1.0 0.0 0.0\nND 3 1.0 1.0 3.5\nND 4 0.0 1.0 NaN\n";

@@ -3,7 +3,7 @@
 use super::binary::{msh22, msh41};
 use super::facts::mesh_of;
 use super::{ELE, GMSH22, GMSH41, NODE, POLY, triangle};
-use mesh_io::{Location, MeshFile, Place};
+use mesh_io::{Location, MeshFile, SourceLocation};
 use std::fs;
 
 /// A generator of random numbers below its argument, by SplitMix64.
@@ -59,7 +59,7 @@ fn damaged_files_never_panic() {
         ("a.msh", &binary[2]),
         ("a.msh", &binary[3]),
     ];
-    let inside = |place: Place| match place.location {
+    let inside = |place: SourceLocation| match place.location {
         Location::Line(line) => line > 1,
         Location::Byte(at) => at > 20,
         Location::Unknown => false,
@@ -75,10 +75,10 @@ fn damaged_files_never_panic() {
             read += 1;
             let mesh = mesh_of(&file);
             for vertex in 0..mesh.points.len() {
-                assert!(inside(file.vertex_place(vertex as u32)));
+                assert!(inside(file.vertex_location(vertex as u32)));
             }
             for triangle in 0..mesh.triangles.len() {
-                assert!(inside(file.triangle_place(triangle)));
+                assert!(inside(file.triangle_location(triangle)));
             }
             let vertices = mesh.triangles.iter().flatten().chain(&mesh.fixed);
             assert!(vertices.into_iter().all(|&vertex| (vertex as usize) < mesh.points.len()));

@@ -13,7 +13,7 @@ use std::fs;
 /// quadrilaterals, and its vertices.
 fn told(file: &MeshFile) -> Vec<String> {
     let groups = file.groups().unwrap();
-    let spellings = groups.spellings();
+    let spellings = groups.unique_names();
     let one = |(group, spelling): (&mesh_io::Group, &String)| {
         assert_eq!(groups.find(spelling), Ok(group));
         let counts = [group.points, group.lines, group.triangles().len(), group.quadrilaterals];
@@ -262,8 +262,8 @@ fn triangles_of_a_group_are_those_of_the_mesh() {
     let groups = folder.read("in.msh").groups().unwrap();
     assert_eq!(groups.find("physical:2").unwrap().triangles(), [0, 1, 2, 3]);
     assert_eq!(groups.find("8").unwrap().triangles(), [2, 3]);
-    let Err(GroupError::Ambiguous { spellings, .. }) = groups.find("7") else { panic!() };
-    assert_eq!(spellings, ["line:7", "surface:7"]);
+    let Err(GroupError::Ambiguous { candidates, .. }) = groups.find("7") else { panic!() };
+    assert_eq!(candidates, ["line:7", "surface:7"]);
     let error = groups.find("the shoer").unwrap_err();
     assert!(
         error.to_string().starts_with("no group is called 'the shoer'; there are the shore, "),

@@ -58,8 +58,8 @@ fn mesh_or_error(folder: &Folder, sample: &Sample) -> Option<MeshFile> {
             let held = fixed(&file);
             let mut named = file.triangles().iter().flatten().chain(&held);
             assert!(named.all(|&v| (v as usize) < vertices));
-            assert_eq!(file.vertex_places(0..vertices as u32).len(), vertices);
-            assert_eq!(file.triangle_places(0..triangles).len(), triangles);
+            assert_eq!(file.vertex_locations(0..vertices as u32).len(), vertices);
+            assert_eq!(file.triangle_locations(0..triangles).len(), triangles);
             Some(file)
         }
         Err(error) => {
@@ -132,7 +132,7 @@ fn an_hdf5_mesh_that_did_not_move_keeps_its_bytes() {
         file.write(&folder.path(sample.name), file.points()).unwrap();
         assert!(sample.bytes(&file) == before, "{}", sample.name);
         let fields = file.point_fields(None).unwrap();
-        file.write_with(&folder.path(sample.name), file.points(), &fields).unwrap();
+        file.write_with_fields(&folder.path(sample.name), file.points(), &fields).unwrap();
         assert!(sample.bytes(&file) == before, "{}", sample.name);
     }
 }
@@ -229,7 +229,7 @@ fn data_are_replaced() {
             field.set(values).unwrap();
         }
         let to = moved(&file, 3.0);
-        file.write_with(&folder.path(sample.name), &to, &fields).unwrap();
+        file.write_with_fields(&folder.path(sample.name), &to, &fields).unwrap();
         let again = folder.read(sample.name);
         assert_eq!(bits(again.points()), bits(&to));
         let found = again.point_fields(None).unwrap();
@@ -239,13 +239,13 @@ fn data_are_replaced() {
             assert!(found.values().iter().zip(wanted.values()).all(close), "{}", sample.name);
         }
         let sides = [&found[..], &fields[..]];
-        assert_eq!(again.difference_besides(&file, sides), None, "{}", sample.name);
+        assert_eq!(again.difference_ignoring(&file, sides), None, "{}", sample.name);
         // And back to the same numbers.
         let mut back = found;
         let set =
             |(field, values): (&mut PointField, &Vec<f64>)| field.set(values.clone()).unwrap();
         back.iter_mut().zip(&original).for_each(|pair| _ = set(pair));
-        again.write_with(&folder.path(sample.name), file.points(), &back).unwrap();
+        again.write_with_fields(&folder.path(sample.name), file.points(), &back).unwrap();
         let again = folder.read(sample.name);
         assert_eq!(bits(again.points()), bits(file.points()));
         let values: Vec<Vec<f64>> =
@@ -283,8 +283,8 @@ fn sections_and_boundaries_of_cgns_are_groups() {
     let wire = groups.find("wire").unwrap().vertices();
     assert!(wire.len() == 2 && wire.iter().all(|v| fixed(&file).contains(v)));
     assert!(file.regions().is_some());
-    let place = file.triangle_place(0);
-    assert_eq!(place.label, 2);
+    let place = file.triangle_location(0);
+    assert_eq!(place.id, 2);
 }
 
 /// Under an ending of HDF5, or none, the content tells what it is, and in place it keeps its name.

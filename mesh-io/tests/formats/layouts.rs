@@ -210,7 +210,7 @@ fn rows_of_an_obj_may_go_on_in_the_next_line() {
     ] {
         let file = assert_same("a.obj", OBJ, &OBJ.replace(from, to));
         let lines = to.matches('\n').count().saturating_sub(usize::from(to.ends_with('\n')));
-        let place = file.triangle_place(1).to_string();
+        let place = file.triangle_location(1).to_string();
         assert!(place.contains(&format!("a.obj:{}", 9 + lines)), "{place} of {to}");
     }
     let broken = OBJ.replace("v 1 0 0", "v 1 \\\n 0 x");
@@ -249,7 +249,7 @@ fn numbers_of_triangle_may_have_a_comma_behind() {
     ]);
     let (plain, file) = (folder.read("a"), folder.read("b"));
     assert_eq!((mesh_of(&file), file.regions()), (mesh_of(&plain), plain.regions()));
-    assert_eq!(file.vertex_place(3).label, 4);
+    assert_eq!(file.vertex_location(3).id, 4);
     let mut moved = file.points().to_vec();
     moved[2] = [0.5, 0.75];
     file.write(&folder.path("c"), &moved).unwrap();

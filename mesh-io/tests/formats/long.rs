@@ -143,11 +143,11 @@ fn long_lists_are_read_as_they_stand() {
             assert!(file.triangles() == triangles(), "{name}");
             for v in [0, 17, 20_000, SIDE * SIDE - 1] {
                 let line = Location::Line(vertices.vertex_lines[v]);
-                assert_eq!(file.vertex_place(v as u32).location, line, "{name}");
+                assert_eq!(file.vertex_location(v as u32).location, line, "{name}");
             }
             for t in [0, 33, 50_000] {
                 let line = Location::Line(elements.triangle_lines[t]);
-                assert_eq!(file.triangle_place(t).location, line, "{name}");
+                assert_eq!(file.triangle_location(t).location, line, "{name}");
             }
         }
     }

@@ -121,9 +121,9 @@ fn triangle_numbers_may_start_at_zero() {
     assert_eq!(file.triangles(), [[0, 1, 2]]);
     // Fixed are the vertices that the .poly lists, under its own numbers, and the ends of its segment.
     assert_eq!(fixed(&file), [0, 1, 2, 2, 0]);
-    assert_eq!(file.triangle_place(0).label, 0);
-    let place = file.vertex_place(2);
-    assert_eq!((place.location, place.label), (Location::Line(4), 2));
+    assert_eq!(file.triangle_location(0).id, 0);
+    let place = file.vertex_location(2);
+    assert_eq!((place.location, place.id), (Location::Line(4), 2));
 }
 
 #[test]
@@ -179,18 +179,18 @@ fn gmsh_vertices_on_curves_of_the_model_are_fixed() {
 fn places_name_file_line_and_label() {
     let folder = triangle();
     let file = folder.read("la.1");
-    let (vertex, triangle) = (file.vertex_place(4), file.triangle_place(2));
-    assert_eq!((vertex.location, vertex.label), (Location::Line(9), 5));
-    assert_eq!((triangle.location, triangle.label), (Location::Line(5), 3));
+    let (vertex, triangle) = (file.vertex_location(4), file.triangle_location(2));
+    assert_eq!((vertex.location, vertex.id), (Location::Line(9), 5));
+    assert_eq!((triangle.location, triangle.id), (Location::Line(5), 3));
     assert!(triangle.to_string().ends_with("la.1.ele:5"), "{triangle}");
 
     let folder = Folder::new(&[("a.msh", GMSH22), ("b.msh", GMSH41)]);
     let (a, b) = (folder.read("a.msh"), folder.read("b.msh"));
-    let of = |place: mesh_io::Place| (place.location, place.label);
-    assert_eq!(of(a.vertex_place(0)), (Location::Line(10), 900_000_000_000));
-    assert_eq!(of(a.triangle_place(1)), (Location::Line(22), 4));
-    assert_eq!(of(b.vertex_place(4)), (Location::Line(22), 6));
-    assert_eq!(of(b.triangle_place(3)), (Location::Line(32), 5));
+    let of = |place: mesh_io::SourceLocation| (place.location, place.id);
+    assert_eq!(of(a.vertex_location(0)), (Location::Line(10), 900_000_000_000));
+    assert_eq!(of(a.triangle_location(1)), (Location::Line(22), 4));
+    assert_eq!(of(b.vertex_location(4)), (Location::Line(22), 6));
+    assert_eq!(of(b.triangle_location(3)), (Location::Line(32), 5));
 }
 
 #[test]
@@ -200,13 +200,13 @@ fn places_asked_for_together_are_those_asked_for_one_by_one() {
     for file in [folder.read("la.1"), gmsh.read("a.msh"), gmsh.read("b.msh")] {
         let (vertices, triangles) = (file.points().len(), file.triangles().len());
         // In any order, repeated, and some that do not exist.
-        let places = file.triangle_places([triangles, triangles - 1, 1, 0, 1, usize::MAX]);
+        let places = file.triangle_locations([triangles, triangles - 1, 1, 0, 1, usize::MAX]);
         assert!(places.keys().copied().eq([0, 1, triangles - 1]));
-        assert!(places.iter().all(|(&t, place)| *place == file.triangle_place(t)));
-        let places = file.vertex_places([u32::MAX, 3, vertices as u32 - 1, 0, 3]);
+        assert!(places.iter().all(|(&t, place)| *place == file.triangle_location(t)));
+        let places = file.vertex_locations([u32::MAX, 3, vertices as u32 - 1, 0, 3]);
         assert!(places.keys().copied().eq([0, 3, vertices as u32 - 1]));
-        assert!(places.iter().all(|(&v, place)| *place == file.vertex_place(v)));
-        assert!(file.triangle_places([]).is_empty() && file.vertex_places([]).is_empty());
+        assert!(places.iter().all(|(&v, place)| *place == file.vertex_location(v)));
+        assert!(file.triangle_locations([]).is_empty() && file.vertex_locations([]).is_empty());
     }
 }
 

@@ -94,8 +94,8 @@ fn every_format_is_tried_and_documented() {
         let name = format.to_string();
         assert!(
             names.contains(name.as_str()),
-            "{name} has no row in docs/formats.md: add one to ROWS of mesh-io/src/convert/documented.rs, \
-             and run UPDATE_DOCS=1 cargo test -p mesh-io --lib documented"
+            "{name} has no row in docs/formats.md: add one to ROWS of mesh-io/src/convert/doc_tests.rs, \
+             and run UPDATE_DOCS=1 cargo test -p mesh-io --lib doc_tests"
         );
         let elsewhere = ["Triangle", "gmsh 2.2", "gmsh 4.1", "VTK XML", "STL", "MED", "CGNS"];
         assert!(
@@ -217,12 +217,12 @@ fn places_in_the_file_are_those_of_vertices_and_triangles() {
         let line = |at: usize| 1 + made.bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
         for bytes in both_ends(made) {
             let file = folder(made, &bytes).read(made.name);
-            let vertex = file.vertex_place(PROBED.0);
-            let triangle = file.triangle_place(PROBED.1);
+            let vertex = file.vertex_location(PROBED.0);
+            let triangle = file.triangle_location(PROBED.1);
             for (what, place, (label, range)) in
                 [("vertex", vertex, &made.vertex), ("triangle", triangle, &made.triangle)]
             {
-                assert_eq!(place.label, *label, "the label of the {what}");
+                assert_eq!(place.id, *label, "the label of the {what}");
                 let name = place.path.file_name().unwrap();
                 assert_eq!(name, made.name);
                 match place.location {
@@ -245,11 +245,11 @@ fn places_asked_for_together_are_the_same_in_every_variant() {
     for_each(&base(), |made| {
         let file = folder(made, &made.bytes).read(made.name);
         let (vertices, triangles) = (made.mesh.points.len(), made.mesh.triangles.len());
-        let places = file.vertex_places(0..vertices as u32);
+        let places = file.vertex_locations(0..vertices as u32);
         assert_eq!(places.len(), vertices);
-        assert!(places.iter().all(|(&v, place)| *place == file.vertex_place(v)));
-        let places = file.triangle_places(0..triangles);
+        assert!(places.iter().all(|(&v, place)| *place == file.vertex_location(v)));
+        let places = file.triangle_locations(0..triangles);
         assert_eq!(places.len(), triangles);
-        assert!(places.iter().all(|(&t, place)| *place == file.triangle_place(t)));
+        assert!(places.iter().all(|(&t, place)| *place == file.triangle_location(t)));
     });
 }

@@ -72,8 +72,8 @@ fn a_file_compressed_under_a_plain_name_stays_compressed() {
 fn places_in_compressed_files_are_those_of_the_content() {
     let folder = Folder::new(&[]);
     fs::write(folder.path("a.msh.gz"), packed(GMSH22.as_bytes())).unwrap();
-    let place = folder.read("a.msh.gz").vertex_place(0);
-    assert_eq!((place.location, place.label), (Location::Line(10), 900_000_000_000));
+    let place = folder.read("a.msh.gz").vertex_location(0);
+    assert_eq!((place.location, place.id), (Location::Line(10), 900_000_000_000));
     let cut = packed(&GMSH22.as_bytes()[..300]);
     fs::write(folder.path("a.msh.gz"), cut).unwrap();
     let error = MeshFile::read(&folder.path("a.msh.gz")).unwrap_err().to_string();

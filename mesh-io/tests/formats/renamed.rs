@@ -30,7 +30,7 @@ fn converted(names: [&str; 5], to: Format) -> (BTreeMap<String, usize>, Vec<Stri
     conversion.write(&folder.path(out)).unwrap();
     let groups = folder.read(out).groups().unwrap();
     let named = groups.iter().filter_map(|g| Some((g.name.clone()?, g.vertices().len())));
-    (named.collect(), conversion.renamed().to_vec())
+    (named.collect(), conversion.renamings().to_vec())
 }
 
 fn groups<'n>(names: impl IntoIterator<Item = (&'n str, usize)>) -> BTreeMap<String, usize> {
@@ -89,7 +89,7 @@ fn data_stay_apart_where_names_are_words() {
     let folder = Folder::new(&[("in.vtk", vtk)]);
     let file = folder.read("in.vtk");
     let conversion = Conversion::new(&file, Format::Ply).unwrap().unwrap();
-    assert_eq!(conversion.renamed(), ["data of vertices: `a b` to `a_b_2`, `x` to `x_2`"]);
+    assert_eq!(conversion.renamings(), ["data of vertices: `a b` to `a_b_2`, `x` to `x_2`"]);
     conversion.write(&folder.path("out.ply")).unwrap();
     let back = folder.read("out.ply");
     assert_eq!(back.points(), file.points());

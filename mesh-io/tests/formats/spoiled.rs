@@ -23,10 +23,10 @@ pub(crate) fn mesh_or_error(folder: &Folder, name: &str) -> Result<MeshFile, Str
                 Location::Byte(at) => at <= length,
                 Location::Unknown => false,
             };
-            let places = file.vertex_places(0..vertices as u32);
+            let places = file.vertex_locations(0..vertices as u32);
             assert_eq!(places.len(), vertices);
             assert!(places.values().all(|place| inside(place.location)), "a vertex beyond the end");
-            let places = file.triangle_places(0..triangles);
+            let places = file.triangle_locations(0..triangles);
             assert_eq!(places.len(), triangles);
             let found = places.values().all(|place| inside(place.location));
             assert!(found, "a triangle beyond the end");

@@ -155,15 +155,15 @@ fn places_are_those_of_the_first_copy() {
     let mesh = in_order();
     let (_folder, file) = read("in.stl", ascii(&mesh, &mesh.points, "0").as_bytes());
     // A triangle takes seven lines and a blank one, after one line of the solid.
-    assert_eq!(file.triangle_place(2).location, Location::Line(18));
+    assert_eq!(file.triangle_location(2).location, Location::Line(18));
     let first = mesh.triangles.iter().position(|t| t.contains(&9)).unwrap();
     let corner = mesh.triangles[first].iter().position(|&v| v == 9).unwrap();
-    let place = file.vertex_place(9);
-    assert_eq!((place.location, place.label), (Location::Line(2 + 8 * first + 2 + corner), 10));
+    let place = file.vertex_location(9);
+    assert_eq!((place.location, place.id), (Location::Line(2 + 8 * first + 2 + corner), 10));
     let (_folder, file) = read("in.stl", &binary(&mesh, &mesh.points, 0.0));
-    assert_eq!(file.triangle_place(2).location, Location::Byte(84 + 100));
+    assert_eq!(file.triangle_location(2).location, Location::Byte(84 + 100));
     let at = 84 + 50 * first + 12 + 12 * corner;
-    assert_eq!(file.vertex_place(9).location, Location::Byte(at));
+    assert_eq!(file.vertex_location(9).location, Location::Byte(at));
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn a_missing_number_stays_where_others_are_replaced() {
         let mut fields = file.point_fields(Some(&["bay_node_z".to_owned()])).unwrap();
         let values = fields[0].values().iter().map(|x| x * 3.0).collect();
         assert_eq!(fields[0].set(values).unwrap(), 0);
-        file.write_with(&folder.path("out.nc"), file.points(), &fields).unwrap();
+        file.write_with_fields(&folder.path("out.nc"), file.points(), &fields).unwrap();
         let again = folder.read("out.nc").point_fields(Some(&["bay_node_z".to_owned()])).unwrap();
         assert!(again[0].values()[3].is_nan());
         assert_eq!(again[0].values()[4], -6.0);
@@ -58,12 +58,12 @@ fn centers_of_faces_follow_the_vertices() {
         let (mut fields, others) = file.centers(&to).unwrap();
         let names: Vec<_> = fields.iter().map(|field| field.name()).collect();
         assert_eq!((&names[..], &others[..]), (&["face_x"][..], &["face_y".to_owned()][..]));
-        file.write_with(&folder.path("out.nc"), &to, &fields).unwrap();
+        file.write_with_fields(&folder.path("out.nc"), &to, &fields).unwrap();
         let again = folder.read("out.nc");
         let (theirs, _) = again.centers(&to).unwrap();
         assert_eq!(theirs[0].values(), fields[0].values());
         assert!(file.difference(&again).is_some());
-        assert_eq!(file.difference_besides(&again, [&fields, &theirs]), None);
+        assert_eq!(file.difference_ignoring(&again, [&fields, &theirs]), None);
         // The last triangle of the file is the last face.
         let corners = again.triangles().last().unwrap();
         let x = |&v: &u32| to[v as usize][0];
@@ -71,7 +71,7 @@ fn centers_of_faces_follow_the_vertices() {
         assert!((fields[0].values().last().unwrap() - mean).abs() < 1e-6);
         // Where nothing has moved, no bit changes.
         fields = file.centers(file.points()).unwrap().0;
-        file.write_with(&folder.path("out.nc"), file.points(), &fields).unwrap();
+        file.write_with_fields(&folder.path("out.nc"), file.points(), &fields).unwrap();
         assert!(fs::read(folder.path("out.nc")).unwrap() == made.bytes);
     }
 }
@@ -82,10 +82,10 @@ fn a_file_by_h5netcdf_is_read() {
     let file = MeshFile::read(&hdf5::made("h5netcdf.nc")).unwrap();
     assert_eq!(file.format(), Format::Ugrid);
     assert_eq!(file.data_names(), ["depth"]);
-    assert_eq!(file.vertex_place(4).label, 4);
+    assert_eq!(file.vertex_location(4).id, 4);
     let file = MeshFile::read(&hdf5::made("ugrid.nc")).unwrap();
     assert_eq!(file.data_names(), ["T"]);
-    assert_eq!(file.vertex_place(4).label, 5);
+    assert_eq!(file.vertex_location(4).id, 5);
 }
 
 /// The message names the filter, and not a mesh without coordinates.

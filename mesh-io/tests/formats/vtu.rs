@@ -64,9 +64,9 @@ fn the_vertex_is_told_whose_third_coordinate_differs() {
     };
     let folder = Folder::new(&[("a.vtu", &text(0.0)), ("b.vtu", &text(0.5))]);
     let difference = folder.read("a.vtu").difference(&folder.read("b.vtu")).unwrap();
-    assert_eq!(difference.what, "third coordinates are not the same, first of vertex 2");
-    assert_eq!(difference.place.location, Location::Line(5));
-    assert_eq!(difference.other_place.location, Location::Line(5));
+    assert_eq!(difference.description, "third coordinates are not the same, first of vertex 2");
+    assert_eq!(difference.location.location, Location::Line(5));
+    assert_eq!(difference.other_location.location, Location::Line(5));
 }
 
 /// Some programs write the attribute without a number. VTK then takes one component.
@@ -104,7 +104,7 @@ fn only_coordinates_change_in_every_encoding() {
             let moved = Mesh { points: to, ..mesh.clone() };
             assert!(fs::read(folder.path("out.vtu")).unwrap() == write(&moved, style), "{style:?}");
         }
-        let place = after.vertex_place(14);
+        let place = after.vertex_location(14);
         let written = fs::read(folder.path("out.vtu")).unwrap();
         let line_of = |tag: &str| {
             let at = written.windows(tag.len()).position(|bytes| bytes == tag.as_bytes()).unwrap();
@@ -112,7 +112,7 @@ fn only_coordinates_change_in_every_encoding() {
         };
         let lines = line_of("<Points>")..=line_of("</Points>");
         let inside = matches!(place.location, Location::Line(line) if lines.contains(&line));
-        assert!(place.label == 14 && inside, "{style:?}: {place:?}, not in {lines:?}");
+        assert!(place.id == 14 && inside, "{style:?}: {place:?}, not in {lines:?}");
     }
 }
 
@@ -237,7 +237,7 @@ fn pieces_and_polygons_are_read_and_come_back() {
             let values = field.values().iter().map(|value| value + 0.5).collect();
             field.set(values).unwrap();
         }
-        file.write_with(&folder.path(names[1]), &to, &fields).unwrap();
+        file.write_with_fields(&folder.path(names[1]), &to, &fields).unwrap();
         let after = folder.read(names[1]);
         assert_eq!(after.points(), rounded(&to, style.precision), "{style:?}");
         assert_eq!(after.triangles(), mesh.triangles);
@@ -246,11 +246,11 @@ fn pieces_and_polygons_are_read_and_come_back() {
             field.values().iter().map(|x| x.to_bits()).collect()
         };
         assert!(found.iter().map(bits).eq(fields.iter().map(bits)), "{style:?}");
-        assert_eq!(file.difference_besides(&after, [&fields, &found]), None, "{style:?}");
+        assert_eq!(file.difference_ignoring(&after, [&fields, &found]), None, "{style:?}");
 
         // The conversion joins all pieces to one, without loss.
         let conversion = Conversion::new(&file, Format::Vtu).unwrap().unwrap();
-        assert_eq!(conversion.lost(), [""; 0]);
+        assert_eq!(conversion.losses(), [""; 0]);
         conversion.write(&folder.path("one.vtu")).unwrap();
         let one = folder.read("one.vtu");
         assert_eq!(one.triangles(), mesh.triangles);

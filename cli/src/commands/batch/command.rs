@@ -179,7 +179,7 @@ impl Follow for Followed<'_> {
 fn write_report(outputs: &Outputs, entries: &[Entry], seconds: f64) -> Result<(), CliError> {
     let Some(path) = &outputs.report else { return Ok(()) };
     let text = table::report(entries, seconds)?;
-    atomic::replace(path, text.as_bytes()).map_err(|error| {
+    atomic::write(path, text.as_bytes()).map_err(|error| {
         CliError::from(error)
             .within("the report was not written")
             .followed_by("The meshes were written")

@@ -38,7 +38,7 @@ fn violations(sheet: &Sheet, style: &Style) -> impl Iterator<Item = String> {
         let worst = text::valued(threshold.measure, *value, style);
         Some(format!(
             "{path}: {} of {} triangles have {threshold}; the worst is triangle {} ({place}), {worst}",
-            violation.count, sheet.triangles, place.label
+            violation.count, sheet.triangles, place.id
         ))
     })
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use gpu_smooth::measure::{QUANTILES, Statistics};
-use mesh_io::Place;
+use mesh_io::SourceLocation;
 use serde_json::{Map, Value, json};
 
 use crate::commands::quality::sheet::{Region, Sheet, Violation, Worst, location};
@@ -69,9 +69,9 @@ fn histogram(histogram: &Histogram) -> Value {
 }
 
 /// Writes a triangle, under `key`, and its place in the file.
-fn placed(key: &str, place: &Place) -> Map<String, Value> {
+fn placed(key: &str, place: &SourceLocation) -> Map<String, Value> {
     let mut object = Map::new();
-    object.insert(key.to_owned(), place.label.into());
+    object.insert(key.to_owned(), place.id.into());
     object.insert("file".into(), place.path.display().to_string().into());
     if let Some((kind, at)) = location(place) {
         object.insert(kind.into(), at.into());

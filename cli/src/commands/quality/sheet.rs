@@ -11,7 +11,7 @@ use gpu_smooth::{
     targets::Surface,
     topology::BadTriangle,
 };
-use mesh_io::{Group, Groups, Location, Place};
+use mesh_io::{Group, Groups, Location, SourceLocation};
 
 use crate::args::{QualityArgs, Threshold};
 use crate::load::explain::{self, BadTriangleReport};
@@ -33,7 +33,7 @@ pub(crate) struct Sheet {
     /// The quality, as in the report of a run.
     pub(crate) report: QualityReport,
     /// Where the triangle of the largest inverse mean ratio is in the file.
-    pub(crate) worst_place: Place,
+    pub(crate) worst_place: SourceLocation,
     /// Statistics of every measure.
     pub(crate) statistics: Vec<Statistics>,
     pub(crate) regions: Vec<Region>,
@@ -52,7 +52,7 @@ pub(crate) struct Sheet {
 /// Triangles that the file puts into one region.
 pub(crate) struct Region {
     /// Where the first triangle of the region is in the file.
-    pub(crate) first: Place,
+    pub(crate) first: SourceLocation,
     /// The groups of the file that the region's triangles belong to. Groups with a name come first.
     pub(crate) groups: Vec<Named>,
     /// The statistics of every measure in the region.
@@ -71,7 +71,7 @@ pub(crate) struct Named {
 
 /// A triangle in the terms of its file.
 pub(crate) struct Worst {
-    pub(crate) place: Place,
+    pub(crate) place: SourceLocation,
     /// The file's numbers or tags for its vertices.
     pub(crate) vertices: [u64; 3],
     /// Its vertices as the file has them, even where longitudes are continued, and its centroid.
@@ -88,7 +88,7 @@ pub(crate) struct Violation {
     pub(crate) threshold: Threshold,
     pub(crate) count: usize,
     /// The worst of these triangles and its value; `None` if there is none.
-    pub(crate) worst: Option<(Place, f64)>,
+    pub(crate) worst: Option<(SourceLocation, f64)>,
 }
 
 impl Sheet {
@@ -129,7 +129,7 @@ impl Sheet {
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
             report: QualityReport::from(&quality),
-            worst_place: file.source.triangle_place(quality.worst_triangle),
+            worst_place: file.source.triangle_location(quality.worst_triangle),
             statistics: measured.statistics(Measure::ALL),
             regions: if args.by_region { regions(&file, &measured)? } else { Vec::new() },
             histograms: args.measure.iter().map(|&m| histogram(&measured, m)).collect(),
@@ -169,7 +169,7 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, Cl
         first[region as usize].get_or_insert(t);
     }
     let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
-    let places = file.source.triangle_places(first.iter().copied());
+    let places = file.source.triangle_locations(first.iter().copied());
     let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
     let groups = file.source.groups()?;
     let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<Named>)| Region {
@@ -186,7 +186,7 @@ fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
     // Each group is gone through once, as there may be as many regions as groups.
     let asked: HashMap<u32, usize> = triangles.iter().map(|&t| t as u32).zip(0..).collect();
     let mut found: Vec<Vec<(&Group, String)>> = vec![Vec::new(); triangles.len()];
-    for (group, spelling) in groups.iter().zip(groups.spellings()) {
+    for (group, spelling) in groups.iter().zip(groups.unique_names()) {
         for &region in group.triangles().iter().filter_map(|t| asked.get(t)) {
             found[region].push((group, spelling.clone()));
         }
@@ -195,7 +195,7 @@ fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
         let tag = group.tag.map(|tag| tag.to_string());
         let short = match group.name.clone().or(tag).unwrap_or_default() {
             // A number alone would be taken for the number of a region.
-            number if number.parse::<f64>().is_ok() => format!("{} {number}", group.what),
+            number if number.parse::<f64>().is_ok() => format!("{} {number}", group.kind),
             name => name,
         };
         Named { spelling, full: group.to_string(), short }
@@ -216,11 +216,11 @@ fn worst(
     let mesh = file.mesh();
     let Some(&measure) = args.measure.first() else { return Vec::new() };
     let found = measured.worst(measure, args.worst);
-    let places = file.source.triangle_places(found.iter().map(|found| found.0));
+    let places = file.source.triangle_locations(found.iter().map(|found| found.0));
     let names = file.vertex_places(found.iter().flat_map(|found| mesh.triangles[found.0]));
     let one = |&(t, _): &(usize, f64)| Worst {
         place: places[&t].clone(),
-        vertices: mesh.triangles[t].map(|v| names[&v].label),
+        vertices: mesh.triangles[t].map(|v| names[&v].id),
         corners: file.source.triangles()[t].map(|v| file.source.points()[v as usize]),
         at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
         values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
@@ -237,12 +237,12 @@ fn violation(file: &LoadedMesh, measured: &Measured<'_>, threshold: &Threshold) 
     let measure = threshold.measure;
     let (count, _) = measured.count_where(measure, |value| threshold.is_met(value));
     let worst = measured.worst(measure, usize::from(count > 0));
-    let worst = worst.first().map(|&(t, value)| (file.source.triangle_place(t), value));
+    let worst = worst.first().map(|&(t, value)| (file.source.triangle_location(t), value));
     Violation { threshold: threshold.clone(), count, worst }
 }
 
 /// Returns the line or byte of a place, with its key in JSON; `None` if it is not known.
-pub(crate) fn location(place: &Place) -> Option<(&'static str, usize)> {
+pub(crate) fn location(place: &SourceLocation) -> Option<(&'static str, usize)> {
     match place.location {
         Location::Line(line) => Some(("line", line)),
         Location::Byte(byte) => Some(("byte", byte)),

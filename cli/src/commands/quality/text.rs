@@ -113,7 +113,7 @@ fn details(sheet: &Sheet, style: &Style) -> String {
         let _ = writeln!(text, "{:<22}{:>12}", format!("f {metric}"), six(report.f[metric.name()]));
     }
     let (worst, place) = (six(report.worst_imr), &sheet.worst_place);
-    let at = format!("  triangle {} ({place})", place.label);
+    let at = format!("  triangle {} ({place})", place.id);
     let _ = writeln!(text, "{:<22}{worst:>12}{at}", "worst imr");
     if sheet.free > 0 && report.worst_movable_imr < report.worst_imr {
         let movable = six(report.worst_movable_imr);
@@ -170,7 +170,7 @@ fn worst_line(worst: &Worst, style: &Style) -> String {
     let values: Vec<String> =
         values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();
     let movable = if *can_move { "can move" } else { "all its vertices are fixed" };
-    let (label, values) = (place.label, values.join(", "));
+    let (label, values) = (place.id, values.join(", "));
     format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", six(*x), six(*y))
 }
 

@@ -183,6 +183,6 @@ fn write_report(outputs: &Outputs, report: &impl Serialize) -> Result<(), CliErr
     let Some(path) = &outputs.report else { return Ok(()) };
     let mut text = serde_json::to_string_pretty(report)?;
     text.push('\n');
-    atomic::replace(path, text.as_bytes())
+    atomic::write(path, text.as_bytes())
         .map_err(|error| CliError::from(error).within("the report was not written"))
 }

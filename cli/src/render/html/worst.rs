@@ -57,7 +57,8 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> 
             listed.push((list, found));
         }
     }
-    let places = file.source.triangle_places(listed.iter().flat_map(|(_, found)| found).copied());
+    let places =
+        file.source.triangle_locations(listed.iter().flat_map(|(_, found)| found).copied());
     let spot = |list: usize, triangle: usize| {
         let state = LISTS[list].1;
         let [p, q, r] = corners(triangle).map(|v| states[state].points()[v as usize]);
@@ -69,7 +70,7 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> 
             triangle,
             list,
             state,
-            label: place.label,
+            label: place.id,
             place: place.to_string(),
             at,
             at_in_file: as_in_file(file, at),

@@ -20,7 +20,7 @@ pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Re
     let Some(path) = path else { return Ok(()) };
     let failed = |error: CliError| error.within("the page was not written");
     let text = page(task, done).map_err(failed)?;
-    atomic::replace(path, text.as_bytes()).map_err(|error| failed(error.into()))
+    atomic::write(path, text.as_bytes()).map_err(|error| failed(error.into()))
 }
 
 fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {

@@ -76,7 +76,7 @@ pub(crate) fn write(
     let mut canvas = canvas.map_err(failed)?;
     scene.draw(&layout, canvas.as_mut());
     let bytes = canvas.finish().map_err(failed)?;
-    atomic::replace(&request.path, &bytes).map_err(|error| failed(error.into()))
+    atomic::write(&request.path, &bytes).map_err(|error| failed(error.into()))
 }
 
 /// Draws the triangles alone as a PNG without background, colored by a measure. The longer side of the picture is

@@ -42,7 +42,7 @@ impl<'a> Block<'a> {
         problem: impl Into<String>,
         remedy: impl Into<String>,
     ) -> ReadError {
-        Cursor::standing_at(source, self.at).error(problem, remedy)
+        Cursor::on_line_of(source, self.at).error(problem, remedy)
     }
 
     /// Lists the items of the lines of data, each without blanks around it, with whether it is the last one of its line.

@@ -25,10 +25,10 @@ const MODEL: usize = 0;
 pub(super) const ASSEMBLY: usize = 1;
 
 /// Keywords that make nodes or elements which have no row.
-const GENERATORS: [&str; 8] =
+const GENERATING_KEYWORDS: [&str; 8] =
     ["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SYMMETRICMODELGENERATION"];
-/// How deep files may include others.
-const DEPTH: u32 = 8;
+/// Limit on the depth of nested includes.
+const MAX_INCLUDE_DEPTH: u32 = 8;
 
 impl<'a> Deck<'a> {
     pub(super) fn read(source: &'a Source) -> Result<Deck<'a>, ReadError> {
@@ -114,7 +114,7 @@ impl<'a> Deck<'a> {
             let before = at.checked_sub(1).map(|before| &self.blocks[before].0);
             let continues = before.is_some_and(|before| before.is("NODE") || before.is("ELEMENT"));
             let place = Inclusion { from: source, at: block.at, name };
-            match included(source, place, continues, &mut seen, DEPTH)? {
+            match included(source, place, continues, &mut seen, MAX_INCLUDE_DEPTH)? {
                 Included::Mesh => {
                     let shown = quoted(name);
                     let problem =
@@ -152,7 +152,7 @@ impl<'a> Deck<'a> {
 fn check(source: &Source, block: &Block<'_>) -> Result<(), ReadError> {
     let shown = String::from_utf8_lossy(&block.keyword).into_owned();
     let has_data = || block.items(source).any(|(item, _)| !item.is_empty());
-    let is_generator = GENERATORS.iter().any(|keyword| block.is(keyword));
+    let is_generator = GENERATING_KEYWORDS.iter().any(|keyword| block.is(keyword));
     if is_generator && (!block.is("SYSTEM") || has_data()) {
         let what = if block.is("SYSTEM") || block.is("NMAP") {
             "moves nodes"
@@ -233,7 +233,7 @@ fn included(
     for block in &blocks {
         let is_mesh =
             ["NODE", "ELEMENT", "PART", "INSTANCE"].iter().any(|keyword| block.is(keyword))
-                || GENERATORS.iter().any(|keyword| block.is(keyword));
+                || GENERATING_KEYWORDS.iter().any(|keyword| block.is(keyword));
         let is_set = ["ELSET", "NSET", "SURFACE"].iter().any(|keyword| block.is(keyword));
         let own = match block.name("INPUT").filter(|_| block.is("INCLUDE")) {
             Some(name) => {

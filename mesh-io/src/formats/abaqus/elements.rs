@@ -3,21 +3,22 @@
 use super::blocks::Block;
 use super::deck::Deck;
 use super::lists::List;
-use super::sets::{Effort, Numbered, Sets};
+use super::sets::{IdPositions, Sets, WorkBudget};
 use super::{rows, types};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::items::{Element, Kind, Within};
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, Element, GroupScope};
+use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// What is found out of elements before they are handed on. All lists are empty if they are not needed.
+/// The sections, sets and surfaces of the elements, found before the elements are visited. Lists that are not needed
+/// are empty.
 #[derive(Default)]
-pub(super) struct Found {
+pub(super) struct ElementGroups {
     /// The number of the section of each element, or of the sets that it is in, counted from 1.
     sections: Vec<u32>,
     /// The names of the sets that are groups.
@@ -30,7 +31,7 @@ pub(super) struct Found {
     sides: Vec<(u32, u32, [u8; 2])>,
 }
 
-impl Found {
+impl ElementGroups {
     pub(super) fn new(
         source: &Source,
         deck: &Deck<'_>,
@@ -38,9 +39,9 @@ impl Found {
         lists: &[List<'_, '_>],
         mut sets: Sets,
         sections: &[&Block<'_>],
-        sink: &mut dyn Sink,
-    ) -> Result<Found, ReadError> {
-        let mut found = Found::default();
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<ElementGroups, ReadError> {
+        let mut found = ElementGroups::default();
         let names = |keyword| -> HashSet<Vec<u8>> {
             let names = deck.of_mesh(keyword).filter_map(|block| block.name("ELSET"));
             names.map(<[u8]>::to_ascii_uppercase).collect()
@@ -52,7 +53,7 @@ impl Found {
             of_sections.iter().find(|&n| !listed.contains(n) && !of_lists.contains(n))
         {
             let name = quoted(name);
-            sink.remark(Remark::Text(format!("a section is of the set {name}, which is not here: vertices at its ends are no constraints")));
+            visitor.remark(Remark::Text(format!("a section is of the set {name}, which is not here: vertices at its ends are no constraints")));
         }
         // Sections of lists of elements need no look at the elements: the lists' sets tell them apart.
         let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));
@@ -60,7 +61,7 @@ impl Found {
         let by_members = sections.is_empty() && of_lists.is_empty() && !listed.is_empty();
         let has_surfaces =
             deck.of_mesh("SURFACE").chain(deck.of_assembly("SURFACE")).next().is_some();
-        let has_groups = sink.asks_for_groups();
+        let has_groups = visitor.asks_for_groups();
         if !by_sets && !by_members && !has_surfaces && !has_groups {
             return Ok(found);
         }
@@ -69,8 +70,8 @@ impl Found {
         for List { block, kind, .. } in lists {
             let before = tags.len() as u32;
             let Some(kind) = *kind else { continue };
-            let rows = &mut rows::of(&mut cursor, block);
-            rows::each_element(rows, kind, sink.takes_ahead(), |_, tag, _| {
+            let rows = &mut rows::data_rows(&mut cursor, block);
+            rows::each_element(rows, kind, visitor.allows_parallel(), |_, tag, _| {
                 tags.push(tag);
                 Ok(())
             })?;
@@ -79,8 +80,8 @@ impl Found {
             }
         }
         sets.read(source, deck, "ELSET");
-        let all = &Numbered::new(&tags);
-        let effort = &mut Effort::of(source);
+        let all = &IdPositions::new(&tags);
+        let effort = &mut WorkBudget::of(source);
         if by_sets {
             found.sections = vec![0; tags.len()];
             for (block, section) in sections.iter().zip(1..) {
@@ -123,8 +124,8 @@ impl Found {
         source: &Source,
         deck: &Deck<'_>,
         sets: &Sets,
-        all: &Numbered,
-        effort: &mut Effort,
+        all: &IdPositions,
+        effort: &mut WorkBudget,
     ) -> Result<(), ReadError> {
         let own = deck.of_mesh("SURFACE").map(|block| (block, false));
         for (block, of_assembly) in
@@ -164,34 +165,35 @@ impl Found {
         deck: &Deck<'_>,
         cursor: &Cursor<'_>,
         lists: &[List<'_, '_>],
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let mut cursor = cursor.clone();
         // The place of the next element, and what is left of the lists by places.
         let (mut place, mut within, mut sides) = (0, &self.within[..], &self.sides[..]);
-        // The groups that the sink was told of last.
+        // The groups that the visitor was told of last.
         let mut told: &[(u32, u32)] = &[];
         let mut lines: Vec<(u32, [u64; 2])> = Vec::new();
         // How many elements hold their nodes, and the types of these.
         let (mut holding, mut types_of) = (0, BTreeSet::new());
         for List { block, of, kind, set, of_assembly } in lists {
-            let rows = &mut rows::of(&mut cursor, block);
+            let rows = &mut rows::data_rows(&mut cursor, block);
             let Some(kind) = *kind else {
-                tell(&self.names, &mut told, &[], sink);
-                let count = held(rows, Some(deck).filter(|_| *of_assembly), sink)?;
+                send_scopes(&self.names, &mut told, &[], visitor);
+                let count =
+                    send_constrained_nodes(rows, Some(deck).filter(|_| *of_assembly), visitor)?;
                 if count > 0 {
                     holding += count;
                     types_of.insert(of);
                 }
                 continue;
             };
-            let ahead = sink.takes_ahead();
+            let ahead = visitor.allows_parallel();
             rows::each_element(rows, kind, ahead, |cursor, tag, nodes| {
                 let own = within.partition_point(|&(element, _)| element <= place);
-                tell(&self.names, &mut told, &within[..own], sink);
+                send_scopes(&self.names, &mut told, &within[..own], visitor);
                 let section = self.sections.get(place as usize).copied().unwrap_or(0);
                 let region = [*set, i64::from(section)];
-                sink.element(cursor, &Element { tag, kind, region, nodes })?;
+                visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
                 within = &within[own..];
                 while let [(element, surface, label), rest @ ..] = sides
                     && *element == place
@@ -210,7 +212,7 @@ impl Found {
         }
         if let Some(first) = types_of.first() {
             let word = if types_of.len() == 1 { "the type" } else { "types such as" };
-            sink.remark(Remark::elements(
+            visitor.remark(Remark::elements(
                 holding,
                 "element",
                 &format!(" of {word} {}", quoted(first)),
@@ -219,50 +221,51 @@ impl Found {
         lines.sort_by_key(|&(surface, _)| surface);
         for of_surface in lines.chunk_by(|a, b| a.0 == b.0) {
             let (name, at) = &self.surfaces[of_surface[0].0 as usize];
-            cursor.go_to(*at);
-            sink.within(&[Within {
-                what: "surface",
-                label: Label::name(name),
+            cursor.seek(*at);
+            visitor.group_scopes(&[GroupScope {
+                kind: "surface",
+                label: GroupLabel::name(name),
                 dimension: Some(1),
             }]);
             for &(_, [a, b]) in of_surface {
-                let (kind, nodes) = (Kind::Line, [a, b, 0, 0]);
-                sink.element(&cursor, &Element { tag: 0, kind, region: [0; 2], nodes })?;
+                let (kind, nodes) = (CellKind::Line, [a, b, 0, 0]);
+                visitor.element(&cursor, &Element { id: 0, kind, region: [0; 2], nodes })?;
             }
         }
-        sink.within(&[]);
+        visitor.group_scopes(&[]);
         Ok(())
     }
 }
 
-/// Tells the sink the groups of the next element, if they differ from those before.
-fn tell<'f>(
+/// Visits the groups of the next element, if they differ from the groups of the element before.
+fn send_scopes<'f>(
     names: &[Vec<u8>],
     told: &mut &'f [(u32, u32)],
     now: &'f [(u32, u32)],
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) {
     let groups = |all: &'f [(u32, u32)]| all.iter().map(|&(_, group)| group);
     if !groups(told).eq(groups(now)) {
         let within = |group: u32| {
-            let label = Label::name(&names[group as usize]);
-            Within { what: "elset", label, dimension: None }
+            let label = GroupLabel::name(&names[group as usize]);
+            GroupScope { kind: "elset", label, dimension: None }
         };
-        sink.within(&groups(now).map(within).collect::<Vec<_>>());
+        visitor.group_scopes(&groups(now).map(within).collect::<Vec<_>>());
     }
     *told = now;
 }
 
-/// Hands on the nodes of elements that hold them, and counts the elements. `assembly` is given for elements of an assembly.
-fn held(
+/// Visits the nodes of elements that constrain them, and counts the elements. `assembly` is given for elements of an
+/// assembly.
+fn send_constrained_nodes(
     rows: &mut Cursor<'_>,
     assembly: Option<&Deck<'_>>,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let (mut count, mut last) = (0, None);
-    rows::each_held(rows, assembly, |cursor, tag, node| {
-        let (kind, nodes) = (Kind::Point, [node, 0, 0, 0]);
-        sink.element(cursor, &Element { tag, kind, region: [0; 2], nodes })?;
+    rows::each_constrained(rows, assembly, |cursor, tag, node| {
+        let (kind, nodes) = (CellKind::Point, [node, 0, 0, 0]);
+        visitor.element(cursor, &Element { id: tag, kind, region: [0; 2], nodes })?;
         count += u64::from(last.replace(tag) != Some(tag));
         Ok(())
     })?;

@@ -8,7 +8,7 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use crate::visit::rows::volume;
 
 /// A list of elements of one type.
@@ -17,7 +17,7 @@ pub(super) struct List<'d, 'a> {
     /// The type, in capital letters.
     pub(super) of: Vec<u8>,
     /// `None` for elements that only hold their nodes.
-    pub(super) kind: Option<Kind>,
+    pub(super) kind: Option<CellKind>,
     /// The number of the set that the list names, counted from 1; 0 if it names none.
     pub(super) set: i64,
     pub(super) of_assembly: bool,
@@ -38,7 +38,8 @@ pub(super) fn lists<'d, 'a>(
     }
     for block in deck.of_assembly("ELEMENT") {
         let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
-        if matches!(class(source, block, &of)?, Some(Kind::Triangle | Kind::Quadrilateral)) {
+        if matches!(class(source, block, &of)?, Some(CellKind::Triangle | CellKind::Quadrilateral))
+        {
             let problem = "an assembly has elements of its own beside those of a part";
             let remedy = "Write the input file without parts and assemblies";
             return Err(block.error(source, problem, remedy));
@@ -49,13 +50,13 @@ pub(super) fn lists<'d, 'a>(
 }
 
 /// Returns the kind of the elements of a type; `None` if they only hold their nodes.
-fn class(source: &Source, block: &Block<'_>, of: &[u8]) -> Result<Option<Kind>, ReadError> {
+fn class(source: &Source, block: &Block<'_>, of: &[u8]) -> Result<Option<CellKind>, ReadError> {
     let shown = quoted(of);
     match types::class(of) {
-        Some(Class::Is(kind)) => Ok(Some(kind)),
-        Some(Class::Held) => Ok(None),
+        Some(Class::Of(kind)) => Ok(Some(kind)),
+        Some(Class::Constraining) => Ok(None),
         Some(Class::Volume) => {
-            let cursor = Cursor::standing_at(source, block.at);
+            let cursor = Cursor::on_line_of(source, block.at);
             Err(volume(&cursor, &format!("elements of the type {shown}")))
         }
         Some(Class::SecondOrder) => {

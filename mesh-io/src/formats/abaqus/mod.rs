@@ -14,55 +14,58 @@ mod sets;
 mod types;
 pub(crate) mod write;
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
-use crate::visit::heights::Heights;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 use blocks::Block;
 use deck::Deck;
-use elements::Found;
-use rows::Counted;
-use sets::{Effort, Numbered, Sets};
+use elements::ElementGroups;
+use rows::LengthCounts;
+use sets::{IdPositions, Sets, WorkBudget};
 
 pub(crate) struct Abaqus;
 
-impl Walk for Abaqus {
+impl FormatReader for Abaqus {
     const VERTICES: &'static str = "*NODE";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let deck = &mut Deck::read(source)?;
         if deck.of_mesh("NODE").next().is_none() {
             let problem = "it has no *NODE, so it is no mesh of Abaqus or CalculiX";
             return Err(source.error(problem, "Save the mesh with its nodes and elements"));
         }
-        let numbers = Numbers::Text { precision: Precision::Text20 };
-        let cursor = &mut Cursor::new(source).of(Syntax::KEYWORDS);
+        let numbers = CoordinateEncoding::Text { precision: Precision::Text20 };
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::KEYWORDS);
         let mut nodes = Nodes::default();
-        nodes.send(cursor.clone(), deck, numbers, sink)?;
-        deck.notes.drain(..).for_each(|note| sink.remark(Remark::Text(note)));
+        nodes.send(cursor.clone(), deck, numbers, visitor)?;
+        deck.notes.drain(..).for_each(|note| visitor.remark(Remark::Text(note)));
         let deck = &*deck;
-        if sink.asks_for_data() {
-            leave_out(deck, sink);
+        if visitor.asks_for_data() {
+            report_unsupported(deck, visitor);
         }
         let mut sets = Sets::default();
         let lists = lists::lists(source, deck, &mut sets)?;
         let sections: Vec<&Block<'_>> = sections(deck).collect();
-        let found = Found::new(source, deck, cursor, &lists, sets, &sections, sink)?;
-        found.send(deck, cursor, &lists, sink)?;
-        if sink.asks_for_groups() {
-            nodes.send_sets(source, deck, sink)?;
+        let found = ElementGroups::new(source, deck, cursor, &lists, sets, &sections, visitor)?;
+        found.send(deck, cursor, &lists, visitor)?;
+        if visitor.asks_for_groups() {
+            nodes.send_sets(source, deck, visitor)?;
         }
-        Ok(Layout::in_place(Format::Abaqus, numbers))
+        Ok(CoordinateStorage::in_place(Format::Abaqus, numbers))
     }
 }
 
@@ -73,9 +76,9 @@ fn sections<'d, 'a>(deck: &'d Deck<'a>) -> impl Iterator<Item = &'d Block<'a>> {
     own.map(|(block, _)| block)
 }
 
-/// Tells of keywords that say more than what a mesh is.
-fn leave_out(deck: &Deck<'_>, sink: &mut dyn Sink) {
-    const OF_MESHES: [&str; 13] = [
+/// Reports keywords with information beyond the mesh as unsupported.
+fn report_unsupported(deck: &Deck<'_>, visitor: &mut dyn MeshVisitor) {
+    const MESH_KEYWORDS: [&str; 13] = [
         "HEADING",
         "NODE",
         "ELEMENT",
@@ -90,11 +93,11 @@ fn leave_out(deck: &Deck<'_>, sink: &mut dyn Sink) {
         "ENDINSTANCE",
         "PREPRINT",
     ];
-    let is_other = |block: &&Block<'_>| !OF_MESHES.iter().any(|keyword| block.is(keyword));
+    let is_other = |block: &&Block<'_>| !MESH_KEYWORDS.iter().any(|keyword| block.is(keyword));
     let mut others = deck.blocks.iter().map(|(block, _)| block).filter(is_other);
     if let Some(first) = others.next() {
         let first = quoted(&first.keyword);
-        sink.leaves_out(&match others.count() {
+        visitor.unsupported(&match others.count() {
             0 => format!("what *{first} says"),
             more => format!("what *{first} and {more} more keywords say"),
         });
@@ -114,31 +117,31 @@ impl Nodes {
         &mut self,
         mut cursor: Cursor<'_>,
         deck: &Deck<'_>,
-        numbers: Numbers,
-        sink: &mut dyn Sink,
+        numbers: CoordinateEncoding,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
-        self.tags = sink.asks_for_groups().then(Vec::new);
-        let mut heights = Heights::new(sink);
-        let mut counted = Counted::default();
+        self.tags = visitor.asks_for_groups().then(Vec::new);
+        let mut z_values = ZValues::new(visitor);
+        let mut counted = LengthCounts::default();
         for block in deck.of_mesh("NODE") {
-            let rows = &mut rows::of(&mut cursor, block);
+            let rows = &mut rows::data_rows(&mut cursor, block);
             let before = counted.all;
-            rows::send_nodes(rows, sink, &mut heights, &mut self.tags, &mut counted)?;
+            rows::send_nodes(rows, visitor, &mut z_values, &mut self.tags, &mut counted)?;
             rows.check_vertex_count(counted.all)?;
-            if let (Some(name), true) = (block.name("NSET"), sink.asks_for_groups()) {
+            if let (Some(name), true) = (block.name("NSET"), visitor.asks_for_groups()) {
                 self.sets.add(name, before as u32..counted.all as u32);
             }
         }
-        sink.end_nodes(&cursor)?;
+        visitor.end_nodes(&cursor)?;
         if counted.long > 0 {
             let (s, have) = if counted.long == 1 { ("", "has") } else { ("s", "have") };
             let nodes =
                 format!("{} node{s} {have} a coordinate of more than 20 characters", counted.long);
-            sink.remark(Remark::Text(format!(
+            visitor.remark(Remark::Text(format!(
                 "{nodes}: CalculiX reads the first 20 only, and so another number"
             )));
         }
-        heights.send("z", numbers.into(), sink);
+        z_values.send("z", numbers.into(), visitor);
         Ok(())
     }
 
@@ -146,18 +149,20 @@ impl Nodes {
         mut self,
         source: &Source,
         deck: &Deck<'_>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         self.sets.read(source, deck, "NSET");
-        let all = Numbered::new(&self.tags.unwrap_or_default());
-        let effort = &mut Effort::of(source);
+        let all = IdPositions::new(&self.tags.unwrap_or_default());
+        let effort = &mut WorkBudget::of(source);
         for (number, name) in self.sets.named() {
             let nodes = self.sets.members(number, &all, source, effort)?;
             let tag = number as i64 + 1;
             if !nodes.is_empty() {
-                sink.name("nset", Some(0), tag, &name);
+                visitor.group_name("nset", Some(0), tag, &name);
             }
-            nodes.into_iter().for_each(|node| sink.node_within(node, "nset", &Label::Tag(tag)));
+            nodes
+                .into_iter()
+                .for_each(|node| visitor.node_group(node, "nset", &GroupLabel::Tag(tag)));
         }
         Ok(())
     }

@@ -6,22 +6,22 @@ use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::integer;
-use crate::visit::heights::Heights;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use crate::visit::rows::{all_rows, nodes};
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
-/// Moves the cursor on to the lines of data of a block. Returns one that does not read beyond them.
-pub(super) fn of<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
-    cursor.go_to(block.data.start);
+/// Moves the cursor to the data lines of a block. Returns a cursor that does not read beyond these lines.
+pub(super) fn data_rows<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Cursor<'a> {
+    cursor.seek(block.data.start);
     let mut rows = cursor.clone();
     rows.bytes = &rows.bytes[..block.data.end];
     rows
 }
 
-/// How many nodes there are, and how many of them have a number of more characters than are read of it.
+/// Number of nodes, and of nodes with a coordinate of more than [`MAX_NUMBER_LENGTH`] characters.
 #[derive(Default)]
-pub(super) struct Counted {
+pub(super) struct LengthCounts {
     pub(super) all: u64,
     pub(super) long: u64,
 }
@@ -29,15 +29,15 @@ pub(super) struct Counted {
 /// Hands on the nodes of a block, and counts them.
 pub(super) fn send_nodes(
     cursor: &mut Cursor<'_>,
-    sink: &mut dyn Sink,
-    heights: &mut Heights,
-    tags: &mut Option<Vec<u64>>,
-    counted: &mut Counted,
+    visitor: &mut dyn MeshVisitor,
+    z_values: &mut ZValues,
+    ids: &mut Option<Vec<u64>>,
+    counted: &mut LengthCounts,
 ) -> Result<(), ReadError> {
-    all_rows(cursor, sink, node, |cursor, sink, (tag, (x_at, is_long), at, z)| {
-        sink.node(cursor, tag, 2, x_at, at);
-        heights.see(z);
-        tags.iter_mut().for_each(|tags| tags.push(tag));
+    all_rows(cursor, visitor, node, |cursor, visitor, (id, (x_at, is_long), at, z)| {
+        visitor.node(cursor, id, 2, x_at, at);
+        z_values.push(z);
+        ids.iter_mut().for_each(|ids| ids.push(id));
         counted.all += 1;
         counted.long += u64::from(is_long);
         Ok(())
@@ -47,70 +47,70 @@ pub(super) fn send_nodes(
 /// A node: its number, the offset of x, whether a number is long, x and y, and z with its offset.
 type Node = (u64, (usize, bool), [f64; 2], (usize, f64));
 
-/// How many characters of a number are read by Abaqus and CalculiX.
-const MOST: usize = 20;
+/// Number of characters of a number that Abaqus and CalculiX read.
+const MAX_NUMBER_LENGTH: usize = 20;
 
 #[inline]
 fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
-    let tag = cursor.integer("the number of a node")?;
+    let id = cursor.integer("the number of a node")?;
     let x_at = cursor.at();
     let (mut at, mut is_long) = ([0.0; 2], false);
     for (axis, x) in ['x', 'y'].into_iter().zip(&mut at) {
         if cursor.is_at_end() {
-            let problem = format!("{axis} of node {tag} is left out, which stands for 0");
+            let problem = format!("{axis} of node {id} is left out, which stands for 0");
             return Err(
                 cursor.error(problem, "Write the 0, as there is no place for another value")
             );
         }
         let start = cursor.at();
-        *x = cursor.coordinate(axis, format_args!("node {tag}"))?;
-        is_long |= cursor.at - start > MOST;
+        *x = cursor.coordinate(axis, format_args!("node {id}"))?;
+        is_long |= cursor.at - start > MAX_NUMBER_LENGTH;
     }
-    Ok((tag, (x_at, is_long), at, cursor.height_if_any(format_args!("node {tag}"))?))
+    Ok((id, (x_at, is_long), at, cursor.z_if_any(format_args!("node {id}"))?))
 }
 
 /// Reads the elements of a block, each with its number and nodes, long lists on all threads if `ahead`. A call of `take` that
 /// fails must leave all unchanged.
 pub(super) fn each_element<'a>(
     cursor: &mut Cursor<'a>,
-    kind: Kind,
+    kind: CellKind,
     ahead: bool,
     mut take: impl FnMut(&Cursor<'a>, u64, [u64; 4]) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     if ahead && cursor.is_long() {
         let nowhere = &Cursor::new(cursor.source);
         let plain = |cursor: &mut Cursor<'a>| {
-            let tag = cursor.integer(NUMBER)?;
+            let id = cursor.integer(NUMBER)?;
             let nodes = nodes(cursor, kind)?;
-            ended(cursor, kind, tag)?;
-            Ok((tag, nodes))
+            check_row_end(cursor, kind, id)?;
+            Ok((id, nodes))
         };
-        take_rows(cursor, u64::MAX, plain, |(tag, nodes)| take(nowhere, tag, nodes).is_ok());
+        take_rows(cursor, u64::MAX, plain, |(id, nodes)| take(nowhere, id, nodes).is_ok());
     }
     while cursor.next_row() {
-        let tag = cursor.integer(NUMBER)?;
+        let id = cursor.integer(NUMBER)?;
         let mut nodes = [0; 4];
         for node in &mut nodes[..kind.nodes()] {
-            go_on(cursor);
+            skip_continuation(cursor);
             *node = cursor.integer(format_args!("a vertex of a {}", kind.name()))?;
         }
-        ended(cursor, kind, tag)?;
-        take(cursor, tag, nodes)?;
+        check_row_end(cursor, kind, id)?;
+        take(cursor, id, nodes)?;
     }
     Ok(())
 }
 
 /// Reads elements of any number of nodes, each with its number. In an assembly the nodes of the mesh are those with the name of one
 /// of its instances, `Part-1-1.7`; all others are left out. `assembly` is given for elements of one.
-pub(super) fn each_held<'a>(
+pub(super) fn each_constrained<'a>(
     cursor: &mut Cursor<'a>,
     assembly: Option<&Deck<'_>>,
     mut take: impl FnMut(&Cursor<'a>, u64, u64) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     while cursor.next_row() {
-        let tag = cursor.integer(NUMBER)?;
+        let id = cursor.integer(NUMBER)?;
         loop {
-            go_on(cursor);
+            skip_continuation(cursor);
             if cursor.is_at(b',') {
                 // Between two commas stands no node.
                 cursor.at = cursor.at();
@@ -121,7 +121,7 @@ pub(super) fn each_held<'a>(
             }
             let Some(deck) = assembly else {
                 let node = cursor.integer("a node of an element")?;
-                take(cursor, tag, node)?;
+                take(cursor, id, node)?;
                 continue;
             };
             let word = cursor.token().unwrap_or_default();
@@ -129,7 +129,7 @@ pub(super) fn each_held<'a>(
                 memchr::memchr(b'.', word).filter(|&at| deck.is_of_mesh(&word[..at]))
                 && let Some(node) = integer(&word[point + 1..])
             {
-                take(cursor, tag, node)?;
+                take(cursor, id, node)?;
             }
         }
     }
@@ -138,8 +138,8 @@ pub(super) fn each_held<'a>(
 
 const NUMBER: &str = "the number of an element";
 
-/// Moves to the next row if this one has ended in a comma.
-fn go_on(cursor: &mut Cursor<'_>) {
+/// Moves to the next row if the current row ends in a comma.
+fn skip_continuation(cursor: &mut Cursor<'_>) {
     let at = cursor.at();
     let is_at_end = cursor.bytes.get(at).is_none_or(|&byte| byte == b'\n');
     if is_at_end && cursor.bytes[..at].trim_ascii_end().ends_with(b",") {
@@ -150,13 +150,16 @@ fn go_on(cursor: &mut Cursor<'_>) {
     }
 }
 
-/// Checks that no node is left in a row. Beams may have another one, which tells their direction.
+/// Checks that a row has no more nodes than its kind of element.
+///
+/// # Errors
+/// If the row has another node. A line may have one more, which gives the direction of a beam.
 #[inline]
-fn ended(cursor: &Cursor<'_>, kind: Kind, tag: u64) -> Result<(), ReadError> {
-    if kind == Kind::Line || cursor.is_at_end() {
+fn check_row_end(cursor: &Cursor<'_>, kind: CellKind, id: u64) -> Result<(), ReadError> {
+    if kind == CellKind::Line || cursor.is_at_end() {
         return Ok(());
     }
     let (kind, nodes) = (kind.name(), kind.nodes());
-    let problem = format!("{kind} {tag} has more nodes than {nodes}");
+    let problem = format!("{kind} {id} has more nodes than {nodes}");
     Err(cursor.error(problem, "Correct the row, or the TYPE of its *ELEMENT"))
 }

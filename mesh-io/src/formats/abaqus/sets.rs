@@ -36,20 +36,20 @@ enum Item {
         step: u64,
     },
     /// By their places in the file.
-    Places(Range<u32>),
+    Positions(Range<u32>),
     Set(Key),
 }
 
-/// The numbers of all elements or nodes, ascending, each with its place in the file.
-pub(super) struct Numbered(Vec<(u64, u32)>);
+/// The ids of nodes or elements, sorted, each with its position in the file.
+pub(super) struct IdPositions(Vec<(u64, u32)>);
 
-impl Numbered {
-    pub(super) fn new(tags: &[u64]) -> Numbered {
+impl IdPositions {
+    pub(super) fn new(tags: &[u64]) -> IdPositions {
         let mut all: Vec<(u64, u32)> = tags.iter().copied().zip(0..).collect();
         if !all.is_sorted() {
             all.sort_unstable();
         }
-        Numbered(all)
+        IdPositions(all)
     }
 
     /// Returns all with numbers in a range, its ends included.
@@ -66,12 +66,13 @@ impl Numbered {
     }
 }
 
-/// How much may still be done to list members of sets, so that a damaged file does not take forever.
-pub(super) struct Effort(usize);
+/// Number of steps that may still be taken to list members of sets. The limit stops damaged files whose sets include
+/// each other many times.
+pub(super) struct WorkBudget(usize);
 
-impl Effort {
-    pub(super) fn of(source: &Source) -> Effort {
-        Effort(source.bytes.len().saturating_mul(8).max(1 << 20))
+impl WorkBudget {
+    pub(super) fn of(source: &Source) -> WorkBudget {
+        WorkBudget(source.bytes.len().saturating_mul(8).max(1 << 20))
     }
 
     fn spend(&mut self, source: &Source, steps: usize) -> Result<(), ReadError> {
@@ -104,7 +105,7 @@ impl Sets {
     /// Adds members by their places.
     pub(super) fn add(&mut self, name: &[u8], places: Range<u32>) {
         let number = self.number(false, name);
-        self.sets[number].items.push(Item::Places(places));
+        self.sets[number].items.push(Item::Positions(places));
     }
 
     /// Reads the sets of blocks of this keyword, those of the mesh and those of the assembly.
@@ -136,9 +137,9 @@ impl Sets {
     pub(super) fn members(
         &self,
         number: usize,
-        all: &Numbered,
+        all: &IdPositions,
         source: &Source,
-        effort: &mut Effort,
+        effort: &mut WorkBudget,
     ) -> Result<Vec<u32>, ReadError> {
         let mut members = Vec::new();
         let (mut seen, mut open) = (HashSet::from([number]), vec![number]);
@@ -153,7 +154,7 @@ impl Sets {
                         let is_hit = |&&(tag, _): &&(u64, u32)| (tag - first).is_multiple_of(step);
                         members.extend(within.iter().filter(is_hit).map(|&(_, place)| place));
                     }
-                    Item::Places(places) => members.extend(places.clone()),
+                    Item::Positions(places) => members.extend(places.clone()),
                     Item::Set(key) => {
                         open.extend(self.numbers.get(key).filter(|&&other| seen.insert(other)));
                     }

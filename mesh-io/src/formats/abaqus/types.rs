@@ -2,17 +2,17 @@
 //!
 //! A name is that of a family, the number of nodes or the order, and letters for variants: `CPS4R`, `B31H`, `STRI65`.
 
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 
 /// What elements of a type are in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Class {
-    Is(Kind),
+    Of(CellKind),
     /// Elements with nodes on their sides.
     SecondOrder,
     Volume,
     /// Elements of any nodes, which stay where they are: masses, springs, connectors, those of a user.
-    Held,
+    Constraining,
 }
 
 /// Families of surfaces, whose names go on with their number of nodes: of the plane and of axial symmetry, shells,
@@ -38,8 +38,8 @@ const VOLUMES: [&str; 15] = [
     "C3D", "DC3D", "DCC3D", "AC3D", "ACIN3D", "CIN3D", "SC6", "SC8", "CSS8", "COH3D", "EMC3D",
     "GK3D", "Q3D", "F3D", "CCL",
 ];
-/// What the names of elements begin with that hold their nodes.
-const HELD: [&str; 17] = [
+/// First letters of the names of elements whose nodes are constraints.
+const CONSTRAINING: [&str; 17] = [
     "MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "GAP", "DGAP", "CONN", "DCOUP", "JOINT",
     "ITS", "ASI", "PSI", "DRAG", "PC3D", "PD3D", "FRAME",
 ];
@@ -54,23 +54,23 @@ pub(super) fn class(name: &[u8]) -> Option<Class> {
     let is_number = |rest: &[u8]| rest.first().is_some_and(u8::is_ascii_digit);
     let of_user = name.strip_prefix(b"VU").or(name.strip_prefix(b"U")).is_some_and(is_number);
     if name == b"F3D3" {
-        return Some(Class::Is(Kind::Triangle));
+        return Some(Class::Of(CellKind::Triangle));
     }
     if let Some(nodes) = digit(&SURFACES).or(digit(&["DS"])) {
         return match nodes {
-            b'3' => Some(Class::Is(Kind::Triangle)),
-            b'4' => Some(Class::Is(Kind::Quadrilateral)),
+            b'3' => Some(Class::Of(CellKind::Triangle)),
+            b'4' => Some(Class::Of(CellKind::Quadrilateral)),
             b'5'..=b'9' => Some(Class::SecondOrder),
             _ => None,
         };
     }
     match (digit(&LINES), digit(&BY_ORDER), digit(&BEAMS)) {
         (Some(b'2'), ..) | (_, Some(b'1'), _) | (_, _, Some(b'1' | b'3')) => {
-            Some(Class::Is(Kind::Line))
+            Some(Class::Of(CellKind::Line))
         }
         (Some(b'3'), ..) | (_, Some(b'2'), _) | (_, _, Some(b'2')) => Some(Class::SecondOrder),
         _ if begins(&VOLUMES) => Some(Class::Volume),
-        _ if begins(&HELD) || of_user || name == b"D" => Some(Class::Held),
+        _ if begins(&CONSTRAINING) || of_user || name == b"D" => Some(Class::Constraining),
         _ => None,
     }
 }
@@ -104,11 +104,11 @@ mod tests {
         };
         let triangles = "CPS3 CPS3T CPE3 CPE3H CPEG3 CPEG3HT CAX3 CGAX3 S3 S3R S3RS S3RT DS3 STRI3 M3D3 SFM3D3 R3D3 F3D3 DC2D3 DCAX3 DC2D3E \
                          AC2D3 ACAX3 EMC2D3 WARP2D3";
-        is(triangles, Some(Class::Is(Kind::Triangle)));
+        is(triangles, Some(Class::Of(CellKind::Triangle)));
         let quadrilaterals = "CPS4 CPS4R CPS4I CPE4PH CAX4P CAX4RPT S4 S4R S4RSW S4R5 DS4 M3D4R R3D4 COH2D4 COHAX4P CINPE4 DC2D4 DCCAX4 GKPS4";
-        is(quadrilaterals, Some(Class::Is(Kind::Quadrilateral)));
+        is(quadrilaterals, Some(Class::Of(CellKind::Quadrilateral)));
         let lines = "T2D2 T3D2 T2D2H B21 B21H B31 B31OS B23 B33 PIPE21 PIPE31H ELBOW31 SAX1 MAX1 DSAX1 SFMAX1 R2D2 RAX2 RB3D2 F2D2 DC1D2 ASI2D2";
-        is(lines, Some(Class::Is(Kind::Line)));
+        is(lines, Some(Class::Of(CellKind::Line)));
         let second = "CPS6 CPS6M CPS8R CPE8 CAX8R S6 S8 S8R5 S9R5 STRI65 DS8 M3D6 M3D9R CINPE5R DC2D6 T2D3 T3D3 B22 B32 B32R PIPE32 ELBOW32 SAX2 MAX2";
         is(second, Some(Class::SecondOrder));
         is(
@@ -117,7 +117,7 @@ mod tests {
         );
         is(
             "MASS ROTARYI SPRINGA SPRING1 DASHPOT2 CONN2D2 GAPUNI DCOUP3D JOINTC U1 U23 VU4 D FRAME2D",
-            Some(Class::Held),
+            Some(Class::Constraining),
         );
         is("CPS CPS2 CAXA41 TRI3 X USER S 3 SHELL3 DSX", None);
     }

@@ -1,10 +1,10 @@
 //! Boundary conditions of a zone, and the families that these are of: groups of elements or of vertices.
 
 use super::file::{File, labeled};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::hdf5::Object;
-use crate::visit::items::Within;
-use crate::visit::sink::Sink;
+use crate::visit::items::GroupScope;
+use crate::visit::visitor::MeshVisitor;
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::ops::RangeInclusive;
@@ -39,7 +39,7 @@ impl Elements {
 
 impl Boundaries {
     /// Tells the groups of the element that follows, where they are not those of the one before.
-    pub(super) fn of_element(&self, tag: u64, sink: &mut dyn Sink) {
+    pub(super) fn of_element(&self, tag: u64, visitor: &mut dyn MeshVisitor) {
         if self.all.is_empty() {
             return;
         }
@@ -49,13 +49,13 @@ impl Boundaries {
             each.filter(|(_, own)| own.elements.has(element)).map(|(number, _)| number).collect();
         if *self.last.borrow() != own {
             let names = own.iter().flat_map(|&number| &self.all[number].names);
-            let within = |(what, name): &'_ (&'static str, String)| Within {
-                what,
-                label: Label::Name(name.clone()),
+            let within = |(what, name): &'_ (&'static str, String)| GroupScope {
+                kind: what,
+                label: GroupLabel::Name(name.clone()),
                 dimension: None,
             };
-            let groups: Vec<Within<'_>> = names.map(within).collect();
-            sink.within(&groups);
+            let groups: Vec<GroupScope<'_>> = names.map(within).collect();
+            visitor.group_scopes(&groups);
             self.last.replace(own);
         }
     }
@@ -63,7 +63,7 @@ impl Boundaries {
 
 impl<'a> File<'a> {
     /// Reads the boundary conditions. Hands on those of vertices, and returns those of elements. What is damaged is left out.
-    pub(super) fn boundaries(&self, vertices: usize, sink: &mut dyn Sink) -> Boundaries {
+    pub(super) fn boundaries(&self, vertices: usize, visitor: &mut dyn MeshVisitor) -> Boundaries {
         let mut boundaries = Boundaries::default();
         let mut tag = 0;
         for (_, all) in labeled(self.hdf5, self.zone, b"ZoneBC_t") {
@@ -92,9 +92,9 @@ impl<'a> File<'a> {
                     (None, Some(points)) => {
                         for (what, name) in &names {
                             tag += 1;
-                            sink.name(what, Some(0), tag, name.as_bytes());
+                            visitor.group_name(what, Some(0), tag, name.as_bytes());
                             for vertex in (1..=vertices).filter(|&v| points.has(v as i64)) {
-                                sink.node_within(vertex as u32 - 1, what, &Label::Tag(tag));
+                                visitor.node_group(vertex as u32 - 1, what, &GroupLabel::Tag(tag));
                             }
                         }
                     }

@@ -2,7 +2,7 @@
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::hdf5::{Array, Dataset, Hdf5, Number, Object};
+use crate::hdf5::{Dataset, DatasetArray, Datatype, Hdf5, Object};
 use crate::text::cursor::Cursor;
 
 /// A file with its base and its one zone.
@@ -16,7 +16,7 @@ pub(super) struct File<'a> {
 impl<'a> File<'a> {
     pub(super) fn open(source: &'a Source, hdf5: &'a Hdf5<'a>) -> Result<File<'a>, ReadError> {
         let refused = |problem: String, remedy| {
-            Err(Cursor::at_byte_of(source, hdf5.root().at).error(problem, remedy))
+            Err(Cursor::at_byte_offset(source, hdf5.root().at).error(problem, remedy))
         };
         let bases = labeled(hdf5, hdf5.root(), b"CGNSBase_t");
         let zones: Vec<_> = bases
@@ -38,7 +38,7 @@ impl<'a> File<'a> {
     }
 
     pub(super) fn cursor(&self, object: &Object) -> Cursor<'a> {
-        Cursor::at_byte_of(self.source, object.at)
+        Cursor::at_byte_offset(self.source, object.at)
     }
 
     /// The content of a node.
@@ -62,9 +62,9 @@ impl<'a> File<'a> {
     pub(super) fn reals(
         &self,
         node: &'a Object,
-    ) -> Result<Option<(Dataset, Array<'a>)>, ReadError> {
+    ) -> Result<Option<(Dataset, DatasetArray<'a>)>, ReadError> {
         let dataset = self.data(node).map(|data| self.hdf5.dataset(data)).transpose()?.flatten();
-        let dataset = dataset.filter(|dataset| matches!(dataset.number, Number::Real(..)));
+        let dataset = dataset.filter(|dataset| matches!(dataset.datatype, Datatype::Real(..)));
         dataset
             .map(|dataset| Ok((self.hdf5.array(&dataset)?, dataset)).map(|(a, d)| (d, a)))
             .transpose()

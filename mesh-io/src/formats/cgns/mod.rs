@@ -9,15 +9,15 @@ mod file;
 mod sections;
 
 use crate::disk::source::Source;
-use crate::edit::numbers::{Encoded, Form, Places};
+use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
-use crate::hdf5::{Array, Dataset, Encoding, Hdf5, Number, SIGNATURE};
+use crate::hdf5::{Dataset, DatasetArray, Datatype, Hdf5, Hdf5Arrays, SIGNATURE};
 use crate::visit::items::PointNumbers;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Home, Layout, Stored};
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::{ArrayLocation, ByteSpace, CoordinateStorage};
+use crate::visit::visitor::MeshVisitor;
 use boundaries::Boundaries;
 use file::{File, labeled};
 use std::sync::Arc;
@@ -30,24 +30,27 @@ pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
         && Hdf5::open(source)?.find(b"CGNSLibraryVersion").is_some())
 }
 
-impl Walk for Cgns {
+impl FormatReader for Cgns {
     const VERTICES: &'static str = "the list of coordinates";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(sink))
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(visitor))
     }
 }
 
 impl<'a> File<'a> {
-    fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn read(&self, visitor: &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError> {
         let (axes, count) = self.axes()?;
-        let layout = axes.send(Format::Cgns, count, 1, sink)?;
-        let boundaries = match sink.asks_for_groups() {
-            true => self.boundaries(count, sink),
+        let layout = axes.send(Format::Cgns, count, 1, visitor)?;
+        let boundaries = match visitor.asks_for_groups() {
+            true => self.boundaries(count, visitor),
             false => Boundaries::default(),
         };
-        self.sections(&boundaries, sink)?;
-        self.solutions(count, sink);
+        self.sections(&boundaries, visitor)?;
+        self.solutions(count, visitor);
         Ok(layout)
     }
 
@@ -61,11 +64,11 @@ impl<'a> File<'a> {
             let Some(node) = node else { break };
             read.extend(self.reals(node)?);
         }
-        let first = read.first().map(|(dataset, array)| (dataset.number, array.bytes.len()));
-        let is_same = |(dataset, array): &(Dataset, Array<'_>)| {
-            Some((dataset.number, array.bytes.len())) == first
+        let first = read.first().map(|(dataset, array)| (dataset.datatype, array.bytes.len()));
+        let is_same = |(dataset, array): &(Dataset, DatasetArray<'_>)| {
+            Some((dataset.datatype, array.bytes.len())) == first
         };
-        let (Some((Number::Real(precision, order), length)), 2..=3, true) =
+        let (Some((Datatype::Real(precision, order), length)), 2..=3, true) =
             (first, read.len(), read.iter().all(is_same))
         else {
             let problem = "the zone has no CoordinateX and CoordinateY of one type and length";
@@ -79,38 +82,46 @@ impl<'a> File<'a> {
     }
 
     /// Hands on data of vertices.
-    fn solutions(&self, vertices: usize, sink: &mut dyn Sink) {
+    fn solutions(&self, vertices: usize, visitor: &mut dyn MeshVisitor) {
         for (_, solution) in labeled(self.hdf5, self.zone, b"FlowSolution_t") {
             let location =
                 self.hdf5.child(solution, b"GridLocation").and_then(|own| self.text(own));
             if location.is_some_and(|location| location != b"Vertex") {
-                if sink.asks_for_data() {
-                    sink.leaves_out("data of elements");
+                if visitor.asks_for_data() {
+                    visitor.unsupported("data of elements");
                 }
                 continue;
             }
             for (name, node) in labeled(self.hdf5, solution, b"DataArray_t") {
                 let dataset = self.data(node).and_then(|data| self.hdf5.dataset(data).ok()?);
-                let Some(Number::Real(precision, order)) = dataset.map(|own| own.number) else {
+                let Some(Datatype::Real(precision, order)) = dataset.map(|own| own.datatype) else {
                     continue;
                 };
-                if !sink.point_array(name, 1, true) {
+                if !visitor.point_array(name, 1, true) {
                     continue;
                 }
                 let Ok(Some((_, array))) = self.reals(node) else { continue };
                 let each = array.bytes.chunks_exact(precision.bytes()).take(vertices);
                 let numbers = each.map(|number| order.real(precision, number)).collect();
-                let (form, stride) = (Form::Binary(order, precision), precision.bytes());
-                let (start, home) = match array.place() {
-                    Some(start) => (start, Home::File),
+                let (form, stride) = (NumberEncoding::Binary(order, precision), precision.bytes());
+                let (start, home) = match array.start() {
+                    Some(start) => (start, ByteSpace::File),
                     None => {
-                        let encoding = Encoding::new(self.hdf5, vec![array]);
-                        (0, Home::Encoded(Arc::new(encoding) as Arc<dyn Encoded>))
+                        let encoding = Hdf5Arrays::new(self.hdf5, vec![array]);
+                        (0, ByteSpace::Encoded(Arc::new(encoding) as Arc<dyn EncodedArrays>))
                     }
                 };
-                let stored =
-                    Stored { places: Places::Regular { start, stride }, form, home, part: 0 };
-                sink.point_numbers(PointNumbers { numbers, nodes: None, stored: Some(stored) });
+                let stored = ArrayLocation {
+                    offsets: Offsets::Regular { start, stride },
+                    encoding: form,
+                    space: home,
+                    file_index: 0,
+                };
+                visitor.point_numbers(PointNumbers {
+                    numbers,
+                    nodes: None,
+                    location: Some(stored),
+                });
             }
         }
     }

@@ -2,18 +2,18 @@
 
 use super::boundaries::Boundaries;
 use super::file::{File, labeled};
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
-use crate::content::label::Label;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
+use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
-use crate::hdf5::{Array, Number, Object};
+use crate::hdf5::{DatasetArray, Datatype, Object};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{Column, Element, Kind};
+use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
 const MIXED: i64 = 20;
@@ -31,9 +31,9 @@ struct Section<'n, 'a> {
 
 /// The list of nodes of a section.
 struct Nodes<'a> {
-    array: Array<'a>,
+    array: DatasetArray<'a>,
     size: usize,
-    order: Order,
+    order: ByteOrder,
 }
 
 impl Nodes<'_> {
@@ -48,10 +48,14 @@ impl<'a> File<'a> {
     pub(super) fn sections(
         &self,
         boundaries: &Boundaries,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
-        let label = |section| Some(Label::Tag(section));
-        sink.columns(vec![Column { what: "section".into(), from_dimension: 0, label }]);
+        let label = |section| Some(GroupLabel::Tag(section));
+        visitor.region_attributes(vec![RegionAttribute {
+            kind: "section".into(),
+            from_dimension: 0,
+            label,
+        }]);
         let mut sections: Vec<_> = labeled(self.hdf5, self.zone, b"Elements_t")
             .into_iter()
             .map(|(name, section)| {
@@ -62,8 +66,8 @@ impl<'a> File<'a> {
             .collect();
         sections.sort_by_key(|(range, ..)| range.first().copied());
         for ((range, name, section), number) in sections.into_iter().zip(1..) {
-            if sink.asks_for_groups() {
-                sink.name("section", None, number, name);
+            if visitor.asks_for_groups() {
+                visitor.group_name("section", None, number, name);
             }
             let &[first, last] = &range[..] else {
                 return Err(self.damaged(name, section));
@@ -75,9 +79,9 @@ impl<'a> File<'a> {
                 return Err(self.damaged(name, section));
             };
             let section = Section { name, object: section, number, first, count };
-            self.section(&section, boundaries, sink)?;
+            self.section(&section, boundaries, visitor)?;
         }
-        sink.within(&[]);
+        visitor.group_scopes(&[]);
         Ok(())
     }
 
@@ -92,20 +96,20 @@ impl<'a> File<'a> {
         &self,
         of: &Section<'_, 'a>,
         boundaries: &Boundaries,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let &Section { name, object: section, number, first, count } = of;
         let damaged = || self.damaged(name, section);
         let own = self.hdf5.child(section, b"ElementConnectivity").and_then(|own| self.data(own));
         let dataset =
             own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten().ok_or_else(damaged)?;
-        let Number::Whole(size, order) = dataset.number else { return Err(damaged()) };
+        let Datatype::Whole(size, order) = dataset.datatype else { return Err(damaged()) };
         let array = self.hdf5.array(&dataset)?;
         let nodes = Nodes { array, size, order };
         let of_all = self.integers(section).and_then(|numbers| numbers.first().copied());
         let of_all = of_all.ok_or_else(damaged)?;
         let length = nodes.array.bytes.len() / size;
-        let place = |at: usize| Cursor::at_byte_of(self.source, nodes.array.byte_of(at * size));
+        let place = |at: usize| Cursor::at_byte_offset(self.source, nodes.array.byte_of(at * size));
         if of_all != MIXED {
             let kind = self.kind(of_all, section)?;
             if count.checked_mul(kind.nodes()) != Some(length) {
@@ -115,12 +119,12 @@ impl<'a> File<'a> {
                 kind,
                 count,
                 first_tag: first,
-                nodes: Field::new(Some(&nodes.array.bytes), kind.nodes() * size, size, order),
+                nodes: NumberField::new(Some(&nodes.array.bytes), kind.nodes() * size, size, order),
                 is_signed: false,
                 regions: [Region::Same(number), Region::Same(0)],
             };
-            return elements.send(sink, |index, sink| {
-                boundaries.of_element(first.saturating_add(index as u64), sink);
+            return elements.send(visitor, |index, visitor| {
+                boundaries.of_element(first.saturating_add(index as u64), visitor);
                 place(index * kind.nodes())
             });
         }
@@ -135,10 +139,10 @@ impl<'a> File<'a> {
                 *corner = nodes.at(at).ok_or_else(damaged)?;
                 at += 1;
             }
-            let tag = first.saturating_add(element as u64);
-            boundaries.of_element(tag, sink);
-            let element = Element { tag, kind, region: [number, 0], nodes: corners };
-            sink.element(&place(start), &element)?;
+            let id = first.saturating_add(element as u64);
+            boundaries.of_element(id, visitor);
+            let element = Element { id, kind, region: [number, 0], nodes: corners };
+            visitor.element(&place(start), &element)?;
         }
         match at == length {
             true => Ok(()),
@@ -146,13 +150,13 @@ impl<'a> File<'a> {
         }
     }
 
-    fn kind(&self, number: i64, section: &'a Object) -> Result<Kind, ReadError> {
+    fn kind(&self, number: i64, section: &'a Object) -> Result<CellKind, ReadError> {
         let cursor = self.cursor(section);
         match number {
-            2 => Ok(Kind::Point),
-            3 => Ok(Kind::Line),
-            5 => Ok(Kind::Triangle),
-            7 => Ok(Kind::Quadrilateral),
+            2 => Ok(CellKind::Point),
+            3 => Ok(CellKind::Line),
+            5 => Ok(CellKind::Triangle),
+            7 => Ok(CellKind::Quadrilateral),
             10..=19 | 23 => Err(volume(&cursor, &format!("elements of the type {number}"))),
             _ => {
                 let problem = format!("elements of the type {number} are not read");

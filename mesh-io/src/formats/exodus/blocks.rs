@@ -1,23 +1,23 @@
 //! The blocks of elements of an Exodus file.
 
 use super::File;
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
-use crate::netcdf::{Items, Number, Variable};
+use crate::netcdf::{Items, NumberType, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// Elements of one type.
 pub(super) struct Block<'a> {
     /// Its place among the blocks, counted from one.
     pub(super) number: usize,
-    pub(super) kind: Kind,
+    pub(super) kind: CellKind,
     /// Whether its first two sides are its faces, as those of shells are.
     pub(super) is_shell: bool,
     /// How many elements stand before it, and how many it has.
@@ -26,7 +26,7 @@ pub(super) struct Block<'a> {
     /// Its elements, how many bytes the number of a node has, and in which order.
     items: Items<'a>,
     width: usize,
-    order: Order,
+    order: ByteOrder,
 }
 
 impl Block<'_> {
@@ -44,7 +44,10 @@ impl Block<'_> {
 
 impl<'a> File<'a> {
     /// Hands on the elements of all blocks.
-    pub(super) fn blocks(&self, sink: &mut dyn Sink) -> Result<Vec<Block<'a>>, ReadError> {
+    pub(super) fn blocks(
+        &self,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<Vec<Block<'a>>, ReadError> {
         let ids = self.ids("eb_prop1");
         let names = self.header.variable("eb_names").map(|names| self.header.texts(names));
         let mut blocks = Vec::new();
@@ -53,22 +56,22 @@ impl<'a> File<'a> {
             let block = self.block(number, before, variable)?;
             let id = self.id(&ids, number);
             if let Some(name) = names.as_ref().and_then(|names| names.get(number - 1))
-                && sink.asks_for_groups()
+                && visitor.asks_for_groups()
                 && !name.is_empty()
             {
-                sink.name("block", None, id, name);
+                visitor.group_name("block", None, id, name);
             }
             let (start, size) = (block.items.range(0).start, block.kind.nodes() * block.width);
             let elements = ElementRecords {
                 kind: block.kind,
                 count: block.count as usize,
                 first_tag: before + 1,
-                nodes: Field::new(Some(block.items.own()), size, block.width, block.order),
+                nodes: NumberField::new(Some(block.items.own()), size, block.width, block.order),
                 is_signed: true,
                 regions: [Region::Same(id), Region::Same(0)],
             };
-            elements.send(sink, |index, _| {
-                Cursor::at_byte_of(self.source, block.items.byte_of(start + index * size))
+            elements.send(visitor, |index, _| {
+                Cursor::at_byte_offset(self.source, block.items.byte_of(start + index * size))
             })?;
             before += block.count;
             blocks.push(block);
@@ -82,10 +85,10 @@ impl<'a> File<'a> {
         before: u64,
         variable: &Variable,
     ) -> Result<Block<'a>, ReadError> {
-        let start = self.header.place(variable);
-        let cursor = Cursor::at_byte_of(self.source, start);
+        let start = self.header.start_of(variable);
+        let cursor = Cursor::at_byte_offset(self.source, start);
         let found = (&variable.shape[..], variable.number, variable.is_record);
-        let (&[count, corners], Number::Whole(width), false) = found else {
+        let (&[count, corners], NumberType::Whole(width), false) = found else {
             let problem = format!("connect{number} is not a table of whole numbers");
             return Err(cursor.error(problem, CORRECT));
         };
@@ -93,10 +96,10 @@ impl<'a> File<'a> {
         let name = String::from_utf8_lossy(given).to_ascii_uppercase();
         let is = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
         let kind = match corners {
-            1 if is(&["SPHERE", "CIRCLE", "POINT", "PARTICLE"]) => Kind::Point,
-            2 if is(&["BAR", "BEAM", "TRUSS", "EDGE", "ROD", "LINE"]) => Kind::Line,
-            3 if is(&["TRI", "SHELL"]) => Kind::Triangle,
-            4 if is(&["QUAD", "SHELL"]) => Kind::Quadrilateral,
+            1 if is(&["SPHERE", "CIRCLE", "POINT", "PARTICLE"]) => CellKind::Point,
+            2 if is(&["BAR", "BEAM", "TRUSS", "EDGE", "ROD", "LINE"]) => CellKind::Line,
+            3 if is(&["TRI", "SHELL"]) => CellKind::Triangle,
+            4 if is(&["QUAD", "SHELL"]) => CellKind::Quadrilateral,
             _ if is(&["TET", "HEX", "PYR", "WEDGE"]) => {
                 return Err(volume(&cursor, &format!("elements of the type {}", quoted(given))));
             }

@@ -2,18 +2,18 @@
 
 use super::File;
 use super::blocks::Block;
-use crate::formats::netcdf_points::{Parts, PointData};
+use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::Variable;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 impl File<'_> {
     /// Hands on data of nodes and elements, and tells what is not handed on. The mesh does not depend on them: what has not
     /// the lengths it should have is passed over.
-    pub(super) fn data(&self, blocks: &[Block<'_>], sink: &mut dyn Sink) {
-        self.of_nodes(sink);
-        if sink.asks_for_data() {
-            self.of_elements(blocks, sink);
-            self.left_out(sink);
+    pub(super) fn data(&self, blocks: &[Block<'_>], visitor: &mut dyn MeshVisitor) {
+        self.of_nodes(visitor);
+        if visitor.asks_for_data() {
+            self.of_elements(blocks, visitor);
+            self.left_out(visitor);
         }
     }
 
@@ -22,14 +22,14 @@ impl File<'_> {
         table.map(|names| self.header.texts(names)).unwrap_or_default()
     }
 
-    fn of_nodes(&self, sink: &mut dyn Sink) {
+    fn of_nodes(&self, visitor: &mut dyn MeshVisitor) {
         let names = self.names("name_nod_var");
         let nodes = self.nodes as u64;
         let each = self.header.numbered("vals_nod_var");
         let mut data = PointData::new(&self.header);
         for (place, name) in names.iter().enumerate() {
-            if !sink.asks_for_data() {
-                sink.point_array(name, 1, true);
+            if !visitor.asks_for_data() {
+                visitor.point_array(name, 1, true);
                 continue;
             }
             let own = each
@@ -39,21 +39,24 @@ impl File<'_> {
             let all = self.header.variable("vals_nod_var");
             let all = all.filter(|all| all.shape == [names.len() as u64, nodes]);
             let found = match (own, all) {
-                (Some(&(_, own)), _) => Some((own, Parts::WHOLE)),
+                (Some(&(_, own)), _) => Some((own, RecordParts::WHOLE)),
                 (None, Some(all)) => {
-                    let parts =
-                        Parts { wanted: place..place + 1, all: names.len(), ..Parts::WHOLE };
+                    let parts = RecordParts {
+                        wanted: place..place + 1,
+                        all: names.len(),
+                        ..RecordParts::WHOLE
+                    };
                     Some((all, parts))
                 }
                 (None, None) => None,
             };
             if let Some((variable, parts)) = found {
-                data.send(name, variable, &parts, None, sink);
+                data.send(name, variable, &parts, None, visitor);
             }
         }
     }
 
-    fn of_elements(&self, blocks: &[Block<'_>], sink: &mut dyn Sink) {
+    fn of_elements(&self, blocks: &[Block<'_>], visitor: &mut dyn MeshVisitor) {
         for (place, name) in self.names("name_elem_var").iter().enumerate() {
             let of = |block: &Block<'_>| {
                 let name = format!("vals_elem_var{}eb{}", place + 1, block.number);
@@ -65,17 +68,17 @@ impl File<'_> {
             let Some((_, first)) = parts.first() else { continue };
             let mut read: Vec<Option<Vec<Vec<f64>>>> = parts.iter().map(|_| None).collect();
             for step in 0..self.header.steps(first) {
-                if !sink.cell_array(name, 1, true) {
+                if !visitor.cell_array(name, 1, true) {
                     continue;
                 }
-                let (mut numbers, mut tags) = (Vec::new(), Vec::new());
+                let (mut numbers, mut ids) = (Vec::new(), Vec::new());
                 for ((block, variable), read) in parts.iter().zip(&mut read) {
                     let steps = read.get_or_insert_with(|| self.steps(variable));
                     let Some(own) = steps.get_mut(step) else { continue };
                     numbers.append(own);
-                    tags.extend(block.before + 1..=block.before + block.count);
+                    ids.extend(block.before + 1..=block.before + block.count);
                 }
-                sink.cell_numbers(numbers, Some(tags));
+                visitor.cell_numbers(numbers, Some(ids));
             }
         }
     }
@@ -88,7 +91,7 @@ impl File<'_> {
         steps.map(own).collect()
     }
 
-    fn left_out(&self, sink: &mut dyn Sink) {
+    fn left_out(&self, visitor: &mut dyn MeshVisitor) {
         let starts_so =
             |name: &str| self.header.variables.iter().any(|v| v.name.starts_with(name.as_bytes()));
         for (name, what) in [
@@ -100,7 +103,7 @@ impl File<'_> {
             ("info_records", "information records"),
         ] {
             if starts_so(name) {
-                sink.leaves_out(what);
+                visitor.unsupported(what);
             }
         }
         // A single step at the time zero is what data without a time stand in.
@@ -109,14 +112,14 @@ impl File<'_> {
             steps.len() > 1 || steps.iter().flatten().any(|&time| time != 0.0)
         });
         if has_times {
-            sink.leaves_out("times of time steps");
+            visitor.unsupported("times of time steps");
         }
         let numbered = |name: &str| {
             let map = self.ids(name);
             !map.iter().copied().eq(1..=map.len() as i64)
         };
         if numbered("node_num_map") || numbered("elem_num_map") {
-            sink.leaves_out("numbers of nodes and elements in their maps");
+            visitor.unsupported("numbers of nodes and elements in their maps");
         }
         let is_weighted = |(_, factors): &(usize, &Variable)| {
             !factors.is_record && self.steps(factors).iter().flatten().any(|&factor| factor != 1.0)
@@ -125,7 +128,7 @@ impl File<'_> {
             .iter()
             .any(|name| self.header.numbered(name).iter().any(is_weighted))
         {
-            sink.leaves_out("distribution factors of sets");
+            visitor.unsupported("distribution factors of sets");
         }
     }
 }

@@ -8,19 +8,19 @@ mod data;
 mod sets;
 pub(crate) mod write;
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
 use crate::formats::netcdf_axes::axes;
 use crate::hdf5::Hdf5;
-use crate::netcdf::{self, Header, Number, Variable};
+use crate::netcdf::{self, Header, NumberType, Variable};
 use crate::text::cursor::Cursor;
-use crate::visit::items::Column;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::items::RegionAttribute;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Exodus;
 
@@ -35,12 +35,15 @@ struct File<'a> {
 /// Stands for the block of what is in no block.
 const NO_BLOCK: i64 = i64::MIN;
 
-impl Walk for Exodus {
+impl FormatReader for Exodus {
     const VERTICES: &'static str = "the list of coordinates";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let header = netcdf::open(source)?;
-        let start = Cursor::at_byte_of(source, 0);
+        let start = Cursor::at_byte_offset(source, 0);
         let Some(nodes) = header.dimension("num_nodes") else {
             if header.hdf5.is_some() {
                 let problem = "HDF5 that holds no mesh of Exodus II, UGRID, MED or CGNS";
@@ -57,16 +60,20 @@ impl Walk for Exodus {
             return Err(error);
         }
         let file = File { source, header, nodes: nodes as usize };
-        let layout = file.axes()?.send(Format::Exodus, file.nodes, 1, sink)?;
-        let label = |block| (block != NO_BLOCK).then_some(Label::Tag(block));
-        sink.columns(vec![Column { what: "block".into(), from_dimension: 0, label }]);
-        let blocks = file.blocks(sink)?;
-        file.side_sets(&blocks, sink)?;
-        if sink.asks_for_groups() {
-            file.node_sets(sink)?;
+        let layout = file.axes()?.send(Format::Exodus, file.nodes, 1, visitor)?;
+        let label = |block| (block != NO_BLOCK).then_some(GroupLabel::Tag(block));
+        visitor.region_attributes(vec![RegionAttribute {
+            kind: "block".into(),
+            from_dimension: 0,
+            label,
+        }]);
+        let blocks = file.blocks(visitor)?;
+        file.side_sets(&blocks, visitor)?;
+        if visitor.asks_for_groups() {
+            file.node_sets(visitor)?;
         }
-        file.data(&blocks, sink);
-        file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        file.data(&blocks, visitor);
+        file.header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_no_overlaps)?;
         Ok(layout)
     }
 }
@@ -93,12 +100,12 @@ impl<'a> File<'a> {
         };
         let first = variables.first().map(|first| (first.number, first.order));
         let is_same = |other: &&Variable| Some((other.number, other.order)) == first;
-        let (Some((Number::Real(precision), order)), 2..=3, true) =
+        let (Some((NumberType::Real(precision), order)), 2..=3, true) =
             (first, count, variables.iter().all(is_same))
         else {
             let problem =
                 format!("it has no coordinates in two or three axes of {} nodes", self.nodes);
-            let start = Cursor::at_byte_of(self.source, 0);
+            let start = Cursor::at_byte_offset(self.source, 0);
             return Err(start.error(problem, "Save a mesh of the plane, with coordx and coordy"));
         };
         axes(header, &variables, BinaryReals { order, precision }, count, self.nodes)

@@ -2,24 +2,24 @@
 
 use super::blocks::Block;
 use super::{File, NO_BLOCK};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::{Element, Kind, Within};
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, Element, GroupScope};
+use crate::visit::visitor::MeshVisitor;
 
 impl File<'_> {
     /// Hands on the sides of triangles and quadrilaterals in side sets as lines.
     pub(super) fn side_sets(
         &self,
         blocks: &[Block<'_>],
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
-        let ids = self.named("sideset", ["ss_prop1", "ss_names"], 1, sink);
+        let ids = self.named("sideset", ["ss_prop1", "ss_names"], 1, visitor);
         for (number, elements) in self.header.numbered("elem_ss") {
             let sides = self.header.variable(&format!("side_ss{number}"));
-            let start = self.header.place(elements);
-            let cursor = Cursor::at_byte_of(self.source, start);
+            let start = self.header.start_of(elements);
+            let cursor = Cursor::at_byte_offset(self.source, start);
             let found = sides.filter(|sides| !sides.is_record && !elements.is_record);
             let lists = found.and_then(|sides| {
                 Some((self.header.integers(elements)?, self.header.integers(sides)?))
@@ -29,22 +29,22 @@ impl File<'_> {
                     format!("side set {number} does not have one side for each of its elements");
                 return Err(cursor.error(problem, CORRECT));
             };
-            let label = Label::Tag(self.id(&ids, number));
-            sink.within(&[Within { what: "sideset", label, dimension: Some(1) }]);
+            let label = GroupLabel::Tag(self.id(&ids, number));
+            visitor.group_scopes(&[GroupScope { kind: "sideset", label, dimension: Some(1) }]);
             for (&element, &side) in elements.iter().zip(&sides) {
                 let Some(ends) = self.side(blocks, element, side) else {
                     let problem = format!("side set {number} has side {side} of element {element}");
                     return Err(cursor.error(problem, "There is no such side: correct the set"));
                 };
                 if let Some([a, b]) = ends {
-                    let (kind, nodes) = (Kind::Line, [a, b, 0, 0]);
+                    let (kind, nodes) = (CellKind::Line, [a, b, 0, 0]);
                     // Sides have no number of their own.
-                    let line = Element { tag: 0, kind, region: [NO_BLOCK, 0], nodes };
-                    sink.element(&cursor, &line)?;
+                    let line = Element { id: 0, kind, region: [NO_BLOCK, 0], nodes };
+                    visitor.element(&cursor, &line)?;
                 }
             }
         }
-        sink.within(&[]);
+        visitor.group_scopes(&[]);
         Ok(())
     }
 
@@ -61,7 +61,7 @@ impl File<'_> {
             }
         }
         let corners = match block.kind {
-            Kind::Triangle | Kind::Quadrilateral => block.kind.nodes(),
+            CellKind::Triangle | CellKind::Quadrilateral => block.kind.nodes(),
             _ => return Some(None),
         };
         let (nodes, _) = block.element(place - block.before);
@@ -69,8 +69,8 @@ impl File<'_> {
     }
 
     /// Hands on which nodes are in which node sets.
-    pub(super) fn node_sets(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
-        let ids = self.named("nodeset", ["ns_prop1", "ns_names"], 0, sink);
+    pub(super) fn node_sets(&self, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
+        let ids = self.named("nodeset", ["ns_prop1", "ns_names"], 0, visitor);
         for (number, variable) in self.header.numbered("node_ns") {
             let header = &self.header;
             let nodes = if variable.is_record { None } else { header.integers(variable) };
@@ -78,11 +78,11 @@ impl File<'_> {
             for node in nodes.unwrap_or_default() {
                 let index = u32::try_from(node - 1).ok().filter(|&i| (i as usize) < self.nodes);
                 let Some(index) = index else {
-                    let cursor = Cursor::at_byte_of(self.source, header.place(variable));
+                    let cursor = Cursor::at_byte_offset(self.source, header.start_of(variable));
                     let problem = format!("node set {number} has node {node}");
                     return Err(cursor.error(problem, "There is no such node: correct the set"));
                 };
-                sink.node_within(index, "nodeset", &Label::Tag(id));
+                visitor.node_group(index, "nodeset", &GroupLabel::Tag(id));
             }
         }
         Ok(())
@@ -94,13 +94,13 @@ impl File<'_> {
         what: &str,
         [numbers, names]: [&str; 2],
         dimension: u8,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Vec<i64> {
         let ids = self.ids(numbers);
-        if let (true, Some(names)) = (sink.asks_for_groups(), self.header.variable(names)) {
+        if let (true, Some(names)) = (visitor.asks_for_groups(), self.header.variable(names)) {
             for (name, &id) in self.header.texts(names).iter().zip(&ids) {
                 if !name.is_empty() {
-                    sink.name(what, Some(dimension), id, name);
+                    visitor.group_name(what, Some(dimension), id, name);
                 }
             }
         }

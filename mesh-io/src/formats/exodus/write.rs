@@ -2,12 +2,12 @@
 //!
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::export::content::ContentGroup;
-use crate::export::job::Job;
 use crate::export::sides::{pair, sides};
-use crate::netcdf::write::{NetCdf, Values};
-use crate::visit::items::Kind;
+use crate::export::writer_input::WriterInput;
+use crate::netcdf::write::{NetCdfWriter, Values};
+use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 
 /// The dimension of time steps.
@@ -15,7 +15,7 @@ const RECORDS: &str = "time_step";
 
 /// Elements of one kind and group.
 struct Block {
-    kind: Kind,
+    kind: CellKind,
     group: Option<u32>,
     cells: Vec<usize>,
 }
@@ -28,64 +28,64 @@ struct SideSet {
 }
 
 /// Returns the Exodus name of a type of elements, and its number of nodes.
-fn type_of(kind: Kind) -> (&'static str, usize) {
+fn type_of(kind: CellKind) -> (&'static str, usize) {
     let name = match kind {
-        Kind::Point | Kind::Corner => "SPHERE",
-        Kind::Line => "BAR2",
-        Kind::Triangle => "TRI3",
-        Kind::Quadrilateral => "QUAD4",
+        CellKind::Point | CellKind::Polygon => "SPHERE",
+        CellKind::Line => "BAR2",
+        CellKind::Triangle => "TRI3",
+        CellKind::Quadrilateral => "QUAD4",
     };
     (name, kind.nodes())
 }
 
 /// Returns the group that names the block or side set of a cell.
-fn group_of(job: &Job<'_>, cell: usize) -> Option<u32> {
+fn group_of(input: &WriterInput<'_>, cell: usize) -> Option<u32> {
     let of_any = || {
-        let set = &job.content.sets[job.content.cells.sets[cell] as usize];
-        set.iter().copied().find(|&group| job.content.groups[group as usize].what == "block")
+        let set = &input.content.sets[input.content.cells.sets[cell] as usize];
+        set.iter().copied().find(|&group| input.content.groups[group as usize].kind == "block")
     };
-    job.tags.group(job.content, cell).or_else(of_any)
+    input.group_numbers.group(input.content, cell).or_else(of_any)
 }
 
-pub(crate) fn write_exodus(job: &Job<'_>) -> Vec<u8> {
-    let content = job.content;
-    let sides = sides(content, |cell| job.tags.group(content, cell));
-    let blocks = blocks(job, &sides);
-    let side_sets = side_sets(job, &blocks, &sides);
+pub(crate) fn write_exodus(input: &WriterInput<'_>) -> Vec<u8> {
+    let content = input.content;
+    let sides = sides(content, |cell| input.group_numbers.group(content, cell));
+    let blocks = blocks(input, &sides);
+    let side_sets = side_sets(input, &blocks, &sides);
     let names = || {
         let groups = content.groups.iter().chain(content.vertex_groups.iter().map(|(g, _)| g));
-        let data = job.point_data().chain(job.cell_data());
+        let data = input.point_data().chain(input.cell_data());
         groups.filter_map(ContentGroup::name).chain(data.map(|data| data.name.as_str()))
     };
     let longest = names().map(str::len).max().unwrap_or(0).max(32);
-    let mut out = NetCdf::default();
+    let mut out = NetCdfWriter::default();
     out.dimension(RECORDS, 0);
     out.attribute("api_version", Values::Single(5.1));
     out.attribute("version", Values::Single(5.1));
     out.attribute("floating_point_word_size", Values::Whole(vec![8]));
     out.attribute("file_size", Values::Whole(vec![1]));
     out.attribute("maximum_name_length", Values::Whole(vec![longest as i32]));
-    out.attribute("title", Values::Text(format!("written by {}", job.creator).into_bytes()));
+    out.attribute("title", Values::Text(format!("written by {}", input.creator).into_bytes()));
     out.dimension("len_string", 33);
     out.dimension("len_name", longest + 1);
     out.dimension("four", 4);
-    let has_data = job.point_data().chain(job.cell_data()).next().is_some();
+    let has_data = input.point_data().chain(input.cell_data()).next().is_some();
     let times = if has_data { vec![0.0] } else { Vec::new() };
     out.variable("time_whole", &[RECORDS], Vec::new(), Values::Real(times));
-    points(&mut out, job, longest + 1);
-    elements(&mut out, job, &blocks, longest + 1);
-    sets(&mut out, job, &side_sets, longest + 1);
-    data(&mut out, job, &blocks, longest + 1);
+    points(&mut out, input, longest + 1);
+    elements(&mut out, input, &blocks, longest + 1);
+    sets(&mut out, input, &side_sets, longest + 1);
+    data(&mut out, input, &blocks, longest + 1);
     out.bytes()
 }
 
 /// Makes the blocks, in the order in which the file first has an element of each: first triangles and quadrilaterals,
 /// then lines, then points.
-fn blocks(job: &Job<'_>, sides: &HashSet<usize>) -> Vec<Block> {
+fn blocks(input: &WriterInput<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut places: HashMap<(u8, Option<u32>), usize> = HashMap::new();
-    for cell in job.cells().filter(|cell| !sides.contains(cell)) {
-        let (kind, group) = (job.content.cells.kinds[cell], group_of(job, cell));
+    for cell in input.cells().filter(|cell| !sides.contains(cell)) {
+        let (kind, group) = (input.content.cells.kinds[cell], group_of(input, cell));
         let place = *places.entry((kind as u8, group)).or_insert(blocks.len());
         if place == blocks.len() {
             blocks.push(Block { kind, group, cells: Vec::new() });
@@ -96,8 +96,8 @@ fn blocks(job: &Job<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     blocks
 }
 
-fn side_sets(job: &Job<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
-    let content = job.content;
+fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
+    let content = input.content;
     let mut wanted: HashMap<(u32, u32), (i32, i32)> = HashMap::new();
     for &line in sides {
         if let &[a, b] = content.cells.of(line) {
@@ -122,8 +122,10 @@ fn side_sets(job: &Job<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<Sid
     }
     let mut sets: Vec<SideSet> = Vec::new();
     let mut places: HashMap<u32, usize> = HashMap::new();
-    for line in content.cells.all(Kind::Line).filter(|line| sides.contains(line)) {
-        let (Some(group), &[a, b]) = (job.tags.group(content, line), content.cells.of(line)) else {
+    for line in content.cells.all(CellKind::Line).filter(|line| sides.contains(line)) {
+        let (Some(group), &[a, b]) =
+            (input.group_numbers.group(content, line), content.cells.of(line))
+        else {
             continue;
         };
         let place = *places.entry(group).or_insert(sets.len());
@@ -142,8 +144,8 @@ fn text(name: &'static str, content: &str) -> (&'static str, Values) {
     (name, Values::Text(content.as_bytes().to_vec()))
 }
 
-fn points(out: &mut NetCdf, job: &Job<'_>, width: usize) {
-    let content = job.content;
+fn points(out: &mut NetCdfWriter, input: &WriterInput<'_>, width: usize) {
+    let content = input.content;
     let count = content.points.len();
     let is_flat = (0..count).all(|vertex| content.z(vertex) == 0.0);
     let axes = if is_flat { 2 } else { 3 };
@@ -180,7 +182,7 @@ fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
 
 /// Adds the status, numbers and names of blocks or sets.
 fn named(
-    out: &mut NetCdf,
+    out: &mut NetCdfWriter,
     [count, status, property, names]: [&str; 4],
     numbers: Vec<i32>,
     texts: &[&str],
@@ -197,10 +199,10 @@ fn named(
     );
 }
 
-fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
-    let content = job.content;
+fn elements(out: &mut NetCdfWriter, input: &WriterInput<'_>, blocks: &[Block], width: usize) {
+    let content = input.content;
     out.dimension("num_elem", blocks.iter().map(|block| block.cells.len()).sum());
-    let number = |block: &Block| block.group.map(|group| job.tags.number(group));
+    let number = |block: &Block| block.group.map(|group| input.group_numbers.number(group));
     let name = |block: &Block| content.groups[block.group? as usize].name();
     let names: Vec<&str> = blocks.iter().map(|block| name(block).unwrap_or("")).collect();
     let told = ["num_el_blk", "eb_status", "eb_prop1", "eb_names"];
@@ -217,10 +219,10 @@ fn elements(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
     }
 }
 
-fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
-    let content = job.content;
+fn sets(out: &mut NetCdfWriter, input: &WriterInput<'_>, side_sets: &[SideSet], width: usize) {
+    let content = input.content;
     if !side_sets.is_empty() {
-        let own = numbers(side_sets.iter().map(|set| Some(job.tags.number(set.group))));
+        let own = numbers(side_sets.iter().map(|set| Some(input.group_numbers.number(set.group))));
         let name = |set: &SideSet| content.groups[set.group as usize].name().unwrap_or("");
         let told = ["num_side_sets", "ss_status", "ss_prop1", "ss_names"];
         let names: Vec<&str> = side_sets.iter().map(name).collect();
@@ -237,8 +239,8 @@ fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
     let groups = &content.vertex_groups;
     if !groups.is_empty() {
         let own = numbers(groups.iter().map(|(group, _)| match group.label {
-            Label::Tag(tag) => Some(tag),
-            Label::Name(_) => None,
+            GroupLabel::Tag(tag) => Some(tag),
+            GroupLabel::Name(_) => None,
         }));
         let names: Vec<&str> = groups.iter().map(|(group, _)| group.name().unwrap_or("")).collect();
         let told = ["num_node_sets", "ns_status", "ns_prop1", "ns_names"];
@@ -252,8 +254,8 @@ fn sets(out: &mut NetCdf, job: &Job<'_>, side_sets: &[SideSet], width: usize) {
     }
 }
 
-fn data(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
-    let of_points: Vec<_> = job.point_data().collect();
+fn data(out: &mut NetCdfWriter, input: &WriterInput<'_>, blocks: &[Block], width: usize) {
+    let of_points: Vec<_> = input.point_data().collect();
     if !of_points.is_empty() {
         out.dimension("num_nod_var", of_points.len());
         let names = Values::names(of_points.iter().map(|data| data.name.as_str()), width);
@@ -264,7 +266,7 @@ fn data(out: &mut NetCdf, job: &Job<'_>, blocks: &[Block], width: usize) {
             out.variable(name, &[RECORDS, "num_nodes"], Vec::new(), values);
         }
     }
-    let of_cells: Vec<_> = job.cell_data().collect();
+    let of_cells: Vec<_> = input.cell_data().collect();
     if !of_cells.is_empty() {
         out.dimension("num_elem_var", of_cells.len());
         let names = Values::names(of_cells.iter().map(|data| data.name.as_str()), width);

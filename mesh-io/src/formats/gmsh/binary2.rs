@@ -5,37 +5,37 @@ use super::kind::kind_of;
 use super::lists::{block_fits, row};
 use super::text2::columns;
 use super::words::{Progress, Words};
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::heights::Heights;
-use crate::visit::items::{Element, Kind};
-use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, Element};
+use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 /// Reads `$Nodes` or `$ParametricNodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    order: Order,
+    order: ByteOrder,
     parametric: bool,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    z_values: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     const TAG: usize = 4;
     const NODE: usize = TAG + 24;
     row(cursor, 0, 1, "counts")?;
     let count = cursor.vertex_count()?;
-    sink.expect_nodes(cursor.capacity(count, NODE));
+    visitor.expect_nodes(cursor.capacity(count, NODE));
     let mut taken = 0;
-    if let (false, Some((bytes, start))) = (parametric, cursor.ahead(count, NODE)) {
-        let field = |at: usize, width| Field::new(bytes.get(at..), NODE, width, order);
+    if let (false, Some((bytes, start))) = (parametric, cursor.peek(count, NODE)) {
+        let field = |at: usize, width| NumberField::new(bytes.get(at..), NODE, width, order);
         let [x, y, z] = [0, 8, 16].map(|axis| field(TAG + axis, 8));
-        let (tags, x_at) = (Tags::Listed(field(0, 4)), start + TAG);
+        let (tags, x_at) = (NodeIds::Field(field(0, 4)), start + TAG);
         let count = count as usize;
         if z.all_real(count, f64::is_finite) {
-            taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
-            heights.see_all(z, taken, start + TAG + 16);
+            taken = visitor.node_records(&NodeRecords { count, x, y, x_offset: x_at, ids: tags });
+            z_values.push_records(z, taken, start + TAG + 16);
             cursor.take(taken * NODE);
         }
     }
@@ -44,8 +44,8 @@ pub(super) fn nodes(
         let words = &mut Words::take(cursor, order, NODE, progress)?;
         let tag = words.natural(cursor, "a node tag")?;
         let [x, y, z] = words.point(cursor, tag)?;
-        sink.node(cursor, tag, 2, cursor.taken() + TAG, [x, y]);
-        heights.see((cursor.taken() + TAG + 16, z));
+        visitor.node(cursor, tag, 2, cursor.last_taken() + TAG, [x, y]);
+        z_values.push((cursor.last_taken() + TAG + 16, z));
         if parametric {
             // The dimension of the node's entity, the entity's tag, and one parameter for each dimension.
             let entity = &mut Words::take(cursor, order, 8, progress)?;
@@ -63,14 +63,14 @@ pub(super) fn nodes(
 /// Reads `$Elements` after its first line. Returns the number of elements.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
-    order: Order,
-    sink: &mut dyn Sink,
+    order: ByteOrder,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     const HEADER: usize = 12;
     row(cursor, 0, 1, "counts")?;
     let count = cursor.integer("the number of elements")?;
-    sink.expect_elements(cursor.capacity(count, 16));
-    sink.columns(columns());
+    visitor.expect_elements(cursor.capacity(count, 16));
+    visitor.region_attributes(columns());
     let mut done = 0;
     while done < count {
         let progress = Progress::new(done, count, "elements");
@@ -82,19 +82,19 @@ pub(super) fn elements(
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;
         let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
         let mut taken = 0;
-        if let (Kind::Triangle, Some((block, _))) = (kind, cursor.ahead(size, bytes)) {
-            let field = |at: usize| Field::new(block.get(4 * at..), bytes, 4, order);
+        if let (CellKind::Triangle, Some((block, _))) = (kind, cursor.peek(size, bytes)) {
+            let field = |at: usize| NumberField::new(block.get(4 * at..), bytes, 4, order);
             let region = |column: usize| match column < groups {
                 true => Region::Field(field(1 + column)),
                 false => Region::Same(0),
             };
-            taken = sink.triangle_records(&TriangleRecords {
+            taken = visitor.triangle_records(&TriangleRecords {
                 count: size as usize,
-                corners: field(1 + groups),
-                first: 0,
-                below: u64::MAX,
+                nodes: field(1 + groups),
+                min_node: 0,
+                node_end: u64::MAX,
                 regions: [region(0), region(1)],
-                expected: &[(field(0), Expected::Natural)],
+                required_fields: &[(field(0), FieldRule::Natural)],
             });
             cursor.take(taken * bytes);
         }
@@ -110,7 +110,7 @@ pub(super) fn elements(
             for node in &mut nodes[..kind.nodes()] {
                 *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
             }
-            sink.element(cursor, &Element { tag, kind, region, nodes })?;
+            visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
         }
         done += size;
     }

@@ -5,16 +5,16 @@ use super::kind::kind_of;
 use super::lists::{all_in_blocks, block_fits, has_parameters};
 use super::model::Model;
 use super::words::{Progress, Words};
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
-use crate::edit::numbers::Places;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
+use crate::edit::numbers::Offsets;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::heights::Heights;
-use crate::visit::items::{Element, Kind, PointNumbers};
-use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Stored;
+use crate::visit::items::{CellKind, Element, PointNumbers};
+use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
+use crate::visit::storage::ArrayLocation;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 /// The size of a block's header in bytes: three `int`, and a `size_t` (an `unsigned long` in 4.0).
 pub(super) const BLOCK_HEADER: usize = 20;
@@ -22,13 +22,13 @@ pub(super) const BLOCK_HEADER: usize = 20;
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    order: Order,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    order: ByteOrder,
+    z_values: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
-    let [blocks, count] = counts(cursor, Version::V4, order)?;
+    let [blocks, count] = counts(cursor, Version::V41, order)?;
     cursor.check_vertex_count(count)?;
-    sink.expect_nodes(cursor.capacity(count, 32));
+    visitor.expect_nodes(cursor.capacity(count, 32));
     let mut done = 0;
     for block in 0..blocks {
         let progress = Progress::new(block, blocks, "node blocks");
@@ -36,7 +36,7 @@ pub(super) fn nodes(
         let dimension = words.natural(cursor, "the dimension of a node block")?;
         let entity = i64::from(words.int());
         let parametric = words.int() != 0;
-        let wanted = parametric && dimension == 2 && has_parameters(sink, entity);
+        let wanted = parametric && dimension == 2 && has_parameters(visitor, entity);
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
         let progress = Progress::new(done, count, "nodes");
@@ -45,13 +45,15 @@ pub(super) fn nodes(
         let (mut own, mut places, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         let record = 8 * (3 + parameters);
         let mut taken = 0;
-        if let (2.., false, Some((bytes, x_at))) = (dimension, wanted, cursor.ahead(size, record)) {
-            let [x, y, z] = [0, 8, 16].map(|at| Field::new(bytes.get(at..), record, 8, order));
+        if let (2.., false, Some((bytes, x_at))) = (dimension, wanted, cursor.peek(size, record)) {
+            let [x, y, z] =
+                [0, 8, 16].map(|at| NumberField::new(bytes.get(at..), record, 8, order));
             let count = size as usize;
             if z.all_real(count, f64::is_finite) {
-                let tags = Tags::Listed(Field::new(Some(tags.left()), 8, 8, order));
-                taken = sink.node_records(&NodeRecords { count, x, y, x_at, tags });
-                heights.see_all(z, taken, x_at + 16);
+                let tags = NodeIds::Field(NumberField::new(Some(tags.left()), 8, 8, order));
+                taken =
+                    visitor.node_records(&NodeRecords { count, x, y, x_offset: x_at, ids: tags });
+                z_values.push_records(z, taken, x_at + 16);
             }
             tags.skip(8 * taken);
             cursor.take(taken * record);
@@ -61,17 +63,17 @@ pub(super) fn nodes(
             let words = &mut Words::take(cursor, order, record, progress)?;
             let tag = tags.size();
             let [x, y, z] = words.point(cursor, tag)?;
-            sink.node(cursor, tag, dimension, cursor.taken(), [x, y]);
-            heights.see((cursor.taken() + 16, z));
+            visitor.node(cursor, tag, dimension, cursor.last_taken(), [x, y]);
+            z_values.push((cursor.last_taken() + 16, z));
             if wanted {
                 own.push(tag);
-                places.extend([24, 32].map(|after| cursor.taken() + after));
+                places.extend([24, 32].map(|after| cursor.last_taken() + after));
                 numbers.extend([words.double(), words.double()]);
             }
         }
         if wanted {
-            let stored = Stored::in_place(Places::List(places), form(Some(order)));
-            sink.parameter_numbers(PointNumbers { numbers, nodes: Some(own), stored });
+            let stored = ArrayLocation::in_place(Offsets::List(places), form(Some(order)));
+            visitor.parameter_numbers(PointNumbers { numbers, nodes: Some(own), location: stored });
         }
         done += size;
     }
@@ -83,13 +85,13 @@ pub(super) fn nodes(
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     version: Version,
-    order: Order,
+    order: ByteOrder,
     model: &Model,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, version, order)?;
     let tag_bytes = if version == Version::V40 { 4 } else { 8 };
-    sink.expect_elements(cursor.capacity(count, 4 * tag_bytes));
+    visitor.expect_elements(cursor.capacity(count, 4 * tag_bytes));
     let mut done = 0;
     for block in 0..blocks {
         let progress = Progress::new(block, blocks, "element blocks");
@@ -100,21 +102,21 @@ pub(super) fn elements(
         let region = [i64::from(entity), 0];
         let kind = words.natural(cursor, "the type of an element block")?;
         let kind = kind_of(cursor, kind)?;
-        sink.within(&model.groups_of(kind, region[0]));
+        visitor.group_scopes(&model.groups_of(kind, region[0]));
         let size = words.size();
         block_fits(cursor, size, count - done, "elements")?;
         let row = tag_bytes * (1 + kind.nodes());
         let mut taken = 0;
-        if let (Kind::Triangle, Some((bytes, _))) = (kind, cursor.ahead(size, row)) {
-            let field = |at: usize| Field::new(bytes.get(at..), row, tag_bytes, order);
-            let natural = [(field(0), Expected::Natural)];
-            taken = sink.triangle_records(&TriangleRecords {
+        if let (CellKind::Triangle, Some((bytes, _))) = (kind, cursor.peek(size, row)) {
+            let field = |at: usize| NumberField::new(bytes.get(at..), row, tag_bytes, order);
+            let natural = [(field(0), FieldRule::Natural)];
+            taken = visitor.triangle_records(&TriangleRecords {
                 count: size as usize,
-                corners: field(tag_bytes),
-                first: 0,
-                below: u64::MAX,
+                nodes: field(tag_bytes),
+                min_node: 0,
+                node_end: u64::MAX,
                 regions: region.map(Region::Same),
-                expected: if version == Version::V40 { &natural } else { &[] },
+                required_fields: if version == Version::V40 { &natural } else { &[] },
             });
             cursor.take(taken * row);
         }
@@ -133,7 +135,7 @@ pub(super) fn elements(
                 nodes[..kind.nodes()].fill_with(|| words.size());
                 tag
             };
-            sink.element(cursor, &Element { tag, kind, region, nodes })?;
+            visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
         }
         done += size;
     }
@@ -145,7 +147,7 @@ pub(super) fn elements(
 pub(super) fn counts(
     cursor: &mut Cursor<'_>,
     version: Version,
-    order: Order,
+    order: ByteOrder,
 ) -> Result<[u64; 2], ReadError> {
     // In 4.1 the least and the greatest tag follow.
     let bytes = if version == Version::V40 { 16 } else { 32 };

@@ -5,11 +5,11 @@ use super::binary4::{BLOCK_HEADER, counts};
 use super::encoding::Version;
 use super::lists::{all_in_blocks, block_fits, note_parameters};
 use super::words::{Progress, Words};
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::heights::Heights;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 /// The size of a tag in bytes.
 const TAG: usize = 4;
@@ -17,13 +17,13 @@ const TAG: usize = 4;
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    order: Order,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    order: ByteOrder,
+    z_values: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let [blocks, count] = counts(cursor, Version::V40, order)?;
     cursor.check_vertex_count(count)?;
-    sink.expect_nodes(cursor.capacity(count, TAG + 24));
+    visitor.expect_nodes(cursor.capacity(count, TAG + 24));
     let mut done = 0;
     for block in 0..blocks {
         let progress = Progress::new(block, blocks, "node blocks");
@@ -32,7 +32,7 @@ pub(super) fn nodes(
         let dimension = words.natural(cursor, "the dimension of a node block")?;
         let parametric = words.int() != 0;
         if parametric && dimension >= 2 {
-            note_parameters(sink);
+            note_parameters(visitor);
         }
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
@@ -43,9 +43,9 @@ pub(super) fn nodes(
             let words = &mut Words::take(cursor, order, TAG + 8 * (3 + parameters), progress)?;
             let tag = words.natural(cursor, "a node tag")?;
             let [x, y, z] = words.point(cursor, tag)?;
-            let x_at = cursor.taken() + TAG;
-            sink.node(cursor, tag, dimension, x_at, [x, y]);
-            heights.see((x_at + 16, z));
+            let x_at = cursor.last_taken() + TAG;
+            visitor.node(cursor, tag, dimension, x_at, [x, y]);
+            z_values.push((x_at + 16, z));
         }
         done += size;
     }

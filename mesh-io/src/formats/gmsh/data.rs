@@ -1,37 +1,37 @@
 //! Data of nodes and elements: `$NodeData` and `$ElementData`.
 
 use super::encoding::form;
-use crate::binary::order::Order;
-use crate::edit::numbers::Places;
+use crate::binary::byte_order::ByteOrder;
+use crate::edit::numbers::Offsets;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::unquoted;
-use crate::visit::heights::TextNumbers;
 use crate::visit::items::PointNumbers;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Stored;
+use crate::visit::storage::ArrayLocation;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::TextNumbers;
 
-/// Data of nodes are skipped if fewer than one in this many nodes has them.
-const FEW: u64 = 16;
+/// Data of nodes are skipped if fewer than one in this number of nodes has them.
+const MIN_NODE_SHARE: u64 = 16;
 
-/// Announces the data of a section after its first line, and reads them if the sink wants them. The cursor does not
+/// Announces the data of a section after its first line, and reads them if the visitor wants them. The cursor does not
 /// move. `nodes` is the number of nodes, for data of nodes. Damaged data are skipped, as the mesh does not depend on
 /// them. So are data of very few nodes, as a number for each node would take many times the memory of the file.
 pub(super) fn read(
     cursor: &Cursor<'_>,
     nodes: Option<u64>,
-    order: Option<Order>,
-    sink: &mut dyn Sink,
+    order: Option<ByteOrder>,
+    visitor: &mut dyn MeshVisitor,
 ) {
     let cursor = &mut cursor.clone();
     let Some((name, components, count)) = head(cursor) else { return };
-    if nodes.is_some_and(|nodes| count.saturating_mul(FEW) < nodes) {
-        sink.leaves_out("data of few nodes");
+    if nodes.is_some_and(|nodes| count.saturating_mul(MIN_NODE_SHARE) < nodes) {
+        visitor.unsupported("data of few nodes");
         return;
     }
     let is_wanted = match nodes {
-        Some(_) => sink.point_array(name, components, true),
-        None => sink.asks_for_data() && sink.cell_array(name, components, true),
+        Some(_) => visitor.point_array(name, components, true),
+        None => visitor.asks_for_data() && visitor.cell_array(name, components, true),
     };
     if is_wanted
         && let Some(numbers) = match order {
@@ -40,8 +40,8 @@ pub(super) fn read(
         }
     {
         match nodes {
-            Some(_) => sink.point_numbers(numbers),
-            None => sink.cell_numbers(numbers.numbers, numbers.nodes),
+            Some(_) => visitor.point_numbers(numbers),
+            None => visitor.cell_numbers(numbers.numbers, numbers.nodes),
         }
     }
 }
@@ -93,7 +93,7 @@ fn text(cursor: &mut Cursor<'_>, components: u64, count: u64) -> Option<PointNum
 
 fn binary(
     cursor: &mut Cursor<'_>,
-    order: Order,
+    order: ByteOrder,
     components: u64,
     count: u64,
 ) -> Option<PointNumbers> {
@@ -101,7 +101,7 @@ fn binary(
     let each = usize::try_from(components).ok()?;
     let row = each.checked_mul(8)?.checked_add(TAG)?;
     let bytes = cursor.take(row.checked_mul(usize::try_from(count).ok()?)?)?;
-    let start = cursor.taken();
+    let start = cursor.last_taken();
     let (mut nodes, mut numbers, mut places) = (Vec::new(), Vec::new(), Vec::new());
     for (index, row_bytes) in bytes.chunks_exact(row).enumerate() {
         nodes.push(order.whole(&row_bytes[..TAG]));
@@ -110,6 +110,6 @@ fn binary(
             places.push(start + index * row + TAG + 8 * component);
         }
     }
-    let stored = Stored::in_place(Places::List(places), form(Some(order)));
-    Some(PointNumbers { numbers, nodes: Some(nodes), stored })
+    let stored = ArrayLocation::in_place(Offsets::List(places), form(Some(order)));
+    Some(PointNumbers { numbers, nodes: Some(nodes), location: stored })
 }

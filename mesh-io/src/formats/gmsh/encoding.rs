@@ -1,7 +1,7 @@
 //! The version of a file and how its numbers are stored.
 
-use crate::binary::order::Order;
-use crate::edit::numbers::Form;
+use crate::binary::byte_order::ByteOrder;
+use crate::edit::numbers::NumberEncoding;
 use crate::precision::Precision;
 
 /// The version of the format.
@@ -9,21 +9,21 @@ use crate::precision::Precision;
 pub(super) enum Version {
     V2,
     V40,
-    V4,
+    V41,
 }
 
-/// The version and byte order that `$MeshFormat` gives.
+/// Version of the format, and byte order if the file is binary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Encoding {
+pub(super) struct FileEncoding {
     pub(super) version: Version,
     /// The byte order of binary numbers; `None` for text.
-    pub(super) order: Option<Order>,
+    pub(super) order: Option<ByteOrder>,
 }
 
 /// Returns how a number is stored in the file.
-pub(super) fn form(order: Option<Order>) -> Form {
+pub(super) fn form(order: Option<ByteOrder>) -> NumberEncoding {
     match order {
-        None => Form::Text(Precision::Double),
-        Some(order) => Form::Binary(order, Precision::Double),
+        None => NumberEncoding::Text(Precision::Double),
+        Some(order) => NumberEncoding::Binary(order, Precision::Double),
     }
 }

@@ -2,15 +2,15 @@
 
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 
 /// Returns the kind of an element by its number in gmsh, or an error on the current line.
-pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<Kind, ReadError> {
+pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<CellKind, ReadError> {
     match number {
-        15 => Ok(Kind::Point),
-        1 => Ok(Kind::Line),
-        2 => Ok(Kind::Triangle),
-        3 => Ok(Kind::Quadrilateral),
+        15 => Ok(CellKind::Point),
+        1 => Ok(CellKind::Line),
+        2 => Ok(CellKind::Triangle),
+        3 => Ok(CellKind::Quadrilateral),
         _ => Err(refusal(cursor, number)),
     }
 }
@@ -37,7 +37,7 @@ fn refusal(cursor: &Cursor<'_>, number: u64) -> ReadError {
 #[inline]
 pub(super) fn node_tags(
     cursor: &mut Cursor<'_>,
-    kind: Kind,
+    kind: CellKind,
     tag: u64,
 ) -> Result<[u64; 4], ReadError> {
     let mut tags = [0; 4];

@@ -4,10 +4,10 @@ use super::words::Progress;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::text::layout::of_rows_or_words;
+use crate::text::row_layout::of_rows_or_words;
 use crate::text::syntax::Syntax;
 use crate::visit::rows::each_item;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// A remark for the user on parameters that cannot be updated.
 const PARAMETRIC: &str =
@@ -38,16 +38,16 @@ pub(super) fn by_rows<'a, T>(
     Ok(list)
 }
 
-/// Tells the sink that nodes have parameters, which stay as they are.
-pub(super) fn note_parameters(sink: &mut dyn Sink) {
-    sink.remark(Remark::Text(PARAMETRIC.into()));
-    sink.leaves_out("parameters of nodes on surfaces");
+/// Tells the visitor that nodes have parameters, which stay as they are.
+pub(super) fn note_parameters(visitor: &mut dyn MeshVisitor) {
+    visitor.remark(Remark::Text(PARAMETRIC.into()));
+    visitor.unsupported("parameters of nodes on surfaces");
 }
 
-/// Announces that nodes have parameters on a surface. Returns whether the sink wants them.
-pub(super) fn has_parameters(sink: &mut dyn Sink, surface: i64) -> bool {
-    sink.leaves_out("parameters of nodes on surfaces");
-    sink.parameters(surface)
+/// Announces that nodes have parameters on a surface. Returns whether the visitor wants them.
+pub(super) fn has_parameters(visitor: &mut dyn MeshVisitor, surface: i64) -> bool {
+    visitor.unsupported("parameters of nodes on surfaces");
+    visitor.parameters(surface)
 }
 
 /// Moves to the next of `count` items of a section, after `done` were read. Returns an error if the section ends before
@@ -72,13 +72,13 @@ pub(super) fn each<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
     progress: Progress<'_>,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
     read: impl Fn(&mut Cursor<'a>, Option<u64>) -> Result<T, ReadError> + Sync,
-    take: impl FnMut(&Cursor<'a>, &mut dyn Sink, u64, T) -> Result<(), ReadError>,
+    take: impl FnMut(&Cursor<'a>, &mut dyn MeshVisitor, u64, T) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let Progress { done: before, count: all, what } = progress;
     let next = |cursor: &mut Cursor<'a>, done: u64| row(cursor, before + done, all, what);
-    each_item(cursor, count, sink, next, read, take)
+    each_item(cursor, count, visitor, next, read, take)
 }
 
 /// Reads the counts at the start of a section, and chooses how the rest is read. `rows` returns how many rows it should

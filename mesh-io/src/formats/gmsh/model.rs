@@ -1,21 +1,21 @@
 //! The names of physical groups, and the entities of the model with their physical groups.
 
-use super::encoding::{Encoding, Version};
+use super::encoding::{FileEncoding, Version};
 use super::lists::row;
 use super::words::{Progress, Words};
-use crate::binary::order::Order;
-use crate::content::label::Label;
+use crate::binary::byte_order::ByteOrder;
+use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::in_quotes;
-use crate::visit::items::{Kind, Within};
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, GroupScope};
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
 /// Reads `$PhysicalNames` after its first line and hands on the names. Returns how many there are.
 pub(super) fn physical_names(
     cursor: &mut Cursor<'_>,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     row(cursor, 0, 1, "counts")?;
     let count = cursor.integer("the number of physical names")?;
@@ -34,7 +34,7 @@ pub(super) fn physical_names(
         let name = in_quotes(cursor.rest());
         let name = name.ok_or_else(|| cursor.error("a name without quotes", CORRECT))?;
         if dimension.is_none_or(|dimension| dimension <= 2) && !name.is_empty() {
-            sink.name("physical", dimension, tag, name);
+            visitor.group_name("physical", dimension, tag, name);
         }
     }
     Ok(count)
@@ -55,9 +55,13 @@ struct Entity {
 
 impl Model {
     /// Returns the groups of an entity's elements. Physical groups are known only after `$Entities` was read.
-    pub(super) fn groups_of(&self, kind: Kind, entity: i64) -> Vec<Within<'static>> {
+    pub(super) fn groups_of(&self, kind: CellKind, entity: i64) -> Vec<GroupScope<'static>> {
         let known = self.entities.get(&(kind.dimension(), entity));
-        let within = |what, tag: i64| Within { what, label: Label::Tag(tag), dimension: None };
+        let within = |what, tag: i64| GroupScope {
+            kind: what,
+            label: GroupLabel::Tag(tag),
+            dimension: None,
+        };
         let physical = known.into_iter().flat_map(|entity| &entity.physical);
         let mut groups: Vec<_> = physical.map(|&tag| within("physical", tag)).collect();
         let entity = known.map_or(entity, |entity| entity.tag);
@@ -71,12 +75,12 @@ impl Model {
     pub(super) fn read(
         &mut self,
         cursor: &mut Cursor<'_>,
-        Encoding { version, order }: Encoding,
+        FileEncoding { version, order }: FileEncoding,
         partitioned: bool,
     ) -> Result<(), ReadError> {
         // A point has three coordinates in 4.1. All other entities, and points in 4.0, have a bounding box.
         let numbers = |dimension| match (version, dimension) {
-            (Version::V4, 0) => 3,
+            (Version::V41, 0) => 3,
             _ => 6,
         };
         let counts = match order {
@@ -161,7 +165,7 @@ fn whole_of(tag: i64, dimension: u8, parent: i64, parent_dimension: i64) -> i64 
 
 fn binary_counts(
     cursor: &mut Cursor<'_>,
-    order: Order,
+    order: ByteOrder,
     partitioned: bool,
 ) -> Result<[u64; 4], ReadError> {
     let progress = Progress::new(0, 1, "counts of entities");
@@ -177,7 +181,7 @@ fn binary_counts(
 
 fn binary_entity(
     cursor: &mut Cursor<'_>,
-    order: Order,
+    order: ByteOrder,
     partitioned: bool,
     dimension: u8,
     numbers: usize,

@@ -1,12 +1,12 @@
 //! The nodes that belong together in pairs, from the section `$Periodic`.
 
-use super::encoding::{Encoding, Version};
-use crate::binary::order::Order;
+use super::encoding::{FileEncoding, Version};
+use crate::binary::byte_order::ByteOrder;
 use crate::content::constraints::Affine;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
-use crate::visit::items::Pairs;
+use crate::visit::items::PeriodicNodes;
 
 /// The numbers of a motion of space: a matrix of four by four, row by row.
 const AFFINE: usize = 16;
@@ -15,8 +15,8 @@ const AFFINE: usize = 16;
 /// mesh does not depend on it.
 pub(super) fn read(
     cursor: &Cursor<'_>,
-    Encoding { version, order }: Encoding,
-) -> Option<Vec<Pairs>> {
+    FileEncoding { version, order }: FileEncoding,
+) -> Option<Vec<PeriodicNodes>> {
     let cursor = &mut cursor.clone();
     let found = match (version, order) {
         // In version 2.2 this section is text in binary files, too.
@@ -34,11 +34,11 @@ fn in_plane(numbers: &[f64]) -> Option<Affine> {
 }
 
 /// Makes pairs of nodes with their motion; `None` if there is no pair.
-fn pairs(motion: Option<Affine>, nodes: Vec<[u64; 2]>) -> Option<Pairs> {
-    (!nodes.is_empty()).then_some(Pairs { motion, nodes })
+fn pairs(motion: Option<Affine>, nodes: Vec<[u64; 2]>) -> Option<PeriodicNodes> {
+    (!nodes.is_empty()).then_some(PeriodicNodes { motion, nodes })
 }
 
-fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<Pairs>> {
+fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>> {
     fn number(cursor: &mut Cursor<'_>) -> Option<u64> {
         integer(cursor.token()?)
     }
@@ -52,7 +52,7 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<Pairs>> {
         let first = cursor.token()?;
         // From 4.1 on, a row has the count of the motion's numbers and the numbers. Before, the row starts with
         // `Affine`, or there is none.
-        let has_row = version == Version::V4 || first == b"Affine";
+        let has_row = version == Version::V41 || first == b"Affine";
         let mut numbers = Vec::new();
         if has_row {
             while let Some(token) = cursor.token() {
@@ -77,7 +77,11 @@ fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Option<&'a [u8]
     cursor.take(usize::try_from(count).ok()?.checked_mul(size)?)
 }
 
-fn binary(cursor: &mut Cursor<'_>, version: Version, order: Order) -> Option<Vec<Pairs>> {
+fn binary(
+    cursor: &mut Cursor<'_>,
+    version: Version,
+    order: ByteOrder,
+) -> Option<Vec<PeriodicNodes>> {
     let is_40 = version == Version::V40;
     let size = |cursor: &mut Cursor<'_>| Some(order.whole(cursor.take(8)?));
     let links = match is_40 {
@@ -112,19 +116,23 @@ mod tests {
     use super::*;
     use crate::disk::source::Source;
 
-    fn read_as(version: Version, order: Option<Order>, bytes: &[u8]) -> Option<Vec<Pairs>> {
+    fn read_as(
+        version: Version,
+        order: Option<ByteOrder>,
+        bytes: &[u8],
+    ) -> Option<Vec<PeriodicNodes>> {
         let source = Source::new("m.msh".as_ref(), bytes.to_vec()).unwrap();
         let mut cursor = Cursor::new(&source);
         assert!(cursor.next_row());
-        read(&cursor, Encoding { version, order })
+        read(&cursor, FileEncoding { version, order })
     }
 
     /// Version 4.0 in binary has narrower numbers than 4.1, and marks a motion by a negative count.
     #[test]
     fn binary_of_version_4_0_is_read_in_both_byte_orders() {
-        for order in [Order::Little, Order::Big] {
+        for order in [ByteOrder::Little, ByteOrder::Big] {
             let turned = |mut bytes: Vec<u8>| {
-                if order == Order::Big {
+                if order == ByteOrder::Big {
                     bytes.reverse();
                 }
                 bytes
@@ -145,8 +153,8 @@ mod tests {
             file.extend(b"\n$EndPeriodic\n");
             let found = read_as(Version::V40, Some(order), &file).unwrap();
             let motion = Some([[0.0, 1.0, 3.0], [4.0, 5.0, 7.0]]);
-            assert_eq!(found[0], Pairs { motion, nodes: vec![[1, 9], [10, 18]] });
-            assert_eq!(found[1], Pairs { motion: None, nodes: vec![[8, 7]] });
+            assert_eq!(found[0], PeriodicNodes { motion, nodes: vec![[1, 9], [10, 18]] });
+            assert_eq!(found[1], PeriodicNodes { motion: None, nodes: vec![[8, 7]] });
             for length in 10..cut.len() {
                 assert_eq!(read_as(Version::V40, Some(order), &cut[..length]), None);
             }
@@ -156,7 +164,7 @@ mod tests {
     #[test]
     fn text_that_is_not_of_pairs_is_not_read() {
         let whole = "$Periodic\n1\n1 2 4\n2\n9 1\n18 10\n$EndPeriodic\n";
-        let pairs = vec![Pairs { motion: None, nodes: vec![[1, 9], [10, 18]] }];
+        let pairs = vec![PeriodicNodes { motion: None, nodes: vec![[1, 9], [10, 18]] }];
         assert_eq!(read_as(Version::V2, None, whole.as_bytes()), Some(pairs));
         for (part, other) in [
             ("1\n1 2", "x\n1 2"),

@@ -1,48 +1,54 @@
 //! The sections of a file, one after another, and the version that tells how they are read.
 
-use super::encoding::{Encoding, Version, form};
+use super::encoding::{FileEncoding, Version, form};
 use super::lists::{note_parameters, row};
 use super::model::Model;
 use super::{binary2, binary4, binary40, data, model, periodic, text2, text4, text40, words};
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::{Location, ReadError};
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
-use crate::visit::heights::Heights;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 /// The reader of gmsh's `.msh`.
 pub(crate) struct Gmsh;
 
-impl Walk for Gmsh {
+impl FormatReader for Gmsh {
     const VERTICES: &'static str = "$Nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let Encoding { version, order } = walk(source, sink)?;
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let FileEncoding { version, order } = visit_sections(source, visitor)?;
         let format = match (version, order) {
             (Version::V2, None) => Format::Gmsh22,
             (Version::V2, Some(_)) => Format::Gmsh22Binary,
             (Version::V40, None) => Format::Gmsh40,
             (Version::V40, Some(_)) => Format::Gmsh40Binary,
-            (Version::V4, None) => Format::Gmsh41,
-            (Version::V4, Some(_)) => Format::Gmsh41Binary,
+            (Version::V41, None) => Format::Gmsh41,
+            (Version::V41, Some(_)) => Format::Gmsh41Binary,
         };
         let numbers = match order {
-            None => Numbers::TEXT,
-            Some(order) => Numbers::adjacent(order, Precision::Double),
+            None => CoordinateEncoding::TEXT,
+            Some(order) => CoordinateEncoding::adjacent(order, Precision::Double),
         };
-        Ok(Layout::in_place(format, numbers))
+        Ok(CoordinateStorage::in_place(format, numbers))
     }
 }
 
-/// Hands a file's nodes and elements to the sink.
-fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
+/// Hands a file's nodes and elements to the visitor.
+fn visit_sections(
+    source: &Source,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<FileEncoding, ReadError> {
     let cursor = &mut Cursor::new(source);
     let mut encoding = None;
     let (mut nodes, mut elements) = (false, false);
@@ -61,29 +67,33 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
             }
             b"Nodes" | b"ParametricNodes" => {
                 once(cursor, &mut nodes, "Nodes")?;
-                let Encoding { version, order } = known(cursor, encoding)?;
+                let FileEncoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
-                    note_parameters(sink);
+                    note_parameters(visitor);
                 }
-                let mut seen = Heights::new(sink);
-                let heights = &mut seen;
+                let mut seen = ZValues::new(visitor);
+                let z_values = &mut seen;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::nodes(cursor, heights, sink)?,
-                    (Version::V40, None) => text40::nodes(cursor, heights, sink)?,
-                    (Version::V40, Some(order)) => binary40::nodes(cursor, order, heights, sink)?,
-                    (Version::V4, None) => text4::nodes(cursor, heights, sink)?,
-                    (Version::V2, Some(order)) => {
-                        binary2::nodes(cursor, order, parametric, heights, sink)?
+                    (Version::V2, None) => text2::nodes(cursor, z_values, visitor)?,
+                    (Version::V40, None) => text40::nodes(cursor, z_values, visitor)?,
+                    (Version::V40, Some(order)) => {
+                        binary40::nodes(cursor, order, z_values, visitor)?
                     }
-                    (Version::V4, Some(order)) => binary4::nodes(cursor, order, heights, sink)?,
+                    (Version::V41, None) => text4::nodes(cursor, z_values, visitor)?,
+                    (Version::V2, Some(order)) => {
+                        binary2::nodes(cursor, order, parametric, z_values, visitor)?
+                    }
+                    (Version::V41, Some(order)) => {
+                        binary4::nodes(cursor, order, z_values, visitor)?
+                    }
                 };
                 node_count = count;
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, &format!("{count} nodes"))?;
                 cursor.syntax = Syntax::PLAIN;
-                sink.end_nodes(cursor)?;
-                seen.send("z", form(order), sink);
+                visitor.end_nodes(cursor)?;
+                seen.send("z", form(order), visitor);
             }
             b"Elements" => {
                 once(cursor, &mut elements, "Elements")?;
@@ -91,25 +101,25 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                     let problem = "$Elements stands before $Nodes";
                     return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
                 }
-                let Encoding { version, order } = known(cursor, encoding)?;
+                let FileEncoding { version, order } = known(cursor, encoding)?;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::elements(cursor, sink)?,
-                    (Version::V40 | Version::V4, None) => {
-                        text4::elements(cursor, version, &model, sink)?
+                    (Version::V2, None) => text2::elements(cursor, visitor)?,
+                    (Version::V40 | Version::V41, None) => {
+                        text4::elements(cursor, version, &model, visitor)?
                     }
-                    (Version::V2, Some(order)) => binary2::elements(cursor, order, sink)?,
-                    (Version::V40 | Version::V4, Some(order)) => {
-                        binary4::elements(cursor, version, order, &model, sink)?
+                    (Version::V2, Some(order)) => binary2::elements(cursor, order, visitor)?,
+                    (Version::V40 | Version::V41, Some(order)) => {
+                        binary4::elements(cursor, version, order, &model, visitor)?
                     }
                 };
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
                 cursor.syntax = Syntax::PLAIN;
             }
-            b"PhysicalNames" if sink.asks_for_groups() => {
-                let count = model::physical_names(cursor, sink)?;
+            b"PhysicalNames" if visitor.asks_for_groups() => {
+                let count = model::physical_names(cursor, visitor)?;
                 end_of_section(cursor, "PhysicalNames", opened, &format!("{count} names"))?;
             }
-            b"Entities" | b"PartitionedEntities" if sink.asks_for_groups() => {
+            b"Entities" | b"PartitionedEntities" if visitor.asks_for_groups() => {
                 let partitioned = name == b"PartitionedEntities";
                 model.read(cursor, known(cursor, encoding)?, partitioned)?;
                 let name = str::from_utf8(name).unwrap_or_default();
@@ -118,7 +128,7 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
             b"NodeData" | b"ElementData" => {
                 let order = known(cursor, encoding)?.order;
                 let nodes = (name == b"NodeData").then_some(node_count);
-                data::read(cursor, nodes, order, sink);
+                data::read(cursor, nodes, order, visitor);
                 skip_section(cursor, name, opened)?;
             }
             name if name.starts_with(b"End") => {
@@ -126,12 +136,14 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
             name => {
-                if name == b"Periodic" && sink.asks_for_pairs() {
-                    sink.pairs(encoding.and_then(|encoding| periodic::read(cursor, encoding)));
+                if name == b"Periodic" && visitor.asks_for_periodic_pairs() {
+                    visitor.periodic_pairs(
+                        encoding.and_then(|encoding| periodic::read(cursor, encoding)),
+                    );
                 }
                 let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
-                if sink.asks_for_data() && !is_told {
-                    sink.leaves_out(&format!("the section ${}", quoted(name)));
+                if visitor.asks_for_data() && !is_told {
+                    visitor.unsupported(&format!("the section ${}", quoted(name)));
                 }
                 skip_section(cursor, name, opened)?;
             }
@@ -147,13 +159,13 @@ fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Encoding, ReadError> {
     }
 }
 
-fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
+fn mesh_format(cursor: &mut Cursor<'_>) -> Result<FileEncoding, ReadError> {
     row(cursor, 0, 1, "format lines")?;
     let name = cursor.token().unwrap_or_default();
     let version = match name {
         b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
         b"4" | b"4.0" => Version::V40,
-        b"4.1" => Version::V4,
+        b"4.1" => Version::V41,
         _ => {
             let problem = format!("gmsh's format version {} is not read", quoted(name));
             let remedy = "Save as version 4.1 or 2.2 (gmsh old.msh -save -format msh41 -o new.msh)";
@@ -161,9 +173,9 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
         }
     };
     match cursor.integer("the file type")? {
-        0 => Ok(Encoding { version, order: None }),
+        0 => Ok(FileEncoding { version, order: None }),
         1 => match cursor.integer("the size of a number")? {
-            8 => Ok(Encoding { version, order: Some(words::byte_order(cursor)?) }),
+            8 => Ok(FileEncoding { version, order: Some(words::byte_order(cursor)?) }),
             size => {
                 let problem =
                     format!("its numbers have {size} bytes, and only those of 8 are read");
@@ -177,7 +189,7 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<Encoding, ReadError> {
     }
 }
 
-fn known(cursor: &Cursor<'_>, encoding: Option<Encoding>) -> Result<Encoding, ReadError> {
+fn known(cursor: &Cursor<'_>, encoding: Option<FileEncoding>) -> Result<FileEncoding, ReadError> {
     let problem = "no $MeshFormat section stands before this one";
     encoding.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
 }

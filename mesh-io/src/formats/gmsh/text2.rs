@@ -5,28 +5,28 @@ use super::lists::{counts, each};
 use super::words::Progress;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::heights::Heights;
-use crate::visit::items::{Column, Element};
-use crate::visit::sink::Sink;
+use crate::visit::items::{Element, RegionAttribute};
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    z_values: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let count = counts(cursor, Cursor::vertex_count, |count| count)?;
-    sink.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
+    visitor.expect_nodes(cursor.capacity(count, "1 0 0 0\n".len()));
     let progress = Progress::new(0, count, "nodes");
     each(
         cursor,
         count,
         progress,
-        sink,
+        visitor,
         |cursor, _| node(cursor),
-        |cursor, sink, _, (tag, (x_at, at), z)| {
-            sink.node(cursor, tag, 2, x_at, at);
-            heights.see(z);
+        |cursor, visitor, _, (tag, (x_at, at), z)| {
+            visitor.node(cursor, tag, 2, x_at, at);
+            z_values.push(z);
             Ok(())
         },
     )?;
@@ -34,20 +34,23 @@ pub(super) fn nodes(
 }
 
 /// Returns the meaning of the first two tags of an element.
-pub(super) fn columns() -> Vec<Column> {
-    ["physical", "entity"].map(Column::tags_from_one).into()
+pub(super) fn columns() -> Vec<RegionAttribute> {
+    ["physical", "entity"].map(RegionAttribute::tags_from_one).into()
 }
 
 /// Reads `$Elements` after its first line. Returns the number of elements.
-pub(super) fn elements(cursor: &mut Cursor<'_>, sink: &mut dyn Sink) -> Result<u64, ReadError> {
+pub(super) fn elements(
+    cursor: &mut Cursor<'_>,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<u64, ReadError> {
     let read = |cursor: &mut Cursor<'_>| cursor.integer("the number of elements");
     let count = counts(cursor, read, |count| count)?;
-    sink.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
-    sink.columns(columns());
+    visitor.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
+    visitor.region_attributes(columns());
     let progress = Progress::new(0, count, "elements");
     let read = |cursor: &mut Cursor<'_>, _| element(cursor);
-    each(cursor, count, progress, sink, read, |cursor, sink, _, element| {
-        sink.element(cursor, &element)
+    each(cursor, count, progress, visitor, read, |cursor, visitor, _, element| {
+        visitor.element(cursor, &element)
     })?;
     Ok(count)
 }
@@ -59,7 +62,7 @@ type Node = (u64, (usize, [f64; 2]), (usize, f64));
 fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     let tag = cursor.integer("a node tag")?;
     let point = cursor.point(format_args!("node {tag}"))?;
-    Ok((tag, point, cursor.height(format_args!("node {tag}"))?))
+    Ok((tag, point, cursor.z(format_args!("node {tag}"))?))
 }
 
 #[inline]
@@ -79,5 +82,5 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
             return Err(cursor.error(problem, CORRECT));
         }
     }
-    Ok(Element { tag, kind, region, nodes: node_tags(cursor, kind, tag)? })
+    Ok(Element { id: tag, kind, region, nodes: node_tags(cursor, kind, tag)? })
 }

@@ -9,26 +9,26 @@ use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::visit::heights::{Heights, TextNumbers};
 use crate::visit::items::Element;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::{TextNumbers, ZValues};
 use std::fmt::Display;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    z_values: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let read = |cursor: &mut Cursor<'_>| {
         let blocks = cursor.integer("the number of node blocks")?;
         let count = cursor.vertex_count()?;
-        pass_least_and_greatest(cursor);
+        skip_min_and_max(cursor);
         Ok((blocks, count))
     };
     let rows = |(blocks, count): (u64, u64)| blocks.saturating_add(2 * count);
     let (blocks, count) = counts(cursor, read, rows)?;
-    sink.expect_nodes(cursor.capacity(count, "1\n0 0 0\n".len()));
+    visitor.expect_nodes(cursor.capacity(count, "1\n0 0 0\n".len()));
     let mut done = 0;
     let mut tags = Vec::new();
     for block in 0..blocks {
@@ -41,15 +41,22 @@ pub(super) fn nodes(
         };
         let head = head(cursor, Progress::new(block, blocks, "node blocks"), read)?;
         let (dimension, entity, parametric, size) = head;
-        let wanted = parametric && dimension == 2 && has_parameters(sink, entity);
+        let wanted = parametric && dimension == 2 && has_parameters(visitor, entity);
         block_fits(cursor, size, count - done, "nodes")?;
         tags.clear();
         tags.reserve(cursor.capacity(size, "1\n0 0 0\n".len()));
         let read = |cursor: &mut Cursor<'_>, _| cursor.integer("a node tag");
-        each(cursor, size, Progress::new(done, count, "node tags"), sink, read, |_, _, _, tag| {
-            tags.push(tag);
-            Ok(())
-        })?;
+        each(
+            cursor,
+            size,
+            Progress::new(done, count, "node tags"),
+            visitor,
+            read,
+            |_, _, _, tag| {
+                tags.push(tag);
+                Ok(())
+            },
+        )?;
         let before = cursor.clone();
         let tag = |at: Option<u64>| {
             at.and_then(|at| tags.get(usize::try_from(at).ok()?)).copied().unwrap_or(0)
@@ -57,14 +64,21 @@ pub(super) fn nodes(
         let read = |cursor: &mut Cursor<'_>, at| point(cursor, format_args!("node {}", tag(at)));
         by_rows(cursor, parametric, |cursor| {
             let progress = Progress::new(done, count, "nodes");
-            each(cursor, size, progress, sink, read, |cursor, sink, at, ((x_at, point), z)| {
-                sink.node(cursor, tag(Some(at)), dimension, x_at, point);
-                heights.see(z);
-                Ok(())
-            })
+            each(
+                cursor,
+                size,
+                progress,
+                visitor,
+                read,
+                |cursor, visitor, at, ((x_at, point), z)| {
+                    visitor.node(cursor, tag(Some(at)), dimension, x_at, point);
+                    z_values.push(z);
+                    Ok(())
+                },
+            )
         })?;
         if wanted {
-            parameters(before, &tags, sink)?;
+            parameters(before, &tags, visitor)?;
         }
         done += size;
     }
@@ -72,15 +86,19 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Skips the least and the greatest tag of a section, which are not needed.
-fn pass_least_and_greatest(cursor: &mut Cursor<'_>) {
+/// Skips the smallest and the largest tag of a section, which are not needed.
+fn skip_min_and_max(cursor: &mut Cursor<'_>) {
     cursor.token();
     cursor.token();
 }
 
 /// Reads the parameters at the end of the rows of these nodes.
 #[cold]
-fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn parameters(
+    mut cursor: Cursor<'_>,
+    tags: &[u64],
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     let mut numbers = TextNumbers::default();
     cursor.syntax = Syntax::PLAIN;
     for (done, _) in (0..).zip(tags) {
@@ -89,7 +107,7 @@ fn parameters(mut cursor: Cursor<'_>, tags: &[u64], sink: &mut dyn Sink) -> Resu
         numbers.read(&mut cursor)?;
         numbers.read(&mut cursor)?;
     }
-    sink.parameter_numbers(numbers.finish(Precision::Double, Some(tags.to_vec())));
+    visitor.parameter_numbers(numbers.finish(Precision::Double, Some(tags.to_vec())));
     Ok(())
 }
 
@@ -99,24 +117,24 @@ pub(super) fn elements(
     cursor: &mut Cursor<'_>,
     version: Version,
     model: &Model,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let read = |cursor: &mut Cursor<'_>| {
         let blocks = cursor.integer("the number of element blocks")?;
         let count = cursor.integer("the number of elements")?;
-        if version == Version::V4 {
-            pass_least_and_greatest(cursor);
+        if version == Version::V41 {
+            skip_min_and_max(cursor);
         }
         Ok((blocks, count))
     };
     let rows = |(blocks, count): (u64, u64)| blocks.saturating_add(count);
     let (blocks, count) = counts(cursor, read, rows)?;
-    sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
+    visitor.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
     let mut done = 0;
     for block in 0..blocks {
         let read = |cursor: &mut Cursor<'_>| {
             // The entity's dimension is not needed. It stands before the tag in 4.1, and after it in 4.0.
-            if version == Version::V4 {
+            if version == Version::V41 {
                 cursor.token();
             }
             let entity = cursor.signed("the entity of an element block")?;
@@ -129,15 +147,15 @@ pub(super) fn elements(
         };
         let (entity, kind, size) =
             head(cursor, Progress::new(block, blocks, "element blocks"), read)?;
-        sink.within(&model.groups_of(kind, entity));
+        visitor.group_scopes(&model.groups_of(kind, entity));
         block_fits(cursor, size, count - done, "elements")?;
         let read = |cursor: &mut Cursor<'_>, _| {
             let tag = cursor.integer("an element tag")?;
-            Ok(Element { tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
+            Ok(Element { id: tag, kind, region: [entity, 0], nodes: node_tags(cursor, kind, tag)? })
         };
         let progress = Progress::new(done, count, "elements");
-        each(cursor, size, progress, sink, read, |cursor, sink, _, element| {
-            sink.element(cursor, &element)
+        each(cursor, size, progress, visitor, read, |cursor, visitor, _, element| {
+            visitor.element(cursor, &element)
         })?;
         done += size;
     }
@@ -151,5 +169,5 @@ type Point = ((usize, [f64; 2]), (usize, f64));
 /// Reads a node's coordinates.
 #[inline]
 fn point(cursor: &mut Cursor<'_>, owner: impl Display + Copy) -> Result<Point, ReadError> {
-    Ok((cursor.point(owner)?, cursor.height(owner)?))
+    Ok((cursor.point(owner)?, cursor.z(owner)?))
 }

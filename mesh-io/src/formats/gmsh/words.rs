@@ -1,6 +1,6 @@
 //! The numbers of a binary file between its lines of text.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::error::ReadError;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use std::fmt::Display;
@@ -26,7 +26,7 @@ impl<'w> Progress<'w> {
 
 /// Bytes of a binary file that hold numbers, which are read one after the other.
 pub(super) struct Words<'a> {
-    order: Order,
+    order: ByteOrder,
     bytes: &'a [u8],
 }
 
@@ -35,7 +35,7 @@ impl<'a> Words<'a> {
     #[inline]
     pub(super) fn take(
         cursor: &mut Cursor<'a>,
-        order: Order,
+        order: ByteOrder,
         size: usize,
         progress: Progress<'_>,
     ) -> Result<Words<'a>, ReadError> {
@@ -111,10 +111,10 @@ impl<'a> Words<'a> {
 }
 
 /// Reads gmsh's mark of the byte order, the `int` 1.
-pub(super) fn byte_order(cursor: &mut Cursor<'_>) -> Result<Order, ReadError> {
+pub(super) fn byte_order(cursor: &mut Cursor<'_>) -> Result<ByteOrder, ReadError> {
     match cursor.take(4) {
-        Some([1, 0, 0, 0]) => Ok(Order::Little),
-        Some([0, 0, 0, 1]) => Ok(Order::Big),
+        Some([1, 0, 0, 0]) => Ok(ByteOrder::Little),
+        Some([0, 0, 0, 1]) => Ok(ByteOrder::Big),
         Some(_) => {
             let problem = "the byte-order mark is not the number 1 in either byte order";
             Err(cursor.error(problem, DAMAGED))

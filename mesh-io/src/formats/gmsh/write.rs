@@ -1,58 +1,58 @@
 //! Writes gmsh's `.msh`, as text of the versions 2.2 and 4.1.
 
-use crate::export::content::Data;
-use crate::export::job::Job;
+use crate::export::content::DataArray;
 use crate::export::put;
-use crate::visit::items::Kind;
+use crate::export::writer_input::WriterInput;
+use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 /// Returns gmsh's number for a kind of element.
-fn kind_of(kind: Kind) -> u32 {
+fn kind_of(kind: CellKind) -> u32 {
     match kind {
-        Kind::Point => 15,
-        Kind::Line => 1,
-        Kind::Triangle => 2,
-        Kind::Quadrilateral | Kind::Corner => 3,
+        CellKind::Point => 15,
+        CellKind::Line => 1,
+        CellKind::Triangle => 2,
+        CellKind::Quadrilateral | CellKind::Polygon => 3,
     }
 }
 
-pub(crate) fn write_22(job: &Job<'_>) -> String {
+pub(crate) fn write_22(input: &WriterInput<'_>) -> String {
     let mut out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_owned();
-    names(job, &mut out);
-    let points = job.content.points.len();
+    names(input, &mut out);
+    let points = input.content.points.len();
     put!(out, "$Nodes\n{points}\n");
     for vertex in 0..points {
-        put!(out, "{} {}\n", job.number(vertex), job.space(vertex));
+        put!(out, "{} {}\n", input.vertex_id(vertex), input.xyz(vertex));
     }
-    put!(out, "$EndNodes\n$Elements\n{}\n", job.cells().count());
-    let entities = Entities::new(job);
-    for (cell, element) in job.cells().zip(1..) {
-        let kind = job.content.cells.kinds[cell];
-        let (physical, entity) = (physical(job, cell), entities.of(job, cell));
-        put!(out, "{element} {} 2 {physical} {entity} {}\n", kind_of(kind), job.numbers(cell));
+    put!(out, "$EndNodes\n$Elements\n{}\n", input.cells().count());
+    let entities = Entities::new(input);
+    for (cell, element) in input.cells().zip(1..) {
+        let kind = input.content.cells.kinds[cell];
+        let (physical, entity) = (physical(input, cell), entities.of(input, cell));
+        put!(out, "{element} {} 2 {physical} {entity} {}\n", kind_of(kind), input.vertex_ids(cell));
     }
     out.push_str("$EndElements\n");
-    data(job, &mut out);
+    data(input, &mut out);
     out
 }
 
-pub(crate) fn write_41(job: &Job<'_>) -> String {
+pub(crate) fn write_41(input: &WriterInput<'_>) -> String {
     let mut out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".to_owned();
-    names(job, &mut out);
-    let entities = Entities::new(job);
-    entities.write(job, &mut out);
-    let content = job.content;
+    names(input, &mut out);
+    let entities = Entities::new(input);
+    entities.write(input, &mut out);
+    let content = input.content;
     let points = content.points.len();
-    let numbers = || (0..points).map(|vertex| job.number(vertex));
+    let numbers = || (0..points).map(|vertex| input.vertex_id(vertex));
     let (least, most) = (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0));
     // All nodes are written as nodes of a surface. The line elements tell which nodes lie on curves.
     let surface = entities.first_surface();
     put!(out, "$Nodes\n1 {points} {least} {most}\n2 {surface} 0 {points}\n");
     numbers().for_each(|number| put!(out, "{number}\n"));
-    (0..points).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
-    let cells: Vec<usize> = job.cells().collect();
-    let block = |cell: usize| (content.cells.kinds[cell], entities.of(job, cell));
+    (0..points).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
+    let cells: Vec<usize> = input.cells().collect();
+    let block = |cell: usize| (content.cells.kinds[cell], entities.of(input, cell));
     let blocks: Vec<&[usize]> = cells.chunk_by(|&a, &b| block(a) == block(b)).collect();
     put!(out, "$EndNodes\n$Elements\n{} {} 1 {}\n", blocks.len(), cells.len(), cells.len());
     let mut element = 0;
@@ -61,35 +61,35 @@ pub(crate) fn write_41(job: &Job<'_>) -> String {
         put!(out, "{} {entity} {} {}\n", kind.dimension(), kind_of(kind), cells.len());
         for &cell in cells {
             element += 1;
-            put!(out, "{element} {}\n", job.numbers(cell));
+            put!(out, "{element} {}\n", input.vertex_ids(cell));
         }
     }
     out.push_str("$EndElements\n");
-    data(job, &mut out);
+    data(input, &mut out);
     out
 }
 
 /// Returns the physical group of a cell, or 0.
-fn physical(job: &Job<'_>, cell: usize) -> i64 {
-    match job.group(cell) {
-        Some(group) if group.what != "entity" => job.tag(cell),
+fn physical(input: &WriterInput<'_>, cell: usize) -> i64 {
+    match input.group(cell) {
+        Some(group) if group.kind != "entity" => input.group_number(cell),
         _ => 0,
     }
 }
 
-fn names(job: &Job<'_>, out: &mut String) {
+fn names(input: &WriterInput<'_>, out: &mut String) {
     let mut named: HashMap<u32, i64> = HashMap::new();
-    for cell in job.cells() {
-        if let Some(group) = job.tags.group(job.content, cell)
-            && job.content.groups[group as usize].what != "entity"
+    for cell in input.cells() {
+        if let Some(group) = input.group_numbers.group(input.content, cell)
+            && input.content.groups[group as usize].kind != "entity"
         {
-            named.insert(group, job.tags.number(group));
+            named.insert(group, input.group_numbers.number(group));
         }
     }
     let mut rows: Vec<(u8, i64, &str)> = named
         .into_iter()
         .filter_map(|(group, tag)| {
-            let group = &job.content.groups[group as usize];
+            let group = &input.content.groups[group as usize];
             Some((group.dimension, tag, group.name()?))
         })
         .collect();
@@ -112,22 +112,22 @@ struct Entities {
 }
 
 impl Entities {
-    fn new(job: &Job<'_>) -> Entities {
-        let column = job.content.column("entity");
+    fn new(input: &WriterInput<'_>) -> Entities {
+        let column = input.content.column("entity");
         let key = |cell: usize| {
-            let dimension = job.content.cells.kinds[cell].dimension();
-            (dimension, column[cell], physical(job, cell))
+            let dimension = input.content.cells.kinds[cell].dimension();
+            (dimension, column[cell], physical(input, cell))
         };
         let mut numbers = HashMap::new();
         let mut taken: HashSet<(u8, i64)> = HashSet::new();
         let mut left = Vec::new();
-        for cell in job.cells() {
+        for cell in input.cells() {
             let (dimension, entity, physical) = key(cell);
             if numbers.contains_key(&(dimension, entity, physical)) {
                 continue;
             }
             // The entity keeps its own number, or gets that of its physical group.
-            let wanted = entity.map_or(physical, |entity| job.tags.number(entity));
+            let wanted = entity.map_or(physical, |entity| input.group_numbers.number(entity));
             let number = if wanted > 0 && taken.insert((dimension, wanted)) { wanted } else { 0 };
             numbers.insert((dimension, entity, physical), number);
             if number == 0 {
@@ -144,9 +144,9 @@ impl Entities {
         Entities { column, numbers }
     }
 
-    fn of(&self, job: &Job<'_>, cell: usize) -> i64 {
-        let dimension = job.content.cells.kinds[cell].dimension();
-        let key = (dimension, self.column[cell], physical(job, cell));
+    fn of(&self, input: &WriterInput<'_>, cell: usize) -> i64 {
+        let dimension = input.content.cells.kinds[cell].dimension();
+        let key = (dimension, self.column[cell], physical(input, cell));
         self.numbers.get(&key).copied().unwrap_or(1)
     }
 
@@ -155,7 +155,7 @@ impl Entities {
         surfaces.map(|(_, &number)| number).min().unwrap_or(1)
     }
 
-    fn write(&self, job: &Job<'_>, out: &mut String) {
+    fn write(&self, input: &WriterInput<'_>, out: &mut String) {
         let mut rows: Vec<(u8, i64, i64)> = self
             .numbers
             .iter()
@@ -166,10 +166,10 @@ impl Entities {
         put!(out, "$Entities\n{} {} {} 0\n", count(0), count(1), count(2));
         let bounds = |axis: usize| {
             let along = |v: usize| match axis {
-                2 => job.content.z(v),
-                axis => job.content.points[v][axis],
+                2 => input.content.z(v),
+                axis => input.content.points[v][axis],
             };
-            let all = (0..job.content.points.len()).map(along);
+            let all = (0..input.content.points.len()).map(along);
             all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)))
         };
         let [x, y, z] = [bounds(0), bounds(1), bounds(2)];
@@ -190,19 +190,19 @@ impl Entities {
 }
 
 /// Writes `$NodeData` and `$ElementData`.
-fn data(job: &Job<'_>, out: &mut String) {
-    for data in job.point_data() {
-        let numbers = (0..job.content.points.len()).map(|vertex| job.number(vertex));
-        section(data, "NodeData", numbers, (0..job.content.points.len()).collect(), out);
+fn data(input: &WriterInput<'_>, out: &mut String) {
+    for data in input.point_data() {
+        let numbers = (0..input.content.points.len()).map(|vertex| input.vertex_id(vertex));
+        section(data, "NodeData", numbers, (0..input.content.points.len()).collect(), out);
     }
-    for data in job.cell_data() {
-        section(data, "ElementData", 1.., job.cells().collect(), out);
+    for data in input.cell_data() {
+        section(data, "ElementData", 1.., input.cells().collect(), out);
     }
 }
 
 /// Writes the data of the items at these places. `numbers` are the items' numbers in the file.
 fn section(
-    data: &Data,
+    data: &DataArray,
     name: &str,
     numbers: impl Iterator<Item = u64>,
     places: Vec<usize>,

@@ -1,9 +1,9 @@
 //! The families of a MED file, and the groups that each is of.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::hdf5::{Hdf5, Object};
-use crate::visit::items::Within;
-use crate::visit::sink::Sink;
+use crate::visit::items::GroupScope;
+use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The groups of each family of a mesh.
@@ -14,8 +14,8 @@ pub(super) struct Families {
     names: Vec<Vec<u8>>,
 }
 
-/// How many letters a name has.
-const LETTERS: usize = 80;
+/// Number of bytes of a group name.
+const NAME_LENGTH: usize = 80;
 
 impl Families {
     /// Reads those of a mesh. What is damaged is left out.
@@ -37,7 +37,7 @@ impl Families {
         let names = file.child(family, b"GRO/NOM").and_then(|names| file.dataset(names).ok()?);
         let array = names.and_then(|names| file.array(&names).ok());
         let (Some(number), Some(array)) = (number, array) else { return };
-        for name in array.bytes.chunks_exact(LETTERS) {
+        for name in array.bytes.chunks_exact(NAME_LENGTH) {
             let name = name.split(|&byte| byte == 0).next().unwrap_or_default().trim_ascii();
             let known = self.names.iter().position(|own| own == name);
             let group = known.unwrap_or_else(|| {
@@ -53,30 +53,30 @@ impl Families {
     }
 
     /// Tells that the elements that follow are of a family.
-    pub(super) fn of_elements(&self, family: i64, sink: &mut dyn Sink) {
-        let within = |&group: &usize| Within {
-            what: "group",
-            label: Label::name(&self.names[group]),
+    pub(super) fn of_elements(&self, family: i64, visitor: &mut dyn MeshVisitor) {
+        let within = |&group: &usize| GroupScope {
+            kind: "group",
+            label: GroupLabel::name(&self.names[group]),
             dimension: None,
         };
-        let groups: Vec<Within<'_>> = self.of(family).iter().map(within).collect();
-        sink.within(&groups);
+        let groups: Vec<GroupScope<'_>> = self.of(family).iter().map(within).collect();
+        visitor.group_scopes(&groups);
     }
 
     /// Tells that a node is of a family.
-    pub(super) fn of_node(&self, node: u32, family: i64, sink: &mut dyn Sink) {
+    pub(super) fn of_node(&self, node: u32, family: i64, visitor: &mut dyn MeshVisitor) {
         for &group in self.of(family) {
-            sink.node_within(node, "group", &Label::Tag(group as i64 + 1));
+            visitor.node_group(node, "group", &GroupLabel::Tag(group as i64 + 1));
         }
     }
 
     /// Tells the names of the groups that nodes of these families are of.
-    pub(super) fn names(&self, of_nodes: &[i64], sink: &mut dyn Sink) {
+    pub(super) fn names(&self, of_nodes: &[i64], visitor: &mut dyn MeshVisitor) {
         let families: BTreeSet<i64> = of_nodes.iter().copied().collect();
         let groups: BTreeSet<usize> =
             families.into_iter().flat_map(|family| self.of(family)).copied().collect();
         for group in groups {
-            sink.name("group", Some(0), group as i64 + 1, &self.names[group]);
+            visitor.group_name("group", Some(0), group as i64 + 1, &self.names[group]);
         }
     }
 }

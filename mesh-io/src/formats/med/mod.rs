@@ -5,24 +5,24 @@
 
 mod families;
 
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
-use crate::content::label::Label;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
-use crate::hdf5::{Hdf5, Number, Object, SIGNATURE};
+use crate::hdf5::{Datatype, Hdf5, Object, SIGNATURE};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{Column, Kind};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::records::Region;
 use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 use families::Families;
 
 pub(crate) struct Med;
@@ -44,17 +44,20 @@ pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
     Ok(source.bytes.starts_with(SIGNATURE) && Hdf5::open(source)?.find(MESHES).is_some())
 }
 
-impl Walk for Med {
+impl FormatReader for Med {
     const VERTICES: &'static str = "the list of nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(sink))
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        Hdf5::read(source, |hdf5| File::open(source, hdf5)?.read(visitor))
     }
 }
 
 impl<'a> File<'a> {
     fn open(source: &'a Source, hdf5: &'a Hdf5<'a>) -> Result<File<'a>, ReadError> {
-        let start = || Cursor::at_byte_of(source, 0);
+        let start = || Cursor::at_byte_offset(source, 0);
         let meshes = hdf5.find(MESHES).map(|all| hdf5.children(all).collect::<Vec<_>>());
         let (name, mesh) = match meshes.as_deref() {
             Some(&[one]) => one,
@@ -68,7 +71,7 @@ impl<'a> File<'a> {
         };
         let whole = |name: &[u8]| hdf5.attribute(mesh, name).and_then(|a| a.whole());
         let refused = |problem: &str, remedy| {
-            Err(Cursor::at_byte_of(source, mesh.at).error(problem.to_owned(), remedy))
+            Err(Cursor::at_byte_offset(source, mesh.at).error(problem.to_owned(), remedy))
         };
         if whole(b"TYP").is_some_and(|kind| kind != 0) {
             return refused("a structured mesh is not read", "Save an unstructured mesh");
@@ -95,43 +98,47 @@ impl<'a> File<'a> {
         }
     }
 
-    fn read(&self, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn read(&self, visitor: &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError> {
         let (axes, count) = self.nodes()?;
-        let layout = axes.send(Format::Med, count, 1, sink)?;
-        let label = |family| (family != 0).then_some(Label::Tag(family));
-        sink.columns(vec![Column { what: "family".into(), from_dimension: 0, label }]);
-        let families = match sink.asks_for_groups() {
+        let layout = axes.send(Format::Med, count, 1, visitor)?;
+        let label = |family| (family != 0).then_some(GroupLabel::Tag(family));
+        visitor.region_attributes(vec![RegionAttribute {
+            kind: "family".into(),
+            from_dimension: 0,
+            label,
+        }]);
+        let families = match visitor.asks_for_groups() {
             true => Families::read(self.hdf5, self.name),
             false => Families::default(),
         };
-        if sink.asks_for_groups() {
+        if visitor.asks_for_groups() {
             let of_nodes =
                 self.hdf5.child(self.step, b"NOE/FAM").and_then(|own| self.hdf5.integers(own));
             let of_nodes = of_nodes.unwrap_or_default();
-            families.names(&of_nodes, sink);
+            families.names(&of_nodes, visitor);
             for (node, &family) in of_nodes.iter().enumerate().take(count) {
-                families.of_node(node as u32, family, sink);
+                families.of_node(node as u32, family, visitor);
             }
         }
         let Some(types) = self.hdf5.child(self.step, b"MAI") else {
             return Err(self.cursor(self.mesh).error("the mesh has no elements", CORRECT));
         };
         for (name, object) in self.hdf5.children(types) {
-            self.elements(name, object, &families, sink)?;
+            self.elements(name, object, &families, visitor)?;
         }
-        sink.within(&[]);
+        visitor.group_scopes(&[]);
         if self.hdf5.find(b"CHA").is_some() {
             let text = "its fields (CHA) are kept as they are, and do not fit nodes that move";
-            sink.remark(Remark::Text(text.into()));
-            if sink.asks_for_data() {
-                sink.leaves_out("fields");
+            visitor.remark(Remark::Text(text.into()));
+            if visitor.asks_for_data() {
+                visitor.unsupported("fields");
             }
         }
         Ok(layout)
     }
 
     fn cursor(&self, object: &Object) -> Cursor<'a> {
-        Cursor::at_byte_of(self.source, object.at)
+        Cursor::at_byte_offset(self.source, object.at)
     }
 
     /// The coordinates, and how many nodes there are.
@@ -144,7 +151,7 @@ impl<'a> File<'a> {
                 .error("the mesh has no nodes", "Save the mesh again"));
         };
         let cursor = self.cursor(object);
-        let Number::Real(precision, order) = dataset.number else {
+        let Datatype::Real(precision, order) = dataset.datatype else {
             return Err(cursor.error("the coordinates are not real numbers", "Save the mesh again"));
         };
         let axes = self.hdf5.attribute(self.mesh, b"ESP").and_then(|axes| axes.whole());
@@ -172,14 +179,14 @@ impl<'a> File<'a> {
         name: &[u8],
         object: &Object,
         families: &Families,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let cursor = self.cursor(object);
         let kind = match name {
-            b"PO1" => Kind::Point,
-            b"SE2" => Kind::Line,
-            b"TR3" => Kind::Triangle,
-            b"QU4" => Kind::Quadrilateral,
+            b"PO1" => CellKind::Point,
+            b"SE2" => CellKind::Line,
+            b"TR3" => CellKind::Triangle,
+            b"QU4" => CellKind::Quadrilateral,
             _ if [&b"TE"[..], b"HE", b"PE", b"PY", b"POE"]
                 .iter()
                 .any(|kind| name.starts_with(kind)) =>
@@ -196,8 +203,8 @@ impl<'a> File<'a> {
         let of_families = of_families.unwrap_or_default();
         let own = self.hdf5.child(object, b"NOD");
         let dataset = own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten();
-        let Some((dataset, Number::Whole(size, order))) = dataset.map(|own| {
-            let number = own.number;
+        let Some((dataset, Datatype::Whole(size, order))) = dataset.map(|own| {
+            let number = own.datatype;
             (own, number)
         }) else {
             let problem = format!("the type {} has no list of nodes", quoted(name));
@@ -210,7 +217,7 @@ impl<'a> File<'a> {
                 format!("the type {} has a list of nodes that is cut short", quoted(name));
             return Err(cursor.error(problem, CORRECT));
         }
-        // All first corners stand before all second ones; the sink takes them side by side.
+        // All first corners stand before all second ones; the visitor takes them side by side.
         let corner = |element: usize, corner: usize| {
             order.whole(&array.bytes[(corner * count + element) * size..][..size])
         };
@@ -222,18 +229,18 @@ impl<'a> File<'a> {
             kind,
             count,
             first_tag: 1,
-            nodes: Field::new(Some(&side_by_side), 8 * corners, 8, Order::Little),
+            nodes: NumberField::new(Some(&side_by_side), 8 * corners, 8, ByteOrder::Little),
             is_signed: false,
             regions: [Region::List(&of_families), Region::Same(0)],
         };
         let mut last = None;
-        elements.send(sink, |element, sink| {
+        elements.send(visitor, |element, visitor| {
             let family = of_families.get(element).copied().unwrap_or(0);
-            if sink.asks_for_groups() && last != Some(family) {
-                families.of_elements(family, sink);
+            if visitor.asks_for_groups() && last != Some(family) {
+                families.of_elements(family, visitor);
                 last = Some(family);
             }
-            Cursor::at_byte_of(self.source, array.byte_of(element * size))
+            Cursor::at_byte_offset(self.source, array.byte_of(element * size))
         })
     }
 }

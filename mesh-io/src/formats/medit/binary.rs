@@ -4,31 +4,31 @@
 //! the next. Version 1 has coordinates in single precision. From version 3 on, offsets have 8 bytes, and in version 4
 //! all whole numbers have.
 
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
-use crate::content::label::Label;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
-use crate::edit::numbers::{Form, Numbers};
+use crate::edit::numbers::{CoordinateEncoding, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::medit::required::hold_required;
+use crate::formats::medit::required::send_required_corners;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
-use crate::visit::heights::Heights;
-use crate::visit::items::{Column, Kind, Within};
-use crate::visit::reader::Walk;
-use crate::visit::records::{NodeRecords, Region, Tags};
+use crate::visit::items::{CellKind, GroupScope, RegionAttribute};
+use crate::visit::reader::FormatReader;
+use crate::visit::records::{NodeIds, NodeRecords, Region};
 use crate::visit::rows::volume;
 use crate::visit::send::{ElementRecords, REWRITE};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 pub(crate) struct MeditBinary;
 
 /// The widths of numbers in a version of the format, in bytes.
 #[derive(Clone, Copy)]
 struct Widths {
-    order: Order,
+    order: ByteOrder,
     precision: Precision,
     place: usize,
     integer: usize,
@@ -38,7 +38,7 @@ struct Widths {
 struct List<'a> {
     cursor: Cursor<'a>,
     bytes: &'a [u8],
-    kind: Kind,
+    kind: CellKind,
     /// Whether each element has a reference after its vertices.
     referred: bool,
     /// The name of the list in text files.
@@ -50,12 +50,16 @@ const VERTICES: i32 = 4;
 const REQUIRED_TRIANGLES: i32 = 17;
 const END: i32 = 54;
 
-impl Walk for MeditBinary {
+impl FormatReader for MeditBinary {
     const VERTICES: &'static str = "Vertices";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source);
-        let order = if source.bytes.first() == Some(&1) { Order::Little } else { Order::Big };
+        let order =
+            if source.bytes.first() == Some(&1) { ByteOrder::Little } else { ByteOrder::Big };
         let small = Widths { order, precision: Precision::Single, place: 4, integer: 4 };
         integer(cursor, small, 4, "the code")?;
         let widths = match integer(cursor, small, 4, "the version")? {
@@ -93,7 +97,7 @@ impl Walk for MeditBinary {
                 }
                 VERTICES => {
                     vertices_seen = true;
-                    vertices(cursor, widths, dimension, sink)?;
+                    vertices(cursor, widths, dimension, visitor)?;
                 }
                 REQUIRED_TRIANGLES => {
                     let count = integer(cursor, widths, widths.integer, "a count")?;
@@ -117,15 +121,15 @@ impl Walk for MeditBinary {
                 }
                 keyword => {
                     let of = match keyword {
-                        5 => Some((Kind::Line, true, "Edges")),
-                        6 => Some((Kind::Triangle, true, "Triangles")),
-                        7 => Some((Kind::Quadrilateral, true, "Quadrilaterals")),
-                        13 => Some((Kind::Point, false, "Corners")),
-                        15 => Some((Kind::Point, false, "RequiredVertices")),
+                        5 => Some((CellKind::Line, true, "Edges")),
+                        6 => Some((CellKind::Triangle, true, "Triangles")),
+                        7 => Some((CellKind::Quadrilateral, true, "Quadrilaterals")),
+                        13 => Some((CellKind::Point, false, "Corners")),
+                        15 => Some((CellKind::Point, false, "RequiredVertices")),
                         _ => None,
                     };
-                    if of.is_none() && sink.asks_for_data() {
-                        sink.leaves_out(&format!("the list of keyword {keyword}"));
+                    if of.is_none() && visitor.asks_for_data() {
+                        visitor.unsupported(&format!("the list of keyword {keyword}"));
                     }
                     if let Some((kind, referred, name)) = of {
                         let count = integer(cursor, widths, widths.integer, "a count")?;
@@ -144,7 +148,7 @@ impl Walk for MeditBinary {
             match place {
                 Some(place) if place <= source.bytes.len() => {
                     *cursor = list;
-                    cursor.pass(place - cursor.at_byte());
+                    cursor.skip_bytes(place - cursor.at_byte());
                 }
                 _ => {
                     let problem = format!(
@@ -157,25 +161,25 @@ impl Walk for MeditBinary {
         if !vertices_seen {
             return Err(source.error("it has no list of Vertices", "Save the mesh again"));
         }
-        sink.end_nodes(cursor)?;
-        sink.columns(vec![Column::tags("reference", 1)]);
+        visitor.end_nodes(cursor)?;
+        visitor.region_attributes(vec![RegionAttribute::tags("reference", 1)]);
         for list in &lists {
-            elements(list, widths, sink)?;
+            elements(list, widths, visitor)?;
         }
-        lists.retain(|list| list.kind == Kind::Triangle);
+        lists.retain(|list| list.kind == CellKind::Triangle);
         let size = 4 * widths.integer;
         let counts: Vec<u64> = lists.iter().map(|list| (list.bytes.len() / size) as u64).collect();
-        hold_required(required, &counts, sink, |list, index| {
+        send_required_corners(required, &counts, visitor, |list, index| {
             let List { cursor, bytes, .. } = &lists[list];
             let at = index as usize * size;
             let mut numbers = bytes[at..at + size].chunks_exact(widths.integer);
             let numbers =
                 [(); 4].map(|()| numbers.next().map_or(0, |own| widths.order.signed(own)));
-            let place = Cursor::at_byte_of(cursor.source, cursor.taken() + at);
+            let place = Cursor::at_byte_offset(cursor.source, cursor.last_taken() + at);
             Ok((place, numbers.map(|number| u64::try_from(number).unwrap_or(0)), numbers[3]))
         })?;
-        let numbers = Numbers::adjacent(order, widths.precision);
-        Ok(Layout::in_place(Format::MeditBinary, numbers))
+        let numbers = CoordinateEncoding::adjacent(order, widths.precision);
+        Ok(CoordinateStorage::in_place(Format::MeditBinary, numbers))
     }
 }
 
@@ -209,7 +213,7 @@ fn vertices(
     cursor: &mut Cursor<'_>,
     widths: Widths,
     dimension: i64,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     let count = integer(cursor, widths, widths.integer, "the number of vertices")?;
     cursor.check_vertex_count(u64::try_from(count).unwrap_or(0))?;
@@ -219,43 +223,48 @@ fn vertices(
     let size = widths.precision.bytes();
     let item = dimension as usize * size + widths.integer;
     let bytes = items(cursor, count, item, "vertices")?;
-    let start = cursor.taken();
-    let field = |at: usize| Field::new(bytes.get(at..), item, size, widths.order);
+    let start = cursor.last_taken();
+    let field = |at: usize| NumberField::new(bytes.get(at..), item, size, widths.order);
     let count = bytes.len() / item;
-    let (x, y, tags) = (field(0), field(size), Tags::From(1));
-    NodeRecords { count, x, y, x_at: start, tags }.send(
-        sink,
-        |index| Cursor::at_byte_of(cursor.source, start + index * item),
+    let (x, y, ids) = (field(0), field(size), NodeIds::Consecutive(1));
+    NodeRecords { count, x, y, x_offset: start, ids }.send(
+        visitor,
+        |index| Cursor::at_byte_offset(cursor.source, start + index * item),
         |index| {
             let problem = format!("a coordinate of vertex {} is not a finite number", index + 1);
             cursor.error(problem, REWRITE)
         },
     )?;
     if dimension == 3 {
-        let mut heights = Heights::new(sink);
-        heights.see_all(field(2 * size), count, start + 2 * size);
-        heights.send("z", Form::Binary(widths.order, widths.precision), sink);
+        let mut z_values = ZValues::new(visitor);
+        z_values.push_records(field(2 * size), count, start + 2 * size);
+        z_values.send("z", NumberEncoding::Binary(widths.order, widths.precision), visitor);
     }
-    if sink.asks_for_groups() {
+    if visitor.asks_for_groups() {
         for (index, vertex) in (0..).zip(bytes.chunks_exact(item)) {
             let reference = widths.order.signed(&vertex[item - widths.integer..]);
             // A vertex without a reference has the reference 0.
             if reference != 0 {
-                sink.node_within(index, "reference", &Label::Tag(reference));
+                visitor.node_group(index, "reference", &GroupLabel::Tag(reference));
             }
         }
     }
     Ok(())
 }
 
-fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn elements(
+    list: &List<'_>,
+    widths: Widths,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     let List { cursor, bytes, kind, referred, name } = list;
     // Points have no reference. The list they stand in is their group.
-    let within = Within { what: "list", label: Label::name(name.as_bytes()), dimension: None };
-    sink.within(if *referred { &[] } else { std::slice::from_ref(&within) });
+    let within =
+        GroupScope { kind: "list", label: GroupLabel::name(name.as_bytes()), dimension: None };
+    visitor.group_scopes(if *referred { &[] } else { std::slice::from_ref(&within) });
     let (kind, size) = (*kind, widths.integer);
     let item = (kind.nodes() + usize::from(*referred)) * size;
-    let field = |at: usize| Field::new(bytes.get(at..), item, size, widths.order);
+    let field = |at: usize| NumberField::new(bytes.get(at..), item, size, widths.order);
     let reference =
         if *referred { Region::Field(field(kind.nodes() * size)) } else { Region::Same(0) };
     let records = ElementRecords {
@@ -266,5 +275,7 @@ fn elements(list: &List<'_>, widths: Widths, sink: &mut dyn Sink) -> Result<(), 
         is_signed: true,
         regions: [reference, Region::Same(0)],
     };
-    records.send(sink, |index, _| Cursor::at_byte_of(cursor.source, cursor.taken() + index * item))
+    records.send(visitor, |index, _| {
+        Cursor::at_byte_offset(cursor.source, cursor.last_taken() + index * item)
+    })
 }

@@ -1,19 +1,20 @@
 //! Triangles that are not to be changed, which both of Medit's formats list by their numbers.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::items::{Element, Kind, Within};
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, Element, GroupScope};
+use crate::visit::visitor::MeshVisitor;
 
-/// Hands on the corners of the required triangles. `required` are the numbers of the triangles, counted from 1 through all
-/// lists. `counts` are the lengths of the lists of triangles. `triangle` reads the triangle with an index in a list, counted
-/// from 0, and is called in ascending order. It returns the location, the nodes and the reference.
-pub(super) fn hold_required<'a>(
+/// Visits the corners of the required triangles as points. `required` are the numbers of the triangles, counted from
+/// 1 through all lists. `counts` are the lengths of the lists of triangles. `triangle` reads the triangle with a
+/// 0-based index in a list, and is called in ascending order. It returns the location, the nodes and the reference of
+/// the triangle.
+pub(super) fn send_required_corners<'a>(
     mut required: Vec<u64>,
     counts: &[u64],
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
     mut triangle: impl FnMut(usize, u64) -> Result<(Cursor<'a>, [u64; 4], i64), ReadError>,
 ) -> Result<(), ReadError> {
     if required.is_empty() {
@@ -21,16 +22,16 @@ pub(super) fn hold_required<'a>(
     }
     required.sort_unstable();
     required.dedup();
-    sink.remark(Remark::elements(required.len() as u64, "required triangle", ""));
-    let label = Label::name(b"RequiredTriangles");
-    sink.within(&[Within { what: "list", label, dimension: None }]);
+    visitor.remark(Remark::elements(required.len() as u64, "required triangle", ""));
+    let label = GroupLabel::name(b"RequiredTriangles");
+    visitor.group_scopes(&[GroupScope { kind: "list", label, dimension: None }]);
     let mut before = 0;
     for (list, &count) in counts.iter().enumerate() {
         for &tag in required.iter().filter(|&&tag| tag > before && tag - before <= count) {
             let (place, nodes, reference) = triangle(list, tag - before - 1)?;
             for &corner in &nodes[..3] {
-                let (kind, nodes, region) = (Kind::Corner, [corner, 0, 0, 0], [reference, 0]);
-                sink.element(&place, &Element { tag, kind, region, nodes })?;
+                let (kind, nodes, region) = (CellKind::Polygon, [corner, 0, 0, 0], [reference, 0]);
+                visitor.element(&place, &Element { id: tag, kind, region, nodes })?;
             }
         }
         before += count;

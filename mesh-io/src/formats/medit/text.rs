@@ -4,21 +4,21 @@
 //! mmg and libMeshb. Edges, corners, required vertices and the vertices of required triangles stay fixed. Required
 //! edges and ridges need no reading, as they are among the edges.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::formats::medit::required::hold_required;
+use crate::formats::medit::required::send_required_corners;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
-use crate::visit::heights::Heights;
-use crate::visit::items::{Column, Element, Kind, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 pub(crate) struct Medit;
 
@@ -31,40 +31,47 @@ struct List<'a> {
     /// The cursor before the first element.
     cursor: Cursor<'a>,
     count: u64,
-    kind: Kind,
+    kind: CellKind,
     keyword: &'a [u8],
 }
 
 impl<'a> List<'a> {
     /// Hands on the elements. Returns the cursor after them.
-    fn send(self, sink: &mut dyn Sink) -> Result<Cursor<'a>, ReadError> {
+    fn send(self, visitor: &mut dyn MeshVisitor) -> Result<Cursor<'a>, ReadError> {
         let List { mut cursor, count, kind, keyword } = self;
         // Points have no reference. The list they stand in is their group.
-        let list = Within { what: "list", label: Label::name(keyword), dimension: None };
-        sink.within(if kind == Kind::Point { std::slice::from_ref(&list) } else { &[] });
-        if kind == Kind::Triangle {
-            sink.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
+        let list = GroupScope { kind: "list", label: GroupLabel::name(keyword), dimension: None };
+        visitor.group_scopes(if kind == CellKind::Point {
+            std::slice::from_ref(&list)
+        } else {
+            &[]
+        });
+        if kind == CellKind::Triangle {
+            visitor.expect_elements(cursor.capacity(count, "1 2 3 0\n".len()));
         }
         each_row(
             &mut cursor,
             count,
             "elements",
-            sink,
+            visitor,
             |cursor| element(cursor, kind),
-            |cursor, sink, done, (nodes, reference)| {
-                let element = Element { tag: done + 1, kind, region: [reference, 0], nodes };
-                sink.element(cursor, &element)
+            |cursor, visitor, done, (nodes, reference)| {
+                let element = Element { id: done + 1, kind, region: [reference, 0], nodes };
+                visitor.element(cursor, &element)
             },
         )?;
         Ok(cursor)
     }
 }
 
-impl Walk for Medit {
+impl FormatReader for Medit {
     const VERTICES: &'static str = "Vertices";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::WORDS);
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         let mut lists: Vec<List<'_>> = Vec::new();
         let mut required = Vec::new();
         let mut dimension = 2;
@@ -88,11 +95,11 @@ impl Walk for Medit {
                         let problem = "this is the second list of Vertices";
                         return Err(cursor.error(problem, "Save each mesh to a file of its own"));
                     }
-                    vertices(cursor, dimension, sink)?;
-                    sink.end_nodes(cursor)?;
-                    sink.columns(vec![Column::tags("reference", 1)]);
+                    vertices(cursor, dimension, visitor)?;
+                    visitor.end_nodes(cursor)?;
+                    visitor.region_attributes(vec![RegionAttribute::tags("reference", 1)]);
                     for list in &lists {
-                        list.clone().send(sink)?;
+                        list.clone().send(visitor)?;
                     }
                 }
                 volume_of if VOLUMES.iter().any(|name| volume_of.starts_with(name)) => {
@@ -118,12 +125,12 @@ impl Walk for Medit {
                     if let Some(kind) = kind {
                         let count = value(cursor, "the number of elements")?;
                         lists.push(List { cursor: cursor.clone(), count, kind, keyword });
-                    } else if sink.asks_for_data() {
-                        sink.leaves_out(&format!("the list {}", quoted(keyword)));
+                    } else if visitor.asks_for_data() {
+                        visitor.unsupported(&format!("the list {}", quoted(keyword)));
                     }
                     match lists.last() {
                         Some(list) if vertices_seen && kind.is_some() => {
-                            *cursor = list.clone().send(sink)?;
+                            *cursor = list.clone().send(visitor)?;
                         }
                         // The lists hold only numbers, so the next word that starts with a letter is a keyword.
                         _ => skip_numbers(cursor),
@@ -135,18 +142,18 @@ impl Walk for Medit {
             let problem = "it has no list of Vertices";
             return Err(source.error(problem, "Save the mesh again"));
         }
-        lists.retain(|list| list.kind == Kind::Triangle);
+        lists.retain(|list| list.kind == CellKind::Triangle);
         let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
         // The list and the index in it of the next triangle.
         let mut next = (0, 0);
-        hold_required(required, &counts, sink, |list, index| {
+        send_required_corners(required, &counts, visitor, |list, index| {
             if next.0 != list {
                 next = (list, 0);
             }
             let List { cursor, count, .. } = &mut lists[list];
             loop {
                 cursor.row(next.1, *count, "elements")?;
-                let triangle = |cursor: &mut Cursor<'_>| element(cursor, Kind::Triangle);
+                let triangle = |cursor: &mut Cursor<'_>| element(cursor, CellKind::Triangle);
                 let (nodes, reference) = cursor.item(triangle, &mut None)?;
                 next.1 += 1;
                 if next.1 > index {
@@ -154,7 +161,7 @@ impl Walk for Medit {
                 }
             }
         })?;
-        Ok(Layout::in_place(Format::Medit, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Medit, CoordinateEncoding::TEXT))
     }
 }
 
@@ -174,12 +181,12 @@ fn is_of_higher_order(keyword: &[u8]) -> bool {
     kind_of(elements).is_some()
 }
 
-fn kind_of(keyword: &[u8]) -> Option<Kind> {
+fn kind_of(keyword: &[u8]) -> Option<CellKind> {
     match keyword {
-        b"Corners" | b"RequiredVertices" => Some(Kind::Point),
-        b"Edges" => Some(Kind::Line),
-        b"Triangles" => Some(Kind::Triangle),
-        b"Quadrilaterals" => Some(Kind::Quadrilateral),
+        b"Corners" | b"RequiredVertices" => Some(CellKind::Point),
+        b"Edges" => Some(CellKind::Line),
+        b"Triangles" => Some(CellKind::Triangle),
+        b"Quadrilaterals" => Some(CellKind::Quadrilateral),
         _ => None,
     }
 }
@@ -192,36 +199,40 @@ fn value(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     cursor.integer(what)
 }
 
-fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+fn vertices(
+    cursor: &mut Cursor<'_>,
+    dimension: u64,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     if !cursor.next_word() {
         return Err(cursor.error("the file ends before the number of vertices", CUT_OFF));
     }
     let count = cursor.vertex_count()?;
-    sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
+    visitor.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
     let before = &mut cursor.clone();
-    let mut heights = Heights::new(sink);
+    let mut z_values = ZValues::new(visitor);
     each_row(
         cursor,
         count,
         "vertices",
-        sink,
+        visitor,
         |cursor| {
             let point = cursor.point("a vertex")?;
             let z = match dimension {
-                3 => Some(cursor.height("a vertex")?),
+                3 => Some(cursor.z("a vertex")?),
                 _ => None,
             };
             cursor.signed("the reference of a vertex")?;
             Ok((point, z))
         },
-        |cursor, sink, done, ((x_at, at), z)| {
-            sink.node(cursor, done + 1, 2, x_at, at);
-            z.into_iter().for_each(|z| heights.see(z));
+        |cursor, visitor, done, ((x_at, at), z)| {
+            visitor.node(cursor, done + 1, 2, x_at, at);
+            z.into_iter().for_each(|z| z_values.push(z));
             Ok(())
         },
     )?;
-    heights.send("z", Numbers::TEXT.into(), sink);
-    if sink.asks_for_groups() {
+    z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
+    if visitor.asks_for_groups() {
         for vertex in 0..count {
             before.row(vertex, count, "vertices")?;
             let reference = |cursor: &mut Cursor<'_>| {
@@ -231,7 +242,7 @@ fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Res
             let reference = before.item(reference, &mut None)?;
             // A vertex without a reference has the reference 0.
             if reference != 0 {
-                sink.node_within(vertex as u32, "reference", &Label::Tag(reference));
+                visitor.node_group(vertex as u32, "reference", &GroupLabel::Tag(reference));
             }
         }
     }
@@ -240,10 +251,10 @@ fn vertices(cursor: &mut Cursor<'_>, dimension: u64, sink: &mut dyn Sink) -> Res
 
 /// Reads the nodes and the reference of an element. Points have no reference.
 #[inline]
-fn element(cursor: &mut Cursor<'_>, kind: Kind) -> Result<([u64; 4], i64), ReadError> {
+fn element(cursor: &mut Cursor<'_>, kind: CellKind) -> Result<([u64; 4], i64), ReadError> {
     let nodes = nodes(cursor, kind)?;
     let reference = match kind {
-        Kind::Point => 0,
+        CellKind::Point => 0,
         _ => cursor.signed("the reference of an element")?,
     };
     Ok((nodes, reference))

@@ -1,8 +1,8 @@
 //! Writes Medit's `.mesh` and `.meshb`, and FreeFem's `.msh`.
 
-use crate::export::job::Job;
 use crate::export::put;
-use crate::visit::items::Kind;
+use crate::export::writer_input::WriterInput;
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 /// A list of elements: its name, its keyword in binary files, how many numbers each element has, and the numbers.
@@ -22,32 +22,33 @@ struct Medit {
 }
 
 impl Medit {
-    fn new(job: &Job<'_>) -> Medit {
-        let content = job.content;
-        let flat = content.heights.is_empty() && content.height == 0.0;
-        let mut references = job.vertex_tags();
+    fn new(input: &WriterInput<'_>) -> Medit {
+        let content = input.content;
+        let flat = content.z_values.is_empty() && content.common_z == 0.0;
+        let mut references = input.vertex_group_numbers();
         // Points are written as references of their vertices, except those of the format's own lists.
-        let is_listed = |cell: usize| job.group(cell).is_some_and(|group| group.what == "list");
-        for cell in job.all(Kind::Point).filter(|&cell| !is_listed(cell)) {
-            references[content.cells.of(cell)[0] as usize] = job.tag(cell);
+        let is_listed = |cell: usize| input.group(cell).is_some_and(|group| group.kind == "list");
+        for cell in input.all(CellKind::Point).filter(|&cell| !is_listed(cell)) {
+            references[content.cells.of(cell)[0] as usize] = input.group_number(cell);
         }
         let places =
             |cell: usize| content.cells.of(cell).iter().map(|&vertex| i64::from(vertex) + 1);
         let mut lists = Vec::new();
         for (name, keyword) in [("Corners", 13), ("RequiredVertices", 15)] {
             let is_of = |cell: &usize| {
-                let own = job.group(*cell).and_then(|group| group.name());
+                let own = input.group(*cell).and_then(|group| group.name());
                 is_listed(*cell) && own == Some(name)
             };
-            let numbers = job.all(Kind::Point).filter(is_of).flat_map(places).collect();
+            let numbers = input.all(CellKind::Point).filter(is_of).flat_map(places).collect();
             lists.push(List { name, keyword, width: 1, numbers });
         }
         for (kind, name, keyword) in [
-            (Kind::Line, "Edges", 5),
-            (Kind::Triangle, "Triangles", 6),
-            (Kind::Quadrilateral, "Quadrilaterals", 7),
+            (CellKind::Line, "Edges", 5),
+            (CellKind::Triangle, "Triangles", 6),
+            (CellKind::Quadrilateral, "Quadrilaterals", 7),
         ] {
-            let numbers = job.all(kind).flat_map(|cell| places(cell).chain([job.tag(cell)]));
+            let numbers =
+                input.all(kind).flat_map(|cell| places(cell).chain([input.group_number(cell)]));
             let (width, numbers) = (kind.nodes() + 1, numbers.collect());
             lists.push(List { name, keyword, width, numbers });
         }
@@ -56,12 +57,12 @@ impl Medit {
     }
 }
 
-pub(crate) fn write_medit(job: &Job<'_>) -> String {
-    let Medit { dimension, references, lists } = Medit::new(job);
+pub(crate) fn write_medit(input: &WriterInput<'_>) -> String {
+    let Medit { dimension, references, lists } = Medit::new(input);
     let mut out = format!("MeshVersionFormatted 2\nDimension {dimension}\n");
     put!(out, "Vertices\n{}\n", references.len());
     for (vertex, reference) in references.iter().enumerate() {
-        let at = if dimension == 2 { job.plane(vertex) } else { job.space(vertex) };
+        let at = if dimension == 2 { input.xy(vertex) } else { input.xyz(vertex) };
         put!(out, "{at} {reference}\n");
     }
     for List { name, width, numbers, .. } in lists {
@@ -75,16 +76,17 @@ pub(crate) fn write_medit(job: &Job<'_>) -> String {
     out
 }
 
-/// Offsets in files of version 2 have 4 bytes. Longer files are written as version 3, with 8 bytes.
-const LARGE: usize = 1 << 31;
+/// Limit on the length of files of version 2, whose offsets have 4 bytes. Longer files are written as version 3, with
+/// 8 bytes.
+const MAX_VERSION_2_BYTES: usize = 1 << 31;
 
-pub(crate) fn write_meshb(job: &Job<'_>) -> Vec<u8> {
-    let medit = Medit::new(job);
-    let small = meshb(job, &medit, 2);
-    if small.len() < LARGE { small } else { meshb(job, &medit, 3) }
+pub(crate) fn write_meshb(input: &WriterInput<'_>) -> Vec<u8> {
+    let medit = Medit::new(input);
+    let small = meshb(input, &medit, 2);
+    if small.len() < MAX_VERSION_2_BYTES { small } else { meshb(input, &medit, 3) }
 }
 
-fn meshb(job: &Job<'_>, medit: &Medit, version: i32) -> Vec<u8> {
+fn meshb(input: &WriterInput<'_>, medit: &Medit, version: i32) -> Vec<u8> {
     let mut out = Vec::new();
     let ints = |numbers: &[i64]| -> Vec<u8> {
         numbers.iter().flat_map(|&number| (number as i32).to_le_bytes()).collect()
@@ -102,8 +104,8 @@ fn meshb(job: &Job<'_>, medit: &Medit, version: i32) -> Vec<u8> {
     chain(3, &ints(&[medit.dimension as i64]));
     let mut vertices = ints(&[medit.references.len() as i64]);
     for (vertex, &reference) in medit.references.iter().enumerate() {
-        let [x, y] = job.content.points[vertex];
-        for coordinate in [x, y, job.content.z(vertex)].into_iter().take(medit.dimension) {
+        let [x, y] = input.content.points[vertex];
+        for coordinate in [x, y, input.content.z(vertex)].into_iter().take(medit.dimension) {
             vertices.extend(coordinate.to_le_bytes());
         }
         vertices.extend(ints(&[reference]));
@@ -117,16 +119,16 @@ fn meshb(job: &Job<'_>, medit: &Medit, version: i32) -> Vec<u8> {
     out
 }
 
-pub(crate) fn write_freefem(job: &Job<'_>) -> String {
-    let points = job.content.points.len();
-    let counts = [points, job.count(Kind::Triangle), job.count(Kind::Line)];
+pub(crate) fn write_freefem(input: &WriterInput<'_>) -> String {
+    let points = input.content.points.len();
+    let counts = [points, input.count(CellKind::Triangle), input.count(CellKind::Line)];
     let mut out = format!("{} {} {}\n", counts[0], counts[1], counts[2]);
-    for (vertex, label) in job.vertex_tags().into_iter().enumerate() {
-        put!(out, "{} {label}\n", job.plane(vertex));
+    for (vertex, label) in input.vertex_group_numbers().into_iter().enumerate() {
+        put!(out, "{} {label}\n", input.xy(vertex));
     }
-    for kind in [Kind::Triangle, Kind::Line] {
-        for cell in job.all(kind) {
-            put!(out, "{} {}\n", job.places(cell, 1), job.tag(cell));
+    for kind in [CellKind::Triangle, CellKind::Line] {
+        for cell in input.all(kind) {
+            put!(out, "{} {}\n", input.positions(cell, 1), input.group_number(cell));
         }
     }
     out

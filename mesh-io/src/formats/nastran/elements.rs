@@ -1,38 +1,38 @@
 //! The elements, and the nodes that they hold.
 
 use super::nodes::whole;
-use super::types::{Class, Listed, class};
+use super::types::{Class, RigidFields, class};
 use crate::content::remark::Remark;
 use crate::error::ReadError;
 use crate::text::card;
-use crate::text::card::{Line, Name, letters};
+use crate::text::card::{CardLine, CardName, name_bytes};
 use crate::text::cursor::Cursor;
 use crate::text::token::{integer, quoted};
-use crate::visit::items::{Column, Element, Kind};
+use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::rows::{all_rows, volume};
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashSet};
 
 /// A card, as far as it is of elements.
 enum Card {
     Element(Element),
-    /// The nodes that an element holds, and what it is called.
-    Holds(Name, Vec<u64>),
+    /// The name of an element that constrains its nodes, and the ids of these nodes.
+    Constrains(CardName, Vec<u64>),
     Node(u64),
-    Other(Name),
+    Other(CardName),
 }
 
 /// Hands on all elements.
-pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
-    sink.columns(vec![Column::tags_from_one("property")]);
+pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
+    visitor.region_attributes(vec![RegionAttribute::tags_from_one("property")]);
     let mut cursor = rows.clone();
     // What elements hold, how many do, and what they are called.
     let (mut held, mut holding, mut names) = (Vec::new(), 0, BTreeSet::new());
-    let (mut others, asks_for_data) = (BTreeSet::new(), sink.asks_for_data());
-    all_rows(&mut cursor, sink, card, |cursor, sink, card| {
+    let (mut others, asks_for_data) = (BTreeSet::new(), visitor.asks_for_data());
+    all_rows(&mut cursor, visitor, card, |cursor, visitor, card| {
         match card {
-            Card::Element(element) => sink.element(cursor, &element)?,
-            Card::Holds(name, nodes) => {
+            Card::Element(element) => visitor.element(cursor, &element)?,
+            Card::Constrains(name, nodes) => {
                 held.extend(nodes);
                 holding += 1;
                 names.insert(name);
@@ -44,75 +44,79 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<(), ReadErr
     })?;
     if let Some(first) = names.first() {
         let word = if names.len() == 1 { "called" } else { "such as" };
-        sink.remark(Remark::elements(
+        visitor.remark(Remark::elements(
             holding,
             "element",
-            &format!(" {word} {}", quoted(letters(first))),
+            &format!(" {word} {}", quoted(name_bytes(first))),
         ));
     }
-    others.retain(|name| !matches!(letters(name), b"" | b"GRDSET"));
+    others.retain(|name| !matches!(name_bytes(name), b"" | b"GRDSET"));
     if let Some(first) = others.first() {
-        let first = quoted(letters(first));
-        sink.leaves_out(&match others.len() - 1 {
+        let first = quoted(name_bytes(first));
+        visitor.unsupported(&match others.len() - 1 {
             0 => format!("what {first} says"),
             more => format!("what {first} and {more} more kinds of cards say"),
         });
     }
-    hold(rows, held, sink)
+    send_constrained_nodes(rows, held, visitor)
 }
 
-/// Hands on the nodes that elements hold. Some may be scalar points, which are no part of the mesh.
-fn hold(rows: &Cursor<'_>, held: Vec<u64>, sink: &mut dyn Sink) -> Result<(), ReadError> {
+/// Visits the nodes that elements constrain. Some ids may be those of scalar points, which are not in the mesh.
+fn send_constrained_nodes(
+    rows: &Cursor<'_>,
+    held: Vec<u64>,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
     if held.is_empty() {
         return Ok(());
     }
     let held: HashSet<u64> = held.into_iter().collect();
     let mut there = BTreeSet::new();
     let cursor = &mut rows.clone();
-    all_rows(cursor, sink, node, |_, _, card| {
-        if let Card::Node(tag) = card
-            && held.contains(&tag)
+    all_rows(cursor, visitor, node, |_, _, card| {
+        if let Card::Node(id) = card
+            && held.contains(&id)
         {
-            there.insert(tag);
+            there.insert(id);
         }
         Ok(())
     })?;
-    there.into_iter().try_for_each(|tag| {
-        let nodes = [tag, 0, 0, 0];
-        sink.element(cursor, &Element { tag: 0, kind: Kind::Point, region: [0; 2], nodes })
+    there.into_iter().try_for_each(|id| {
+        let nodes = [id, 0, 0, 0];
+        visitor.element(cursor, &Element { id: 0, kind: CellKind::Point, region: [0; 2], nodes })
     })
 }
 
 /// Reads the number of a node.
 fn node(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
-    let line = Line::starting_at(cursor.bytes, cursor.row_range().start);
+    let line = CardLine::starting_at(cursor.bytes, cursor.row_range().start);
     let name = line.name();
-    let tag = line.fields().next().filter(|_| letters(&name) == b"GRID");
-    let tag = tag.and_then(|field| integer(cursor.bytes[field].trim_ascii()));
-    Ok(tag.map_or(Card::Other(name), Card::Node))
+    let id = line.fields().next().filter(|_| name_bytes(&name) == b"GRID");
+    let id = id.and_then(|field| integer(cursor.bytes[field].trim_ascii()));
+    Ok(id.map_or(Card::Other(name), Card::Node))
 }
 
 /// Reads a card if it is one of elements.
 #[inline]
 fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let row = cursor.row_range();
-    let name = Line::starting_at(cursor.bytes, row.start).name();
-    if letters(&name) == b"GRID" {
+    let name = CardLine::starting_at(cursor.bytes, row.start).name();
+    if name_bytes(&name) == b"GRID" {
         return Ok(Card::Node(0));
     }
     let Some(class) = class(&name) else { return Ok(Card::Other(name)) };
-    let shown = || quoted(letters(&name));
+    let shown = || quoted(name_bytes(&name));
     let mut words = card::words(cursor.bytes, row);
     let mut next = || words.next().unwrap_or_default();
     let (kind, has_property) = match class {
         Class::Of(kind) => (kind, true),
-        Class::Line => (Kind::Line, false),
-        Class::Held(fields) => {
+        Class::Line => (CellKind::Line, false),
+        Class::Constraining(fields) => {
             let words: Vec<&[u8]> = words.take(1 + fields[fields.len() - 1]).collect();
             let node = |&field: &usize| words.get(field).and_then(|word| integer(word));
-            return Ok(Card::Holds(name, fields.iter().filter_map(node).collect()));
+            return Ok(Card::Constrains(name, fields.iter().filter_map(node).collect()));
         }
-        Class::Rigid(listed) => return Ok(Card::Holds(name, rigid(words, listed))),
+        Class::Rigid(listed) => return Ok(Card::Constrains(name, rigid(words, listed))),
         Class::Volume => return Err(volume(cursor, &format!("{} elements", shown()))),
         Class::SecondOrder => {
             let problem =
@@ -120,23 +124,23 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
             return Err(cursor.error(problem, "Save linear elements (CTRIA3, CQUAD4)"));
         }
     };
-    let tag = whole(cursor, next(), format_args!("the number of a {}", kind.name()))?;
+    let id = whole(cursor, next(), format_args!("the number of a {}", kind.name()))?;
     let property = match has_property.then(&mut next) {
         None => 0,
         // It is called as the element is.
-        Some(b"") => tag,
-        Some(word) => whole(cursor, word, format_args!("the property of {} {tag}", kind.name()))?,
+        Some(b"") => id,
+        Some(word) => whole(cursor, word, format_args!("the property of {} {id}", kind.name()))?,
     };
     let mut nodes = [0; 4];
     for node in &mut nodes[..kind.nodes()] {
-        *node = whole(cursor, next(), format_args!("a vertex of {} {tag}", kind.name()))?;
+        *node = whole(cursor, next(), format_args!("a vertex of {} {id}", kind.name()))?;
     }
-    Ok(Card::Element(Element { tag, kind, region: [property.cast_signed(), 0], nodes }))
+    Ok(Card::Element(Element { id, kind, region: [property.cast_signed(), 0], nodes }))
 }
 
 /// Lists the nodes of a rigid element.
 #[cold]
-fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: Listed) -> Vec<u64> {
+fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: RigidFields) -> Vec<u64> {
     let _number_of_element = words.next();
     // The name of a part, such as `UM`, stands before it. At the end of RBE2 may be a real number.
     let given = words.filter(|word| !word.is_empty());
@@ -149,17 +153,17 @@ fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: Listed) -> Vec<u
             (Some(node), _) if until == 0 => {
                 nodes.push(node);
                 until = match listed {
-                    Listed::Pairs => 1,
-                    Listed::Nodes | Listed::Weights => usize::from(first),
+                    RigidFields::Pairs => 1,
+                    RigidFields::Nodes | RigidFields::Weights => usize::from(first),
                 };
                 first = false;
             }
             (Some(_), _) => until -= 1,
             // A weight, after which components come.
-            (None, Listed::Weights) if word.contains(&b'.') => until = 1,
+            (None, RigidFields::Weights) if word.contains(&b'.') => until = 1,
             // The nodes of what follows were named before.
-            (None, Listed::Nodes | Listed::Weights) => break,
-            (None, Listed::Pairs) => until = 0,
+            (None, RigidFields::Nodes | RigidFields::Weights) => break,
+            (None, RigidFields::Pairs) => until = 0,
         }
     }
     nodes

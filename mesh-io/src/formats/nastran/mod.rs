@@ -15,47 +15,51 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::text::card;
-use crate::text::card::{Line, letters};
+use crate::text::card::{CardLine, name_bytes};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::integer;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 use types::Class;
 
 pub(crate) struct Nastran;
 
-impl Walk for Nastran {
+impl FormatReader for Nastran {
     const VERTICES: &'static str = "GRID";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let rows = section::rows(source);
-        let numbers = nodes::send(&rows, sink)?;
-        elements::send(&rows, sink)?;
-        if sink.asks_for_groups() {
-            names::send(source, sink);
+        let numbers = nodes::send(&rows, visitor)?;
+        elements::send(&rows, visitor)?;
+        if visitor.asks_for_groups() {
+            names::send(source, visitor);
         }
-        Ok(Layout::in_place(Format::Nastran, numbers))
+        Ok(CoordinateStorage::in_place(Format::Nastran, numbers))
     }
 }
 
-/// How many rows are looked at to tell the format.
-const ROWS: usize = 1000;
+/// Number of rows by which the format is recognized.
+const MAX_DETECTION_ROWS: usize = 1000;
 
-/// Whether the first rows of a file are those of Nastran: a statement that only its files have, or a card of a node or an element.
-pub(crate) fn opens(source: &Source) -> bool {
-    let mut cursor = Cursor::new(source).of(Syntax::CARDS);
-    (0..ROWS).any(|_| cursor.next_row() && is_of_nastran(&cursor))
+/// Returns whether the first rows of a file are those of Nastran: a statement that only its files have, or a card of
+/// a node or an element.
+pub(crate) fn is_nastran(source: &Source) -> bool {
+    let mut cursor = Cursor::new(source).with_syntax(Syntax::CARDS);
+    (0..MAX_DETECTION_ROWS).any(|_| cursor.next_row() && is_of_nastran(&cursor))
 }
 
 fn is_of_nastran(cursor: &Cursor<'_>) -> bool {
     let row = cursor.row_range();
     let line = &cursor.bytes[row.clone()];
-    let name = Line::starting_at(cursor.bytes, row.start).name();
+    let name = CardLine::starting_at(cursor.bytes, row.start).name();
     let mut words = card::words(cursor.bytes, row);
     let mut next = || words.next().unwrap_or_default();
-    match (letters(&name), types::class(&name)) {
+    match (name_bytes(&name), types::class(&name)) {
         (b"BEGIN", _) => section::is_begin(line),
         (b"CEND", _) => line.trim_ascii().len() == b"CEND".len(),
         (b"GRID", _) => {

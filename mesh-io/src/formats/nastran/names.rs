@@ -2,21 +2,21 @@
 
 use crate::disk::source::Source;
 use crate::text::token::line_end;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// Hands on the names of properties.
-pub(super) fn send(source: &Source, sink: &mut dyn Sink) {
+pub(super) fn send(source: &Source, visitor: &mut dyn MeshVisitor) {
     let bytes = &source.bytes;
     let starts = memchr::memchr_iter(b'$', bytes);
     for at in starts.filter(|&at| at == source.begin() || bytes[at - 1] == b'\n') {
-        if let Some((tag, name)) = of(&bytes[at..line_end(bytes, at)]) {
-            sink.name("property", None, tag, name);
+        if let Some((tag, name)) = parse_comment(&bytes[at..line_end(bytes, at)]) {
+            visitor.group_name("property", None, tag, name);
         }
     }
 }
 
 /// Returns the property that a comment names, and its name.
-fn of(comment: &[u8]) -> Option<(i64, &[u8])> {
+fn parse_comment(comment: &[u8]) -> Option<(i64, &[u8])> {
     let (tag, name) = if let Some(rest) = comment.strip_prefix(b"$HMNAME PROP") {
         // HyperMesh: `$HMNAME PROP       1"skin" 4`
         let mut pieces = rest.split(|&byte| byte == b'"');
@@ -50,7 +50,11 @@ mod tests {
             ("$ Femap Property 3 : skin: a\n", 3),
             ("$ FEMAP with NX Nastran Property 3 : skin: a\n", 3),
         ] {
-            assert_eq!(of(comment.as_bytes()), Some((tag, &b"skin: a"[..])), "{comment}");
+            assert_eq!(
+                parse_comment(comment.as_bytes()),
+                Some((tag, &b"skin: a"[..])),
+                "{comment}"
+            );
         }
         for comment in [
             "$HMNAME COMP               7\"skin\"",
@@ -61,7 +65,7 @@ mod tests {
             "$ Property 3 : skin",
             "$",
         ] {
-            assert_eq!(of(comment.as_bytes()), None, "{comment}");
+            assert_eq!(parse_comment(comment.as_bytes()), None, "{comment}");
         }
     }
 }

@@ -1,17 +1,17 @@
 //! The nodes: GRID, with what GRDSET says of all of them.
 
 use crate::content::remark::Remark;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::card;
-use crate::text::card::{Line, letters};
+use crate::text::card::{CardLine, name_bytes};
 use crate::text::cursor::Cursor;
-use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::text::cursor_numbers::NO_Z;
 use crate::text::token::{float, fortran_float, integer};
-use crate::visit::heights::Heights;
 use crate::visit::rows::all_rows;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 use std::ops::Range;
 
 /// A card, as far as it is of nodes.
@@ -23,33 +23,34 @@ enum Card {
 }
 
 struct Node {
-    tag: u64,
+    id: u64,
     /// The offset of x.
     x_at: usize,
     at: [f64; 2],
     z: (usize, f64),
-    room: Room,
+    field_width: FieldWidth,
     /// Whether it names no coordinate system.
     is_of_default: bool,
 }
 
-/// How many characters the coordinates of a node have: in fixed fields as many as the field has, in free field as many as the longest.
+/// Number of characters of the coordinates of a node: the width of the fixed fields, or the longest number in free
+/// field.
 #[derive(Clone, Copy)]
-struct Room {
+struct FieldWidth {
     is_free: bool,
-    /// The first of [`ROOMS`] that is enough.
+    /// The first of [`WIDTH_PRECISIONS`] that is enough.
     size: usize,
 }
 
 /// The precisions of coordinates of at most 8 characters, of at most 16, and of more.
-const ROOMS: [Precision; 3] = [Precision::Text8, Precision::Text16, Precision::Double];
+const WIDTH_PRECISIONS: [Precision; 3] = [Precision::Text8, Precision::Text16, Precision::Double];
 
-/// How many nodes have which room, in fixed fields and in free field.
+/// Number of nodes by field width, for fixed fields and for free field.
 #[derive(Default)]
-struct Rooms([[u64; ROOMS.len()]; 2]);
+struct FieldWidthCounts([[u64; WIDTH_PRECISIONS.len()]; 2]);
 
-impl Rooms {
-    fn add(&mut self, Room { is_free, size }: Room) {
+impl FieldWidthCounts {
+    fn add(&mut self, FieldWidth { is_free, size }: FieldWidth) {
         self.0[usize::from(is_free)][size] += 1;
     }
 
@@ -59,27 +60,30 @@ impl Rooms {
         let [fixed, free] = &self.0;
         let smallest = fixed.iter().position(|&count| count > 0);
         let longest = free.iter().rposition(|&count| count > 0);
-        let size = smallest.into_iter().chain(longest).min().unwrap_or(ROOMS.len() - 1);
+        let size = smallest.into_iter().chain(longest).min().unwrap_or(WIDTH_PRECISIONS.len() - 1);
         let longer = |counts: &[u64; 3]| counts[size + 1..].iter().sum::<u64>();
-        (ROOMS[size], longer(fixed) + longer(free))
+        (WIDTH_PRECISIONS[size], longer(fixed) + longer(free))
     }
 }
 
 /// Hands on all nodes. Returns how coordinates are stored.
-pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<Numbers, ReadError> {
-    let mut heights = Heights::new(sink);
-    let mut rooms = Rooms::default();
+pub(super) fn send(
+    rows: &Cursor<'_>,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<CoordinateEncoding, ReadError> {
+    let mut z_values = ZValues::new(visitor);
+    let mut rooms = FieldWidthCounts::default();
     // Where the first node is that names no coordinate system, and the system of such nodes.
     let (mut count, mut first_at, mut system) = (0, None, 0);
     let cursor = &mut rows.clone();
-    all_rows(cursor, sink, card, |cursor, sink, card| {
+    all_rows(cursor, visitor, card, |cursor, visitor, card| {
         match card {
-            Card::Node(Node { tag, x_at, at, z, room, is_of_default }) => {
-                sink.node(cursor, tag, 2, x_at, at);
-                heights.see(z);
+            Card::Node(Node { id, x_at, at, z, field_width: room, is_of_default }) => {
+                visitor.node(cursor, id, 2, x_at, at);
+                z_values.push(z);
                 rooms.add(room);
                 count += 1;
-                first_at = first_at.or(is_of_default.then_some((x_at, tag)));
+                first_at = first_at.or(is_of_default.then_some((x_at, id)));
             }
             Card::System(own) => system = own,
             Card::Other => {}
@@ -91,21 +95,21 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<Numbers, Re
         return Err(cursor.source.error(problem, "Save the mesh with its nodes and elements"));
     }
     cursor.check_vertex_count(count)?;
-    if let (1.., Some((at, tag))) = (system, first_at) {
-        return Err(in_system(&Cursor::standing_at(cursor.source, at), tag, system));
+    if let (1.., Some((at, id))) = (system, first_at) {
+        return Err(in_system(&Cursor::on_line_of(cursor.source, at), id, system));
     }
-    sink.end_nodes(cursor)?;
+    visitor.end_nodes(cursor)?;
     let (precision, longer) = rooms.precision();
     if longer > 0 {
         let most = if precision == Precision::Text8 { 8 } else { 16 };
         let (s, have) = if longer == 1 { ("", "has") } else { ("s", "have") };
         let nodes = format!("{longer} node{s} {have} coordinates of more than {most} characters");
-        sink.remark(Remark::Text(format!(
+        visitor.remark(Remark::Text(format!(
             "{nodes}, beside fields of {most}: they count as rounded to {most}"
         )));
     }
-    let numbers = Numbers::Fields { precision };
-    heights.send("z", numbers.into(), sink);
+    let numbers = CoordinateEncoding::Fields { precision };
+    z_values.send("z", numbers.into(), visitor);
     Ok(numbers)
 }
 
@@ -113,8 +117,8 @@ pub(super) fn send(rows: &Cursor<'_>, sink: &mut dyn Sink) -> Result<Numbers, Re
 #[inline]
 fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let row = cursor.row_range();
-    let line = Line::starting_at(cursor.bytes, row.start);
-    match letters(&line.name()) {
+    let line = CardLine::starting_at(cursor.bytes, row.start);
+    match name_bytes(&line.name()) {
         b"GRID" => node(cursor, line, row),
         b"GRDSET" => default_system(cursor, line),
         b"INCLUDE" => {
@@ -135,7 +139,7 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
 }
 
 #[inline]
-fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, ReadError> {
+fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Card, ReadError> {
     let bytes = cursor.bytes;
     let mut fields = line.fields();
     let mut next = || fields.next();
@@ -143,21 +147,21 @@ fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, 
         Some(field) => bytes[field.clone()].trim_ascii(),
         None => &[],
     };
-    let tag = whole(cursor, word(&next()), "the number of a node")?;
+    let id = whole(cursor, word(&next()), "the number of a node")?;
     let system = next();
     let system = match word(&system) {
         b"" => None,
-        system => Some(whole(cursor, system, format_args!("the coordinate system of node {tag}"))?),
+        system => Some(whole(cursor, system, format_args!("the coordinate system of node {id}"))?),
     };
     if let Some(system @ 1..) = system {
-        return Err(in_system(cursor, tag, system));
+        return Err(in_system(cursor, id, system));
     }
     let (mut x_at, mut at, mut longest) = (0, [0.0; 2], 0);
     for (axis, x) in ['x', 'y'].into_iter().zip(&mut at) {
         let field = next();
         let Some(start) = field.as_ref().map(|field| field.start) else {
             let problem = format!(
-                "{axis} of node {tag} is left out at the end of its row, which stands for 0"
+                "{axis} of node {id} is left out at the end of its row, which stands for 0"
             );
             let remedy = "Write the 0, as there is no place for another value";
             return Err(cursor.error(problem, remedy));
@@ -168,7 +172,7 @@ fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, 
         let own = word(&field);
         longest = longest.max(own.len());
         *x = number(own).filter(|x| x.is_finite()).ok_or_else(|| {
-            cursor.unusable(Some(own), format_args!("{axis} of node {tag}"), "a finite number")
+            cursor.unusable(Some(own), format_args!("{axis} of node {id}"), "a finite number")
         })?;
     }
     // In large field it is mostly in the next line.
@@ -177,21 +181,21 @@ fn node(cursor: &Cursor<'_>, line: Line<'_>, row: Range<usize>) -> Result<Card, 
     let of_z = word(&z);
     longest = longest.max(of_z.len());
     let height = number(of_z)
-        .ok_or_else(|| cursor.unusable(Some(of_z), format_args!("z of node {tag}"), "a number"))?;
-    let z = z.map_or(NO_HEIGHT, |z| (z.start, height));
+        .ok_or_else(|| cursor.unusable(Some(of_z), format_args!("z of node {id}"), "a number"))?;
+    let z = z.map_or(NO_Z, |z| (z.start, height));
     let given = if line.is_free { longest } else { 0 };
     let size = match given {
         17.. => 2,
         9.. => 1,
         _ => usize::from(line.is_large),
     };
-    let room = Room { is_free: line.is_free, size };
-    Ok(Card::Node(Node { tag, x_at, at, z, room, is_of_default: system.is_none() }))
+    let room = FieldWidth { is_free: line.is_free, size };
+    Ok(Card::Node(Node { id, x_at, at, z, field_width: room, is_of_default: system.is_none() }))
 }
 
 /// Reads the coordinate system that GRDSET names.
 #[cold]
-fn default_system(cursor: &Cursor<'_>, line: Line<'_>) -> Result<Card, ReadError> {
+fn default_system(cursor: &Cursor<'_>, line: CardLine<'_>) -> Result<Card, ReadError> {
     let field = line.fields().nth(1).unwrap_or(0..0);
     let system = match cursor.bytes[field].trim_ascii() {
         b"" => 0,
@@ -201,8 +205,8 @@ fn default_system(cursor: &Cursor<'_>, line: Line<'_>) -> Result<Card, ReadError
 }
 
 #[cold]
-fn in_system(cursor: &Cursor<'_>, tag: u64, system: u64) -> ReadError {
-    let problem = format!("node {tag} is in the coordinate system {system}, not in the basic one");
+fn in_system(cursor: &Cursor<'_>, id: u64, system: u64) -> ReadError {
+    let problem = format!("node {id} is in the coordinate system {system}, not in the basic one");
     cursor.error(problem, "Write the nodes in the basic system, with CP blank or 0")
 }
 

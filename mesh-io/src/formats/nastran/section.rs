@@ -23,11 +23,11 @@ pub(super) fn rows(source: &Source) -> Cursor<'_> {
         at = next;
     }
     let mut rows = match begin {
-        Some(at) => Cursor::standing_at(source, at),
+        Some(at) => Cursor::on_line_of(source, at),
         None => Cursor::new(source),
     };
     rows.bytes = &bytes[..end];
-    rows.of(Syntax::CARDS)
+    rows.with_syntax(Syntax::CARDS)
 }
 
 /// Whether a line is the one before the bulk data.

@@ -1,27 +1,27 @@
 //! The cards of elements, by their names.
 
-use crate::text::card::{Name, letters};
-use crate::visit::items::Kind;
+use crate::text::card::{CardName, name_bytes};
+use crate::visit::items::CellKind;
 
 /// What elements are in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Class {
     /// Elements with their nodes behind their number and their property.
-    Of(Kind),
+    Of(CellKind),
     /// Lines with their nodes behind their number, without a property.
     Line,
-    /// Elements that hold the nodes which are in these fields. The number of the element is in field 0.
-    Held(&'static [usize]),
+    /// Elements that constrain the nodes in these fields, counted from the number of the element in field 0.
+    Constraining(&'static [usize]),
     /// Elements that hold as many nodes as they list.
-    Rigid(Listed),
+    Rigid(RigidFields),
     /// Elements with nodes on their sides.
     SecondOrder,
     Volume,
 }
 
-/// How a rigid element lists nodes.
+/// Order of nodes, components and weights in the fields of a rigid element.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Listed {
+pub(super) enum RigidFields {
     /// A node, components, and nodes: RBE2.
     Nodes,
     /// Nodes, each with components: RBE1.
@@ -31,28 +31,28 @@ pub(super) enum Listed {
 }
 
 /// Returns what the elements of a card are; `None` if it is not known as one of elements.
-pub(super) fn class(name: &Name) -> Option<Class> {
-    Some(match letters(name) {
+pub(super) fn class(name: &CardName) -> Option<Class> {
+    Some(match name_bytes(name) {
         b"CTRIA3" | b"CTRIAR" | b"CTRIA1" | b"CTRIA2" | b"CTRMEM" | b"CTRPLT" | b"CTRBSC"
-        | b"CPLSTN3" | b"CPLSTS3" | b"CTRAX3" => Class::Of(Kind::Triangle),
+        | b"CPLSTN3" | b"CPLSTS3" | b"CTRAX3" => Class::Of(CellKind::Triangle),
         b"CQUAD4" | b"CQUADR" | b"CQUAD1" | b"CQUAD2" | b"CQDMEM" | b"CQDMEM1" | b"CQDMEM2"
         | b"CQDPLT" | b"CSHEAR" | b"CTWIST" | b"CPLSTN4" | b"CPLSTS4" | b"CQUADX4" => {
-            Class::Of(Kind::Quadrilateral)
+            Class::Of(CellKind::Quadrilateral)
         }
-        b"CBAR" | b"CBEAM" | b"CROD" | b"CTUBE" | b"CBEND" => Class::Of(Kind::Line),
+        b"CBAR" | b"CBEAM" | b"CROD" | b"CTUBE" | b"CBEND" => Class::Of(CellKind::Line),
         b"CONROD" | b"PLOTEL" => Class::Line,
-        b"CONM1" | b"CONM2" => Class::Held(&[1]),
+        b"CONM1" | b"CONM2" => Class::Constraining(&[1]),
         b"CELAS1" | b"CELAS2" | b"CMASS1" | b"CMASS2" | b"CDAMP1" | b"CDAMP2" => {
-            Class::Held(&[2, 4])
+            Class::Constraining(&[2, 4])
         }
         b"CELAS3" | b"CELAS4" | b"CMASS3" | b"CMASS4" | b"CDAMP3" | b"CDAMP4" | b"CBUSH"
-        | b"CBUSH1D" | b"CGAP" | b"CVISC" => Class::Held(&[2, 3]),
-        b"RBAR" | b"RROD" | b"RJOINT" => Class::Held(&[1, 2]),
-        b"RTRPLT" | b"PLOTEL3" => Class::Held(&[1, 2, 3]),
-        b"CBEAM3" => Class::Held(&[2, 3, 4]),
-        b"RBE1" => Class::Rigid(Listed::Pairs),
-        b"RBE2" => Class::Rigid(Listed::Nodes),
-        b"RBE3" => Class::Rigid(Listed::Weights),
+        | b"CBUSH1D" | b"CGAP" | b"CVISC" => Class::Constraining(&[2, 3]),
+        b"RBAR" | b"RROD" | b"RJOINT" => Class::Constraining(&[1, 2]),
+        b"RTRPLT" | b"PLOTEL3" => Class::Constraining(&[1, 2, 3]),
+        b"CBEAM3" => Class::Constraining(&[2, 3, 4]),
+        b"RBE1" => Class::Rigid(RigidFields::Pairs),
+        b"RBE2" => Class::Rigid(RigidFields::Nodes),
+        b"RBE3" => Class::Rigid(RigidFields::Weights),
         b"CTRIA6" | b"CTRIAX6" | b"CTRIAX" | b"CTRAX6" | b"CTRSHL" | b"CQUAD8" | b"CQUAD9"
         | b"CQUAD" | b"CQUADX" | b"CQUADX8" | b"CPLSTN6" | b"CPLSTN8" | b"CPLSTS6" | b"CPLSTS8" => {
             Class::SecondOrder

@@ -1,11 +1,11 @@
 //! The header of a PLY: the lists of the file, and the properties of their items.
 
-use crate::binary::order::Order;
-use crate::edit::numbers::Form;
+use crate::binary::byte_order::ByteOrder;
+use crate::edit::numbers::NumberEncoding;
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::text::layout::of_rows_or_words;
+use crate::text::row_layout::of_rows_or_words;
 use crate::text::token::quoted;
 
 /// The type of a number.
@@ -33,7 +33,7 @@ pub(super) struct List<'a> {
 /// The form of items: text, or binary in a byte order.
 #[derive(Clone, Copy)]
 pub(super) struct Items {
-    pub(super) order: Option<Order>,
+    pub(super) order: Option<ByteOrder>,
 }
 
 /// Reads the header: the form of items, and the lists in the order of the file.
@@ -47,8 +47,8 @@ pub(super) fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>
             b"format" => {
                 items.order = match cursor.token().unwrap_or_default() {
                     b"ascii" => None,
-                    b"binary_little_endian" => Some(Order::Little),
-                    b"binary_big_endian" => Some(Order::Big),
+                    b"binary_little_endian" => Some(ByteOrder::Little),
+                    b"binary_big_endian" => Some(ByteOrder::Big),
                     other => {
                         let problem = format!("the format is `{}`", quoted(other));
                         return Err(cursor.error(problem, CORRECT));
@@ -138,10 +138,10 @@ impl Number {
 
 impl Items {
     /// Returns how real numbers are stored in the file.
-    pub(super) fn form(self, precision: Precision) -> Form {
+    pub(super) fn form(self, precision: Precision) -> NumberEncoding {
         match self.order {
-            None => Form::Text(precision),
-            Some(order) => Form::Binary(order, precision),
+            None => NumberEncoding::Text(precision),
+            Some(order) => NumberEncoding::Binary(order, precision),
         }
     }
 }

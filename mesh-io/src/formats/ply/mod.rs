@@ -5,16 +5,16 @@
 //! and properties are skipped. Coordinates of the type `float` have single precision in text, too.
 
 use crate::disk::source::Source;
-use crate::edit::numbers::{Numbers, Places};
+use crate::edit::numbers::{CoordinateEncoding, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
-use crate::visit::heights::Heights;
-use crate::visit::items::{Element, Kind, PointNumbers};
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Layout, Stored};
+use crate::visit::items::{CellKind, Element, PointNumbers};
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::{ArrayLocation, CoordinateStorage};
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 use header::{Items, List, Number, Property, header};
 
@@ -24,10 +24,13 @@ pub(crate) mod write;
 
 pub(crate) struct Ply;
 
-impl Walk for Ply {
+impl FormatReader for Ply {
     const VERTICES: &'static str = "the list of vertices";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source);
         let (items, lists) = header(cursor)?;
         let Some(vertices) = lists.iter().position(|list| list.name == b"vertex") else {
@@ -40,17 +43,17 @@ impl Walk for Ply {
         let mut layout = None;
         for list in &lists {
             match list.name {
-                b"vertex" => layout = Some(items.vertices(cursor, list, sink)?),
+                b"vertex" => layout = Some(items.vertices(cursor, list, visitor)?),
                 b"face" => {
-                    items.elements(cursor, list, &[b"vertex_indices", b"vertex_index"], sink)?
+                    items.elements(cursor, list, &[b"vertex_indices", b"vertex_index"], visitor)?
                 }
-                b"edge" => items.elements(cursor, list, &[b"vertex1", b"vertex2"], sink)?,
+                b"edge" => items.elements(cursor, list, &[b"vertex1", b"vertex2"], visitor)?,
                 b"tristrips" => {
                     let problem = "strips of triangles are not read";
                     return Err(cursor.error(problem, "Save them as faces"));
                 }
                 _ => {
-                    sink.leaves_out("elements that are neither vertices, faces nor edges");
+                    visitor.unsupported("elements that are neither vertices, faces nor edges");
                     items.each(cursor, list, 0, |_, _, _| Ok(()))?;
                 }
             }
@@ -62,23 +65,23 @@ impl Walk for Ply {
 /// The properties of vertices besides coordinates that are single numbers.
 struct Data<'l, 'a> {
     properties: Vec<(usize, &'l Property<'a>)>,
-    /// The numbers of each property and their offsets, if the sink asks for data.
+    /// The numbers of each property and their offsets, if the visitor asks for data.
     numbers: Option<Vec<(Vec<f64>, Vec<usize>)>>,
 }
 
 impl<'l, 'a> Data<'l, 'a> {
-    fn new(list: &'l List<'a>, z: Option<usize>, sink: &dyn Sink) -> Self {
+    fn new(list: &'l List<'a>, z: Option<usize>, visitor: &dyn MeshVisitor) -> Self {
         let is_data = |(index, property): &(usize, &Property<'_>)| {
             property.length.is_none() && Some(*index) != z && !matches!(property.name, b"x" | b"y")
         };
         let properties: Vec<_> = list.properties.iter().enumerate().filter(is_data).collect();
         let empty = || properties.iter().map(|_| Default::default()).collect();
-        let numbers = sink.asks_for_data().then(empty);
+        let numbers = visitor.asks_for_data().then(empty);
         Data { properties, numbers }
     }
 
     /// Takes the data of the next vertex.
-    fn see(&mut self, values: &[Vec<f64>], at: &[usize]) {
+    fn push(&mut self, values: &[Vec<f64>], at: &[usize]) {
         let Some(numbers) = &mut self.numbers else { return };
         for ((numbers, places), &(index, _)) in numbers.iter_mut().zip(&self.properties) {
             numbers.push(values[index][0]);
@@ -86,19 +89,19 @@ impl<'l, 'a> Data<'l, 'a> {
         }
     }
 
-    fn send(self, items: Items, sink: &mut dyn Sink) {
+    fn send(self, items: Items, visitor: &mut dyn MeshVisitor) {
         let mut numbers = self.numbers.map(Vec::into_iter);
         for (_, property) in self.properties {
             let precision = property.precision();
             let own = numbers.as_mut().and_then(Iterator::next);
-            if sink.point_array(property.name, 1, precision.is_some())
+            if visitor.point_array(property.name, 1, precision.is_some())
                 && let Some((mut numbers, places)) = own
             {
                 let stored = precision.and_then(|precision| {
                     numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));
-                    Stored::in_place(Places::List(places), items.form(precision))
+                    ArrayLocation::in_place(Offsets::List(places), items.form(precision))
                 });
-                sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+                visitor.point_numbers(PointNumbers { numbers, nodes: None, location: stored });
             }
         }
     }
@@ -146,7 +149,7 @@ impl Items {
                     .and_then(|()| cursor.item(&mut read, &mut missing)),
             };
             let taken = read.and_then(|()| match item {
-                Some(at) => take(&Cursor::at_byte_of(cursor.source, at), &values, &places),
+                Some(at) => take(&Cursor::at_byte_offset(cursor.source, at), &values, &places),
                 None => take(cursor, &values, &places),
             });
             match taken {
@@ -179,7 +182,7 @@ impl Items {
         let Some(bytes) = cursor.take(size) else {
             return Err(cursor.error("the file ends within its lists", CUT_OFF));
         };
-        let at = cursor.taken();
+        let at = cursor.last_taken();
         item.get_or_insert(at);
         let value = match number {
             Number::Float => order.real(Precision::Single, bytes),
@@ -194,8 +197,8 @@ impl Items {
         self,
         cursor: &mut Cursor<'_>,
         list: &List<'_>,
-        sink: &mut dyn Sink,
-    ) -> Result<Layout, ReadError> {
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         cursor.check_vertex_count(list.count)?;
         let named =
             |name: &[u8]| list.properties.iter().position(|p| p.name == name && p.length.is_none());
@@ -216,31 +219,36 @@ impl Items {
             return Err(cursor.error(problem, "Save vertices with x, y and z in this order"));
         }
         let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
-        let mut heights = Heights::new(sink);
-        let mut data = Data::new(list, z, sink);
-        let mut tag = self.plain_vertices(cursor, list, x, z, &mut heights, sink);
-        self.each(cursor, list, tag, |place, values, places| {
-            data.see(values, places);
+        let mut z_values = ZValues::new(visitor);
+        let mut data = Data::new(list, z, visitor);
+        let mut id = self.plain_vertices(cursor, list, x, z, &mut z_values, visitor);
+        self.each(cursor, list, id, |place, values, places| {
+            data.push(values, places);
             if let Some(z) = z {
-                heights.see((places[z], values[z][0]));
+                z_values.push((places[z], values[z][0]));
             }
             let at = [values[x][0], values[y][0]];
             if !at.iter().all(|x| x.is_finite()) {
-                let problem = format!("a coordinate of vertex {tag} is not a finite number");
+                let problem = format!("a coordinate of vertex {id} is not a finite number");
                 return Err(place.error(problem, CORRECT));
             }
-            sink.node(place, tag, 2, places[x], at);
-            tag += 1;
+            visitor.node(place, id, 2, places[x], at);
+            id += 1;
             Ok(())
         })?;
-        sink.end_nodes(cursor)?;
+        visitor.end_nodes(cursor)?;
         if let Some(precision) = z.and_then(|z| list.properties[z].precision()) {
-            heights.send("z", self.form(precision), sink);
+            z_values.send("z", self.form(precision), visitor);
         }
-        data.send(self, sink);
+        data.send(self, visitor);
         Ok(match self.order {
-            None => Layout::in_place(Format::Ply, Numbers::Text { precision }),
-            Some(order) => Layout::in_place(Format::PlyBinary, Numbers::adjacent(order, precision)),
+            None => {
+                CoordinateStorage::in_place(Format::Ply, CoordinateEncoding::Text { precision })
+            }
+            Some(order) => CoordinateStorage::in_place(
+                Format::PlyBinary,
+                CoordinateEncoding::adjacent(order, precision),
+            ),
         })
     }
 
@@ -250,14 +258,14 @@ impl Items {
         cursor: &mut Cursor<'_>,
         list: &List<'_>,
         names: &[&[u8]],
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let properties = &list.properties;
         if properties.iter().any(|property| !names.contains(&property.name)) {
-            sink.leaves_out("properties of faces or edges");
+            visitor.unsupported("properties of faces or edges");
         }
-        let mut tag = self.plain_triangles(cursor, list, names, sink);
-        self.each(cursor, list, tag, |place, values, _| {
+        let mut id = self.plain_triangles(cursor, list, names, visitor);
+        self.each(cursor, list, id, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
             // A number that is negative or not whole is no number of a vertex.
@@ -266,20 +274,20 @@ impl Items {
                 false => u64::MAX,
             };
             let region = [0; 2];
-            match Kind::of_polygon(corners.len() as u64) {
+            match CellKind::of_polygon(corners.len() as u64) {
                 Some(kind) => {
                     let mut nodes = [0; 4];
                     for (to, corner) in nodes.iter_mut().zip(&corners) {
                         *to = node(corner);
                     }
-                    sink.element(place, &Element { tag, kind, region, nodes })?;
+                    visitor.element(place, &Element { id, kind, region, nodes })?;
                 }
                 None => {
                     let corners: Vec<u64> = corners.iter().map(node).collect();
-                    sink.polygon(place, tag, region, &corners)?;
+                    visitor.polygon(place, id, region, &corners)?;
                 }
             }
-            tag += 1;
+            id += 1;
             Ok(())
         })
     }

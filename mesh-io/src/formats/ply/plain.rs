@@ -1,14 +1,14 @@
 //! Reads lists of a PLY on all threads, as long as they are plain.
 
 use super::header::{Items, List, Number, Property};
-use crate::binary::number_field::Field;
+use crate::binary::number_field::NumberField;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
-use crate::visit::heights::Heights;
-use crate::visit::items::{Element, Kind};
-use crate::visit::records::{Expected, NodeRecords, Region, Tags, TriangleRecords};
+use crate::visit::items::{CellKind, Element};
+use crate::visit::records::{FieldRule, NodeIds, NodeRecords, Region, TriangleRecords};
 use crate::visit::rows::nodes;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 impl Items {
     /// Hands on the first vertices as long as they are plain, if all have the same number of bytes. `x` and `z` are
@@ -19,8 +19,8 @@ impl Items {
         list: &List<'_>,
         x: usize,
         z: Option<usize>,
-        heights: &mut Heights,
-        sink: &mut dyn Sink,
+        z_values: &mut ZValues,
+        visitor: &mut dyn MeshVisitor,
     ) -> u64 {
         let properties = &list.properties;
         let before = |index| properties[..index].iter().map(|p| p.number.size()).sum::<usize>();
@@ -30,21 +30,26 @@ impl Items {
         }
         let Some(order) = self.order else {
             let is_first = x == 0;
-            return if is_first { vertices_of_text(cursor, list, z, heights, sink) } else { 0 };
+            return if is_first { vertices_of_text(cursor, list, z, z_values, visitor) } else { 0 };
         };
-        let Some((bytes, start)) = cursor.ahead(list.count, stride) else { return 0 };
+        let Some((bytes, start)) = cursor.peek(list.count, stride) else { return 0 };
         let field = |index: usize| {
-            Field::new(bytes.get(before(index)..), stride, properties[index].number.size(), order)
+            NumberField::new(
+                bytes.get(before(index)..),
+                stride,
+                properties[index].number.size(),
+                order,
+            )
         };
-        let (count, x_at, tags) = (list.count as usize, start + before(x), Tags::From(0));
-        let heights_of = z.map(|z| (field(z), start + before(z)));
-        if heights_of.is_some_and(|(z, _)| !z.all_real(count, f64::is_finite)) {
+        let (count, x_at, ids) = (list.count as usize, start + before(x), NodeIds::Consecutive(0));
+        let z_of = z.map(|z| (field(z), start + before(z)));
+        if z_of.is_some_and(|(z, _)| !z.all_real(count, f64::is_finite)) {
             return 0;
         }
-        let records = NodeRecords { count, x: field(x), y: field(x + 1), x_at, tags };
-        let taken = sink.node_records(&records);
-        if let Some((z, at)) = heights_of {
-            heights.see_all(z, taken, at);
+        let records = NodeRecords { count, x: field(x), y: field(x + 1), x_offset: x_at, ids };
+        let taken = visitor.node_records(&records);
+        if let Some((z, at)) = z_of {
+            z_values.push_records(z, taken, at);
         }
         cursor.take(taken * stride);
         taken as u64
@@ -56,7 +61,7 @@ impl Items {
         cursor: &mut Cursor<'_>,
         list: &List<'_>,
         names: &[&[u8]],
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> u64 {
         let properties = &list.properties;
         let size = |property: &Property<'_>| match property.length {
@@ -79,21 +84,22 @@ impl Items {
         }
         let Some(order) = self.order else {
             let is_alone = properties.len() == 1;
-            return if is_alone { triangles_of_text(cursor, list.count, sink) } else { 0 };
+            return if is_alone { triangles_of_text(cursor, list.count, visitor) } else { 0 };
         };
         let stride = properties.iter().map(size).sum::<usize>();
         let at = properties[..corners].iter().map(size).sum::<usize>();
         // If elements have other lengths, there may be too few bytes for this many triangles. Then none is taken here.
-        let Some((bytes, _)) = cursor.ahead(list.count, stride) else { return 0 };
-        let field =
-            |at: usize, number: Number| Field::new(bytes.get(at..), stride, number.size(), order);
-        let taken = sink.triangle_records(&TriangleRecords {
+        let Some((bytes, _)) = cursor.peek(list.count, stride) else { return 0 };
+        let field = |at: usize, number: Number| {
+            NumberField::new(bytes.get(at..), stride, number.size(), order)
+        };
+        let taken = visitor.triangle_records(&TriangleRecords {
             count: list.count as usize,
-            corners: field(at + length.size(), number),
-            first: 0,
-            below: u64::MAX,
+            nodes: field(at + length.size(), number),
+            min_node: 0,
+            node_end: u64::MAX,
             regions: [Region::Same(0); 2],
-            expected: &[(field(at, length), Expected::Is(3))],
+            required_fields: &[(field(at, length), FieldRule::Is(3))],
         });
         cursor.take(taken * stride);
         taken as u64
@@ -106,20 +112,20 @@ fn vertices_of_text(
     cursor: &mut Cursor<'_>,
     list: &List<'_>,
     z: Option<usize>,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    z_values: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> u64 {
-    if !sink.takes_ahead() || sink.asks_for_data() {
+    if !visitor.allows_parallel() || visitor.asks_for_data() {
         return 0;
     }
     let count = list.properties.len();
     let nowhere = &Cursor::new(cursor.source);
-    let mut tag = 0;
+    let mut id = 0;
     let read = |cursor: &mut Cursor<'_>| {
         let point = cursor.point("a vertex")?;
         let mut height = (0, 0.0);
         for index in 2..count {
-            let number = cursor.height("a vertex")?;
+            let number = cursor.z("a vertex")?;
             if Some(index) == z {
                 height = number;
             }
@@ -127,11 +133,11 @@ fn vertices_of_text(
         Ok((point, height))
     };
     let taken = take_rows(cursor, list.count, read, |((x_at, at), height)| {
-        sink.node(nowhere, tag, 2, x_at, at);
+        visitor.node(nowhere, id, 2, x_at, at);
         if z.is_some() {
-            heights.see(height);
+            z_values.push(height);
         }
-        tag += 1;
+        id += 1;
         true
     });
     if taken > 0 && taken == list.count {
@@ -141,20 +147,20 @@ fn vertices_of_text(
 }
 
 /// Reads elements of text on all threads, as long as they are triangles. Returns how many were taken.
-fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, sink: &mut dyn Sink) -> u64 {
-    if !sink.takes_ahead() || sink.asks_for_data() {
+fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, visitor: &mut dyn MeshVisitor) -> u64 {
+    if !visitor.allows_parallel() || visitor.asks_for_data() {
         return 0;
     }
     let nowhere = &Cursor::new(cursor.source);
-    let mut tag = 0;
+    let mut id = 0;
     let read = |cursor: &mut Cursor<'_>| match cursor.integer("the number of corners")? {
-        3 => nodes(cursor, Kind::Triangle),
+        3 => nodes(cursor, CellKind::Triangle),
         _ => Err(cursor.error("no triangle", CORRECT)),
     };
     let taken = take_rows(cursor, count, read, |nodes| {
-        let element = Element { tag, kind: Kind::Triangle, region: [0; 2], nodes };
-        tag += 1;
-        sink.element(nowhere, &element).is_ok()
+        let element = Element { id, kind: CellKind::Triangle, region: [0; 2], nodes };
+        id += 1;
+        visitor.element(nowhere, &element).is_ok()
     });
     if taken > 0 && taken == count {
         cursor.rest();

@@ -1,15 +1,15 @@
 //! Writes PLY.
 
-use crate::export::content::Data;
-use crate::export::job::{Job, text_of};
+use crate::export::content::DataArray;
 use crate::export::put;
-use crate::visit::items::Kind;
+use crate::export::writer_input::{WriterInput, text_of};
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 /// Writes PLY as text, with data of one number among the properties of vertices.
-pub(crate) fn write_ply(job: &Job<'_>) -> String {
-    let content = job.content;
-    let data: Vec<&Data> = job.point_data().collect();
+pub(crate) fn write_ply(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let data: Vec<&DataArray> = input.point_data().collect();
     let mut out = "ply\nformat ascii 1.0\n".to_owned();
     put!(out, "element vertex {}\n", content.points.len());
     out.push_str("property double x\nproperty double y\nproperty double z\n");
@@ -19,23 +19,23 @@ pub(crate) fn write_ply(job: &Job<'_>) -> String {
     }
     let faces = || {
         let is_face = |cell: &usize| content.cells.kinds[*cell].dimension() == 2;
-        job.cells().filter(is_face)
+        input.cells().filter(is_face)
     };
     put!(out, "element face {}\n", faces().count());
     out.push_str("property list uchar int vertex_indices\n");
-    if job.count(Kind::Line) > 0 {
-        put!(out, "element edge {}\n", job.count(Kind::Line));
+    if input.count(CellKind::Line) > 0 {
+        put!(out, "element edge {}\n", input.count(CellKind::Line));
         out.push_str("property int vertex1\nproperty int vertex2\n");
     }
     out.push_str("end_header\n");
     for vertex in 0..content.points.len() {
-        out.push_str(&job.space(vertex));
+        out.push_str(&input.xyz(vertex));
         data.iter().for_each(|data| put!(out, " {}", text_of(data, data.values[vertex])));
         out.push('\n');
     }
     for cell in faces() {
-        put!(out, "{} {}\n", content.cells.of(cell).len(), job.places(cell, 0));
+        put!(out, "{} {}\n", content.cells.of(cell).len(), input.positions(cell, 0));
     }
-    job.all(Kind::Line).for_each(|cell| put!(out, "{}\n", job.places(cell, 0)));
+    input.all(CellKind::Line).for_each(|cell| put!(out, "{}\n", input.positions(cell, 0)));
     out
 }

@@ -2,7 +2,7 @@
 
 use crate::content::constraints::Affine;
 use crate::text::token::float;
-use crate::visit::items::Pairs;
+use crate::visit::items::PeriodicNodes;
 
 /// The motions read so far, in the order of the file.
 #[derive(Default)]
@@ -32,7 +32,7 @@ impl Motions {
     }
 
     /// Returns all motions of the plane that move something. `None` if there is none, or if one could not be read.
-    pub(crate) fn finish(self) -> Option<Vec<Pairs>> {
+    pub(crate) fn finish(self) -> Option<Vec<PeriodicNodes>> {
         let mut found = Vec::new();
         let Self { centers, angles, translations } = self;
         if centers.len() != angles.len() || centers.len() != translations.len() {
@@ -50,7 +50,7 @@ impl Motions {
                     [cos, -sin, x + along_x - cos * x + sin * y],
                     [sin, cos, y + along_y - sin * x - cos * y],
                 ];
-                found.push(Pairs { motion: Some(motion), nodes: Vec::new() });
+                found.push(PeriodicNodes { motion: Some(motion), nodes: Vec::new() });
             }
         }
         (!found.is_empty()).then_some(found)
@@ -61,7 +61,7 @@ impl Motions {
 mod tests {
     use super::*;
 
-    fn read(rows: &[(&str, &str)]) -> Option<Vec<Pairs>> {
+    fn read(rows: &[(&str, &str)]) -> Option<Vec<PeriodicNodes>> {
         let mut motions = Motions::default();
         rows.iter().for_each(|(key, values)| motions.read(key.as_bytes(), values.as_bytes()));
         motions.finish()

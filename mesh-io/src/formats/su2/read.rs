@@ -3,9 +3,9 @@
 //! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list. The index
 //! at the end of its row is not read. Each zone of a multi-zone mesh has its own points, numbered from 0.
 
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
-use crate::edit::numbers::Numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::su2::motions::Motions;
@@ -14,11 +14,11 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
-use crate::visit::items::{Column, Element, Kind, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::{each_row, nodes, volume};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 
 pub(crate) struct Su2;
@@ -35,13 +35,16 @@ struct List<'a> {
 }
 
 /// An element with its nodes. Most fit this small type.
-type Small = (Kind, [u32; 4]);
+type Small = (CellKind, [u32; 4]);
 
-impl Walk for Su2 {
+impl FormatReader for Su2 {
     const VERTICES: &'static str = "NPOIN";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
-        let cursor = &mut Cursor::new(source).of(Syntax::PERCENT);
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
+        let cursor = &mut Cursor::new(source).with_syntax(Syntax::PERCENT);
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and the number of all points.
         let (mut zones, mut points) = (vec![0], 0_u64);
@@ -59,16 +62,16 @@ impl Walk for Su2 {
                 b"NPOIN" => {
                     let count = number(cursor, "NPOIN", value)?;
                     cursor.check_vertex_count(points.saturating_add(count))?;
-                    sink.expect_nodes(cursor.capacity(count, "0 0\n".len()));
+                    visitor.expect_nodes(cursor.capacity(count, "0 0\n".len()));
                     let first = points;
                     each_row(
                         cursor,
                         count,
                         "points",
-                        sink,
+                        visitor,
                         |cursor| cursor.point("a point"),
-                        |cursor, sink, done, (x_at, at)| {
-                            sink.node(cursor, first + done, 2, x_at, at);
+                        |cursor, visitor, done, (x_at, at)| {
+                            visitor.node(cursor, first + done, 2, x_at, at);
                             Ok(())
                         },
                     )?;
@@ -82,7 +85,7 @@ impl Walk for Su2 {
                     let marker = if key == b"NELEM" { None } else { marker };
                     skip_send_to(cursor);
                     let start = cursor.clone();
-                    let ahead = read_ahead(cursor, count, sink);
+                    let ahead = read_ahead(cursor, count, visitor);
                     // Not `row`: the list is read again below and then returns a better error.
                     for _ in ahead.len() as u64..count {
                         if !cursor.next_row() {
@@ -93,39 +96,47 @@ impl Walk for Su2 {
                 }
                 // The first periodic entry is no motion.
                 b"NPERIODIC"
-                    if !sink.asks_for_data() && integer(value).is_some_and(|count| count > 1) =>
+                    if !visitor.asks_for_data()
+                        && integer(value).is_some_and(|count| count > 1) =>
                 {
                     motions.get_or_insert_default();
                 }
                 b"PERIODIC_CENTER" | b"PERIODIC_ROTATION" | b"PERIODIC_TRANSLATION"
-                    if !sink.asks_for_data() =>
+                    if !visitor.asks_for_data() =>
                 {
                     motions.as_mut().into_iter().for_each(|motions| motions.read(key, all));
                 }
                 b"NMARK" | b"NZONE" | b"IZONE" => {}
                 // Counts of other lists, and boxes for free-form deformation.
-                _ if sink.asks_for_data() && !value.is_empty() => {
-                    sink.leaves_out(&format!("what {}= is", quoted(key)));
+                _ if visitor.asks_for_data() && !value.is_empty() => {
+                    visitor.unsupported(&format!("what {}= is", quoted(key)));
                 }
                 _ => {}
             }
         }
-        sink.end_nodes(cursor)?;
+        visitor.end_nodes(cursor)?;
         if let Some(motions) = motions {
-            sink.pairs(motions.finish());
+            visitor.periodic_pairs(motions.finish());
         }
         if zones.len() > 1 {
-            let label = |zone| Some(Label::Tag(zone + 1));
-            sink.columns(vec![Column { what: "zone".into(), from_dimension: 2, label }]);
+            let label = |zone| Some(GroupLabel::Tag(zone + 1));
+            visitor.region_attributes(vec![RegionAttribute {
+                kind: "zone".into(),
+                from_dimension: 2,
+                label,
+            }]);
         }
         for List { mut cursor, ahead, count, zone, marker } in lists {
-            let within =
-                |name| Within { what: "marker", label: Label::name(name), dimension: None };
-            sink.within(marker.map(within).as_slice());
+            let within = |name| GroupScope {
+                kind: "marker",
+                label: GroupLabel::name(name),
+                dimension: None,
+            };
+            visitor.group_scopes(marker.map(within).as_slice());
             let last = zones.get(zone + 1).copied().unwrap_or(points);
-            elements(&mut cursor, &ahead, count, zone, zones[zone]..last, sink)?;
+            elements(&mut cursor, &ahead, count, zone, zones[zone]..last, visitor)?;
         }
-        Ok(Layout::in_place(Format::Su2, Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Su2, CoordinateEncoding::TEXT))
     }
 }
 
@@ -136,10 +147,10 @@ fn elements(
     count: u64,
     zone: usize,
     Range { start: first, end: last }: Range<u64>,
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
-    sink.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
-    let mut take = |cursor: &Cursor<'_>, done: u64, (kind, nodes): (Kind, [u64; 4])| {
+    visitor.expect_elements(cursor.capacity(count, "5 0 1 2\n".len()));
+    let mut take = |cursor: &Cursor<'_>, done: u64, (kind, nodes): (CellKind, [u64; 4])| {
         let listed = &nodes[..kind.nodes()];
         if let Some(point) = listed.iter().find(|&&point| point >= last - first) {
             let kind = kind.name();
@@ -147,7 +158,7 @@ fn elements(
             return Err(cursor.error(problem, CORRECT));
         }
         let nodes = nodes.map(|node| node.saturating_add(first));
-        sink.element(cursor, &Element { tag: done, kind, region: [zone as i64, 0], nodes })
+        visitor.element(cursor, &Element { id: done, kind, region: [zone as i64, 0], nodes })
     };
     let mut done = 0;
     // Errors are dropped here, as reading row by row meets them again.
@@ -170,10 +181,10 @@ fn elements(
     Ok(())
 }
 
-/// Reads the first elements of a long list on all threads, if the sink allows it, as long as its rows are plain.
-fn read_ahead(cursor: &mut Cursor<'_>, count: u64, sink: &dyn Sink) -> Vec<Small> {
+/// Reads the first elements of a long list on all threads, if the visitor allows it, as long as its rows are plain.
+fn read_ahead(cursor: &mut Cursor<'_>, count: u64, visitor: &dyn MeshVisitor) -> Vec<Small> {
     let mut ahead = Vec::new();
-    if sink.takes_ahead() {
+    if visitor.allows_parallel() {
         ahead.reserve(cursor.capacity(count, "5 0 1 2\n".len()));
         let read = |cursor: &mut Cursor<'_>| -> Result<Option<Small>, ReadError> {
             let (kind, nodes) = element(cursor)?;
@@ -222,7 +233,7 @@ fn wrong(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> ReadError {
 
 /// Reads the row of an element, which starts with VTK's number of its type.
 #[inline]
-fn element(cursor: &mut Cursor<'_>) -> Result<(Kind, [u64; 4]), ReadError> {
+fn element(cursor: &mut Cursor<'_>) -> Result<(CellKind, [u64; 4]), ReadError> {
     let number = cursor.integer("the type of an element")?;
     match types::kind_of(number) {
         Some(kind) => Ok((kind, nodes(cursor, kind)?)),

@@ -1,7 +1,7 @@
 //! The files of a Triangle mesh: a `.node` with the vertices, an `.ele` with the triangles, and perhaps a `.poly` with
 //! segments.
 
-use crate::compress::packed::{self, Packing};
+use crate::compress::file::{Compression, inner_name};
 use crate::disk::source::{Companion, Source, file_name};
 use crate::error::{ReadError, WriteError};
 use crate::formats::triangle::names::{Names, appended};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Returns whether a path ends in `.node` or `.ele`, before the ending of a compressed file.
 fn is_named_as_triangle(path: &Path) -> bool {
     let name = file_name(path).to_ascii_lowercase();
-    let name = packed::inner_name(&name);
+    let name = inner_name(&name);
     name.ends_with(".node") || name.ends_with(".ele")
 }
 
@@ -72,7 +72,7 @@ pub(super) fn load_companions(given: Source) -> Result<Source, ReadError> {
     let poly = names.poly.exists().then(|| Source::load(&names.poly)).transpose()?;
     let others = [ele].into_iter().chain(poly);
     node.companions.extend(others.map(Companion::by_convention));
-    if let Some(packed) = node.parts().find(|source| source.packed.is_some()) {
+    if let Some(packed) = node.files().find(|source| source.compressed.is_some()) {
         let problem = "files of Triangle are not read compressed, as there are several to a mesh";
         return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
     }
@@ -107,12 +107,12 @@ fn missing_file(missing: &Path, names: &Names) -> ReadError {
     ReadError::Io { path: missing.to_owned(), source, remedy }
 }
 
-/// Returns the files that are written for `path`, in the order of [`Source::parts`].
+/// Returns the files that are written for `path`, in the order of [`Source::files`].
 pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
     let refused = |problem: String, remedy: &str| {
         Err(WriteError::Format { path: path.to_owned(), problem, remedy: remedy.into() })
     };
-    if Packing::of(path).is_some() {
+    if Compression::of(path).is_some() {
         let problem = "a Triangle mesh is of several files, which are not written compressed";
         return refused(problem.into(), "End the name in .node");
     }

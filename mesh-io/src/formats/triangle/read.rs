@@ -3,31 +3,31 @@
 //! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this reader ignores text after the
 //! announced rows and columns.
 
-use crate::content::label::Label;
-use crate::content::regions::Numbering;
+use crate::content::group_label::GroupLabel;
+use crate::content::regions::Interner;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers;
 use crate::error::{ReadError, WriteError};
 use crate::format::Format;
 use crate::formats::triangle::files;
-use crate::formats::triangle::rows::{Numbers, header, rows, vertex_header};
+use crate::formats::triangle::rows::{VertexNumbering, header, rows, vertex_header};
 use crate::formats::triangle::segments::{Segments, listed_vertices};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::float;
-use crate::visit::heights::TextNumbers;
-use crate::visit::items::{Element, Kind, Within};
-use crate::visit::reader::Walk;
+use crate::visit::items::{CellKind, Element, GroupScope};
+use crate::visit::reader::FormatReader;
 use crate::visit::rows::each_row;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::TextNumbers;
 use std::path::{Path, PathBuf};
 
 /// The reader. The source is the `.node`; its companions are the `.ele` and, if there is one, the `.poly`.
 pub(crate) struct Triangle;
 
-impl Walk for Triangle {
+impl FormatReader for Triangle {
     const VERTICES: &'static str = "the .node";
 
     fn load_companions(given: Source) -> Result<Source, ReadError> {
@@ -42,22 +42,22 @@ impl Walk for Triangle {
         files::destinations(node, path)
     }
 
-    fn walk(node: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(node: &Source, visitor: &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError> {
         let mut others = node.companions.iter().map(|companion| &companion.source);
         let (ele, poly) = (others.next().unwrap_or(node), others.next());
-        let vertices = Vertices::read(node, poly, sink)?;
-        triangles(ele, node, &vertices.numbers, sink)?;
-        vertices.send_markers(sink)?;
+        let vertices = Vertices::read(node, poly, visitor)?;
+        triangles(ele, node, &vertices.numbers, visitor)?;
+        vertices.send_markers(visitor)?;
         if let Some(poly) = poly {
-            segments(poly, node, &vertices.numbers, sink)?;
+            segments(poly, node, &vertices.numbers, visitor)?;
         }
-        Ok(Layout::in_place(Format::Triangle, numbers::Numbers::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Triangle, numbers::CoordinateEncoding::TEXT))
     }
 }
 
 /// The list of vertices of a `.node`.
 struct Vertices<'s> {
-    numbers: Numbers,
+    numbers: VertexNumbering,
     /// The number of attributes of each vertex.
     attributes: u64,
     has_markers: bool,
@@ -66,11 +66,11 @@ struct Vertices<'s> {
 }
 
 impl<'s> Vertices<'s> {
-    /// Reads the list, and hands vertices and attributes to the sink.
+    /// Reads the list, and hands vertices and attributes to the visitor.
     fn read(
         node: &'s Source,
         poly: Option<&Source>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<Self, ReadError> {
         let cursor = &mut rows(node);
         let count = vertex_header(cursor)?;
@@ -83,10 +83,10 @@ impl<'s> Vertices<'s> {
         let attributes = cursor.capacity(attributes, 1) as u64;
         let has_markers = cursor.integer_or(0, "whether vertices have markers").unwrap_or(0) != 0;
         let before = cursor.clone();
-        sink.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
+        visitor.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
         let listed = poly.map_or(0, listed_vertices);
-        let mut numbers = Numbers { first: 0, count };
-        if !sink.asks_for_nodes() {
+        let mut numbers = VertexNumbering { first: 0, count };
+        if !visitor.asks_for_nodes() {
             // The first row tells how vertices are numbered.
             if cursor.next_row() {
                 numbers.first = cursor.integer("the number of a vertex")?;
@@ -97,30 +97,30 @@ impl<'s> Vertices<'s> {
             let number = cursor.integer("the number of a vertex")?;
             Ok((number, cursor.point(format_args!("vertex {number}"))?))
         };
-        each_row(cursor, count, "vertices", sink, read, |cursor, sink, row, vertex| {
+        each_row(cursor, count, "vertices", visitor, read, |cursor, visitor, row, vertex| {
             let (number, (x_at, at)) = vertex;
             numbers.check(cursor, row, number)?;
             // A vertex of the outline is a point of the model, which has the dimension 0.
             let dimension = if row < listed { 0 } else { 2 };
-            sink.node(cursor, number, dimension, x_at, at);
+            visitor.node(cursor, number, dimension, x_at, at);
             Ok(())
         })?;
-        sink.end_nodes(cursor)?;
+        visitor.end_nodes(cursor)?;
         for (column, name) in
             (0..attributes).map(|column| (column, column_name(column, attributes)))
         {
-            if sink.point_array(name.as_bytes(), 1, true) {
+            if visitor.point_array(name.as_bytes(), 1, true) {
                 let mut values = TextNumbers::default();
                 values.column(before.clone(), count, 3 + column)?;
-                sink.point_numbers(values.finish(Precision::Double, None));
+                visitor.point_numbers(values.finish(Precision::Double, None));
             }
         }
         Ok(Vertices { numbers, attributes, has_markers, before })
     }
 
-    /// Hands the markers of vertices to a sink that asks for groups.
-    fn send_markers(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
-        if !self.has_markers || !sink.asks_for_groups() {
+    /// Hands the markers of vertices to a visitor that asks for groups.
+    fn send_markers(&self, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
+        if !self.has_markers || !visitor.asks_for_groups() {
             return Ok(());
         }
         let mut cursor = self.before.clone();
@@ -128,7 +128,7 @@ impl<'s> Vertices<'s> {
             cursor.row(row, self.numbers.count, "vertices")?;
             cursor.tokens(self.attributes.saturating_add(3));
             if let Some(label) = cursor.token().and_then(marker) {
-                sink.node_within(row as u32, "marker", &label);
+                visitor.node_group(row as u32, "marker", &label);
             }
         }
         Ok(())
@@ -144,21 +144,21 @@ fn column_name(column: u64, columns: u64) -> String {
 }
 
 /// Returns the label that an attribute stands for.
-fn attribute(token: &[u8]) -> Label {
-    float(token).map_or_else(|| Label::name(token), Label::number)
+fn attribute(token: &[u8]) -> GroupLabel {
+    float(token).map_or_else(|| GroupLabel::name(token), GroupLabel::number)
 }
 
 /// Returns the label that a marker stands for. Zero is no marker.
-fn marker(token: &[u8]) -> Option<Label> {
+fn marker(token: &[u8]) -> Option<GroupLabel> {
     (float(token) != Some(0.0)).then(|| attribute(token))
 }
 
-/// Reads the triangles and hands them to the sink, each with the region and the groups of its attributes.
+/// Reads the triangles and hands them to the visitor, each with the region and the groups of its attributes.
 fn triangles(
     ele: &Source,
     node: &Source,
-    numbers: &Numbers,
-    sink: &mut dyn Sink,
+    numbers: &VertexNumbering,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     let cursor = &mut rows(ele);
     header(cursor, "triangles")?;
@@ -179,15 +179,18 @@ fn triangles(
         }
     }
     let columns = cursor.integer_or(0, "the number of attributes per triangle")?;
-    sink.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
+    visitor.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
     let mut attributes = Attributes { columns, ..Attributes::default() };
     let read = |cursor: &mut _| triangle(cursor, node, numbers, columns);
-    each_row(cursor, count, "triangles", sink, read, |cursor, sink, _, triangle| {
+    each_row(cursor, count, "triangles", visitor, read, |cursor, visitor, _, triangle| {
         let (tag, [a, b, c], text) = triangle;
-        let region = [i64::from(attributes.region(text, sink)), 0];
-        sink.element(cursor, &Element { tag, kind: Kind::Triangle, region, nodes: [a, b, c, 0] })
+        let region = [i64::from(attributes.region(text, visitor)), 0];
+        visitor.element(
+            cursor,
+            &Element { id: tag, kind: CellKind::Triangle, region, nodes: [a, b, c, 0] },
+        )
     })?;
-    sink.within(&[]);
+    visitor.group_scopes(&[]);
     Ok(())
 }
 
@@ -197,7 +200,7 @@ fn triangles(
 fn triangle<'a>(
     cursor: &mut Cursor<'a>,
     node: &Source,
-    numbers: &Numbers,
+    numbers: &VertexNumbering,
     columns: u64,
 ) -> Result<(u64, [u64; 3], &'a [u8]), ReadError> {
     let number = cursor.integer("the number of a triangle")?;
@@ -219,27 +222,27 @@ fn triangle<'a>(
 struct Attributes<'a> {
     /// The number of attributes of each triangle.
     columns: u64,
-    texts: Numbering<&'a [u8]>,
+    texts: Interner<&'a [u8]>,
     /// The region of each text.
     regions: Vec<u32>,
-    names: Numbering<String>,
-    /// The text whose groups the sink has, and its region.
+    names: Interner<String>,
+    /// The text whose groups the visitor has, and its region.
     last: Option<(&'a [u8], u32)>,
 }
 
 impl<'a> Attributes<'a> {
-    /// Returns the region of triangles with these attributes, and hands their groups to a sink that asks for groups.
+    /// Returns the region of triangles with these attributes, and hands their groups to a visitor that asks for groups.
     #[inline]
-    fn region(&mut self, text: &'a [u8], sink: &mut dyn Sink) -> u32 {
+    fn region(&mut self, text: &'a [u8], visitor: &mut dyn MeshVisitor) -> u32 {
         match self.last {
             Some((last, region)) if last == text => region,
-            _ => self.next_region(text, sink),
+            _ => self.next_region(text, visitor),
         }
     }
 
-    fn next_region(&mut self, text: &'a [u8], sink: &mut dyn Sink) -> u32 {
-        if self.columns > 0 && sink.asks_for_groups() {
-            self.send_groups(text, sink);
+    fn next_region(&mut self, text: &'a [u8], visitor: &mut dyn MeshVisitor) -> u32 {
+        if self.columns > 0 && visitor.asks_for_groups() {
+            self.send_groups(text, visitor);
         }
         let region = self.number(text);
         self.last = Some((text, region));
@@ -248,22 +251,22 @@ impl<'a> Attributes<'a> {
 
     #[inline]
     fn number(&mut self, text: &'a [u8]) -> u32 {
-        let number = self.texts.number(text) as usize;
+        let number = self.texts.intern(text) as usize;
         if number == self.regions.len() {
-            self.regions.push(self.names.number(normalized(text)));
+            self.regions.push(self.names.intern(normalized(text)));
         }
         self.regions[number]
     }
 
-    fn send_groups(&self, text: &[u8], sink: &mut dyn Sink) {
+    fn send_groups(&self, text: &[u8], visitor: &mut dyn MeshVisitor) {
         let kinds: Vec<String> =
             (0..self.columns).map(|column| column_name(column, self.columns)).collect();
         let labels = tokens(text).map(attribute);
         let groups = kinds.iter().zip(labels);
-        let groups: Vec<Within<'_>> = groups
-            .map(|(what, label)| Within { what: what.as_str(), label, dimension: None })
+        let groups: Vec<GroupScope<'_>> = groups
+            .map(|(what, label)| GroupScope { kind: what.as_str(), label, dimension: None })
             .collect();
-        sink.within(&groups);
+        visitor.group_scopes(&groups);
     }
 }
 
@@ -283,39 +286,39 @@ fn normalized(attributes: &[u8]) -> String {
     normalized.collect()
 }
 
-/// Hands the segments of a `.poly` to the sink.
+/// Hands the segments of a `.poly` to the visitor.
 fn segments(
     poly: &Source,
     node: &Source,
-    numbers: &Numbers,
-    sink: &mut dyn Sink,
+    numbers: &VertexNumbering,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     let mut segments = Segments::new(poly, node, numbers)?;
-    let has_markers = sink.asks_for_groups()
+    let has_markers = visitor.asks_for_groups()
         && segments.cursor.integer_or(0, "whether segments have markers")? != 0;
     let mut last = None;
     for row in 0..segments.count {
         let (tag, [a, b]) = segments.segment(row)?;
         let label = segments.cursor.token().filter(|_| has_markers).and_then(marker);
         if label != last {
-            let within = label.iter().map(|label| Within {
-                what: "marker",
+            let within = label.iter().map(|label| GroupScope {
+                kind: "marker",
                 label: label.clone(),
                 dimension: None,
             });
-            sink.within(&within.collect::<Vec<_>>());
+            visitor.group_scopes(&within.collect::<Vec<_>>());
             last = label;
         }
         let nodes = [a, b, 0, 0];
-        let element = Element { tag, kind: Kind::Line, region: [0; 2], nodes };
-        sink.element(&segments.cursor, &element)?;
+        let element = Element { id: tag, kind: CellKind::Line, region: [0; 2], nodes };
+        visitor.element(&segments.cursor, &element)?;
     }
-    sink.within(&[]);
-    sink.remark(Remark::elements(segments.count, "segment", &format!(" of {}", poly.name())));
+    visitor.group_scopes(&[]);
+    visitor.remark(Remark::elements(segments.count, "segment", &format!(" of {}", poly.name())));
     // Holes and regions matter only to the mesh generator.
     let cursor = &mut segments.cursor;
     if cursor.next_row() && cursor.integer("the number of holes").is_ok_and(|holes| holes > 0) {
-        sink.leaves_out("holes of the .poly");
+        visitor.unsupported("holes of the .poly");
     }
     Ok(())
 }

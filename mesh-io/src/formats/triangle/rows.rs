@@ -8,16 +8,16 @@ use crate::text::syntax::Syntax;
 /// Returns a cursor before the first row of one of the files.
 pub(super) fn rows(source: &Source) -> Cursor<'_> {
     // Triangle skips a comma before the blanks that precede a number.
-    Cursor::new(source).of(Syntax::TRAILING)
+    Cursor::new(source).with_syntax(Syntax::TRAILING)
 }
 
 /// The numbering of a file's vertices: `count` consecutive numbers from `first` on.
-pub(super) struct Numbers {
+pub(super) struct VertexNumbering {
     pub(super) first: u64,
     pub(super) count: u64,
 }
 
-impl Numbers {
+impl VertexNumbering {
     /// Reads the number of a vertex of `owner`, which `list` must have.
     #[inline]
     pub(super) fn vertex(

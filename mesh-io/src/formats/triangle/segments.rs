@@ -2,7 +2,7 @@
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
-use crate::formats::triangle::rows::{Numbers, header, rows, vertex_header};
+use crate::formats::triangle::rows::{VertexNumbering, header, rows, vertex_header};
 use crate::text::cursor::Cursor;
 
 /// Returns how many vertices a `.poly` lists, or 0 if its first row is damaged. They are the first vertices of the mesh.
@@ -18,7 +18,7 @@ pub(super) struct Segments<'s> {
     pub(super) count: u64,
     node: &'s Source,
     /// The numbering of the `.poly`.
-    own: Numbers,
+    own: VertexNumbering,
     /// The number of the first vertex in the `.node`.
     first: u64,
 }
@@ -28,12 +28,12 @@ impl<'s> Segments<'s> {
     pub(super) fn new(
         poly: &'s Source,
         node: &'s Source,
-        numbers: &Numbers,
+        numbers: &VertexNumbering,
     ) -> Result<Self, ReadError> {
         let mut cursor = rows(poly);
         let listed = vertex_header(&mut cursor)?;
         // The `.poly` may number its vertices from another number on than the mesh.
-        let mut own = Numbers { first: numbers.first, count: numbers.count };
+        let mut own = VertexNumbering { first: numbers.first, count: numbers.count };
         for row in 0..listed {
             cursor.row(row, listed, "vertices")?;
             let number = cursor.integer("the number of a vertex")?;

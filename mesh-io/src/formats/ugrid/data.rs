@@ -4,23 +4,23 @@ use super::centers::Tables;
 use super::mesh::Mesh;
 use super::table::Table;
 use crate::content::remark::Remark;
-use crate::formats::netcdf_points::{Parts, PointData};
-use crate::netcdf::{Number, Variable};
-use crate::visit::sink::Sink;
+use crate::formats::netcdf_points::{PointData, RecordParts};
+use crate::netcdf::{NumberType, Variable};
+use crate::visit::visitor::MeshVisitor;
 
 /// What a variable has numbers for.
 #[derive(Clone, Copy, PartialEq)]
-enum Location {
+enum DataLocation {
     Nodes,
     Faces,
 }
 
 impl<'h, 'a> Mesh<'h, 'a> {
     /// Hands on data of nodes and faces, and tells what is not handed on. The mesh does not depend on them.
-    pub(super) fn data(&self, tables: &Tables<'h, 'a>, sink: &mut dyn Sink) {
+    pub(super) fn data(&self, tables: &Tables<'h, 'a>, visitor: &mut dyn MeshVisitor) {
         let faces = &tables.faces;
         let lengths = [self.nodes as u64, faces.count as u64];
-        let places = self.places(tables);
+        let places = self.center_variables(tables);
         let is_data = |variable: &&Variable| {
             ![self.x, self.y, self.face_nodes].iter().any(|own| own.name == variable.name)
                 && !places.iter().any(|own| own.variable.name == variable.name)
@@ -28,27 +28,29 @@ impl<'h, 'a> Mesh<'h, 'a> {
         };
         let mut points = PointData::new(self.header);
         for variable in self.header.variables.iter().filter(is_data) {
-            let Some((Location::Nodes, parts)) = self.located(variable, lengths) else { continue };
-            match sink.asks_for_data() {
-                true => points.send(&variable.name, variable, &parts, variable.missing(), sink),
+            let Some((DataLocation::Nodes, parts)) = self.located(variable, lengths) else {
+                continue;
+            };
+            match visitor.asks_for_data() {
+                true => points.send(&variable.name, variable, &parts, variable.missing(), visitor),
                 false => {
-                    let is_real = matches!(variable.number, Number::Real(_));
-                    sink.point_array(&variable.name, parts.components, is_real);
+                    let is_real = matches!(variable.number, NumberType::Real(_));
+                    visitor.point_array(&variable.name, parts.components, is_real);
                 }
             }
         }
-        if sink.asks_for_data() {
+        if visitor.asks_for_data() {
             for variable in self.header.variables.iter().filter(is_data) {
-                if let Some((Location::Faces, parts)) = self.located(variable, lengths) {
-                    self.of_faces(faces, variable, &parts, &mut points, sink);
+                if let Some((DataLocation::Faces, parts)) = self.located(variable, lengths) {
+                    self.of_faces(faces, variable, &parts, &mut points, visitor);
                 }
             }
-            self.left_out(sink);
+            self.left_out(visitor);
         }
-        let left = self.centers(tables, &places, &mut points, sink);
+        let left = self.centers(tables, &places, &mut points, visitor);
         if !left.is_empty() {
             let names: Vec<_> = left.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
-            sink.remark(Remark::Text(format!(
+            visitor.remark(Remark::Text(format!(
                 "{}: places of edges or faces, which stay as they are",
                 names.join(", ")
             )));
@@ -57,48 +59,52 @@ impl<'h, 'a> Mesh<'h, 'a> {
 
     /// What a variable has numbers for, and how its records consist of parts. None if it is of something else, or if that is not
     /// known.
-    fn located(&self, variable: &Variable, lengths: [u64; 2]) -> Option<(Location, Parts)> {
-        let is_numeric = matches!(variable.number, Number::Real(_) | Number::Whole(_));
+    fn located(
+        &self,
+        variable: &Variable,
+        lengths: [u64; 2],
+    ) -> Option<(DataLocation, RecordParts)> {
+        let is_numeric = matches!(variable.number, NumberType::Real(_) | NumberType::Whole(_));
         if !is_numeric || variable.text("mesh").is_some_and(|mesh| mesh != self.own.name) {
             return None;
         }
         let location = match variable.text("location") {
-            Some(b"node") => Location::Nodes,
-            Some(b"face") => Location::Faces,
+            Some(b"node") => DataLocation::Nodes,
+            Some(b"face") => DataLocation::Faces,
             Some(_) => return None,
             None => match lengths.map(|length| variable.shape.contains(&length)) {
-                [true, false] => Location::Nodes,
-                [false, true] => Location::Faces,
+                [true, false] => DataLocation::Nodes,
+                [false, true] => DataLocation::Faces,
                 _ => return None,
             },
         };
-        let length = lengths[usize::from(location == Location::Faces)];
+        let length = lengths[usize::from(location == DataLocation::Faces)];
         let axis = variable.shape.iter().position(|&own| own == length)?;
         let product = |lengths: &[u64]| {
             lengths.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).filter(|&n| n > 0)
         };
         let all = usize::try_from(product(&variable.shape[..axis])?).ok()?;
         let components = product(&variable.shape[axis + 1..])?;
-        Some((location, Parts { wanted: 0..all, all, components }))
+        Some((location, RecordParts { wanted: 0..all, all, components }))
     }
 
     fn of_faces(
         &self,
         faces: &Table<'h, 'a>,
         variable: &'h Variable,
-        parts: &Parts,
+        parts: &RecordParts,
         points: &mut PointData<'h, 'a>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) {
-        let is_real = matches!(variable.number, Number::Real(_));
-        let tags = faces.first..faces.first + faces.count as u64;
+        let is_real = matches!(variable.number, NumberType::Real(_));
+        let ids = faces.first..faces.first + faces.count as u64;
         for record in 0..self.header.steps(variable) {
             for part in parts.wanted.clone() {
-                if sink.cell_array(&variable.name, parts.components, is_real)
+                if visitor.cell_array(&variable.name, parts.components, is_real)
                     && let Some(own) =
                         points.numbers(variable, record, part, parts, variable.missing())
                 {
-                    sink.cell_numbers(own.numbers, Some(tags.clone().collect()));
+                    visitor.cell_numbers(own.numbers, Some(ids.clone().collect()));
                 }
             }
         }
@@ -106,13 +112,13 @@ impl<'h, 'a> Mesh<'h, 'a> {
 
     /// Tells what is in no mesh of another format. Edges, neighbors and places of faces follow from the mesh; attributes of variables
     /// are like comments.
-    fn left_out(&self, sink: &mut dyn Sink) {
+    fn left_out(&self, visitor: &mut dyn MeshVisitor) {
         let variables = &self.header.variables;
         if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {
-            sink.leaves_out("variables of edges");
+            visitor.unsupported("variables of edges");
         }
         if self.header.records > 1 {
-            sink.leaves_out("times of time steps");
+            visitor.unsupported("times of time steps");
         }
     }
 }

@@ -1,46 +1,46 @@
 //! The faces of a UGRID mesh, handed on.
 
 use super::table::Table;
-use crate::binary::number_field::Field;
+use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
-use crate::netcdf::Number;
-use crate::visit::items::{Element, Kind};
+use crate::netcdf::NumberType;
+use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{Region, TriangleRecords};
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
 /// Hands on all faces.
-pub(super) fn send(faces: &Table<'_, '_>, sink: &mut dyn Sink) -> Result<(), ReadError> {
-    sink.expect_elements(faces.count);
+pub(super) fn send(faces: &Table<'_, '_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
+    visitor.expect_elements(faces.count);
     let mut taken = 0;
-    if let (Number::Whole(width @ (4 | 8)), 3, true) =
+    if let (NumberType::Whole(width @ (4 | 8)), 3, true) =
         (faces.variable.number, faces.corners, faces.has_rows)
     {
         let own = faces.items.own();
-        taken = sink.triangle_records(&TriangleRecords {
+        taken = visitor.triangle_records(&TriangleRecords {
             count: faces.count,
-            corners: Field::new(Some(own), 3 * width, width, faces.variable.order),
-            first: 0,
-            below: u64::MAX,
+            nodes: NumberField::new(Some(own), 3 * width, width, faces.variable.order),
+            min_node: 0,
+            node_end: u64::MAX,
             regions: [Region::Same(0), Region::Same(0)],
-            expected: &[],
+            required_fields: &[],
         });
     }
     let mut nodes = Vec::with_capacity(faces.corners);
     for face in taken..faces.count {
         faces.nodes(face, &mut nodes)?;
         let cursor = &faces.cursor(face);
-        let (tag, region) = (face as u64 + faces.first, [0, 0]);
+        let (id, region) = (face as u64 + faces.first, [0, 0]);
         let kind = match nodes.len() {
-            3 => Kind::Triangle,
-            4 => Kind::Quadrilateral,
+            3 => CellKind::Triangle,
+            4 => CellKind::Quadrilateral,
             _ => {
-                sink.polygon(cursor, tag, region, &nodes)?;
+                visitor.polygon(cursor, id, region, &nodes)?;
                 continue;
             }
         };
         let mut own = [0; 4];
         own[..nodes.len()].copy_from_slice(&nodes);
-        sink.element(cursor, &Element { tag, kind, region, nodes: own })?;
+        visitor.element(cursor, &Element { id, kind, region, nodes: own })?;
     }
     Ok(())
 }

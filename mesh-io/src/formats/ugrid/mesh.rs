@@ -3,7 +3,7 @@
 use crate::error::ReadError;
 use crate::formats::axes::{Axes, BinaryReals};
 use crate::formats::netcdf_axes::axes;
-use crate::netcdf::{Header, Number, Variable};
+use crate::netcdf::{Header, NumberType, Variable};
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
 
@@ -35,7 +35,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         };
         let all = header.variables.iter().filter(|variable| is_mesh(variable));
         let of_faces: Vec<_> = all.filter(has_faces).collect();
-        let start = Cursor::at_byte_of(header.source, 0);
+        let start = Cursor::at_byte_offset(header.source, 0);
         let own = match of_faces[..] {
             [own] => own,
             [] => {
@@ -63,7 +63,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
                 "the mesh {} has no variable that its face_node_connectivity names, so no faces",
                 quoted(&own.name)
             );
-            let place = Cursor::at_byte_of(header.source, header.place(own));
+            let place = Cursor::at_byte_offset(header.source, header.start_of(own));
             return Err(place.error(problem, REMEDY));
         };
         Ok(Mesh { header, own, x, y, nodes, face_nodes })
@@ -72,7 +72,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
     /// The coordinates of the nodes.
     pub(super) fn axes(&self) -> Result<Axes<'a>, ReadError> {
         let Mesh { header, x, y, nodes, .. } = self;
-        let Number::Real(precision) = x.number else {
+        let NumberType::Real(precision) = x.number else {
             return Err(unfit(header, [x, y]));
         };
         axes(header, &[x, y], BinaryReals { order: x.order, precision }, 2, *nodes)
@@ -112,15 +112,15 @@ fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variab
                 "the mesh {} has no two variables that its node_coordinates names",
                 quoted(&own.name)
             );
-            let place = Cursor::at_byte_of(header.source, header.place(own));
+            let place = Cursor::at_byte_offset(header.source, header.start_of(own));
             Err(place.error(problem, REMEDY))
         }
     }
 }
 
-/// Which coordinate a variable says that it is: 0 for x or the longitude, 1 for y or the latitude.
+/// Returns the axis that the attributes of a variable name: 0 for x or longitude, 1 for y or latitude.
 pub(super) fn axis_of(variable: &Variable) -> Option<usize> {
-    const SAYS: [(&str, [&[&[u8]]; 2]); 3] = [
+    const AXIS_ATTRIBUTES: [(&str, [&[&[u8]]; 2]); 3] = [
         (
             "standard_name",
             [
@@ -137,18 +137,18 @@ pub(super) fn axis_of(variable: &Variable) -> Option<usize> {
             ],
         ),
     ];
-    SAYS.iter().find_map(|(attribute, axes)| {
+    AXIS_ATTRIBUTES.iter().find_map(|(attribute, axes)| {
         let text = variable.text(attribute)?;
         axes.iter().position(|values| values.contains(&text))
     })
 }
 
 fn node_count(header: &Header<'_>, [x, y]: [&Variable; 2]) -> Result<usize, ReadError> {
-    let is_real = matches!(x.number, Number::Real(_));
+    let is_real = matches!(x.number, NumberType::Real(_));
     let is_same = (x.number, x.order, &x.shape) == (y.number, y.order, &y.shape);
     match x.shape[..] {
         [count] if is_real && is_same && !x.is_record && !y.is_record && x.name != y.name => {
-            Cursor::at_byte_of(header.source, header.place(x)).check_vertex_count(count)?;
+            Cursor::at_byte_offset(header.source, header.start_of(x)).check_vertex_count(count)?;
             Ok(count as usize)
         }
         _ => Err(unfit(header, [x, y])),
@@ -162,5 +162,5 @@ fn unfit(header: &Header<'_>, [x, y]: [&Variable; 2]) -> ReadError {
         quoted(&x.name),
         quoted(&y.name)
     );
-    Cursor::at_byte_of(header.source, header.place(x)).error(problem, REMEDY)
+    Cursor::at_byte_offset(header.source, header.start_of(x)).error(problem, REMEDY)
 }

@@ -15,11 +15,11 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::hdf5::Hdf5;
 use crate::netcdf;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 use mesh::Mesh;
-use table::{Table, What};
+use table::{Table, TableKind};
 
 pub(crate) struct Ugrid;
 
@@ -32,17 +32,20 @@ pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
     Ok(header.variables.iter().any(mesh::is_mesh))
 }
 
-impl Walk for Ugrid {
+impl FormatReader for Ugrid {
     const VERTICES: &'static str = "the list of nodes";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let header = netcdf::open(source)?;
         let mesh = Mesh::find(&header)?;
-        let faces = Table::find(&mesh, mesh.face_nodes, What::Faces)?;
-        let layout = mesh.axes()?.send(Format::Ugrid, mesh.nodes, faces.first, sink)?;
-        faces::send(&faces, sink)?;
-        mesh.data(&mesh.tables(faces), sink);
-        header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_apart)?;
+        let faces = Table::find(&mesh, mesh.face_nodes, TableKind::Faces)?;
+        let layout = mesh.axes()?.send(Format::Ugrid, mesh.nodes, faces.first, visitor)?;
+        faces::send(&faces, visitor)?;
+        mesh.data(&mesh.tables(faces), visitor);
+        header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_no_overlaps)?;
         Ok(layout)
     }
 }

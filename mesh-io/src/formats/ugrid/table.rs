@@ -2,14 +2,14 @@
 
 use super::mesh::Mesh;
 use crate::error::ReadError;
-use crate::netcdf::{Header, Items, Number, Variable};
+use crate::netcdf::{Header, Items, NumberType, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
 
 /// The nodes of faces or edges: a row for each of them, or a column.
 pub(super) struct Table<'h, 'a> {
     header: &'h Header<'a>,
-    what: What,
+    kind: TableKind,
     pub(super) variable: &'h Variable,
     pub(super) items: Items<'a>,
     /// How many faces or edges there are.
@@ -24,19 +24,19 @@ pub(super) struct Table<'h, 'a> {
     pub(super) first: u64,
 }
 
-/// What a table has the nodes of.
+/// The elements that a connectivity table lists.
 #[derive(Clone, Copy)]
-pub(super) enum What {
+pub(super) enum TableKind {
     Faces,
     Edges,
 }
 
-impl What {
+impl TableKind {
     /// The words for one and for several, the attribute that names their dimension, and how few nodes each has.
     fn words(self) -> (&'static str, &'static str, &'static str, u64) {
         match self {
-            What::Faces => ("face", "faces", "face_dimension", 3),
-            What::Edges => ("edge", "edges", "edge_dimension", 2),
+            TableKind::Faces => ("face", "faces", "face_dimension", 3),
+            TableKind::Edges => ("edge", "edges", "edge_dimension", 2),
         }
     }
 }
@@ -58,16 +58,16 @@ impl<'h, 'a> Table<'h, 'a> {
     pub(super) fn find(
         mesh: &Mesh<'h, 'a>,
         variable: &'h Variable,
-        what: What,
+        what: TableKind,
     ) -> Result<Table<'h, 'a>, ReadError> {
         let header = mesh.header;
         let (_, several, dimension, least) = what.words();
         let wrong = |problem: &str| {
             let name = quoted(&variable.name);
             let problem = format!("{name}, the nodes of the {several}, {problem}");
-            Cursor::at_byte_of(header.source, header.place(variable)).error(problem, CORRECT)
+            Cursor::at_byte_offset(header.source, header.start_of(variable)).error(problem, CORRECT)
         };
-        let is_numeric = matches!(variable.number, Number::Whole(_) | Number::Real(_));
+        let is_numeric = matches!(variable.number, NumberType::Whole(_) | NumberType::Real(_));
         let (&[rows, columns], true, false) = (&variable.shape[..], is_numeric, variable.is_record)
         else {
             return Err(wrong("are not a table of numbers"));
@@ -85,8 +85,17 @@ impl<'h, 'a> Table<'h, 'a> {
         let (count, corners) = (count as usize, corners as usize);
         let items = header.items(variable)?;
         let missing = variable.missing();
-        let table =
-            Table { header, what, variable, items, count, corners, has_rows, missing, first: 0 };
+        let table = Table {
+            header,
+            kind: what,
+            variable,
+            items,
+            count,
+            corners,
+            has_rows,
+            missing,
+            first: 0,
+        };
         let first = match variable.whole("start_index") {
             Some(first @ (0 | 1)) => first as u64,
             Some(other) => return Err(wrong(&format!("start at number {other}, not at 0 or 1"))),
@@ -101,7 +110,7 @@ impl<'h, 'a> Table<'h, 'a> {
     /// If it has too few, or numbers of none.
     pub(super) fn nodes(&self, element: usize, nodes: &mut Vec<u64>) -> Result<(), ReadError> {
         nodes.clear();
-        let (one, .., least) = self.what.words();
+        let (one, .., least) = self.kind.words();
         let wrong = |problem: String| {
             let problem = format!("{one} {} {problem}", element as u64 + self.first);
             Err(self.cursor(element).error(problem, CORRECT))
@@ -127,11 +136,11 @@ impl<'h, 'a> Table<'h, 'a> {
 
     /// The place of a face or an edge in the file.
     pub(super) fn cursor(&self, element: usize) -> Cursor<'a> {
-        Cursor::at_byte_of(self.header.source, self.items.byte_of(self.place(element, 0)))
+        Cursor::at_byte_offset(self.header.source, self.items.byte_of(self.position(element, 0)))
     }
 
     /// Where the number of a corner stands among the bytes.
-    fn place(&self, element: usize, corner: usize) -> usize {
+    fn position(&self, element: usize, corner: usize) -> usize {
         let item = match self.has_rows {
             true => element * self.corners + corner,
             false => corner * self.count + element,
@@ -140,10 +149,10 @@ impl<'h, 'a> Table<'h, 'a> {
     }
 
     fn corner(&self, element: usize, corner: usize) -> Corner {
-        let at = self.place(element, corner);
+        let at = self.position(element, corner);
         let own = &self.items.bytes[at..at + self.variable.number.bytes()];
         let number = match self.variable.number {
-            Number::Real(precision) => self.variable.order.real(precision, own),
+            NumberType::Real(precision) => self.variable.order.real(precision, own),
             _ => self.variable.order.signed(own) as f64,
         };
         let is_missing = number.is_nan() || Some(number) == self.missing;

@@ -3,9 +3,9 @@
 //! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. Names are those that programs of this format
 //! give the variables of their mesh; numbers of nodes start at one.
 
-use crate::export::content::Data;
-use crate::export::job::Job;
-use crate::netcdf::write::{NetCdf, Values};
+use crate::export::content::DataArray;
+use crate::export::writer_input::WriterInput;
+use crate::netcdf::write::{NetCdfWriter, Values};
 
 /// The names of variables that a mesh consists of, which no data may have.
 pub(crate) const NAMES: [&str; 4] =
@@ -22,14 +22,14 @@ const CORNERS: &str = "mesh2d_nMax_face_nodes";
 /// What stands in the place of a corner that a face does not have.
 const MISSING: i32 = -999;
 
-pub(crate) fn write_ugrid(job: &Job<'_>) -> Vec<u8> {
-    let content = job.content;
-    let cells: Vec<usize> = job.cells().collect();
+pub(crate) fn write_ugrid(input: &WriterInput<'_>) -> Vec<u8> {
+    let content = input.content;
+    let cells: Vec<usize> = input.cells().collect();
     let corners = cells.iter().map(|&cell| content.cells.of(cell).len()).max().unwrap_or(3);
     let is_mixed = cells.iter().any(|&cell| content.cells.of(cell).len() < corners);
-    let mut out = NetCdf::default();
+    let mut out = NetCdfWriter::default();
     out.attribute("Conventions", text("CF-1.8 UGRID-1.0"));
-    out.attribute("title", text(&format!("written by {}", job.creator)));
+    out.attribute("title", text(&format!("written by {}", input.creator)));
     out.dimension(NODE_COUNT, content.points.len());
     out.dimension(FACE_COUNT, cells.len());
     out.dimension(CORNERS, corners);
@@ -58,10 +58,10 @@ pub(crate) fn write_ugrid(job: &Job<'_>) -> Vec<u8> {
     }
     let nodes = Values::Whole(cells.iter().flat_map(row).collect());
     out.variable(FACES, &[FACE_COUNT, CORNERS], roles, nodes);
-    for each in job.point_data() {
+    for each in input.point_data() {
         data(&mut out, each, NODE_COUNT, "node", each.values.clone());
     }
-    for each in job.cell_data() {
+    for each in input.cell_data() {
         let of = |&cell: &usize| {
             let start = cell * each.components;
             each.values.get(start..start + each.components).unwrap_or_default().iter().copied()
@@ -72,7 +72,7 @@ pub(crate) fn write_ugrid(job: &Job<'_>) -> Vec<u8> {
 }
 
 /// Adds numbers for each node or face.
-fn data(out: &mut NetCdf, data: &Data, count: &str, location: &str, values: Vec<f64>) {
+fn data(out: &mut NetCdfWriter, data: &DataArray, count: &str, location: &str, values: Vec<f64>) {
     let attributes = vec![("mesh", text(MESH)), ("location", text(location))];
     let is_whole = |x: &f64| f64::from(*x as i32) == *x;
     let values = match !data.is_real && values.iter().all(is_whole) {

@@ -1,6 +1,6 @@
 //! VTK's numbers of the types of cells, which SU2 uses too.
 
-use crate::visit::items::Kind;
+use crate::visit::items::CellKind;
 
 /// An empty cell, which has no vertices.
 pub(crate) const EMPTY: u64 = 0;
@@ -25,25 +25,25 @@ pub(crate) fn is_of_volume(number: u64) -> bool {
 }
 
 /// Returns the number of the cell that a kind of element is.
-pub(crate) fn number_of(kind: Kind) -> u64 {
+pub(crate) fn number_of(kind: CellKind) -> u64 {
     match kind {
-        Kind::Point => VERTEX,
-        Kind::Line => LINE,
-        Kind::Triangle => TRIANGLE,
-        Kind::Corner => POLYGON,
-        Kind::Quadrilateral => QUAD,
+        CellKind::Point => VERTEX,
+        CellKind::Line => LINE,
+        CellKind::Triangle => TRIANGLE,
+        CellKind::Polygon => POLYGON,
+        CellKind::Quadrilateral => QUAD,
     }
 }
 
 /// Returns the kind of an element by the number of its cell; `None` if cells of the type may have any number of vertices,
 /// belong to a volume or are not of first order.
 #[inline]
-pub(crate) fn kind_of(number: u64) -> Option<Kind> {
+pub(crate) fn kind_of(number: u64) -> Option<CellKind> {
     match number {
-        VERTEX => Some(Kind::Point),
-        LINE => Some(Kind::Line),
-        TRIANGLE => Some(Kind::Triangle),
-        QUAD => Some(Kind::Quadrilateral),
+        VERTEX => Some(CellKind::Point),
+        LINE => Some(CellKind::Line),
+        TRIANGLE => Some(CellKind::Triangle),
+        QUAD => Some(CellKind::Quadrilateral),
         _ => None,
     }
 }

@@ -1,8 +1,8 @@
 //! Writes VTK's formats: the legacy `.vtk` as text, and `.vtu` with arrays in base64.
 
-use crate::export::content::Data;
-use crate::export::job::Job;
+use crate::export::content::DataArray;
 use crate::export::put;
+use crate::export::writer_input::WriterInput;
 use crate::formats::vtk::types::number_of;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -26,16 +26,17 @@ fn array_name(what: &str) -> &str {
 pub(crate) struct Array {
     pub(crate) name: String,
     pub(crate) components: usize,
-    pub(crate) numbers: Numbers,
+    pub(crate) numbers: ArrayValues,
 }
 
-pub(crate) enum Numbers {
+/// The values of an array.
+pub(crate) enum ArrayValues {
     Real(Vec<f64>),
     Whole(Vec<i64>),
 }
 
 impl Array {
-    fn of(data: &Data, places: Option<&[usize]>) -> Array {
+    fn of(data: &DataArray, places: Option<&[usize]>) -> Array {
         let each = data.components;
         let values: Vec<f64> = match places {
             None => data.values.clone(),
@@ -46,73 +47,73 @@ impl Array {
         };
         let is_whole = !data.is_real && values.iter().all(|value| value.is_finite());
         let numbers = match is_whole {
-            true => Numbers::Whole(values.into_iter().map(|value| value as i64).collect()),
-            false => Numbers::Real(values),
+            true => ArrayValues::Whole(values.into_iter().map(|value| value as i64).collect()),
+            false => ArrayValues::Real(values),
         };
         Array { name: data.name.clone(), components: each, numbers }
     }
 
     fn whole(name: &str, numbers: Vec<i64>) -> Array {
-        Array { name: name.to_owned(), components: 1, numbers: Numbers::Whole(numbers) }
+        Array { name: name.to_owned(), components: 1, numbers: ArrayValues::Whole(numbers) }
     }
 }
 
 /// Makes the arrays of the vertices.
-pub(crate) fn of_points(job: &Job<'_>) -> Vec<Array> {
-    let mut arrays: Vec<Array> = job.point_data().map(|data| Array::of(data, None)).collect();
-    if !job.content.vertex_groups.is_empty() {
-        let what = &job.content.vertex_groups[0].0.what;
-        arrays.push(Array::whole(array_name(what), job.vertex_tags()));
+pub(crate) fn of_points(input: &WriterInput<'_>) -> Vec<Array> {
+    let mut arrays: Vec<Array> = input.point_data().map(|data| Array::of(data, None)).collect();
+    if !input.content.vertex_groups.is_empty() {
+        let what = &input.content.vertex_groups[0].0.kind;
+        arrays.push(Array::whole(array_name(what), input.vertex_group_numbers()));
     }
     arrays
 }
 
 /// Makes the arrays of the cells: one for each kind of group, and the data.
-pub(crate) fn of_cells(job: &Job<'_>, cells: &[usize]) -> Vec<Array> {
-    let mut whats: Vec<&str> = Vec::new();
-    for what in (0..3).rev().flat_map(|dimension| job.content.whats(dimension)) {
-        if !whats.contains(&what) {
-            whats.push(what);
+pub(crate) fn of_cells(input: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
+    let mut kinds: Vec<&str> = Vec::new();
+    for what in (0..3).rev().flat_map(|dimension| input.content.group_kinds(dimension)) {
+        if !kinds.contains(&what) {
+            kinds.push(what);
         }
     }
     // The order of the usual arrays is always the same.
     const FIRST: [&str; 5] =
         ["gmsh:physical", "gmsh:geometrical", "medit:ref", "MaterialIDs", "region"];
-    whats.sort_by_key(|what| {
+    kinds.sort_by_key(|what| {
         FIRST.iter().position(|first| *first == array_name(what)).unwrap_or(FIRST.len())
     });
     let mut arrays: Vec<Array> = Vec::new();
-    for what in whats {
-        let column = job.content.column(what);
-        let tag = |&cell: &usize| column[cell].map_or(0, |group| job.tags.number(group));
+    for what in kinds {
+        let column = input.content.column(what);
+        let tag = |&cell: &usize| column[cell].map_or(0, |group| input.group_numbers.number(group));
         let usual = array_name(what);
         let is_taken = arrays.iter().any(|array| array.name == usual);
         let name = if is_taken { what } else { usual };
         arrays.push(Array::whole(name, cells.iter().map(tag).collect()));
     }
-    arrays.extend(job.cell_data().map(|data| Array::of(data, Some(cells))));
+    arrays.extend(input.cell_data().map(|data| Array::of(data, Some(cells))));
     arrays
 }
 
-pub(crate) fn write_legacy(job: &Job<'_>) -> String {
-    let content = job.content;
-    let cells: Vec<usize> = job.cells().collect();
+pub(crate) fn write_legacy(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let cells: Vec<usize> = input.cells().collect();
     let mut out = format!(
         "# vtk DataFile Version 4.2\nwritten by {}\nASCII\nDATASET UNSTRUCTURED_GRID\n",
-        job.creator
+        input.creator
     );
     put!(out, "POINTS {} double\n", content.points.len());
-    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
     let numbers: usize = cells.iter().map(|&cell| 1 + content.cells.of(cell).len()).sum();
     put!(out, "CELLS {} {numbers}\n", cells.len());
     for &cell in &cells {
-        put!(out, "{} {}\n", content.cells.of(cell).len(), job.places(cell, 0));
+        put!(out, "{} {}\n", content.cells.of(cell).len(), input.positions(cell, 0));
     }
     put!(out, "CELL_TYPES {}\n", cells.len());
     cells.iter().for_each(|&cell| put!(out, "{}\n", number_of(content.cells.kinds[cell])));
     for (keyword, count, arrays) in [
-        ("CELL_DATA", cells.len(), of_cells(job, &cells)),
-        ("POINT_DATA", content.points.len(), of_points(job)),
+        ("CELL_DATA", cells.len(), of_cells(input, &cells)),
+        ("POINT_DATA", content.points.len(), of_points(input)),
     ] {
         if arrays.is_empty() {
             continue;
@@ -120,10 +121,10 @@ pub(crate) fn write_legacy(job: &Job<'_>) -> String {
         put!(out, "{keyword} {count}\nFIELD FieldData {}\n", arrays.len());
         for Array { name, components, numbers } in arrays {
             let (kind, words): (_, Vec<String>) = match numbers {
-                Numbers::Real(numbers) => {
+                ArrayValues::Real(numbers) => {
                     ("double", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
                 }
-                Numbers::Whole(numbers) => {
+                ArrayValues::Whole(numbers) => {
                     let small = numbers.iter().all(|&number| i32::try_from(number).is_ok());
                     let kind = if small { "int" } else { "long" };
                     (kind, numbers.iter().map(i64::to_string).collect())
@@ -150,9 +151,9 @@ fn encoded(name: &str) -> String {
     encoded
 }
 
-pub(crate) fn write_xml(job: &Job<'_>) -> String {
-    let content = job.content;
-    let cells: Vec<usize> = job.cells().collect();
+pub(crate) fn write_xml(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let cells: Vec<usize> = input.cells().collect();
     let mut out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
                    byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
         .to_owned();
@@ -165,7 +166,7 @@ pub(crate) fn write_xml(job: &Job<'_>) -> String {
     let coordinates = Array {
         name: "Points".into(),
         components: 3,
-        numbers: Numbers::Real((0..points).flat_map(at).collect()),
+        numbers: ArrayValues::Real((0..points).flat_map(at).collect()),
     };
     let connectivity = cells.iter().flat_map(|&cell| content.cells.of(cell));
     let connectivity = connectivity.map(|&vertex| i64::from(vertex)).collect();
@@ -177,8 +178,8 @@ pub(crate) fn write_xml(job: &Job<'_>) -> String {
     let ends = ends.collect();
     let types = cells.iter().map(|&cell| number_of(content.cells.kinds[cell]) as i64).collect();
     let sections = [
-        ("PointData", of_points(job)),
-        ("CellData", of_cells(job, &cells)),
+        ("PointData", of_points(input)),
+        ("CellData", of_cells(input, &cells)),
         ("Points", vec![coordinates]),
         (
             "Cells",
@@ -193,10 +194,10 @@ pub(crate) fn write_xml(job: &Job<'_>) -> String {
         put!(out, "<{section}>\n");
         for Array { name, components, numbers } in arrays {
             let (kind, bytes): (_, Vec<u8>) = match numbers {
-                Numbers::Real(numbers) => {
+                ArrayValues::Real(numbers) => {
                     ("Float64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
                 }
-                Numbers::Whole(numbers) => {
+                ArrayValues::Whole(numbers) => {
                     ("Int64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
                 }
             };

@@ -3,51 +3,51 @@
 use super::File;
 use super::document::Item;
 use super::heavy;
-use crate::binary::whole::Whole;
+use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::Cell;
 use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::Column;
+use crate::visit::items::RegionAttribute;
 use crate::visit::records::TriangleRecords;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 
-/// The whole numbers of a topology, one after another.
-enum Words<'a> {
+/// The integers of a Topology, in the XML or in another file.
+enum CellNumbers<'a> {
     Text(Cursor<'a>),
     /// Those of a file beside the XML, and how many of them were taken.
     Heavy {
-        numbers: Box<heavy::Numbers<'a>>,
-        whole: Whole<'a>,
+        numbers: Box<heavy::HeavyArray<'a>>,
+        whole: IntArray<'a>,
         taken: usize,
         size: usize,
     },
 }
 
-impl<'a> Words<'a> {
+impl<'a> CellNumbers<'a> {
     /// Stands where the number is that is taken next, or was taken last in text.
     fn cursor(&self) -> Cursor<'a> {
         match self {
-            Words::Text(cursor) => cursor.clone(),
-            Words::Heavy { numbers, taken, size, .. } => numbers.cursor(taken * size),
+            CellNumbers::Text(cursor) => cursor.clone(),
+            CellNumbers::Heavy { numbers, taken, size, .. } => numbers.cursor(taken * size),
         }
     }
 
-    /// Whether there is another number, on which it then stands.
-    fn goes_on(&mut self) -> bool {
+    /// Returns whether another number follows.
+    fn has_next(&mut self) -> bool {
         match self {
-            Words::Text(cursor) => cursor.next_word(),
-            Words::Heavy { whole, taken, .. } => *taken < whole.len(),
+            CellNumbers::Text(cursor) => cursor.next_word(),
+            CellNumbers::Heavy { whole, taken, .. } => *taken < whole.len(),
         }
     }
 
     /// Takes the number that it stands on.
     fn take(&mut self, what: &str) -> Result<u64, ReadError> {
         match self {
-            Words::Text(cursor) => cursor.integer(what),
-            Words::Heavy { whole, taken, .. } => {
+            CellNumbers::Text(cursor) => cursor.integer(what),
+            CellNumbers::Heavy { whole, taken, .. } => {
                 *taken += 1;
                 Ok(whole.at(*taken - 1))
             }
@@ -62,7 +62,11 @@ impl<'a> Words<'a> {
 
 impl<'a> File<'a> {
     /// Hands on the elements and their data.
-    pub(super) fn elements(&self, item: &Item, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    pub(super) fn elements(
+        &self,
+        item: &Item,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<(), ReadError> {
         let is_region = |item: &&Item| !self.is_real(item) && names_regions(item.name.as_bytes());
         let (mut of_regions, mut regions): (Vec<&Item>, Vec<Vec<i64>>) = (Vec::new(), Vec::new());
         for own in self.attributes("cell").filter(is_region) {
@@ -76,11 +80,13 @@ impl<'a> File<'a> {
             }
         }
         let regions = RegionNumbers::from_iter(regions);
-        sink.columns(of_regions.iter().map(|own| Column::tags(&own.name, 0)).collect());
+        visitor.region_attributes(
+            of_regions.iter().map(|own| RegionAttribute::tags(&own.name, 0)).collect(),
+        );
         let words = &mut self.words(item)?;
-        let (mut tag, mut count) = self.triangles(item, words, &regions, sink);
+        let (mut id, mut count) = self.triangles(item, words, &regions, visitor);
         let mut points = Vec::new();
-        while words.goes_on() {
+        while words.has_next() {
             let (cell_type, corners) = match item.kind.as_str() {
                 "mixed" => mixed(words, &mut count)?,
                 kind => self.uniform(item, kind)?,
@@ -88,66 +94,66 @@ impl<'a> File<'a> {
             points.clear();
             let own = words.cursor();
             for _ in 0..corners {
-                if !words.goes_on() {
-                    let problem = format!("the Topology ends within cell {tag}");
+                if !words.has_next() {
+                    let problem = format!("the Topology ends within cell {id}");
                     return Err(words.error(problem, CORRECT));
                 }
                 points.push(words.take("a node of a cell")?);
             }
             count += corners;
-            let region = regions.of(tag as usize);
-            Cell { tag, cell_type, points: &points, region }.send(&own, sink)?;
-            tag += 1;
+            let region = regions.of(id as usize);
+            Cell { id, cell_type, points: &points, region }.send(&own, visitor)?;
+            id += 1;
         }
         let differs = |announced: Option<u64>, found: u64| announced.is_some_and(|n| n != found);
-        if differs(item.elements, tag) || differs(item.announced(), count) {
-            let problem = format!("the Topology ends after {tag} elements of {count} numbers");
+        if differs(item.elements, id) || differs(item.announced(), count) {
+            let problem = format!("the Topology ends after {id} elements of {count} numbers");
             return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
-        if sink.asks_for_data() {
-            self.cell_data(&of_regions, tag, sink);
+        if visitor.asks_for_data() {
+            self.cell_data(&of_regions, id, visitor);
         }
         Ok(())
     }
 
-    fn words(&self, item: &Item) -> Result<Words<'a>, ReadError> {
+    fn words(&self, item: &Item) -> Result<CellNumbers<'a>, ReadError> {
         let Some(mut numbers) = self.heavy.read(item, &self.cursor(item))? else {
             let cursor = self.content(item);
-            return Ok(Words::Text(cursor));
+            return Ok(CellNumbers::Text(cursor));
         };
         let Some((size, order)) = numbers.whole() else {
             let problem = "a Topology of numbers that are not whole";
             return Err(self.cursor(item).error(problem, "Save the mesh again"));
         };
-        let whole = Whole::binary(std::mem::take(&mut numbers.bytes), size, order);
-        Ok(Words::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
+        let whole = IntArray::binary(std::mem::take(&mut numbers.bytes), size, order);
+        Ok(CellNumbers::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
     }
 
-    /// Hands on triangles of a file beside the XML, as many as the sink takes at once. Returns how many these are, and how many
+    /// Hands on triangles of a file beside the XML, as many as the visitor takes at once. Returns how many these are, and how many
     /// numbers they have.
     fn triangles(
         &self,
         item: &Item,
-        words: &mut Words<'_>,
+        words: &mut CellNumbers<'_>,
         regions: &RegionNumbers,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) -> (u64, u64) {
-        let Words::Heavy { whole, taken, .. } = words else {
+        let CellNumbers::Heavy { whole, taken, .. } = words else {
             let room = words.cursor().capacity(item.elements.unwrap_or(0), "0 1 2 ".len());
-            sink.expect_elements(room);
+            visitor.expect_elements(room);
             return (0, 0);
         };
-        sink.expect_elements(whole.len() / 4);
+        visitor.expect_elements(whole.len() / 4);
         if item.kind != "triangle" {
             return (0, 0);
         }
-        let found = sink.triangle_records(&TriangleRecords {
+        let found = visitor.triangle_records(&TriangleRecords {
             count: whole.len() / 3,
-            corners: whole.field(0, 3),
-            first: 0,
-            below: u64::MAX,
+            nodes: whole.field(0, 3),
+            min_node: 0,
+            node_end: u64::MAX,
             regions: regions.from(0),
-            expected: &[],
+            required_fields: &[],
         });
         *taken = 3 * found;
         (found as u64, *taken as u64)
@@ -176,22 +182,22 @@ impl<'a> File<'a> {
     }
 
     /// Hands on the data of cells but for those that tell regions.
-    fn cell_data(&self, regions: &[&Item], cells: u64, sink: &mut dyn Sink) {
+    fn cell_data(&self, regions: &[&Item], cells: u64, visitor: &mut dyn MeshVisitor) {
         for item in self.attributes("cell") {
             let is_region = regions.iter().any(|own| own.at == item.at);
             let (is_real, components) = (self.is_real(item), item.components(cells));
-            if !is_region && sink.cell_array(item.name.as_bytes(), components, is_real) {
+            if !is_region && visitor.cell_array(item.name.as_bytes(), components, is_real) {
                 match self.numbers(item) {
                     Ok(numbers) => {
-                        sink.cell_numbers(numbers.numbers, Some((0..cells).collect()));
+                        visitor.cell_numbers(numbers.numbers, Some((0..cells).collect()));
                     }
-                    Err(_) => sink.leaves_out("cell data that are damaged"),
+                    Err(_) => visitor.unsupported("cell data that are damaged"),
                 }
             }
         }
         let is_other = |item: &&Item| !matches!(item.center.as_str(), "node" | "cell");
         if self.items.iter().filter(|i| i.section == "Attribute").any(|i| is_other(&i)) {
-            sink.leaves_out("data of grids, faces or edges");
+            visitor.unsupported("data of grids, faces or edges");
         }
     }
 
@@ -212,14 +218,14 @@ impl<'a> File<'a> {
 }
 
 /// Reads the type of an element among others, and how many nodes it has.
-fn mixed(words: &mut Words<'_>, count: &mut u64) -> Result<(u64, u64), ReadError> {
+fn mixed(words: &mut CellNumbers<'_>, count: &mut u64) -> Result<(u64, u64), ReadError> {
     *count += 1;
     let place = words.cursor();
     let number = words.take("the type of a cell")?;
     Ok(match number {
         1..=3 => {
             *count += 1;
-            if !words.goes_on() {
+            if !words.has_next() {
                 return Err(words.error("the number of a cell's nodes is missing", CORRECT));
             }
             of_several(number, words.take("a number of nodes")?)

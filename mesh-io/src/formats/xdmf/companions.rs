@@ -1,9 +1,9 @@
 //! The files of numbers that an XDMF file refers to: their loading, and their names when the mesh is written.
 
-use crate::compress::packed::Packing;
+use crate::compress::file::Compression;
 use crate::disk::paths::same_file;
 use crate::disk::source::{Companion, Source, file_name};
-use crate::edit::numbers::Splice;
+use crate::edit::numbers::ByteEdit;
 use crate::error::{Location, ReadError, WriteError};
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
@@ -24,7 +24,7 @@ pub(super) struct Reference {
 /// If a file is missing or cannot be read, is outside of the directory of `main` without leave, is compressed, or is `main` itself, and if `main` is compressed but refers to
 /// other files.
 pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), ReadError> {
-    if !references.is_empty() && main.packed.is_some() {
+    if !references.is_empty() && main.compressed.is_some() {
         let problem = "it is compressed, but a mesh of several files";
         return Err(main.error(problem, "Decompress it first (gunzip, unzstd)"));
     }
@@ -57,7 +57,7 @@ pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), 
             }
             loaded => loaded?,
         };
-        if source.packed.is_some() {
+        if source.compressed.is_some() {
             let problem = "it is compressed, but one of the files of a mesh";
             return Err(source.error(problem, "Decompress it first (gunzip, unzstd)"));
         }
@@ -80,13 +80,13 @@ pub(super) fn destinations(source: &Source, path: &Path) -> Result<Vec<PathBuf>,
     if source.companions.is_empty() {
         return Ok(vec![path.to_owned()]);
     }
-    if Packing::of(path).is_some() {
+    if Compression::of(path).is_some() {
         let problem = "the mesh is of several files, which are not written compressed";
         return refused(problem.into(), "End the name in .xdmf");
     }
     let all = paths(source, path);
     for (part, own) in all.iter().enumerate() {
-        let mut others = source.parts().enumerate().filter(|(other, _)| *other != part);
+        let mut others = source.files().enumerate().filter(|(other, _)| *other != part);
         if others.any(|(_, other)| same_file(own, &other.path)) {
             let name = own.display();
             let problem = format!("{name}, from which the mesh was read, would be overwritten");
@@ -119,22 +119,22 @@ fn paths(source: &Source, path: &Path) -> Vec<PathBuf> {
 }
 
 /// Returns the edits of the main file that name its companions as they are written for `path`.
-pub(super) fn renames(source: &Source, path: &Path) -> Vec<Splice> {
+pub(super) fn renames(source: &Source, path: &Path) -> Vec<ByteEdit> {
     if same_file(&source.path, path) {
         return Vec::new();
     }
     let new = paths(source, path);
-    let mut splices = Vec::new();
+    let mut edits = Vec::new();
     for (companion, path) in source.companions.iter().zip(&new[1..]) {
         let name = file_name(path);
         for range in &companion.named_at {
             let bytes = escape(name.as_str()).as_bytes().to_vec();
             if source.bytes.get(range.clone()) != Some(&bytes) {
-                splices.push(Splice { range: range.clone(), bytes });
+                edits.push(ByteEdit { range: range.clone(), bytes });
             }
         }
     }
-    splices
+    edits
 }
 
 #[cfg(test)]

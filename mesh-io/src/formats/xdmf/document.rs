@@ -1,14 +1,14 @@
 //! The items of an XDMF file: what its tags say of them, and where their text stands.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::formats::xdmf::companions::Reference;
-use crate::hdf5::Number;
+use crate::hdf5::Datatype;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF};
 use crate::text::token::quoted;
-use crate::xml::{Tag, Tags, plain_text};
+use crate::xml::{XmlTag, XmlTags, plain_text};
 use std::ops::Range;
 
 /// Where the numbers of an item stand.
@@ -18,7 +18,7 @@ pub(super) enum Content {
     /// In HDF5: the name of the file and the path in it.
     Hdf5 { file: String, path: String, named_at: Range<usize> },
     /// In a file of the name, from a byte on.
-    Raw { file: String, seek: u64, number: Number, named_at: Range<usize> },
+    Raw { file: String, seek: u64, number: Datatype, named_at: Range<usize> },
 }
 
 /// A `DataItem` with numbers.
@@ -66,7 +66,7 @@ struct Section {
 }
 
 impl Section {
-    fn of(tag: &Tag<'_>) -> Result<Section, ReadError> {
+    fn of(tag: &XmlTag<'_>) -> Result<Section, ReadError> {
         let attributes = tag.attributes().map(|attribute| {
             let (name, value) = attribute?;
             Ok((name.into_owned(), value))
@@ -86,7 +86,7 @@ impl Section {
 
 /// Returns the items of a file in order, without those that refer to others.
 pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
-    let mut tags = Tags::new(source);
+    let mut tags = XmlTags::new(source);
     let mut items = Vec::new();
     let mut seen = false;
     while let Some(tag) = tags.next()? {
@@ -108,7 +108,7 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
 }
 
 /// Reads an item, given its attributes and the section that it is in.
-fn item(source: &Source, xml: &Tag<'_>, tag: &Section, of: &Section) -> Result<Item, ReadError> {
+fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Result<Item, ReadError> {
     let text = xml.text().ok_or_else(|| xml.error("the file ends within a DataItem", CUT_OFF))?;
     let number = |text: &str| {
         text.trim().parse::<u64>().map_err(|_| {
@@ -136,15 +136,15 @@ fn item(source: &Source, xml: &Tag<'_>, tag: &Section, of: &Section) -> Result<I
             }
             let precision = optional(tag, &["Precision"])?.unwrap_or(4);
             let order = match small(tag, &["Endian"]).as_str() {
-                "big" => Order::Big,
-                _ => Order::Little,
+                "big" => ByteOrder::Big,
+                _ => ByteOrder::Little,
             };
             let number = match (is_real.as_str(), precision) {
-                ("" | "float", 4) => Number::Real(Precision::Single, order),
-                ("" | "float", 8) => Number::Real(Precision::Double, order),
-                ("char" | "uchar", _) => Number::Whole(1, order),
-                ("short" | "ushort", _) => Number::Whole(2, order),
-                ("int" | "uint", 1 | 2 | 4 | 8) => Number::Whole(precision as usize, order),
+                ("" | "float", 4) => Datatype::Real(Precision::Single, order),
+                ("" | "float", 8) => Datatype::Real(Precision::Double, order),
+                ("char" | "uchar", _) => Datatype::Whole(1, order),
+                ("short" | "ushort", _) => Datatype::Whole(2, order),
+                ("int" | "uint", 1 | 2 | 4 | 8) => Datatype::Whole(precision as usize, order),
                 _ => {
                     let problem = format!("numbers of {precision} bytes are not read");
                     return Err(xml.error(problem, SAVE));

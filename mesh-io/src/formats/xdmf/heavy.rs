@@ -1,47 +1,47 @@
 //! Numbers that do not stand in the XML: in HDF5 or raw, in files companion it.
 
 use super::document::{Content, Item};
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::{Companion, Source};
-use crate::edit::numbers::{Encoded, Form, Places};
+use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
-use crate::hdf5::{Array, Encoding, Hdf5, Number};
+use crate::hdf5::{DatasetArray, Datatype, Hdf5, Hdf5Arrays};
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The files companion an XDMF.
-pub(super) struct Heavy<'a> {
+/// The companion files with heavy data, each opened if it is HDF5.
+pub(super) struct HeavyData<'a> {
     /// Each with its tree, if it is HDF5.
     files: Vec<(&'a Companion, Option<Hdf5<'a>>)>,
 }
 
-/// The numbers of an item.
-pub(super) struct Numbers<'a> {
+/// The numbers of an item in a companion file.
+pub(super) struct HeavyArray<'a> {
     /// The file that they stand in, and which of the files of the mesh that is.
     pub(super) source: &'a Source,
-    pub(super) part: usize,
-    pub(super) number: Number,
+    pub(super) file_index: usize,
+    pub(super) number: Datatype,
     pub(super) bytes: Cow<'a, [u8]>,
     /// Where they start in the file, if they stand there as they are.
     pub(super) start: Option<usize>,
     /// Near which byte they start, for messages.
     at: usize,
-    array: Option<Array<'a>>,
+    array: Option<DatasetArray<'a>>,
     file: usize,
 }
 
-impl<'a> Heavy<'a> {
+impl<'a> HeavyData<'a> {
     /// Opens the companions of a source.
-    pub(super) fn open(source: &'a Source) -> Result<Heavy<'a>, ReadError> {
+    pub(super) fn open(source: &'a Source) -> Result<HeavyData<'a>, ReadError> {
         let mut files = Vec::new();
         for companion in &source.companions {
             files.push((companion, Hdf5::open_any(&companion.source)?));
         }
-        Ok(Heavy { files })
+        Ok(HeavyData { files })
     }
 
     /// The file of a name.
@@ -50,13 +50,13 @@ impl<'a> Heavy<'a> {
     }
 
     /// The type of the numbers of an item that does not stand in the XML. None if it is not known.
-    pub(super) fn number(&self, item: &Item) -> Option<Number> {
+    pub(super) fn number(&self, item: &Item) -> Option<Datatype> {
         match &item.content {
             Content::Text(_) => None,
             Content::Raw { number, .. } => Some(*number),
             Content::Hdf5 { file, path, .. } => {
                 let file = self.files[self.file(file)?].1.as_ref()?;
-                Some(file.dataset(file.find(path.as_bytes())?).ok()??.number)
+                Some(file.dataset(file.find(path.as_bytes())?).ok()??.datatype)
             }
         }
     }
@@ -66,7 +66,7 @@ impl<'a> Heavy<'a> {
         &self,
         item: &Item,
         cursor: &Cursor<'_>,
-    ) -> Result<Option<Numbers<'a>>, ReadError> {
+    ) -> Result<Option<HeavyArray<'a>>, ReadError> {
         let name = match &item.content {
             Content::Text(_) => return Ok(None),
             Content::Hdf5 { file, .. } | Content::Raw { file, .. } => file,
@@ -78,7 +78,7 @@ impl<'a> Heavy<'a> {
         };
         let (companion, tree) = &self.files[index];
         let source = &companion.source;
-        let (part, file) = (index + 1, index);
+        let (file_index, file) = (index + 1, index);
         let numbers = match (&item.content, tree) {
             (Content::Hdf5 { path, .. }, Some(tree)) => {
                 let found = tree.find(path.as_bytes()).map(|object| tree.dataset(object));
@@ -88,10 +88,19 @@ impl<'a> Heavy<'a> {
                     return Err(cursor.error(problem, "Save the mesh again"));
                 };
                 let mut array = tree.array(&dataset)?;
-                let (start, at) = (array.place(), array.byte_of(0));
+                let (start, at) = (array.start(), array.byte_of(0));
                 let bytes = std::mem::take(&mut array.bytes);
-                let number = dataset.number;
-                Numbers { source, part, number, bytes, start, at, array: Some(array), file }
+                let number = dataset.datatype;
+                HeavyArray {
+                    source,
+                    file_index,
+                    number,
+                    bytes,
+                    start,
+                    at,
+                    array: Some(array),
+                    file,
+                }
             }
             (Content::Raw { seek, number, .. }, _) => {
                 let size = number.bytes() as u64;
@@ -106,9 +115,9 @@ impl<'a> Heavy<'a> {
                     return Err(cursor.error(problem, CUT_OFF));
                 };
                 let (number, bytes) = (*number, Cow::Borrowed(bytes));
-                Numbers {
+                HeavyArray {
                     source,
-                    part,
+                    file_index,
                     number,
                     bytes,
                     start: Some(start),
@@ -137,7 +146,7 @@ impl<'a> Heavy<'a> {
 
     /// The file and the bytes that the numbers of an item take there, of those in chunks the first one of their header. None if they
     /// stand in the XML or cannot be read.
-    pub(super) fn place(&self, item: &Item) -> Option<(usize, Range<usize>)> {
+    pub(super) fn range_of(&self, item: &Item) -> Option<(usize, Range<usize>)> {
         let (Content::Hdf5 { file, .. } | Content::Raw { file, .. }) = &item.content else {
             return None;
         };
@@ -158,34 +167,37 @@ impl<'a> Heavy<'a> {
     }
 
     /// What becomes of the files when numbers that are not where they could be replaced as they are change.
-    pub(super) fn encoding(&self, numbers: &mut Numbers<'_>) -> Option<Encoding> {
+    pub(super) fn encoding(&self, numbers: &mut HeavyArray<'_>) -> Option<Hdf5Arrays> {
         let mut array = numbers.array.take()?;
         array.bytes = std::mem::take(&mut numbers.bytes);
         let tree = self.files[numbers.file].1.as_ref()?;
-        Some(Encoding::new(tree, vec![array]))
+        Some(Hdf5Arrays::new(tree, vec![array]))
     }
 
     /// Checks that no parts of a file overlap.
-    pub(super) fn check_apart(&self) -> Result<(), ReadError> {
-        self.files.iter().filter_map(|(_, tree)| tree.as_ref()).try_for_each(Hdf5::check_apart)
+    pub(super) fn check_no_overlaps(&self) -> Result<(), ReadError> {
+        self.files
+            .iter()
+            .filter_map(|(_, tree)| tree.as_ref())
+            .try_for_each(Hdf5::check_no_overlaps)
     }
 }
 
-fn number_size(number: Number) -> usize {
+fn number_size(number: Datatype) -> usize {
     number.bytes().max(1)
 }
 
-impl<'a> Numbers<'a> {
+impl<'a> HeavyArray<'a> {
     /// Stands at or near the byte of the file at which one of the bytes stands.
     pub(super) fn cursor(&self, at: usize) -> Cursor<'a> {
         let at = if self.start.is_some() { self.at + at } else { self.at };
-        Cursor::at_byte_of(self.source, at)
+        Cursor::at_byte_offset(self.source, at)
     }
 
     /// All of them, real or whole.
     pub(super) fn reals(&self) -> Option<Vec<f64>> {
         match self.number {
-            Number::Real(precision, order) => {
+            Datatype::Real(precision, order) => {
                 let each = self.bytes.chunks_exact(precision.bytes());
                 Some(each.map(|number| order.real(precision, number)).collect())
             }
@@ -200,24 +212,30 @@ impl<'a> Numbers<'a> {
     }
 
     /// How many bytes each has, and in which order, if they are whole.
-    pub(super) fn whole(&self) -> Option<(usize, Order)> {
+    pub(super) fn whole(&self) -> Option<(usize, ByteOrder)> {
         match self.number {
-            Number::Whole(size, order) => Some((size, order)),
+            Datatype::Whole(size, order) => Some((size, order)),
             _ => None,
         }
     }
 }
 
 /// Where real numbers of data stand, so that they can be replaced.
-pub(super) fn stored(numbers: &mut Numbers<'_>, heavy: &Heavy<'_>) -> Option<Stored> {
-    let Number::Real(precision, order) = numbers.number else { return None };
-    let (form, part, stride) = (Form::Binary(order, precision), numbers.part, precision.bytes());
+pub(super) fn stored(numbers: &mut HeavyArray<'_>, heavy: &HeavyData<'_>) -> Option<ArrayLocation> {
+    let Datatype::Real(precision, order) = numbers.number else { return None };
+    let (encoding, file_index, stride) =
+        (NumberEncoding::Binary(order, precision), numbers.file_index, precision.bytes());
     let (start, home) = match numbers.start {
-        Some(start) => (start, Home::File),
+        Some(start) => (start, ByteSpace::File),
         None => {
             let encoding = heavy.encoding(numbers)?;
-            (0, Home::Encoded(Arc::new(encoding) as Arc<dyn Encoded>))
+            (0, ByteSpace::Encoded(Arc::new(encoding) as Arc<dyn EncodedArrays>))
         }
     };
-    Some(Stored { places: Places::Regular { start, stride }, form, home, part })
+    Some(ArrayLocation {
+        offsets: Offsets::Regular { start, stride },
+        encoding,
+        space: home,
+        file_index,
+    })
 }

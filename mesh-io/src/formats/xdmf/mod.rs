@@ -11,25 +11,25 @@ mod points;
 pub(crate) mod write;
 
 use crate::disk::source::Source;
-use crate::edit::numbers::Splice;
+use crate::edit::numbers::ByteEdit;
 use crate::error::{ReadError, WriteError};
-use crate::hdf5::Number;
+use crate::hdf5::Datatype;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
-use crate::visit::heights::TextNumbers;
 use crate::visit::items::PointNumbers;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::TextNumbers;
 use document::{Content, Item};
-use heavy::Heavy;
+use heavy::HeavyData;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 pub(crate) struct Xdmf;
 
-impl Walk for Xdmf {
+impl FormatReader for Xdmf {
     const VERTICES: &'static str = "Geometry";
 
     fn load_companions(mut given: Source) -> Result<Source, ReadError> {
@@ -53,17 +53,20 @@ impl Walk for Xdmf {
         companions::destinations(source, path)
     }
 
-    fn renames(source: &Source, path: &Path) -> Vec<Splice> {
+    fn renames(source: &Source, path: &Path) -> Vec<ByteEdit> {
         companions::renames(source, path)
     }
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let items = document::items(source)?;
-        let file = File { source, items, heavy: Heavy::open(source)? };
-        let (layout, points) = file.points(file.only("Geometry")?, sink)?;
-        file.elements(file.only("Topology")?, sink)?;
-        file.point_data(points, sink)?;
-        file.heavy.check_apart()?;
+        let file = File { source, items, heavy: HeavyData::open(source)? };
+        let (layout, points) = file.points(file.only("Geometry")?, visitor)?;
+        file.elements(file.only("Topology")?, visitor)?;
+        file.point_data(points, visitor)?;
+        file.heavy.check_no_overlaps()?;
         Ok(layout)
     }
 }
@@ -72,7 +75,7 @@ impl Walk for Xdmf {
 struct File<'a> {
     source: &'a Source,
     items: Vec<Item>,
-    heavy: Heavy<'a>,
+    heavy: HeavyData<'a>,
 }
 
 impl Item {
@@ -106,7 +109,7 @@ impl<'a> File<'a> {
     }
 
     fn cursor(&self, item: &Item) -> Cursor<'a> {
-        Cursor::standing_at(self.source, item.at)
+        Cursor::on_line_of(self.source, item.at)
     }
 
     /// Stands before the numbers of an item in the XML.
@@ -121,37 +124,37 @@ impl<'a> File<'a> {
     /// Whether the numbers of an item are real ones, not whole.
     fn is_real(&self, item: &Item) -> bool {
         match self.heavy.number(item) {
-            Some(number) => matches!(number, Number::Real(..)),
+            Some(number) => matches!(number, Datatype::Real(..)),
             None => item.precision.is_some(),
         }
     }
 
     /// Hands on the data of so many points.
-    fn point_data(&self, points: u64, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    fn point_data(&self, points: u64, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
         // What stands in a file twice is replaced once.
         let mut known: Vec<(usize, Range<usize>)> = Vec::new();
         for section in ["Geometry", "Topology"] {
-            let numbers = match sink.asks_for_data() {
-                true => self.heavy.place(self.only(section)?),
+            let numbers = match visitor.asks_for_data() {
+                true => self.heavy.range_of(self.only(section)?),
                 false => None,
             };
             known.extend(numbers);
         }
         for item in self.attributes("node") {
             let (components, is_real) = (item.components(points), self.is_real(item));
-            if sink.point_array(item.name.as_bytes(), components, is_real)
+            if visitor.point_array(item.name.as_bytes(), components, is_real)
                 && let Ok(mut numbers) = self.numbers(item)
             {
-                if let Some((part, range)) = self.heavy.place(item) {
+                if let Some((part, range)) = self.heavy.range_of(item) {
                     let is_other = |(known, own): &(usize, Range<usize>)| {
                         *known != part || own.end <= range.start || range.end <= own.start
                     };
                     if !known.iter().all(is_other) {
-                        numbers.stored = None;
+                        numbers.location = None;
                     }
                     known.push((part, range));
                 }
-                sink.point_numbers(numbers);
+                visitor.point_numbers(numbers);
             }
         }
         Ok(())
@@ -167,7 +170,7 @@ impl<'a> File<'a> {
                     .error("the data are not numbers", "Save the data as Float or Int"));
             };
             let stored = heavy::stored(&mut numbers, &self.heavy);
-            return Ok(PointNumbers { numbers: reals, nodes: None, stored });
+            return Ok(PointNumbers { numbers: reals, nodes: None, location: stored });
         }
         let cursor = &mut self.content(item);
         let mut numbers = TextNumbers::default();
@@ -175,7 +178,7 @@ impl<'a> File<'a> {
             numbers.read(cursor)?;
         }
         let numbers = numbers.finish(item.precision.unwrap_or(Precision::Double), None);
-        let stored = numbers.stored.filter(|_| item.precision.is_some());
-        Ok(PointNumbers { stored, ..numbers })
+        let stored = numbers.location.filter(|_| item.precision.is_some());
+        Ok(PointNumbers { location: stored, ..numbers })
     }
 }

@@ -3,27 +3,27 @@
 use super::File;
 use super::document::Item;
 use super::heavy;
-use crate::binary::number_field::Field;
-use crate::edit::numbers::{Encoded, Numbers};
+use crate::binary::number_field::NumberField;
+use crate::edit::numbers::{CoordinateEncoding, EncodedArrays};
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::hdf5::{Encoding, Number};
+use crate::hdf5::{Datatype, Hdf5Arrays};
 use crate::precision::Precision;
 use crate::text::cursor::CORRECT;
 use crate::text::token::quoted;
-use crate::visit::heights::Heights;
-use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::records::{NodeIds, NodeRecords};
 use crate::visit::send::REWRITE;
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Home, Layout};
+use crate::visit::storage::{ByteSpace, CoordinateStorage};
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 
 impl File<'_> {
     /// Hands on the points. Returns how they stand, and how many there are.
     pub(super) fn points(
         &self,
         item: &Item,
-        sink: &mut dyn Sink,
-    ) -> Result<(Layout, u64), ReadError> {
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<(CoordinateStorage, u64), ReadError> {
         let axes = match item.kind.as_str() {
             "xy" => 2,
             "" | "xyz" => 3,
@@ -34,8 +34,8 @@ impl File<'_> {
             }
         };
         match self.heavy.read(item, &self.cursor(item))? {
-            Some(numbers) => self.heavy_points(item, numbers, axes as usize, sink),
-            None => self.text_points(item, axes, sink),
+            Some(numbers) => self.heavy_points(item, numbers, axes as usize, visitor),
+            None => self.text_points(item, axes, visitor),
         }
     }
 
@@ -43,8 +43,8 @@ impl File<'_> {
         &self,
         item: &Item,
         axes: u64,
-        sink: &mut dyn Sink,
-    ) -> Result<(Layout, u64), ReadError> {
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<(CoordinateStorage, u64), ReadError> {
         if item.precision.is_none() {
             let problem = "the points are whole numbers";
             return Err(self.cursor(item).error(problem, "Save them as Float"));
@@ -53,8 +53,8 @@ impl File<'_> {
         let count = announced.map(|count| count / axes);
         self.cursor(item).check_vertex_count(count.unwrap_or(0))?;
         let cursor = &mut self.content(item);
-        sink.expect_nodes(cursor.capacity(count.unwrap_or(0), "0 0 ".len()));
-        let mut heights = Heights::new(sink);
+        visitor.expect_nodes(cursor.capacity(count.unwrap_or(0), "0 0 ".len()));
+        let mut z_values = ZValues::new(visitor);
         let mut index = 0;
         while cursor.next_word() {
             if Some(index) == count {
@@ -72,13 +72,13 @@ impl File<'_> {
                 }
                 places[axis] = cursor.at();
                 point[axis] = match axis {
-                    2 => cursor.height(format_args!("point {index}"))?.1,
+                    2 => cursor.z(format_args!("point {index}"))?.1,
                     _ => cursor.coordinate(['x', 'y'][axis], format_args!("point {index}"))?,
                 };
             }
-            sink.node(&own, index, 2, places[0], [point[0], point[1]]);
+            visitor.node(&own, index, 2, places[0], [point[0], point[1]]);
             if axes == 3 {
-                heights.see((places[2], point[2]));
+                z_values.push((places[2], point[2]));
             }
             index += 1;
         }
@@ -89,22 +89,22 @@ impl File<'_> {
             );
         }
         cursor.check_vertex_count(index)?;
-        sink.end_nodes(&self.cursor(item))?;
+        visitor.end_nodes(&self.cursor(item))?;
         let precision = item.precision.unwrap_or(Precision::Double);
-        let numbers = Numbers::Text { precision };
-        heights.send("z", numbers.into(), sink);
-        Ok((Layout::in_place(Format::Xdmf, numbers), index))
+        let numbers = CoordinateEncoding::Text { precision };
+        z_values.send("z", numbers.into(), visitor);
+        Ok((CoordinateStorage::in_place(Format::Xdmf, numbers), index))
     }
 
     /// Points of a file beside the XML.
     fn heavy_points(
         &self,
         item: &Item,
-        mut numbers: heavy::Numbers<'_>,
+        mut numbers: heavy::HeavyArray<'_>,
         axes: usize,
-        sink: &mut dyn Sink,
-    ) -> Result<(Layout, u64), ReadError> {
-        let Number::Real(precision, order) = numbers.number else {
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<(CoordinateStorage, u64), ReadError> {
+        let Datatype::Real(precision, order) = numbers.number else {
             let problem = "the points are not floating-point numbers of 32 or 64 bits";
             return Err(self.cursor(item).error(problem, "Save them as Float"));
         };
@@ -120,28 +120,35 @@ impl File<'_> {
         let count = numbers.bytes.len() / stride;
         self.cursor(item).check_vertex_count(count as u64)?;
         // Numbers that stand in the file are replaced there, all others encoded again.
-        let (start, part) = (numbers.start.unwrap_or(0), numbers.part);
-        let encoded: Option<Encoding> = match numbers.start {
+        let (start, file_index) = (numbers.start.unwrap_or(0), numbers.file_index);
+        let encoded: Option<Hdf5Arrays> = match numbers.start {
             Some(_) => None,
             None => self.heavy.encoding(&mut numbers),
         };
-        let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Encoding::bytes);
-        let mut heights = Heights::new(sink);
-        let field = |axis: usize| Field::new(bytes.get(axis * size..), stride, size, order);
-        let (x, y, tags) = (field(0), field(1), Tags::From(0));
+        let bytes = encoded.as_ref().map_or(&numbers.bytes[..], Hdf5Arrays::bytes);
+        let mut z_values = ZValues::new(visitor);
+        let field = |axis: usize| NumberField::new(bytes.get(axis * size..), stride, size, order);
+        let (x, y, ids) = (field(0), field(1), NodeIds::Consecutive(0));
         let place = |index| numbers.cursor(index * stride);
-        NodeRecords { count, x, y, x_at: start, tags }.send(sink, place, |index| {
+        NodeRecords { count, x, y, x_offset: start, ids }.send(visitor, place, |index| {
             let problem = format!("a coordinate of point {index} is not a finite number");
             place(index).error(problem, REWRITE)
         })?;
         if axes == 3 {
-            heights.see_all(field(2), count, start + 2 * size);
+            z_values.push_records(field(2), count, start + 2 * size);
         }
-        sink.end_nodes(&self.cursor(item))?;
-        let numbers = Numbers::adjacent(order, precision);
-        let home = if encoded.is_some() { Home::Points } else { Home::File };
-        heights.send_from("z", numbers.into(), home, part, sink);
-        let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn Encoded>);
-        Ok((Layout { encoded, part, ..Layout::in_place(Format::Xdmf, numbers) }, count as u64))
+        visitor.end_nodes(&self.cursor(item))?;
+        let numbers = CoordinateEncoding::adjacent(order, precision);
+        let home = if encoded.is_some() { ByteSpace::Points } else { ByteSpace::File };
+        z_values.send_from("z", numbers.into(), home, file_index, visitor);
+        let encoded = encoded.map(|encoding| Box::new(encoding) as Box<dyn EncodedArrays>);
+        Ok((
+            CoordinateStorage {
+                encoded,
+                file_index,
+                ..CoordinateStorage::in_place(Format::Xdmf, numbers)
+            },
+            count as u64,
+        ))
     }
 }

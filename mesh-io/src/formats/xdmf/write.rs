@@ -1,14 +1,14 @@
 //! Writes XDMF with the numbers in the XML.
 
-use crate::export::job::Job;
 use crate::export::put;
-use crate::formats::vtk::write::{Array, Numbers, of_cells, of_points};
-use crate::visit::items::Kind;
+use crate::export::writer_input::WriterInput;
+use crate::formats::vtk::write::{Array, ArrayValues, of_cells, of_points};
+use crate::visit::items::CellKind;
 use std::fmt::Write;
 
-pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
-    let content = job.content;
-    let cells: Vec<usize> = job.cells().collect();
+pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let cells: Vec<usize> = input.cells().collect();
     let (points, count) = (content.points.len(), cells.len());
     let mut out = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"Grid\" GridType=\"Uniform\">\n"
         .to_owned();
@@ -17,9 +17,9 @@ pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
         "<Geometry GeometryType=\"XYZ\">\n<DataItem DataType=\"Float\" Dimensions=\"{points} 3\" Format=\"XML\" \
          Precision=\"8\">\n"
     );
-    (0..points).for_each(|vertex| put!(out, "{}\n", job.space(vertex)));
+    (0..points).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
     out.push_str("</DataItem>\n</Geometry>\n");
-    let rows: Vec<String> = cells.iter().map(|&cell| row(job, cell)).collect();
+    let rows: Vec<String> = cells.iter().map(|&cell| row(input, cell)).collect();
     let words: usize = rows.iter().map(|row| row.split(' ').count()).sum();
     put!(
         out,
@@ -28,21 +28,21 @@ pub(crate) fn write_xdmf(job: &Job<'_>) -> String {
     );
     rows.iter().for_each(|row| put!(out, "{row}\n"));
     out.push_str("</DataItem>\n</Topology>\n");
-    of_points(job).iter().for_each(|array| attribute(array, "Node", points, &mut out));
-    of_cells(job, &cells).iter().for_each(|array| attribute(array, "Cell", count, &mut out));
+    of_points(input).iter().for_each(|array| attribute(array, "Node", points, &mut out));
+    of_cells(input, &cells).iter().for_each(|array| attribute(array, "Cell", count, &mut out));
     out.push_str("</Grid>\n</Domain>\n</Xdmf>\n");
     out
 }
 
 /// Writes a cell: XDMF's number of its type, its number of vertices if the type does not tell, and its vertices.
-fn row(job: &Job<'_>, cell: usize) -> String {
-    let vertices = job.places(cell, 0);
-    match job.content.cells.kinds[cell] {
-        Kind::Point => format!("1 1 {vertices}"),
-        Kind::Line => format!("2 2 {vertices}"),
-        Kind::Triangle => format!("4 {vertices}"),
-        Kind::Quadrilateral => format!("5 {vertices}"),
-        Kind::Corner => format!("3 {} {vertices}", job.content.cells.of(cell).len()),
+fn row(input: &WriterInput<'_>, cell: usize) -> String {
+    let vertices = input.positions(cell, 0);
+    match input.content.cells.kinds[cell] {
+        CellKind::Point => format!("1 1 {vertices}"),
+        CellKind::Line => format!("2 2 {vertices}"),
+        CellKind::Triangle => format!("4 {vertices}"),
+        CellKind::Quadrilateral => format!("5 {vertices}"),
+        CellKind::Polygon => format!("3 {} {vertices}", input.content.cells.of(cell).len()),
     }
 }
 
@@ -58,10 +58,10 @@ fn attribute(array: &Array, center: &str, count: usize, out: &mut String) {
     };
     let (number, words): (_, Vec<String>) = match numbers {
         // NaN is written so that readers in C parse it.
-        Numbers::Real(numbers) => {
+        ArrayValues::Real(numbers) => {
             ("Float", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
         }
-        Numbers::Whole(numbers) => ("Int", numbers.iter().map(i64::to_string).collect()),
+        ArrayValues::Whole(numbers) => ("Int", numbers.iter().map(i64::to_string).collect()),
     };
     let dimensions = match components {
         1 => count.to_string(),

@@ -1,24 +1,24 @@
-//! Data of points and cells of a legacy VTK file. Arrays that name regions, and those that the sink wants, are read.
+//! Data of points and cells of a legacy VTK file. Arrays that name regions, and those that the visitor wants, are read.
 //! Others are skipped.
 
-use crate::binary::order::Order;
-use crate::content::label::Label;
-use crate::edit::numbers::{Form, Places};
-use crate::formats::vtk::legacy::passed::{array_name, pass, size_of, take};
+use crate::binary::byte_order::ByteOrder;
+use crate::content::group_label::GroupLabel;
+use crate::edit::numbers::{NumberEncoding, Offsets};
+use crate::formats::vtk::legacy::skip::{array_name, size_of, skip_section, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
-use crate::visit::heights::TextNumbers;
-use crate::visit::items::{Column, PointNumbers};
-use crate::visit::sink::Sink;
-use crate::visit::storage::Stored;
+use crate::visit::items::{PointNumbers, RegionAttribute};
+use crate::visit::storage::ArrayLocation;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::TextNumbers;
 use std::borrow::Cow;
 
 /// The arrays that tell the regions of cells.
 #[derive(Default)]
 pub(super) struct RegionArrays {
     /// The meaning of each array's numbers.
-    pub(super) columns: Vec<Column>,
+    pub(super) columns: Vec<RegionAttribute>,
     /// The number of each cell in each array.
     pub(super) numbers: Vec<Vec<i64>>,
 }
@@ -29,10 +29,10 @@ pub(super) fn regions(
     cursor: &mut Cursor<'_>,
     binary: bool,
     keyword: &[u8],
-    sink: &mut dyn Sink,
+    visitor: &mut dyn MeshVisitor,
 ) -> RegionArrays {
     let of_cells = keyword == b"CELL_DATA";
-    let mut data = Data { binary, of_cells, count: 0, found: RegionArrays::default(), sink };
+    let mut data = Data { binary, of_cells, count: 0, found: RegionArrays::default(), visitor };
     let Ok(count) = cursor.integer("a count") else {
         return data.found;
     };
@@ -50,7 +50,7 @@ struct Data<'s> {
     of_cells: bool,
     count: u64,
     found: RegionArrays,
-    sink: &'s mut dyn Sink,
+    visitor: &'s mut dyn MeshVisitor,
 }
 
 impl Data<'_> {
@@ -129,10 +129,12 @@ impl Data<'_> {
         let count = components.checked_mul(tuples)?;
         let of_all = tuples == self.count;
         let precision = precision_of(kind);
-        if !self.of_cells && of_all && self.sink.point_array(name, components, precision.is_some())
+        if !self.of_cells
+            && of_all
+            && self.visitor.point_array(name, components, precision.is_some())
         {
             let numbers = self.numbers(cursor, kind, count)?;
-            self.sink.point_numbers(numbers);
+            self.visitor.point_numbers(numbers);
             return Some(());
         }
         let is_region =
@@ -140,26 +142,26 @@ impl Data<'_> {
         if self.of_cells
             && of_all
             && !is_region
-            && self.sink.asks_for_data()
-            && self.sink.cell_array(name, components, precision.is_some())
+            && self.visitor.asks_for_data()
+            && self.visitor.cell_array(name, components, precision.is_some())
         {
             let numbers = self.numbers(cursor, kind, count)?.numbers;
-            self.sink.cell_numbers(numbers, None);
+            self.visitor.cell_numbers(numbers, None);
             return Some(());
         }
         if !(self.of_cells && of_all && is_region) {
-            return pass(cursor, self.binary, kind, count).ok();
+            return skip_section(cursor, self.binary, kind, count).ok();
         }
         let what = String::from_utf8_lossy(name).into_owned();
         // The number of each cell's region, or the bits of the number if the array has real numbers.
-        let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<Label>);
+        let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<GroupLabel>);
         if self.binary {
             let size = size_of(kind)?;
             // Real numbers are told apart by their bits, but a negative zero is zero.
             let negative_zero = precision.map(|_| i64::MIN >> (64 - 8 * size));
             let positive = |bits: i64| if Some(bits) == negative_zero { 0 } else { bits };
             let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
-            names.extend(numbers.map(|number| positive(Order::Big.signed(number))));
+            names.extend(numbers.map(|number| positive(ByteOrder::Big.signed(number))));
             label = label_of(kind);
         } else {
             for _ in 0..tuples {
@@ -169,7 +171,7 @@ impl Data<'_> {
                 names.push((number + 0.0).to_bits().cast_signed());
             }
         }
-        self.found.columns.push(Column { what, from_dimension: 0, label });
+        self.found.columns.push(RegionAttribute { kind: what, from_dimension: 0, label });
         self.found.numbers.push(names);
         Some(())
     }
@@ -180,12 +182,12 @@ impl Data<'_> {
         if self.binary {
             let (size, value) = (size_of(kind)?, value_of(kind));
             let bytes = take(cursor, count, size).ok()?.chunks_exact(size);
-            let numbers = bytes.map(|number| value(Order::Big.signed(number))).collect();
-            let places = Places::Regular { start: cursor.taken(), stride: size };
+            let numbers = bytes.map(|number| value(ByteOrder::Big.signed(number))).collect();
+            let places = Offsets::Regular { start: cursor.last_taken(), stride: size };
             let stored = precision.and_then(|precision| {
-                Stored::in_place(places, Form::Binary(Order::Big, precision))
+                ArrayLocation::in_place(places, NumberEncoding::Binary(ByteOrder::Big, precision))
             });
-            return Some(PointNumbers { numbers, nodes: None, stored });
+            return Some(PointNumbers { numbers, nodes: None, location: stored });
         }
         let mut numbers = TextNumbers::default();
         for _ in 0..count {
@@ -193,7 +195,7 @@ impl Data<'_> {
             numbers.read(cursor).ok()?;
         }
         let numbers = numbers.finish(precision.unwrap_or_default(), None);
-        Some(PointNumbers { stored: numbers.stored.filter(|_| precision.is_some()), ..numbers })
+        Some(PointNumbers { location: numbers.location.filter(|_| precision.is_some()), ..numbers })
     }
 }
 
@@ -230,19 +232,19 @@ fn decoded(name: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(decoded)
 }
 
-fn number_of_bits(bits: i64) -> Option<Label> {
-    Some(Label::number(f64::from_bits(bits.cast_unsigned())))
+fn number_of_bits(bits: i64) -> Option<GroupLabel> {
+    Some(GroupLabel::number(f64::from_bits(bits.cast_unsigned())))
 }
 
 /// Returns a function from the bits of a number of this type, as a signed whole number, to its label.
-fn label_of(kind: &[u8]) -> fn(i64) -> Option<Label> {
+fn label_of(kind: &[u8]) -> fn(i64) -> Option<GroupLabel> {
     match kind.to_ascii_lowercase().as_slice() {
-        b"float" => |bits| Some(Label::number(f64::from(f32::from_bits(bits as u32)))),
+        b"float" => |bits| Some(GroupLabel::number(f64::from(f32::from_bits(bits as u32)))),
         b"double" => number_of_bits,
-        b"unsigned_char" => |number| Some(Label::Tag(number & 0xff)),
-        b"unsigned_short" => |number| Some(Label::Tag(number & 0xffff)),
-        b"unsigned_int" => |number| Some(Label::Tag(number & 0xffff_ffff)),
-        _ => |number| Some(Label::Tag(number)),
+        b"unsigned_char" => |number| Some(GroupLabel::Tag(number & 0xff)),
+        b"unsigned_short" => |number| Some(GroupLabel::Tag(number & 0xffff)),
+        b"unsigned_int" => |number| Some(GroupLabel::Tag(number & 0xffff_ffff)),
+        _ => |number| Some(GroupLabel::Tag(number)),
     }
 }
 

@@ -1,27 +1,27 @@
 //! Lists of cells of a legacy VTK file.
 
-use super::passed::take;
-use crate::binary::order::Order;
-use crate::binary::whole::Whole;
+use super::skip::take;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
-use crate::formats::vtk::cells::{Cell, Triangles, Tries};
+use crate::formats::vtk::cells::{BulkBackoff, Cell, Triangles};
 use crate::formats::vtk::regions::RegionNumbers;
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::token::quoted;
-use crate::visit::sink::Sink;
+use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 
 /// A list of cells.
 pub(super) struct Cells<'a> {
     pub(super) count: usize,
     /// The points of all cells. Without offsets, each cell's number of points stands before its points.
-    numbers: Whole<'a>,
+    numbers: IntArray<'a>,
     /// The start of each cell's points, and the end of the last one's.
-    offsets: Option<Whole<'a>>,
+    offsets: Option<IntArray<'a>>,
     /// The type of each cell. `None` for polygonal data.
-    pub(super) types: Option<Whole<'a>>,
+    pub(super) types: Option<IntArray<'a>>,
     kind: List,
     /// The cursor at the first cell.
     first: Cursor<'a>,
@@ -46,14 +46,14 @@ pub(super) fn integers<'a>(
     cursor: &mut Cursor<'a>,
     count: u64,
     size: Option<usize>,
-) -> Result<Whole<'a>, ReadError> {
+) -> Result<IntArray<'a>, ReadError> {
     match size {
         Some(size) => {
             let bytes = take(cursor, count, size)?;
-            Ok(Whole::binary(bytes.into(), size, Order::Big))
+            Ok(IntArray::binary(bytes.into(), size, ByteOrder::Big))
         }
         None => {
-            let mut numbers = Whole::with_capacity(cursor.capacity(count, "0 ".len()));
+            let mut numbers = IntArray::with_capacity(cursor.capacity(count, "0 ".len()));
             if cursor.is_at_end() && cursor.is_long() {
                 whole_rows(cursor, count, &mut numbers);
             }
@@ -70,11 +70,12 @@ pub(super) fn integers<'a>(
 }
 
 /// Reads whole rows of numbers on all threads, as long as they are plain and have no more than `count` numbers in all.
-fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut Whole<'_>) {
-    /// Rows with more numbers than this, or with numbers of more than 32 bits, are left to be read one by one.
-    const MOST: usize = 10;
-    let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MOST], u8), ReadError> {
-        let mut row = ([0; MOST], 0);
+fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut IntArray<'_>) {
+    /// Limit on the numbers of a row that is read on all threads. Rows with more numbers, or with numbers of more
+    /// than 32 bits, are read one by one.
+    const MAX_ROW_NUMBERS: usize = 10;
+    let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MAX_ROW_NUMBERS], u8), ReadError> {
+        let mut row = ([0; MAX_ROW_NUMBERS], 0);
         while !cursor.is_at_end() {
             let number = u32::try_from(cursor.integer("a number")?).ok();
             let (Some(number), Some(next)) = (number, row.0.get_mut(usize::from(row.1))) else {
@@ -149,7 +150,7 @@ pub(super) fn read<'a>(
 /// Returns a cursor at the numbers that are read next.
 fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
     match binary {
-        true => Cursor::at_byte_of(cursor.source, cursor.at_byte()),
+        true => Cursor::at_byte_offset(cursor.source, cursor.at_byte()),
         false => cursor.clone(),
     }
 }
@@ -167,32 +168,32 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
 }
 
 impl Cells<'_> {
-    /// Hands the cells to the sink. `tag` is that of the first cell, and becomes that of the next list's first cell.
+    /// Hands the cells to the visitor. `id` is that of the first cell, and becomes that of the next list's first cell.
     pub(super) fn send(
         &self,
         cursor: &Cursor<'_>,
         regions: &RegionNumbers,
-        tag: &mut u64,
-        sink: &mut dyn Sink,
+        id: &mut u64,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
-        sink.expect_elements(self.count);
+        visitor.expect_elements(self.count);
         if self.kind == List::Cells && self.types.is_none() && self.count > 0 {
             return Err(cursor.error("CELLS without CELL_TYPES", CUT_OFF));
         }
-        // The location of a cell is found only for a sink that uses it.
+        // The location of a cell is found only for a visitor that uses it.
         let mut place = self.first.clone();
-        let mut tries = Tries::NEW;
+        let mut tries = BulkBackoff::NEW;
         let (mut index, mut end) = (0, 0);
         let mut points = Vec::new();
-        let first = *tag;
+        let first = *id;
         while index < self.count {
-            *tag = first + index as u64;
+            *id = first + index as u64;
             let own = self.points(index, end);
             if own.len() == 3
                 && tries.is_due(index)
-                && let Some(triangles) = self.triangles(index, own.clone(), regions, *tag)
+                && let Some(triangles) = self.triangles(index, own.clone(), regions, *id)
             {
-                let (taken, last) = triangles.send(sink);
+                let (taken, last) = triangles.send(visitor);
                 tries.done(index, taken);
                 if taken > 0 {
                     (index, end) = (index + taken, last);
@@ -201,22 +202,21 @@ impl Cells<'_> {
             }
             points.clear();
             points.extend(self.numbers.range(own.clone()));
-            let region = regions.of(*tag as usize);
-            let cell =
-                Cell { tag: *tag, cell_type: self.cell_type(index), points: &points, region };
-            if sink.takes_ahead() {
-                if cell.send(cursor, sink).is_err() {
-                    self.stand_before(&mut place, index);
-                    return cell.send(&place, sink);
+            let region = regions.of(*id as usize);
+            let cell = Cell { id: *id, cell_type: self.cell_type(index), points: &points, region };
+            if visitor.allows_parallel() {
+                if cell.send(cursor, visitor).is_err() {
+                    self.seek_cell(&mut place, index);
+                    return cell.send(&place, visitor);
                 }
             } else {
-                self.stand(&mut place);
-                cell.send(&place, sink)?;
-                self.pass(&mut place, own.len());
+                self.seek_next(&mut place);
+                cell.send(&place, visitor)?;
+                self.skip_cell(&mut place, own.len());
             }
             (index, end) = (index + 1, own.end);
         }
-        *tag = first + self.count as u64;
+        *id = first + self.count as u64;
         Ok(())
     }
 
@@ -226,7 +226,7 @@ impl Cells<'_> {
         index: usize,
         own: Range<usize>,
         regions: &'c RegionNumbers,
-        tag: u64,
+        id: u64,
     ) -> Option<Triangles<'c>> {
         let types = match (&self.types, self.kind) {
             (Some(types), _) => Some(types.field(index, 1)),
@@ -241,7 +241,7 @@ impl Cells<'_> {
             types,
             first: 0,
             below: u64::MAX,
-            regions: regions.from(tag as usize),
+            regions: regions.from(id as usize),
         })
     }
 
@@ -266,29 +266,29 @@ impl Cells<'_> {
 
     /// Moves from the first cell to another one.
     #[cold]
-    fn stand_before(&self, place: &mut Cursor<'_>, index: usize) {
+    fn seek_cell(&self, place: &mut Cursor<'_>, index: usize) {
         let mut end = 0;
         for before in 0..index {
             let points = self.points(before, end);
-            self.pass(place, points.len());
+            self.skip_cell(place, points.len());
             end = points.end;
         }
-        self.stand(place);
+        self.seek_next(place);
     }
 
     /// Moves to the start of the next cell, over blanks in text.
-    fn stand(&self, place: &mut Cursor<'_>) {
+    fn seek_next(&self, place: &mut Cursor<'_>) {
         if self.width.is_none() {
             place.next_word();
         }
     }
 
     /// Moves from the start of a cell with this many points to its end.
-    fn pass(&self, place: &mut Cursor<'_>, points: usize) {
+    fn skip_cell(&self, place: &mut Cursor<'_>, points: usize) {
         let numbers = points + usize::from(self.offsets.is_none());
         match self.width {
             Some(width) => {
-                *place = Cursor::at_byte_of(place.source, place.taken() + numbers * width)
+                *place = Cursor::at_byte_offset(place.source, place.last_taken() + numbers * width)
             }
             None => {
                 for _ in 0..numbers {

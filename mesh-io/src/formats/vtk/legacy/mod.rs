@@ -6,35 +6,38 @@
 
 mod data;
 mod lists;
-mod passed;
+mod skip;
 
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::disk::source::Source;
-use crate::edit::numbers::{Form, Numbers};
+use crate::edit::numbers::{CoordinateEncoding, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::vtk::regions::RegionNumbers;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::heights::Heights;
-use crate::visit::reader::Walk;
-use crate::visit::records::{NodeRecords, Tags};
+use crate::visit::reader::FormatReader;
+use crate::visit::records::{NodeIds, NodeRecords};
 use crate::visit::rows::each_row;
 use crate::visit::send::REWRITE;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 use data::RegionArrays;
 use lists::{Cells, List};
-use passed::take;
+use skip::take;
 
 pub(crate) struct Vtk;
 
-impl Walk for Vtk {
+impl FormatReader for Vtk {
     const VERTICES: &'static str = "POINTS";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source);
         cursor.line();
         cursor.line();
@@ -49,7 +52,7 @@ impl Walk for Vtk {
         };
         let mut cells: Vec<Cells<'_>> = Vec::new();
         let mut precision = None;
-        let mut heights = None;
+        let mut z_values = None;
         let mut regions = RegionArrays::default();
         while cursor.next_word() {
             // VTK ignores the case of keywords.
@@ -61,9 +64,9 @@ impl Walk for Vtk {
                         let problem = "this is the second list of POINTS";
                         return Err(cursor.error(problem, "Save each mesh to a file of its own"));
                     }
-                    let mut seen = Heights::new(sink);
-                    precision = Some(points(cursor, binary, &mut seen, sink)?);
-                    heights = Some(seen);
+                    let mut seen = ZValues::new(visitor);
+                    precision = Some(points(cursor, binary, &mut seen, visitor)?);
+                    z_values = Some(seen);
                 }
                 b"CELLS" | b"POLYGONS" | b"LINES" | b"VERTICES" | b"TRIANGLE_STRIPS" => {
                     let kind = match keyword.as_slice() {
@@ -90,12 +93,12 @@ impl Walk for Vtk {
                 }
                 b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
                 b"FIELD" => {
-                    sink.leaves_out("field data");
-                    passed::pass_field(cursor, binary)?;
+                    visitor.unsupported("field data");
+                    skip::skip_field(cursor, binary)?;
                 }
                 // Data of points and cells go on to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
-                    regions = data::regions(cursor, binary, &keyword, sink);
+                    regions = data::regions(cursor, binary, &keyword, visitor);
                     break;
                 }
                 other => {
@@ -107,25 +110,25 @@ impl Walk for Vtk {
         let Some(precision) = precision else {
             return Err(source.error("it has no POINTS", "Save the mesh again"));
         };
-        sink.end_nodes(cursor)?;
-        if let Some(heights) = heights {
+        visitor.end_nodes(cursor)?;
+        if let Some(z_values) = z_values {
             let form = match binary {
-                true => Form::Binary(Order::Big, precision),
-                false => Form::Text(precision),
+                true => NumberEncoding::Binary(ByteOrder::Big, precision),
+                false => NumberEncoding::Text(precision),
             };
-            heights.send("z", form, sink);
+            z_values.send("z", form, visitor);
         }
-        sink.columns(regions.columns);
+        visitor.region_attributes(regions.columns);
         let regions = RegionNumbers::from_iter(regions.numbers);
-        let mut tag = 0;
+        let mut id = 0;
         for cells in &cells {
-            cells.send(cursor, &regions, &mut tag, sink)?;
+            cells.send(cursor, &regions, &mut id, visitor)?;
         }
         let (format, numbers) = match binary {
-            false => (Format::Vtk, Numbers::Text { precision }),
-            true => (Format::VtkBinary, Numbers::adjacent(Order::Big, precision)),
+            false => (Format::Vtk, CoordinateEncoding::Text { precision }),
+            true => (Format::VtkBinary, CoordinateEncoding::adjacent(ByteOrder::Big, precision)),
         };
-        Ok(Layout::in_place(format, numbers))
+        Ok(CoordinateStorage::in_place(format, numbers))
     }
 }
 
@@ -144,8 +147,8 @@ fn dataset(cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
 fn points(
     cursor: &mut Cursor<'_>,
     binary: bool,
-    heights: &mut Heights,
-    sink: &mut dyn Sink,
+    z_values: &mut ZValues,
+    visitor: &mut dyn MeshVisitor,
 ) -> Result<Precision, ReadError> {
     let count = cursor.vertex_count()?;
     let precision = match cursor.token().unwrap_or_default().to_ascii_lowercase().as_slice() {
@@ -159,18 +162,19 @@ fn points(
     if binary {
         let width = precision.bytes();
         let bytes = take(cursor, count, 3 * width)?;
-        let start = cursor.taken();
+        let start = cursor.last_taken();
         let count = bytes.len() / (3 * width);
-        let [x, y, z] = [0, 1, 2]
-            .map(|axis| Field::new(bytes.get(axis * width..), 3 * width, width, Order::Big));
-        let place = |index| Cursor::at_byte_of(cursor.source, start + index * 3 * width);
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            NumberField::new(bytes.get(axis * width..), 3 * width, width, ByteOrder::Big)
+        });
+        let place = |index| Cursor::at_byte_offset(cursor.source, start + index * 3 * width);
         let not_finite = |index| place(index).error("a coordinate is not a finite number", REWRITE);
-        let records = NodeRecords { count, x, y, x_at: start, tags: Tags::From(0) };
-        records.send(sink, place, not_finite)?;
-        heights.see_all(z, count, start + 2 * width);
+        let records = NodeRecords { count, x, y, x_offset: start, ids: NodeIds::Consecutive(0) };
+        records.send(visitor, place, not_finite)?;
+        z_values.push_records(z, count, start + 2 * width);
         return Ok(precision);
     }
-    sink.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
+    visitor.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
     // If points are not one in each row, their numbers may be broken into lines anywhere, and the first may stand on the
     // line of the keyword.
     let mut rest = cursor.clone();
@@ -180,18 +184,18 @@ fn points(
         cursor,
         in_rows,
         "points",
-        sink,
+        visitor,
         |cursor| {
             let point = cursor.point("a point")?;
-            let z = cursor.height("a point")?;
+            let z = cursor.z("a point")?;
             match cursor.is_at_end() {
                 true => Ok((point, z)),
                 false => Err(cursor.error("more than a point on a line", CORRECT)),
             }
         },
-        |cursor, sink, index, ((x_at, at), z)| {
-            sink.node(cursor, index, 2, x_at, at);
-            heights.see(z);
+        |cursor, visitor, index, ((x_at, at), z)| {
+            visitor.node(cursor, index, 2, x_at, at);
+            z_values.push(z);
             done = index + 1;
             Ok(())
         },
@@ -211,8 +215,8 @@ fn points(
             *x = rest.coordinate(['x', 'y', 'z'][axis], format_args!("point {index}"))?;
         }
         if index >= done {
-            sink.node(&rest, index, 2, places[0], [point[0], point[1]]);
-            heights.see((places[2], point[2]));
+            visitor.node(&rest, index, 2, places[0], [point[0], point[1]]);
+            z_values.push((places[2], point[2]));
         }
     }
     *cursor = rest;

@@ -1,18 +1,18 @@
 //! Reads arrays of a VTK XML file as numbers.
 
-use super::blocks::{Unwrapped, Wrapping};
-use super::document::{Array, Coding, Document};
-use super::encoding::Encoding;
-use crate::binary::whole::Whole;
+use super::blocks::{BlockEncoding, DecodedBlocks};
+use super::document::{Array, ArrayFormat, Document};
+use super::encoding::XmlArrays;
+use crate::binary::int_array::IntArray;
 use crate::disk::source::Source;
-use crate::edit::numbers::{Form, Offset, Places};
+use crate::edit::numbers::{AppendedOffset, NumberEncoding, Offsets};
 use crate::error::{Location, ReadError};
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::heights::TextNumbers;
 use crate::visit::items::PointNumbers;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
+use crate::visit::z_values::TextNumbers;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use std::sync::Arc;
 pub(super) struct File<'a> {
     pub(super) source: &'a Source,
     pub(super) document: Document,
-    pub(super) offsets: Arc<[Offset]>,
+    pub(super) offsets: Arc<[AppendedOffset]>,
 }
 
 impl File<'_> {
@@ -53,9 +53,9 @@ impl File<'_> {
     pub(super) fn unwrap(
         &self,
         array: &Array,
-    ) -> Result<(Wrapping, Unwrapped<'_>, Range<usize>), ReadError> {
+    ) -> Result<(BlockEncoding, DecodedBlocks<'_>, Range<usize>), ReadError> {
         let Document { order, header, compressor, appended, .. } = self.document;
-        let wrapping = |base64| Wrapping { order, header, compressor, base64 };
+        let wrapping = |base64| BlockEncoding { order, header, compressor, base64 };
         let (wrapping, start, end) = match (&array.offset, appended) {
             (Some((offset, _)), Some(appended)) => {
                 let start = appended.start.saturating_add(*offset);
@@ -70,14 +70,14 @@ impl File<'_> {
         };
         let found = self.source.bytes.get(start..end).and_then(|input| wrapping.unwrap(input));
         let found = found.ok_or_else(|| self.damaged(array))?;
-        let range = start..start + found.taken;
+        let range = start..start + found.encoded_length;
         Ok((wrapping, found, range))
     }
 
     /// Reads the whole numbers of an array as unsigned.
-    pub(super) fn integers(&self, array: &Array) -> Result<Whole<'_>, ReadError> {
-        if array.format == Coding::Ascii {
-            let mut numbers = Whole::with_capacity(array.content.len() / 8);
+    pub(super) fn integers(&self, array: &Array) -> Result<IntArray<'_>, ReadError> {
+        if array.format == ArrayFormat::Ascii {
+            let mut numbers = IntArray::with_capacity(array.content.len() / 8);
             let cursor = &mut Cursor::within(self.source, array.content.clone());
             while cursor.next_word() {
                 numbers.push(cursor.integer("a number")?);
@@ -86,12 +86,12 @@ impl File<'_> {
         }
         let (wrapping, found, _) = self.unwrap(array)?;
         let size = self.size_of_integer(array)?;
-        Ok(Whole::binary(found.bytes, size, wrapping.order))
+        Ok(IntArray::binary(found.bytes, size, wrapping.order))
     }
 
     /// Reads the whole numbers of an array as signed.
     pub(super) fn signed_integers(&self, array: &Array) -> Result<Vec<i64>, ReadError> {
-        if array.format == Coding::Ascii {
+        if array.format == ArrayFormat::Ascii {
             return self.words(array, |cursor| cursor.signed("a number"));
         }
         if array.number.starts_with('U') {
@@ -106,15 +106,15 @@ impl File<'_> {
     /// Reads the numbers of an array of any type.
     pub(super) fn numbers(&self, array: &Array) -> Result<PointNumbers, ReadError> {
         let precision = precision_of(array);
-        if array.format == Coding::Ascii {
+        if array.format == ArrayFormat::Ascii {
             let cursor = &mut Cursor::within(self.source, array.content.clone());
             let mut numbers = TextNumbers::default();
             while cursor.next_word() {
                 numbers.read(cursor)?;
             }
             let numbers = numbers.finish(precision.unwrap_or_default(), None);
-            let stored = numbers.stored.filter(|_| precision.is_some());
-            return Ok(PointNumbers { stored, ..numbers });
+            let stored = numbers.location.filter(|_| precision.is_some());
+            return Ok(PointNumbers { location: stored, ..numbers });
         }
         let Some(precision) = precision else {
             let numbers: Vec<f64> = match array.number.starts_with('U') {
@@ -126,24 +126,30 @@ impl File<'_> {
                     self.signed_integers(array)?.into_iter().map(|number| number as f64).collect()
                 }
             };
-            return Ok(PointNumbers { numbers, nodes: None, stored: None });
+            return Ok(PointNumbers { numbers, nodes: None, location: None });
         };
         let (wrapping, old, range) = self.unwrap(array)?;
         let stride = precision.bytes();
         let numbers = old.bytes.chunks_exact(stride);
         let numbers = numbers.map(|number| wrapping.order.real(precision, number)).collect();
-        let form = Form::Binary(wrapping.order, precision);
+        let encoding = NumberEncoding::Binary(wrapping.order, precision);
         // Raw bytes can be replaced in place. All others are encoded again.
         let (start, home) = match !wrapping.base64 && wrapping.compressor.is_none() {
-            true => (range.end - old.bytes.len(), Home::File),
+            true => (range.end - old.bytes.len(), ByteSpace::File),
             false => {
                 let offsets = Arc::clone(&self.offsets);
-                (0, Home::Encoded(Arc::new(Encoding::new(vec![(wrapping, old, range)], offsets))))
+                (
+                    0,
+                    ByteSpace::Encoded(Arc::new(XmlArrays::new(
+                        vec![(wrapping, old, range)],
+                        offsets,
+                    ))),
+                )
             }
         };
-        let places = Places::Regular { start, stride };
-        let stored = Some(Stored { places, form, home, part: 0 });
-        Ok(PointNumbers { numbers, nodes: None, stored })
+        let offsets = Offsets::Regular { start, stride };
+        let stored = Some(ArrayLocation { offsets, encoding, space: home, file_index: 0 });
+        Ok(PointNumbers { numbers, nodes: None, location: stored })
     }
 
     /// Reads the words of an array of text.

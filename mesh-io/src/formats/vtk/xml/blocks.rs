@@ -1,6 +1,6 @@
 //! Decodes and encodes arrays of a VTK XML file: base64, and compressed blocks.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::compress::zlib;
 use crate::parallel::map_parts;
 use base64::Engine;
@@ -14,51 +14,69 @@ pub(super) enum Compressor {
     Lz4,
 }
 
-/// How the bytes of an array are encoded.
+/// Encoding of the bytes of an array: byte order, width of header numbers, compression and base64.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Wrapping {
-    pub(super) order: Order,
+pub(super) struct BlockEncoding {
+    pub(super) order: ByteOrder,
     /// The bytes of a number in the header.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
     pub(super) base64: bool,
 }
 
-/// A decoded array, with what is needed to encode it again.
-pub(super) struct Unwrapped<'a> {
+/// A decoded array, with the block size and header form that an encoder needs to write the array again.
+pub(super) struct DecodedBlocks<'a> {
     /// The decoded bytes; those of the file itself, if they are not encoded.
     pub(super) bytes: Cow<'a, [u8]>,
-    /// How many bytes of the file the array takes.
-    pub(super) taken: usize,
+    /// Number of bytes of the file that the encoded array takes.
+    pub(super) encoded_length: usize,
     /// The size of a block before compression; 0 without blocks.
     block: usize,
-    /// Whether an uncompressed array has its length in a base64 text of its own.
-    header_apart: bool,
+    /// Whether an uncompressed array has its length in a separate base64 text.
+    has_separate_header: bool,
 }
 
-impl<'a> Unwrapped<'a> {
+impl<'a> DecodedBlocks<'a> {
     /// Separates the bytes from the rest.
-    pub(super) fn split(self) -> (Cow<'a, [u8]>, Unwrapped<'static>) {
-        let Unwrapped { bytes, taken, block, header_apart } = self;
-        (bytes, Unwrapped { bytes: Cow::default(), taken, block, header_apart })
+    pub(super) fn split(self) -> (Cow<'a, [u8]>, DecodedBlocks<'static>) {
+        let DecodedBlocks {
+            bytes,
+            encoded_length: taken,
+            block,
+            has_separate_header: header_apart,
+        } = self;
+        (
+            bytes,
+            DecodedBlocks {
+                bytes: Cow::default(),
+                encoded_length: taken,
+                block,
+                has_separate_header: header_apart,
+            },
+        )
     }
 }
 
-impl Wrapping {
+impl BlockEncoding {
     /// Decodes the array at the start of `input`. `None` if it is damaged or ends too early.
-    pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
+    pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<DecodedBlocks<'a>> {
         match self.compressor {
             None => self.unwrap_plain(input),
             Some(compressor) => self.unwrap_compressed(compressor, input),
         }
     }
 
-    fn unwrap_plain<'a>(&self, input: &'a [u8]) -> Option<Unwrapped<'a>> {
+    fn unwrap_plain<'a>(&self, input: &'a [u8]) -> Option<DecodedBlocks<'a>> {
         if !self.base64 {
             let length = self.number(input.get(..self.header)?)?;
             let bytes = input.get(self.header..)?.get(..length)?.into();
             let taken = self.header + length;
-            return Some(Unwrapped { bytes, taken, block: 0, header_apart: false });
+            return Some(DecodedBlocks {
+                bytes,
+                encoded_length: taken,
+                block: 0,
+                has_separate_header: false,
+            });
         }
         let apart = encoded(self.header);
         // The padding of a header that is encoded alone. With a few bytes after it, there is less padding.
@@ -74,14 +92,19 @@ impl Wrapping {
             }
         };
         bytes.truncate(length);
-        Some(Unwrapped { bytes: bytes.into(), taken, block: 0, header_apart })
+        Some(DecodedBlocks {
+            bytes: bytes.into(),
+            encoded_length: taken,
+            block: 0,
+            has_separate_header: header_apart,
+        })
     }
 
     fn unwrap_compressed(
         &self,
         compressor: Compressor,
         input: &[u8],
-    ) -> Option<Unwrapped<'static>> {
+    ) -> Option<DecodedBlocks<'static>> {
         let counts = self.numbers(input, 3)?;
         let [blocks, size, last] = [counts[0], counts[1], counts[2]];
         // The header has another number for each block.
@@ -114,14 +137,19 @@ impl Wrapping {
             (bytes.len() == expected).then_some(bytes)
         });
         let bytes = unpacked.into_iter().collect::<Option<Vec<_>>>()?.concat();
-        Some(Unwrapped { bytes: bytes.into(), taken, block: size, header_apart: true })
+        Some(DecodedBlocks {
+            bytes: bytes.into(),
+            encoded_length: taken,
+            block: size,
+            has_separate_header: true,
+        })
     }
 
     /// Encodes new bytes as those of `old` were encoded.
-    pub(super) fn wrap(&self, old: &Unwrapped<'_>, bytes: &[u8]) -> Vec<u8> {
+    pub(super) fn wrap(&self, old: &DecodedBlocks<'_>, bytes: &[u8]) -> Vec<u8> {
         let Some(compressor) = self.compressor else {
             let header = self.bytes_of(bytes.len());
-            return match (self.base64, old.header_apart) {
+            return match (self.base64, old.has_separate_header) {
                 (false, _) => [header.as_slice(), bytes].concat(),
                 (true, false) => STANDARD.encode([header.as_slice(), bytes].concat()).into_bytes(),
                 (true, true) => (STANDARD.encode(header) + &STANDARD.encode(bytes)).into_bytes(),
@@ -160,8 +188,8 @@ impl Wrapping {
     fn bytes_of(&self, number: usize) -> Vec<u8> {
         let number = number as u64;
         match self.order {
-            Order::Big => number.to_be_bytes()[8 - self.header..].to_vec(),
-            Order::Little => number.to_le_bytes()[..self.header].to_vec(),
+            ByteOrder::Big => number.to_be_bytes()[8 - self.header..].to_vec(),
+            ByteOrder::Little => number.to_le_bytes()[..self.header].to_vec(),
         }
     }
 }
@@ -197,17 +225,17 @@ mod tests {
     #[test]
     fn wrapped_arrays_are_unwrapped_to_the_same_bytes() {
         let bytes: Vec<u8> = (0..10_007_u32).map(|n| (n * n / 7 % 251) as u8).collect();
-        for order in [Order::Little, Order::Big] {
+        for order in [ByteOrder::Little, ByteOrder::Big] {
             for header in [4, 8] {
                 for base64 in [false, true] {
                     for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
                         for header_apart in [false, true] {
-                            let wrapping = Wrapping { order, header, compressor, base64 };
-                            let old = Unwrapped {
+                            let wrapping = BlockEncoding { order, header, compressor, base64 };
+                            let old = DecodedBlocks {
                                 bytes: Cow::default(),
-                                taken: 0,
+                                encoded_length: 0,
                                 block: 1000,
-                                header_apart,
+                                has_separate_header: header_apart,
                             };
                             for bytes in [&bytes[..], &bytes[..3000], &bytes[..1]] {
                                 let mut wrapped = wrapping.wrap(&old, bytes);
@@ -215,7 +243,10 @@ mod tests {
                                 wrapped.extend_from_slice(b"   </DataArray>");
                                 let back = wrapping.unwrap(&wrapped).unwrap();
                                 assert!(back.bytes == bytes, "{wrapping:?} {header_apart}");
-                                assert_eq!(back.taken, length, "{wrapping:?} {header_apart}");
+                                assert_eq!(
+                                    back.encoded_length, length,
+                                    "{wrapping:?} {header_apart}"
+                                );
                                 assert!(wrapping.unwrap(&wrapped[..length - 1]).is_none());
                             }
                         }
@@ -229,7 +260,8 @@ mod tests {
     fn wrong_lengths_in_a_file_allocate_no_memory() {
         for compressor in [None, Some(Compressor::Zlib), Some(Compressor::Lz4)] {
             for base64 in [false, true] {
-                let wrapping = Wrapping { order: Order::Little, header: 8, compressor, base64 };
+                let wrapping =
+                    BlockEncoding { order: ByteOrder::Little, header: 8, compressor, base64 };
                 for byte in [b'/', b'A', 0xFF, 1] {
                     assert!(
                         wrapping.unwrap(&[byte; 64]).is_none_or(|found| found.bytes.len() < 64)

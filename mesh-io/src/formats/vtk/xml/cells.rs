@@ -2,60 +2,61 @@
 
 use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
-use crate::binary::whole::Whole;
+use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
-use crate::formats::vtk::cells::{Cell, Triangles, Tries};
+use crate::formats::vtk::cells::{BulkBackoff, Cell, Triangles};
 use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::Column;
-use crate::visit::sink::Sink;
+use crate::visit::items::RegionAttribute;
+use crate::visit::visitor::MeshVisitor;
 
 /// The types of the cells of a list.
 enum Types<'a> {
     /// The same type for all cells.
     Same(u64),
-    Listed(Whole<'a>),
+    PerCell(IntArray<'a>),
 }
 
 /// A list of cells of a piece.
 struct List<'a> {
-    connectivity: Whole<'a>,
+    connectivity: IntArray<'a>,
     /// The end of each cell's points in `connectivity`.
-    offsets: Whole<'a>,
+    offsets: IntArray<'a>,
     types: Types<'a>,
     /// The offset of the list in the file, for messages.
     at: usize,
 }
 
 impl File<'_> {
-    /// Hands the cells of all pieces to the sink.
-    pub(super) fn cells(&self, sink: &mut dyn Sink) -> Result<(), ReadError> {
+    /// Hands the cells of all pieces to the visitor.
+    pub(super) fn cells(&self, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
         let regions = self.region_names();
-        sink.columns(regions.iter().map(|name| Column::tags(name, 0)).collect());
+        visitor
+            .region_attributes(regions.iter().map(|name| RegionAttribute::tags(name, 0)).collect());
         let (mut first_point, mut first_cell) = (0, 0);
         for (piece, announced) in self.document.pieces.iter().enumerate() {
             let lists = self.lists(piece)?;
             let count: usize = lists.iter().map(|list| list.offsets.len()).sum();
-            if sink.asks_for_data() {
+            if visitor.asks_for_data() {
                 let cells = first_cell..first_cell + count as u64;
-                self.cell_arrays(piece, &regions, cells, sink);
+                self.cell_arrays(piece, &regions, cells, visitor);
             }
-            sink.expect_elements(count);
+            visitor.expect_elements(count);
             let of_cells: RegionNumbers =
                 regions.iter().map(|name| self.regions(piece, name)).collect();
             let mut index = 0;
             let mut points: Vec<u64> = Vec::new();
             for List { connectivity, offsets, types, at } in &lists {
-                let cursor = &Cursor::standing_at(self.source, *at);
+                let cursor = &Cursor::on_line_of(self.source, *at);
                 let (mut start, mut own) = (0, 0);
-                let mut tries = Tries::NEW;
+                let mut tries = BulkBackoff::NEW;
                 while own < offsets.len() {
                     let end = offsets.at(own) as usize;
                     let of_triangles = match types {
                         Types::Same(types::POLYGON) => Some(None),
                         Types::Same(_) => None,
-                        Types::Listed(types) => Some(Some(types.field(own, 1))),
+                        Types::PerCell(types) => Some(Some(types.field(own, 1))),
                     };
                     if end - start == 3
                         && tries.is_due(own)
@@ -71,7 +72,7 @@ impl File<'_> {
                             below: announced.points,
                             regions: of_cells.from(index),
                         };
-                        let (taken, last) = triangles.send(sink);
+                        let (taken, last) = triangles.send(visitor);
                         tries.done(own, taken);
                         if taken > 0 {
                             (own, index, start) = (own + taken, index + taken, last);
@@ -80,7 +81,7 @@ impl File<'_> {
                     }
                     let cell_type = match types {
                         &Types::Same(cell_type) => cell_type,
-                        Types::Listed(types) => types.at(own),
+                        Types::PerCell(types) => types.at(own),
                     };
                     points.clear();
                     for point in connectivity.range(start..end) {
@@ -94,8 +95,8 @@ impl File<'_> {
                     }
                     (start, own) = (end, own + 1);
                     let region = of_cells.of(index);
-                    let tag = first_cell + index as u64;
-                    Cell { tag, cell_type, points: &points, region }.send(cursor, sink)?;
+                    let id = first_cell + index as u64;
+                    Cell { id, cell_type, points: &points, region }.send(cursor, visitor)?;
                     index += 1;
                 }
             }
@@ -129,13 +130,13 @@ impl File<'_> {
             let types = match cell_type {
                 Some(cell_type) => Types::Same(cell_type),
                 None => {
-                    Types::Listed(self.integers(self.array(piece, section, Some("types"))?)?)
+                    Types::PerCell(self.integers(self.array(piece, section, Some("types"))?)?)
                 }
             };
-            let cursor = &Cursor::standing_at(self.source, list.at);
+            let cursor = &Cursor::on_line_of(self.source, list.at);
             let types_count = match &types {
                 Types::Same(_) => offsets.len(),
-                Types::Listed(types) => types.len(),
+                Types::PerCell(types) => types.len(),
             };
             let counts = [offsets.len(), types_count].map(|count| count as u64);
             if counts != [cells; 2] {
@@ -157,7 +158,7 @@ impl File<'_> {
     /// on them.
     fn region_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        for array in self.document.arrays.iter().filter(|array| tells_regions(array)) {
+        for array in self.document.arrays.iter().filter(|array| is_region_array(array)) {
             if names.len() < MAX_ARRAYS
                 && !names.contains(&array.name)
                 && self.signed_integers(array).is_ok()
@@ -170,14 +171,14 @@ impl File<'_> {
 
     /// Reads the regions of a piece's cells from the array with this name. Empty if there is none.
     fn regions(&self, piece: usize, name: &str) -> Vec<i64> {
-        let mut arrays = self.document.arrays.iter().filter(|array| tells_regions(array));
+        let mut arrays = self.document.arrays.iter().filter(|array| is_region_array(array));
         let array = arrays.find(|array| array.piece == piece && array.name == name);
         array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
     }
 
-    /// Hands the arrays of point data that the sink wants to it. Damaged ones are skipped, as the mesh does not depend
+    /// Hands the arrays of point data that the visitor wants to it. Damaged ones are skipped, as the mesh does not depend
     /// on them.
-    pub(super) fn point_arrays(&self, sink: &mut dyn Sink) {
+    pub(super) fn point_arrays(&self, visitor: &mut dyn MeshVisitor) {
         let pieces = &self.document.pieces;
         let mut first = 0;
         for (piece, announced) in pieces.iter().enumerate() {
@@ -187,7 +188,7 @@ impl File<'_> {
                 let of_points = array.section == "PointData" && announced.points > 0;
                 let is_real = precision_of(array).is_some();
                 if of_points
-                    && sink.point_array(array.name.as_bytes(), array.components, is_real)
+                    && visitor.point_array(array.name.as_bytes(), array.components, is_real)
                     && let Ok(mut numbers) = self.numbers(array)
                 {
                     let fits = Some(numbers.numbers.len() as u64)
@@ -198,35 +199,35 @@ impl File<'_> {
                         }
                         numbers.nodes = Some(points.clone().collect());
                     }
-                    sink.point_numbers(numbers);
+                    visitor.point_numbers(numbers);
                 }
             }
         }
     }
 
-    /// Hands the arrays of cell data that the sink wants to it, except those that tell regions.
+    /// Hands the arrays of cell data that the visitor wants to it, except those that tell regions.
     fn cell_arrays(
         &self,
         piece: usize,
         regions: &[String],
         cells: std::ops::Range<u64>,
-        sink: &mut dyn Sink,
+        visitor: &mut dyn MeshVisitor,
     ) {
         for array in &self.document.arrays {
-            let is_region = tells_regions(array) && regions.contains(&array.name);
+            let is_region = is_region_array(array) && regions.contains(&array.name);
             let is_real = precision_of(array).is_some();
             match array.section.as_str() {
-                "FieldData" => sink.leaves_out("field data"),
+                "FieldData" => visitor.unsupported("field data"),
                 "CellData"
                     if array.piece == piece
                         && !is_region
-                        && sink.cell_array(array.name.as_bytes(), array.components, is_real) =>
+                        && visitor.cell_array(array.name.as_bytes(), array.components, is_real) =>
                 {
                     match self.numbers(array) {
                         Ok(numbers) => {
-                            sink.cell_numbers(numbers.numbers, Some(cells.clone().collect()));
+                            visitor.cell_numbers(numbers.numbers, Some(cells.clone().collect()));
                         }
-                        Err(_) => sink.leaves_out("cell data that are damaged"),
+                        Err(_) => visitor.unsupported("cell data that are damaged"),
                     }
                 }
                 _ => {}
@@ -235,7 +236,7 @@ impl File<'_> {
     }
 }
 
-fn tells_regions(array: &Array) -> bool {
+fn is_region_array(array: &Array) -> bool {
     let named = names_regions(array.name.as_bytes());
     array.section == "CellData" && array.components == 1 && named
 }

@@ -1,18 +1,18 @@
 //! The elements of a VTK XML file, and their offsets.
 
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
-use crate::edit::numbers::Offset;
+use crate::edit::numbers::AppendedOffset;
 use crate::error::ReadError;
 use crate::formats::vtk::xml::blocks::Compressor;
 use crate::text::cursor::CUT_OFF;
 use crate::text::token::quoted;
-use crate::xml::{Tag, Tags};
+use crate::xml::{XmlTag, XmlTags};
 use std::ops::Range;
 
 /// The content of a file's tags.
 pub(super) struct Document {
-    pub(super) order: Order,
+    pub(super) order: ByteOrder,
     /// The bytes of a number that gives the length of a block.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
@@ -46,7 +46,7 @@ pub(super) struct Array {
     pub(super) name: String,
     pub(super) number: String,
     pub(super) components: u64,
-    pub(super) format: Coding,
+    pub(super) format: ArrayFormat,
     /// The range of the array's text; empty if it is appended.
     pub(super) content: Range<usize>,
     /// For an appended array, its offset in the appended data, and the range of the file that gives the offset.
@@ -57,7 +57,7 @@ pub(super) struct Array {
 
 /// How an array is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Coding {
+pub(super) enum ArrayFormat {
     Ascii,
     Base64,
     Appended,
@@ -74,7 +74,7 @@ pub(super) struct Appended {
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
         let mut document = Document {
-            order: Order::Little,
+            order: ByteOrder::Little,
             header: 4,
             compressor: None,
             content: Content::Grid,
@@ -82,7 +82,7 @@ impl Document {
             arrays: Vec::new(),
             appended: None,
         };
-        let mut tags = Tags::new(source);
+        let mut tags = XmlTags::new(source);
         let mut seen = false;
         while let Some(tag) = tags.next()? {
             match &*tag.name() {
@@ -111,16 +111,20 @@ impl Document {
     }
 
     /// Returns the offsets of appended arrays, as the file gives them.
-    pub(super) fn offsets(&self) -> Vec<Offset> {
+    pub(super) fn offsets(&self) -> Vec<AppendedOffset> {
         let Some(appended) = self.appended else { return Vec::new() };
         let offset = |array: &Array| {
             let (value, place) = array.offset.clone()?;
-            Some(Offset { value, array_at: appended.start.saturating_add(value), place })
+            Some(AppendedOffset {
+                value,
+                array_start: appended.start.saturating_add(value),
+                range: place,
+            })
         };
         self.arrays.iter().filter_map(offset).collect()
     }
 
-    fn header_of(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
+    fn header_of(&mut self, tag: &XmlTag<'_>) -> Result<(), ReadError> {
         let kind = tag.attribute("type")?.unwrap_or_default();
         self.content = match kind.as_str() {
             "UnstructuredGrid" => Content::Grid,
@@ -133,7 +137,7 @@ impl Document {
             }
         };
         if tag.attribute("byte_order")?.as_deref() == Some("BigEndian") {
-            self.order = Order::Big;
+            self.order = ByteOrder::Big;
         }
         if tag.attribute("header_type")?.as_deref() == Some("UInt64") {
             self.header = 8;
@@ -150,7 +154,7 @@ impl Document {
         Ok(())
     }
 
-    fn piece(&mut self, tag: &Tag<'_>) -> Result<(), ReadError> {
+    fn piece(&mut self, tag: &XmlTag<'_>) -> Result<(), ReadError> {
         let points = tag.number("NumberOfPoints")?;
         let optional = |name: &str| match tag.attribute(name)? {
             None => Ok(0),
@@ -170,11 +174,11 @@ impl Document {
     }
 }
 
-fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadError> {
+fn array(tag: &XmlTag<'_>, section: String, piece: usize) -> Result<Array, ReadError> {
     let format = match tag.attribute("format")?.as_deref() {
-        Some("binary") => Coding::Base64,
-        Some("appended") => Coding::Appended,
-        None | Some("ascii") => Coding::Ascii,
+        Some("binary") => ArrayFormat::Base64,
+        Some("appended") => ArrayFormat::Appended,
+        None | Some("ascii") => ArrayFormat::Ascii,
         Some(other) => {
             let problem =
                 format!("an array of the format {} is not read", quoted(other.as_bytes()));
@@ -186,10 +190,10 @@ fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadErro
         false => tag.text().ok_or_else(|| tag.error("the file ends within an array", CUT_OFF))?,
     };
     let offset = match format {
-        Coding::Appended => {
+        ArrayFormat::Appended => {
             let value = tag.number("offset")?;
             let offset = usize::try_from(value).unwrap_or(usize::MAX);
-            Some((offset, tag.place_of_value("offset")?))
+            Some((offset, tag.value_range("offset")?))
         }
         _ => None,
     };
@@ -211,7 +215,7 @@ fn array(tag: &Tag<'_>, section: String, piece: usize) -> Result<Array, ReadErro
     })
 }
 
-fn appended(tag: &Tag<'_>, source: &Source) -> Result<Appended, ReadError> {
+fn appended(tag: &XmlTag<'_>, source: &Source) -> Result<Appended, ReadError> {
     let base64 = match tag.attribute("encoding")?.as_deref() {
         Some("raw") => false,
         None | Some("base64") => true,

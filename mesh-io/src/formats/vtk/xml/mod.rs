@@ -14,28 +14,31 @@ mod points;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::visit::reader::Walk;
-use crate::visit::sink::Sink;
-use crate::visit::storage::Layout;
+use crate::visit::reader::FormatReader;
+use crate::visit::storage::CoordinateStorage;
+use crate::visit::visitor::MeshVisitor;
 use arrays::File;
 use document::{Content, Document};
 
 pub(crate) struct Vtu;
 
-impl Walk for Vtu {
+impl FormatReader for Vtu {
     const VERTICES: &'static str = "Points";
 
-    fn walk(source: &Source, sink: &mut dyn Sink) -> Result<Layout, ReadError> {
+    fn visit(
+        source: &Source,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<CoordinateStorage, ReadError> {
         let document = Document::read(source)?;
         let offsets = document.offsets().into();
         let file = File { source, document, offsets };
-        let points::Stored { numbers, encoded } = points::read(&file, sink)?;
-        file.cells(sink)?;
-        file.point_arrays(sink);
+        let points::PointStorage { numbers, encoded } = points::read(&file, visitor)?;
+        file.cells(visitor)?;
+        file.point_arrays(visitor);
         let format = match file.document.content {
             Content::Grid => Format::Vtu,
             Content::Polygons => Format::Vtp,
         };
-        Ok(Layout { encoded, ..Layout::in_place(format, numbers) })
+        Ok(CoordinateStorage { encoded, ..CoordinateStorage::in_place(format, numbers) })
     }
 }

@@ -1,23 +1,23 @@
 //! Checks whether two files of a mesh differ in nothing but coordinates. This code is not used to write files.
 
-use crate::edit::numbers::{Encoded, Form, Numbers, Places};
+use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding, Offsets};
 use crate::error::Location;
+use crate::mesh_file::locate::SourceLocation;
 use crate::mesh_file::mesh::MeshFile;
-use crate::mesh_file::place::Place;
 use crate::text::token::quoted;
 use crate::visit::field::PointField;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::ops::Range;
 
 /// The first place at which two files of a mesh differ in more than coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// Where the first file differs. The label is 0.
-    pub place: Place,
+    pub location: SourceLocation,
     /// Where the second file differs. The label is 0.
-    pub other_place: Place,
+    pub other_location: SourceLocation,
     /// A description of the difference.
-    pub what: String,
+    pub description: String,
 }
 
 impl MeshFile {
@@ -28,28 +28,29 @@ impl MeshFile {
     /// themselves compared; so are the offsets of what stands after them. In HDF5, where chunks that are compressed anew may go to the end of
     /// the file, that is what the files have at the places of such chunks in either of them, and where their places stand.
     pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
-        self.difference_besides(other, [&[], &[]])
+        self.difference_ignoring(other, [&[], &[]])
     }
 
     /// Finds the first difference as [`difference`](Self::difference) does, but also leaves out the numbers of some
     /// data: fields of this file, and the same fields of the other.
-    pub fn difference_besides(
+    pub fn difference_ignoring(
         &self,
         other: &MeshFile,
         fields: [&[PointField]; 2],
     ) -> Option<Difference> {
-        let (mine, theirs) = (self.parts(), other.parts());
-        let place = |file: &MeshFile, part: usize, at: usize| {
-            let source = file.parts()[part];
-            let location = match file.is_text(part) {
+        let (mine, theirs) = (self.files(), other.files());
+        let place = |file: &MeshFile, file_index: usize, at: usize| {
+            let source = file.files()[file_index];
+            let location = match file.is_text(file_index) {
                 true => Location::Line(source.line_of(at)),
                 false => Location::Byte(at),
             };
-            Place { path: source.path.clone(), location, label: 0 }
+            SourceLocation { path: source.path.clone(), location, id: 0 }
         };
-        let differ = |part: usize, at: [usize; 2], what: String| {
-            let (place, other_place) = (place(self, part, at[0]), place(other, part, at[1]));
-            Some(Difference { place, other_place, what })
+        let differ = |file_index: usize, at: [usize; 2], what: String| {
+            let (place, other_place) =
+                (place(self, file_index, at[0]), place(other, file_index, at[1]));
+            Some(Difference { location: place, other_location: other_place, description: what })
         };
         if self.format() != other.format() {
             let what = format!("the formats are {} and {}", self.format(), other.format());
@@ -66,7 +67,7 @@ impl MeshFile {
         if self.triangles() != other.triangles() {
             return differ(0, [0; 2], "the triangles are not the same".into());
         }
-        let encoded = [self, other].map(|file| file.encoded().map(Encoded::bytes));
+        let encoded = [self, other].map(|file| file.encoded_points().map(EncodedArrays::bytes));
         if let [Some(mine), Some(theirs)] = encoded {
             let ranges = [0, 1].map(|side| {
                 let (file, bytes) = ([self, other][side], [mine, theirs][side]);
@@ -74,22 +75,30 @@ impl MeshFile {
             });
             if let Some([at, _]) = unequal([mine, theirs], ranges) {
                 let vertex = self.vertex_before(at);
-                let [place, other_place] = [self, other].map(|file| file.vertex_place(vertex));
+                let [place, other_place] = [self, other].map(|file| file.vertex_location(vertex));
                 let what =
-                    format!("third coordinates are not the same, first of vertex {}", place.label);
-                let unlabeled = |place| Place { label: 0, ..place };
+                    format!("third coordinates are not the same, first of vertex {}", place.id);
+                let unlabeled = |place| SourceLocation { id: 0, ..place };
                 let (place, other_place) = (unlabeled(place), unlabeled(other_place));
-                return Some(Difference { place, other_place, what });
+                return Some(Difference {
+                    location: place,
+                    other_location: other_place,
+                    description: what,
+                });
             }
         }
-        for (part, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
+        for (file_index, (mine, theirs)) in mine.iter().zip(&theirs).enumerate() {
             let bytes = [mine, theirs].map(|source| source.bytes.as_slice());
-            let mut ranges = [0, 1].map(|side| [self, other][side].changeable(part, fields[side]));
-            if [0, 1].iter().any(|&side| [self, other][side].keeps_places(part, fields[side])) {
+            let mut ranges =
+                [0, 1].map(|side| [self, other][side].changeable(file_index, fields[side]));
+            if [0, 1]
+                .iter()
+                .any(|&side| [self, other][side].preserves_offsets(file_index, fields[side]))
+            {
                 ranges = in_either(bytes, ranges);
             }
             if let Some(at) = unequal(bytes, ranges) {
-                let text = |side: usize| match self.is_text(part) {
+                let text = |side: usize| match self.is_text(file_index) {
                     _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
                     true => {
                         let start = memchr::memrchr(b'\n', &bytes[side][..at[side]]);
@@ -99,7 +108,7 @@ impl MeshFile {
                     }
                     false => format!("the byte {}", bytes[side][at[side]]),
                 };
-                return differ(part, at, format!("{} and {}", text(0), text(1)));
+                return differ(file_index, at, format!("{} and {}", text(0), text(1)));
             }
         }
         None
@@ -107,9 +116,9 @@ impl MeshFile {
 
     /// Returns the vertex whose coordinates stand last before a place in the bytes that hold them.
     fn vertex_before(&self, at: usize) -> u32 {
-        let owners = self.owners();
+        let owners = self.offset_vertices();
         let count = owners.map_or(self.points().len(), <[u32]>::len);
-        let x_at = self.x_at();
+        let x_at = self.x_offsets();
         let before = (0..count).filter(|&index| x_at.at(index) <= at);
         let index = before.max_by_key(|&index| x_at.at(index)).unwrap_or(0);
         owners.map_or(index as u32, |owners| owners[index])
@@ -117,21 +126,22 @@ impl MeshFile {
 
     /// Returns the ranges of coordinates in the bytes that hold them, ascending.
     fn coordinates(&self) -> Vec<Range<usize>> {
-        let x_at = self.x_at();
+        let x_at = self.x_offsets();
         // There are as many coordinates as vertices, or as places where they are repeated.
-        let count = self.owners().map_or(self.points().len(), <[u32]>::len);
+        let count = self.offset_vertices().map_or(self.points().len(), <[u32]>::len);
         let mut ranges = Vec::with_capacity(2 * count);
         let places = (0..count).map(|index| x_at.at(index));
-        match self.numbers() {
-            Numbers::Text { .. } | Numbers::Fields { .. } => {
-                let (bytes, form) = (&self.parts()[self.part()].bytes, Form::from(self.numbers()));
+        match self.encoding() {
+            CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. } => {
+                let (bytes, encoding) =
+                    (&self.files()[self.file_index()].bytes, NumberEncoding::from(self.encoding()));
                 for x in places {
-                    let (x_end, _) = form.extent(bytes, x);
-                    let y = form.next(bytes, x_end);
-                    ranges.extend([x..x_end, y..form.extent(bytes, y).0]);
+                    let (x_end, _) = encoding.extent(bytes, x);
+                    let y = encoding.next(bytes, x_end);
+                    ranges.extend([x..x_end, y..encoding.extent(bytes, y).0]);
                 }
             }
-            Numbers::Binary { precision, y_after, .. } => {
+            CoordinateEncoding::Binary { precision, y_after, .. } => {
                 let size = precision.bytes();
                 ranges.extend(
                     places.flat_map(|x| {
@@ -145,54 +155,63 @@ impl MeshFile {
     }
 
     /// Whether places in one of the files are told by lines.
-    fn is_text(&self, part: usize) -> bool {
-        match self.numbers() {
-            Numbers::Text { .. } | Numbers::Fields { .. } if part == self.part() => true,
-            Numbers::Binary { .. } if part == self.part() => false,
-            _ => memchr::memchr(0, &self.parts()[part].bytes).is_none(),
+    fn is_text(&self, file_index: usize) -> bool {
+        match self.encoding() {
+            CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. }
+                if file_index == self.file_index() =>
+            {
+                true
+            }
+            CoordinateEncoding::Binary { .. } if file_index == self.file_index() => false,
+            _ => memchr::memchr(0, &self.files()[file_index].bytes).is_none(),
         }
     }
 
     /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
-    fn keeps_places(&self, part: usize, fields: &[PointField]) -> bool {
-        let of = |field: &PointField| match field.stored()? {
-            Stored { home: Home::Encoded(array), part: own, .. } => {
-                Some(*own == part && array.keeps_places())
+    fn preserves_offsets(&self, file_index: usize, fields: &[PointField]) -> bool {
+        let of = |field: &PointField| match field.location()? {
+            ArrayLocation { space: ByteSpace::Encoded(array), file_index: own, .. } => {
+                Some(*own == file_index && array.preserves_offsets())
             }
             _ => None,
         };
-        (part == self.part() && self.encoded().is_some_and(Encoded::keeps_places))
+        (file_index == self.file_index()
+            && self.encoded_points().is_some_and(EncodedArrays::preserves_offsets))
             || fields.iter().filter_map(of).any(|keeps| keeps)
     }
 
     /// The ranges of a file that may change where vertices move and these data change, ascending.
-    fn changeable(&self, part: usize, fields: &[PointField]) -> Vec<Range<usize>> {
-        let bytes = &self.parts()[part].bytes;
-        let encoded = self.encoded().filter(|_| part == self.part());
+    fn changeable(&self, file_index: usize, fields: &[PointField]) -> Vec<Range<usize>> {
+        let bytes = &self.files()[file_index].bytes;
+        let encoded = self.encoded_points().filter(|_| file_index == self.file_index());
         let mut ranges = match encoded {
-            None if part == self.part() => self.coordinates(),
+            None if file_index == self.file_index() => self.coordinates(),
             None => Vec::new(),
             Some(points) => points.ranges(),
         };
-        if part == 0 {
+        if file_index == 0 {
             // Companions may have other names.
             let named_at = self.source().companions.iter().flat_map(|own| &own.named_at);
             ranges.extend(named_at.cloned());
         }
-        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
-        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.stored()?.home));
+        let own = |field: &&PointField| {
+            field.location().is_some_and(|stored| stored.file_index == file_index)
+        };
+        let homes = || fields.iter().filter(own).filter_map(|field| Some(&field.location()?.space));
         let arrays = homes().filter_map(|home| match home {
-            Home::Encoded(array) => Some(&**array),
+            ByteSpace::Encoded(array) => Some(&**array),
             _ => None,
         });
-        ranges.extend(arrays.clone().flat_map(Encoded::ranges));
+        ranges.extend(arrays.clone().flat_map(EncodedArrays::ranges));
         // What follows from the length of an array.
         let encoded = || encoded.into_iter().chain(arrays.clone());
-        let first = encoded().flat_map(Encoded::ranges).map(|range| range.end).min();
+        let first = encoded().flat_map(EncodedArrays::ranges).map(|range| range.end).min();
         if let (Some(first), Some(array)) = (first, encoded().next()) {
-            ranges.extend(array.followers(first));
+            ranges.extend(array.dependent_ranges(first));
         }
-        let in_file = |stored: &Stored| stored.part == part && matches!(stored.home, Home::File);
+        let in_file = |stored: &ArrayLocation| {
+            stored.file_index == file_index && matches!(stored.space, ByteSpace::File)
+        };
         merged(ranges, number_ranges(bytes, fields, in_file))
     }
 }
@@ -217,26 +236,29 @@ fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<us
     })
 }
 
-fn is_beside_points(stored: &Stored) -> bool {
-    matches!(stored.home, Home::Points)
+fn is_beside_points(stored: &ArrayLocation) -> bool {
+    matches!(stored.space, ByteSpace::Points)
 }
 
 /// Returns the ranges of the numbers of fields in the bytes that hold them.
 fn number_ranges(
     bytes: &[u8],
     fields: &[PointField],
-    in_these: impl Fn(&Stored) -> bool,
+    in_these: impl Fn(&ArrayLocation) -> bool,
 ) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     for field in fields {
-        let Some(stored @ Stored { places, form, .. }) = field.stored() else { continue };
+        let Some(stored @ ArrayLocation { offsets: places, encoding, .. }) = field.location()
+        else {
+            continue;
+        };
         if !in_these(stored) {
             continue;
         }
-        let range = |at: usize| at..form.extent(bytes, at).0;
+        let range = |at: usize| at..encoding.extent(bytes, at).0;
         match places {
-            Places::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
-            Places::Regular { start, stride } => {
+            Offsets::List(list) => ranges.extend(list.iter().map(|&at| range(at))),
+            Offsets::Regular { start, stride } => {
                 let count = field.numbers();
                 ranges.extend((0..count).map(|index| range(start + index * stride)));
             }

@@ -7,15 +7,15 @@ use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::{float, quoted};
 
-/// Numbers for the vertices of a mesh, in the order of the mesh file. Each vertex has one number, a size in the unit of
-/// the mesh, or three, a symmetric tensor as xx, xy, yy.
+/// Numbers for the vertices of a mesh, in the order of the mesh file: for each vertex a size in the unit of the mesh,
+/// or three components xx, xy, yy of a symmetric tensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
+pub struct MeditSolution {
     components: usize,
     values: Vec<f64>,
 }
 
-impl Solution {
+impl MeditSolution {
     /// Reads a `.sol` file of Medit with one solution at vertices, or a metric file of BAMG. A metric file has the
     /// number of vertices, how many numbers each has (1 or 3), and then these numbers.
     ///
@@ -46,7 +46,7 @@ impl Solution {
 const SCALAR: u64 = 1;
 const TENSOR: u64 = 3;
 
-fn medit(mut cursor: Cursor<'_>) -> Result<Solution, ReadError> {
+fn medit(mut cursor: Cursor<'_>) -> Result<MeditSolution, ReadError> {
     const REMEDY: &str = "Give a solution at the vertices of a mesh of two dimensions";
     loop {
         match cursor.token().unwrap_or_default() {
@@ -86,7 +86,7 @@ fn medit(mut cursor: Cursor<'_>) -> Result<Solution, ReadError> {
     }
 }
 
-fn bamg(mut cursor: Cursor<'_>) -> Result<Solution, ReadError> {
+fn bamg(mut cursor: Cursor<'_>) -> Result<MeditSolution, ReadError> {
     let count = word(&mut cursor, "the number of vertices")?;
     match word(&mut cursor, "the number of numbers of a vertex")? {
         1 => numbers(cursor, count, 1),
@@ -108,7 +108,11 @@ fn word(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
 }
 
 /// Reads `components` numbers for each of `count` vertices. Keywords may follow, but no further number.
-fn numbers(mut cursor: Cursor<'_>, count: u64, components: usize) -> Result<Solution, ReadError> {
+fn numbers(
+    mut cursor: Cursor<'_>,
+    count: u64,
+    components: usize,
+) -> Result<MeditSolution, ReadError> {
     let wanted = count.saturating_mul(components as u64);
     let mut values = Vec::with_capacity(cursor.capacity(wanted, 2));
     for i in 0..wanted {
@@ -127,5 +131,5 @@ fn numbers(mut cursor: Cursor<'_>, count: u64, components: usize) -> Result<Solu
             format!("`{}` follows after {all} for each of {count} vertices", quoted(word));
         return Err(cursor.error(problem, COUNT));
     }
-    Ok(Solution { components, values })
+    Ok(MeditSolution { components, values })
 }

@@ -1,12 +1,12 @@
 //! Groups of elements and single vertices that a user can name in a mesh file.
 
 use crate::content::group::Groups;
-use crate::content::tags::TagMap;
+use crate::content::id_index::IdIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
-use crate::visit::gather;
+use crate::visit::group_visitor;
 use std::path::Path;
 
 impl MeshFile {
@@ -38,11 +38,11 @@ impl MeshFile {
     /// [`ReadError`] if the names of groups, such as gmsh's `$Entities`, are damaged. Reading the mesh does not need
     /// them.
     pub fn groups(&self) -> Result<Groups, ReadError> {
-        let table = gather::groups(self.reader(), self.source())?;
+        let table = group_visitor::groups(self.reader(), self.source())?;
         Ok(table.finish(self.triangles(), self.points().len()))
     }
 
-    /// Reads a list of vertices by the mesh file's own numbers, those of [`Place::label`](crate::Place::label). Numbers
+    /// Reads a list of vertices by the mesh file's own numbers, those of [`SourceLocation::id`](crate::SourceLocation::id). Numbers
     /// are separated by blanks or line ends, and `#` starts a comment. Returns indices in
     /// [`MeshFile::points`](crate::MeshFile::points), in the order of the list.
     ///
@@ -50,9 +50,9 @@ impl MeshFile {
     /// [`ReadError`] if the list cannot be read, holds anything but whole numbers, or has a number that no vertex has.
     pub fn read_vertices(&self, list: &Path) -> Result<Vec<u32>, ReadError> {
         let list = &Source::load(list)?;
-        let labels = self.vertex_labels()?;
+        let labels = self.vertex_ids()?;
         // Each label belongs to one vertex, as files with repeated labels are refused.
-        let map = TagMap::new(&labels).ok();
+        let map = IdIndex::new(&labels).ok();
         let cursor = &mut Cursor::new(list);
         let mut vertices = Vec::new();
         while cursor.next_word() {
@@ -72,7 +72,8 @@ impl MeshFile {
         format!("Its vertices are numbered from {least} to {most}")
     }
 
-    fn vertex_labels(&self) -> Result<Vec<u64>, ReadError> {
-        gather::labels(self.reader(), self.source())
+    /// Returns the id of each vertex in the file.
+    fn vertex_ids(&self) -> Result<Vec<u64>, ReadError> {
+        group_visitor::vertex_ids(self.reader(), self.source())
     }
 }

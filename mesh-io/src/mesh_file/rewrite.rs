@@ -1,20 +1,20 @@
 //! Writes a mesh file again, with the coordinates of moved vertices replaced.
 
-use crate::compress::packed::Packing;
+use crate::compress::file::Compression;
 use crate::detect;
+use crate::disk::atomic;
+use crate::disk::atomic::FileWrite;
+use crate::disk::file_system::OsFileSystem;
 use crate::disk::paths::same_file;
-use crate::disk::replace;
-use crate::disk::replace::Job;
 use crate::disk::source::Source;
-use crate::disk::system::System;
-use crate::edit::column::Column;
-use crate::edit::numbers::{Encoded, Splice};
+use crate::edit::column::EditableColumn;
+use crate::edit::numbers::{ByteEdit, EncodedArrays};
 use crate::edit::rewrite::Rewrite;
 use crate::error::WriteError;
-use crate::families::Family;
 use crate::mesh_file::mesh::MeshFile;
+use crate::registry::FormatEntry;
 use crate::visit::field::PointField;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,7 +42,7 @@ impl MeshFile {
     /// or not one per vertex, if the system refuses, or if a file that was read would be replaced but has another content than
     /// when it was read, or last written here ([`WriteError::Changed`]). Existing files are then unchanged.
     pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
-        self.write_with(path, points, &[])
+        self.write_with_fields(path, points, &[])
     }
 
     /// Writes the file as [`write`](Self::write) does, and also replaces data of vertices by the values of these
@@ -51,7 +51,7 @@ impl MeshFile {
     ///
     /// # Errors
     /// [`WriteError`] for the reasons of [`write`](Self::write).
-    pub fn write_with(
+    pub fn write_with_fields(
         &self,
         path: &Path,
         points: &[[f64; 2]],
@@ -59,9 +59,9 @@ impl MeshFile {
     ) -> Result<(), WriteError> {
         self.check_points(path, points)?;
         self.check_destination(path)?;
-        let packs = self.packs(path);
+        let packs = self.compression_of(path);
         let renamed = &(self.reader().renames)(self.source(), path);
-        let job = |(part, destination)| -> Job<'_> {
+        let file_write = |(part, destination)| -> FileWrite<'_> {
             let edits = Edits { points, fields };
             (
                 destination,
@@ -72,20 +72,20 @@ impl MeshFile {
             )
         };
         let destinations = self.destinations(path)?;
-        let parts = self.parts().into_iter().zip(&destinations);
+        let parts = self.files().into_iter().zip(&destinations);
         let in_place: Vec<&Source> = parts
             .filter(|(part, destination)| same_file(&part.path, destination))
             .map(|(part, _)| part)
             .collect();
-        let mut jobs: Vec<_> = destinations.iter().cloned().enumerate().map(job).collect();
+        let mut writes: Vec<_> = destinations.iter().cloned().enumerate().map(file_write).collect();
         // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
         // leave its place if that is left to the one with the coordinates.
-        if self.part() > 0 && self.is_written(&jobs[0].0, renamed) {
-            jobs.swap(0, self.part());
+        if self.file_index() > 0 && self.is_written(&writes[0].0, renamed) {
+            writes.swap(0, self.file_index());
         }
-        replace::replace_all_if(&System, &jobs, &|| match in_place
+        atomic::write_all_if(&OsFileSystem, &writes, &|| match in_place
             .iter()
-            .find(|part| part.known.is_past(&part.path, part.stored()))
+            .find(|part| part.known.has_changed(&part.path, part.stored()))
         {
             Some(changed) => Err(WriteError::Changed { path: changed.path.clone() }),
             None => Ok(()),
@@ -95,10 +95,10 @@ impl MeshFile {
     }
 
     /// Whether the destination of the main file already has exactly the bytes that would be written.
-    fn is_written(&self, path: &Path, renamed: &[Splice]) -> bool {
+    fn is_written(&self, path: &Path, renamed: &[ByteEdit]) -> bool {
         let mut new = Vec::new();
         let bytes = &self.source().bytes;
-        let written = Rewrite { bytes, columns: &[], splices: renamed }.write(&mut new);
+        let written = Rewrite { bytes, columns: &[], edits: renamed }.write(&mut new);
         written.is_ok() && std::fs::read(path).is_ok_and(|old| old == new)
     }
 
@@ -114,15 +114,15 @@ impl MeshFile {
         out: &mut (dyn Write + Send),
         points: &[[f64; 2]],
     ) -> Result<(), WriteError> {
-        self.write_to_with(name, out, points, &[])
+        self.write_to_with_fields(name, out, points, &[])
     }
 
-    /// Writes the file and these fields as [`write_with`](Self::write_with) does, to any writer as
+    /// Writes the file and these fields as [`write_with_fields`](Self::write_with_fields) does, to any writer as
     /// [`write_to`](Self::write_to) does.
     ///
     /// # Errors
     /// [`WriteError`] for the reasons of [`write_to`](Self::write_to).
-    pub fn write_to_with(
+    pub fn write_to_with_fields(
         &self,
         name: &Path,
         out: &mut (dyn Write + Send),
@@ -130,12 +130,12 @@ impl MeshFile {
         fields: &[PointField],
     ) -> Result<(), WriteError> {
         self.check_points(name, points)?;
-        if self.parts().len() > 1 {
+        if self.files().len() > 1 {
             let problem = "the mesh is of several files".to_owned();
             let remedy = "Name a file to write to".to_owned();
             return Err(WriteError::Format { path: name.to_owned(), problem, remedy });
         }
-        let packs = self.source().packed.as_ref().map(|packed| packed.packing);
+        let packs = self.source().compressed.as_ref().map(|packed| packed.compression);
         self.put(0, Edits { points, fields }, packs, out).and_then(|()| out.flush()).map_err(
             |source| {
                 let remedy = "Write to a file instead".to_owned();
@@ -144,13 +144,13 @@ impl MeshFile {
         )
     }
 
-    /// Returns the compression of what is written to a path, by its ending. A file that was compressed without such an
-    /// ending stays compressed under any name.
-    fn packs(&self, path: &Path) -> Option<Packing> {
+    /// Returns the compression of a file that is written to `path`, by the extension. If neither `path` nor the file
+    /// that was read has the extension of a compression, the compression of the file that was read stays.
+    fn compression_of(&self, path: &Path) -> Option<Compression> {
         let source = self.source();
-        match Packing::of(path) {
-            None if Packing::of(&source.path).is_none() => {
-                source.packed.as_ref().map(|packed| packed.packing)
+        match Compression::of(path) {
+            None if Compression::of(&source.path).is_none() => {
+                source.compressed.as_ref().map(|packed| packed.compression)
             }
             by_ending => by_ending,
         }
@@ -161,16 +161,18 @@ impl MeshFile {
         &self,
         part: usize,
         edits: Edits<'_>,
-        packs: Option<Packing>,
+        packs: Option<Compression>,
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
         let Edits { points, fields } = edits;
         let Some(packing) = packs else { return self.put_plain(part, edits, &[], out) };
         let is_same = || self.is_unmoved(points) && !fields.iter().any(PointField::is_changed);
-        match &self.parts()[part].packed {
+        match &self.files()[part].compressed {
             // Another program may pack the same content into other bytes.
-            Some(packed) if packed.packing == packing && is_same() => out.write_all(&packed.bytes),
-            _ => packing.pack(out, |out| self.put_plain(part, edits, &[], out)),
+            Some(packed) if packed.compression == packing && is_same() => {
+                out.write_all(&packed.bytes)
+            }
+            _ => packing.compress(out, |out| self.put_plain(part, edits, &[], out)),
         }
     }
 
@@ -179,34 +181,45 @@ impl MeshFile {
         &self,
         part: usize,
         edits: Edits<'_>,
-        renamed: &[Splice],
+        renamed: &[ByteEdit],
         out: &mut (dyn Write + Send),
     ) -> io::Result<()> {
         let Edits { points, fields } = edits;
-        let bytes = &self.parts()[part].bytes[..];
-        let has_points = part == self.part();
-        let coordinates =
-            || Column::of_points(self.x_at(), self.owners(), self.numbers(), self.points(), points);
-        // Columns of the file itself and of the encoded points. Arrays that are encoded by themselves become splices.
-        let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
-        let mut in_others: Vec<(&Arc<dyn Encoded>, Vec<Column<'_>>)> = Vec::new();
-        let (mut splices, mut end) = (renamed.to_vec(), bytes.len());
-        let mut again = |array: &dyn Encoded, columns: &[Column<'_>]| -> io::Result<()> {
-            let old = array.bytes();
-            let mut new = Vec::with_capacity(old.len());
-            Rewrite { bytes: old, columns, splices: &[] }.write(&mut new)?;
-            splices.extend(array.splices(bytes, &new, &mut end));
-            Ok(())
+        let bytes = &self.files()[part].bytes[..];
+        let has_points = part == self.file_index();
+        let coordinates = || {
+            EditableColumn::of_points(
+                self.x_offsets(),
+                self.offset_vertices(),
+                self.encoding(),
+                self.points(),
+                points,
+            )
         };
-        let own = |field: &&PointField| field.stored().is_some_and(|stored| stored.part == part);
+        // Columns of the file itself and of the encoded points. Arrays that are encoded by themselves become edits.
+        let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
+        let mut in_others: Vec<(&Arc<dyn EncodedArrays>, Vec<EditableColumn<'_>>)> = Vec::new();
+        let (mut edits, mut end) = (renamed.to_vec(), bytes.len());
+        let mut again =
+            |array: &dyn EncodedArrays, columns: &[EditableColumn<'_>]| -> io::Result<()> {
+                let old = array.bytes();
+                let mut new = Vec::with_capacity(old.len());
+                Rewrite { bytes: old, columns, edits: &[] }.write(&mut new)?;
+                edits.extend(array.edits(bytes, &new, &mut end));
+                Ok(())
+            };
+        let own =
+            |field: &&PointField| field.location().is_some_and(|stored| stored.file_index == part);
         for field in fields.iter().filter(own).filter(|field| field.is_changed()) {
-            let (Some(column), Some(Stored { home, .. })) = (field.column(), field.stored()) else {
+            let (Some(column), Some(ArrayLocation { space: home, .. })) =
+                (field.column(), field.location())
+            else {
                 continue;
             };
             match home {
-                Home::File => in_file.push(column),
-                Home::Points => in_points.push(column),
-                Home::Encoded(array) => {
+                ByteSpace::File => in_file.push(column),
+                ByteSpace::Points => in_points.push(column),
+                ByteSpace::Encoded(array) => {
                     match in_others.iter_mut().find(|(other, _)| Arc::ptr_eq(array, other)) {
                         Some((_, columns)) => columns.push(column),
                         None => in_others.push((array, vec![column])),
@@ -215,7 +228,7 @@ impl MeshFile {
             }
         }
         in_others.iter().try_for_each(|(array, columns)| again(&***array, columns))?;
-        let encoded = self.encoded().filter(|_| has_points);
+        let encoded = self.encoded_points().filter(|_| has_points);
         match encoded {
             None if has_points => in_file.extend(coordinates()),
             None => {}
@@ -225,22 +238,22 @@ impl MeshFile {
             }
         }
         let homes = fields.iter().filter(own);
-        let homes = homes.filter_map(|field| field.stored().map(|stored| &stored.home));
+        let homes = homes.filter_map(|field| field.location().map(|stored| &stored.space));
         let arrays = encoded.into_iter().chain(homes.filter_map(|home| match home {
-            Home::Encoded(array) => Some(&**array),
+            ByteSpace::Encoded(array) => Some(&**array),
             _ => None,
         }));
-        let mut more: Vec<Splice> = Vec::new();
+        let mut more: Vec<ByteEdit> = Vec::new();
         for array in arrays {
-            for own in array.follow(bytes, &splices, end) {
-                if more.iter().all(|splice| splice.range != own.range) {
+            for own in array.dependent_edits(bytes, &edits, end) {
+                if more.iter().all(|edit| edit.range != own.range) {
                     more.push(own);
                 }
             }
         }
-        splices.extend(more);
-        splices.sort_by_key(|splice| splice.range.start);
-        Rewrite { bytes, columns: &in_file, splices: &splices }.write(out)
+        edits.extend(more);
+        edits.sort_by_key(|edit| edit.range.start);
+        Rewrite { bytes, columns: &in_file, edits: &edits }.write(out)
     }
 
     /// Whether these points, rounded to the precision of the file, are those that were read.
@@ -257,7 +270,9 @@ impl MeshFile {
     /// # Errors
     /// [`WriteError`] if the file cannot be written, with the reason.
     pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
-        self.destinations(path)?.iter().try_for_each(|destination| replace::check(destination))
+        self.destinations(path)?
+            .iter()
+            .try_for_each(|destination| atomic::ensure_writable(destination))
     }
 
     /// Lists the files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
@@ -266,19 +281,19 @@ impl MeshFile {
     /// [`WriteError::Format`] if `path` is not the name of a file, if its ending belongs to another format, or if a
     /// file in the way would be read in place of or with a Triangle mesh.
     pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
-        let usual = Family::of(self.format()).endings[0];
+        let usual = FormatEntry::of(self.format()).extensions[0];
         let refused = |problem: String, remedy: String| {
             Err(WriteError::Format { path: path.to_owned(), problem, remedy })
         };
         let ends_in_separator =
             path.to_string_lossy().chars().next_back().is_none_or(std::path::is_separator);
         // A device takes a single file, not several.
-        let is_device = path.exists() && !path.is_file() && self.parts().len() > 1;
+        let is_device = path.exists() && !path.is_file() && self.files().len() > 1;
         if path.is_dir() || is_device || ends_in_separator || path.file_name().is_none() {
             return refused("not the name of a file".into(), format!("Add a name like out{usual}"));
         }
-        if let Some(owner) = detect::owner_of_ending(path)
-            && !Family::of(self.format()).has_ending_of(path)
+        if let Some(owner) = detect::format_name_of_extension(path)
+            && !FormatEntry::of(self.format()).matches_extension(path)
         {
             let problem =
                 format!("its ending is that of {owner}, but the mesh is {}", self.format());

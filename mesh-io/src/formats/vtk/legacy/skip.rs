@@ -5,7 +5,7 @@ use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
 
 /// Skips an array of `count` numbers, bits or strings.
-pub(super) fn pass(
+pub(super) fn skip_section(
     cursor: &mut Cursor<'_>,
     binary: bool,
     kind: &[u8],
@@ -77,7 +77,7 @@ pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
 }
 
 /// Skips the arrays of a field of the dataset.
-pub(super) fn pass_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
+pub(super) fn skip_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
     cursor.token();
     let arrays = cursor.integer("the number of arrays of a field")?;
     for done in 0..arrays {
@@ -88,7 +88,7 @@ pub(super) fn pass_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), Re
         let components = cursor.integer("the number of components")?;
         let tuples = cursor.integer("the number of tuples")?;
         let kind = cursor.token().unwrap_or_default();
-        pass(cursor, binary, kind, components.saturating_mul(tuples))?;
+        skip_section(cursor, binary, kind, components.saturating_mul(tuples))?;
     }
     Ok(())
 }

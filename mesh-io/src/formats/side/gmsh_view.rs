@@ -7,9 +7,9 @@ use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::text::token::quoted;
 
-/// A mesh with a number on each vertex, such as the size wanted there.
+/// A triangle mesh with a number at each vertex, such as a target size, from a view of gmsh.
 #[derive(Clone, Debug, PartialEq)]
-pub struct View {
+pub struct GmshView {
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
     values: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct View {
 
 const SAVE: &str = "Save the view from gmsh as text (.pos), of scalars on triangles (ST)";
 
-impl View {
+impl GmshView {
     /// Reads the first view of a `.pos` file of gmsh. Its elements must be scalar triangles, `ST(x, y, z, ...){value,
     /// ...};`. Corners at the same place become one vertex, with the value given there first. Of several time steps,
     /// the first is read. Third coordinates are ignored.

@@ -1,6 +1,5 @@
 //! Files that are compressed as a whole, by gzip or zstd.
 
-use flate2::Compression;
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
@@ -8,77 +7,79 @@ use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// The most bytes that one compressed byte may unpack to. Regular lattices unpack to 5 to 20 bytes; gzip can reach a
-/// thousand.
-const MOST: usize = 200;
-/// This many bytes may be unpacked from a file of any size.
-const ALWAYS: usize = 1 << 20;
+/// Limit on the decompressed size, in multiples of the compressed size. Meshes of regular grids reach 5 to 20; gzip
+/// allows a thousand.
+const MAX_RATIO: usize = 200;
+/// Number of bytes to which a file of any size may be decompressed.
+const MIN_LIMIT: usize = 1 << 20;
 
-/// How a file is compressed.
+/// The compression of a whole file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Packing {
+pub(crate) enum Compression {
     Gzip,
     Zstd,
 }
 
-/// A compressed file as it was read.
-pub(crate) struct Packed {
-    pub(crate) packing: Packing,
+/// The bytes of a compressed file as they were read, and their compression.
+pub(crate) struct CompressedFile {
+    pub(crate) compression: Compression,
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Why a compressed file is not read, and what to do.
+/// A problem that prevents decompression, and a remedy.
 #[derive(Debug)]
-pub(crate) struct Unpackable {
+pub(crate) struct DecompressError {
     pub(crate) problem: String,
     pub(crate) remedy: &'static str,
 }
 
-impl Packing {
-    const ALL: [Packing; 2] = [Packing::Gzip, Packing::Zstd];
+impl Compression {
+    const ALL: [Compression; 2] = [Compression::Gzip, Compression::Zstd];
 
-    /// Returns the ending of file names for this compression, without the dot.
-    fn ending(self) -> &'static str {
+    /// Returns the extension of file names for the compression, without the dot.
+    fn extension(self) -> &'static str {
         match self {
-            Packing::Gzip => "gz",
-            Packing::Zstd => "zst",
+            Compression::Gzip => "gz",
+            Compression::Zstd => "zst",
         }
     }
 
     fn name(self) -> &'static str {
         match self {
-            Packing::Gzip => "gzip",
-            Packing::Zstd => "zstd",
+            Compression::Gzip => "gzip",
+            Compression::Zstd => "zstd",
         }
     }
 
-    /// Returns the first bytes of files with this compression.
-    fn opens(self) -> &'static [u8] {
+    /// Returns the first bytes of files with the compression.
+    fn magic(self) -> &'static [u8] {
         match self {
-            Packing::Gzip => b"\x1F\x8B",
-            Packing::Zstd => b"\x28\xB5\x2F\xFD",
+            Compression::Gzip => b"\x1F\x8B",
+            Compression::Zstd => b"\x28\xB5\x2F\xFD",
         }
     }
 
     /// Returns the compression that the ending of a path stands for.
-    pub(crate) fn of(path: &Path) -> Option<Packing> {
+    pub(crate) fn of(path: &Path) -> Option<Compression> {
         let ending = path.extension()?;
-        Self::ALL.into_iter().find(|packing| ending.eq_ignore_ascii_case(packing.ending()))
+        Self::ALL
+            .into_iter()
+            .find(|compression| ending.eq_ignore_ascii_case(compression.extension()))
     }
 
-    /// Compresses what `write` writes.
-    pub(crate) fn pack(
+    /// Compresses the bytes that `write` writes, and writes them to `out`.
+    pub(crate) fn compress(
         self,
         out: &mut (dyn Write + Send),
         write: impl Fn(&mut (dyn Write + Send)) -> io::Result<()>,
     ) -> io::Result<()> {
         match self {
-            Packing::Gzip => {
-                let mut encoder = GzEncoder::new(out, Compression::default());
+            Compression::Gzip => {
+                let mut encoder = GzEncoder::new(out, flate2::Compression::default());
                 write(&mut encoder)?;
                 encoder.finish().map(drop)
             }
-            Packing::Zstd => {
+            Compression::Zstd => {
                 let mut content: Vec<u8> = Vec::new();
                 write(&mut content)?;
                 out.write_all(&compress_to_vec(content.as_slice(), CompressionLevel::Fastest))
@@ -89,12 +90,14 @@ impl Packing {
 
 /// Returns the name of the file inside a compressed one. `name` must be in small letters.
 pub(crate) fn inner_name(name: &str) -> &str {
-    let inner = |packing: Packing| name.strip_suffix(packing.ending())?.strip_suffix('.');
-    Packing::ALL.into_iter().find_map(inner).unwrap_or(name)
+    let inner =
+        |compression: Compression| name.strip_suffix(compression.extension())?.strip_suffix('.');
+    Compression::ALL.into_iter().find_map(inner).unwrap_or(name)
 }
 
-/// Unpacks a file if it is compressed. Returns its compression and content; `None` if it is not compressed.
-pub(crate) fn unpack(bytes: &[u8]) -> Result<Option<(Packing, Vec<u8>)>, Unpackable> {
+/// Decompresses a file if its first bytes are those of gzip or zstd. Returns the compression and the content; `None`
+/// if the file is not compressed.
+pub(crate) fn decompress(bytes: &[u8]) -> Result<Option<(Compression, Vec<u8>)>, DecompressError> {
     /// The first bytes of files that other programs have compressed.
     const OTHERS: [(&[u8], &str, &str); 3] = [
         (b"\xFD7zXZ\0", "xz", "Decompress it first (unxz), or compress it by gzip or zstd"),
@@ -102,43 +105,44 @@ pub(crate) fn unpack(bytes: &[u8]) -> Result<Option<(Packing, Vec<u8>)>, Unpacka
         (b"PK\x03\x04", "zip", "Unpack it first (unzip), or compress it by gzip or zstd"),
     ];
     if let Some((_, name, remedy)) = OTHERS.iter().find(|(opens, ..)| bytes.starts_with(opens)) {
-        return Err(Unpackable { problem: format!("it is compressed by {name}"), remedy });
+        return Err(DecompressError { problem: format!("it is compressed by {name}"), remedy });
     }
-    let opens = |packing: &Packing| bytes.starts_with(packing.opens());
-    let Some(packing) = Packing::ALL.into_iter().find(opens) else { return Ok(None) };
-    let most = bytes.len().saturating_mul(MOST).max(ALWAYS);
+    let opens = |compression: &Compression| bytes.starts_with(compression.magic());
+    let Some(compression) = Compression::ALL.into_iter().find(opens) else { return Ok(None) };
+    let most = bytes.len().saturating_mul(MAX_RATIO).max(MIN_LIMIT);
     let mut content = Vec::new();
-    let unpacked = match packing {
-        Packing::Gzip => unpack_gzip(bytes, most, &mut content),
-        Packing::Zstd => unpack_zstd(bytes, most, &mut content),
+    let decompressed = match compression {
+        Compression::Gzip => decompress_gzip(bytes, most, &mut content),
+        Compression::Zstd => decompress_zstd(bytes, most, &mut content),
     };
-    let name = packing.name();
-    if let Err(error) = unpacked {
+    let name = compression.name();
+    if let Err(error) = decompressed {
         let problem = format!("it is compressed by {name}, but damaged or cut off: {error}");
-        return Err(Unpackable { problem, remedy: "Copy it again, or write the mesh again" });
+        return Err(DecompressError { problem, remedy: "Copy it again, or write the mesh again" });
     }
     if content.len() > most {
-        let problem = format!("it unpacks to more than {MOST} times its size, which no mesh does");
-        let remedy = match packing {
-            Packing::Gzip => "If it is one, decompress it first (gunzip)",
-            Packing::Zstd => "If it is one, decompress it first (unzstd)",
+        let problem =
+            format!("it unpacks to more than {MAX_RATIO} times its size, which no mesh does");
+        let remedy = match compression {
+            Compression::Gzip => "If it is one, decompress it first (gunzip)",
+            Compression::Zstd => "If it is one, decompress it first (unzstd)",
         };
-        return Err(Unpackable { problem, remedy });
+        return Err(DecompressError { problem, remedy });
     }
-    Ok(Some((packing, content)))
+    Ok(Some((compression, content)))
 }
 
-/// Unpacks at most one byte more than `most`.
-fn unpack_gzip(bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
+/// Decompresses to at most one byte more than `most`.
+fn decompress_gzip(bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
     let limit = u64::try_from(most).unwrap_or(u64::MAX - 1) + 1;
     let read = MultiGzDecoder::new(bytes).take(limit).read_to_end(content);
     read.map(drop).map_err(|error| error.to_string())
 }
 
-/// Unpacks frame after frame, until the content has more than `most` bytes.
-fn unpack_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
-    /// Bytes that are unpacked at a time.
-    const PART: usize = 1 << 20;
+/// Decompresses frame after frame, until the content has more than `most` bytes.
+fn decompress_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
+    /// Bytes that are decompressed at a time.
+    const STEP: usize = 1 << 20;
     let mut decoder = FrameDecoder::new();
     while !bytes.is_empty() {
         if let Some(rest) = after_skipped(bytes)? {
@@ -147,7 +151,7 @@ fn unpack_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(
         }
         decoder.init(&mut bytes).map_err(|error| error.to_string())?;
         loop {
-            let strategy = BlockDecodingStrategy::UptoBytes(PART);
+            let strategy = BlockDecodingStrategy::UptoBytes(STEP);
             decoder.decode_blocks(&mut bytes, strategy).map_err(|error| error.to_string())?;
             content.extend(decoder.collect().unwrap_or_default());
             if content.len() > most {
@@ -157,8 +161,8 @@ fn unpack_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(
                 break;
             }
         }
-        let told = decoder.get_checksum_from_data();
-        if told.is_some() && told != decoder.get_calculated_checksum() {
+        let stored = decoder.get_checksum_from_data();
+        if stored.is_some() && stored != decoder.get_calculated_checksum() {
             return Err("the checksum does not match".into());
         }
     }
@@ -182,14 +186,14 @@ fn after_skipped(bytes: &[u8]) -> Result<Option<&[u8]>, String> {
 mod tests {
     use super::*;
 
-    fn packed(packing: Packing, content: &[u8]) -> Vec<u8> {
+    fn packed(compression: Compression, content: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
-        packing.pack(&mut out, |out| out.write_all(content)).unwrap();
+        compression.compress(&mut out, |out| out.write_all(content)).unwrap();
         out
     }
 
     fn problem(bytes: &[u8]) -> String {
-        unpack(bytes).err().map(|error| error.problem).unwrap_or_default()
+        decompress(bytes).err().map(|error| error.problem).unwrap_or_default()
     }
 
     #[test]
@@ -197,23 +201,25 @@ mod tests {
         let content: Vec<u8> =
             (0..100_000_u32).flat_map(|n| n.wrapping_mul(n).to_le_bytes()).collect();
         let text: String = (0..60_000).map(|n| format!("{n} {:?}\n", f64::from(n) * 0.1)).collect();
-        for packing in Packing::ALL {
-            let unpacked = |bytes: &[u8]| {
-                let (found, content) = unpack(bytes).unwrap().unwrap();
-                assert_eq!(found, packing);
+        for compression in Compression::ALL {
+            let decompressed = |bytes: &[u8]| {
+                let (found, content) = decompress(bytes).unwrap().unwrap();
+                assert_eq!(found, compression);
                 content
             };
             for content in [&content[..], text.as_bytes(), b"", b"a", &[7; 4000]] {
-                assert!(unpacked(&packed(packing, content)) == content, "{packing:?}");
+                assert!(decompressed(&packed(compression, content)) == content, "{compression:?}");
             }
             // Parallel programs write several compressed parts, one after the other.
-            let twice = [packed(packing, b"$MeshFormat"), packed(packing, b"\n4.1")].concat();
-            assert_eq!(unpacked(&twice), b"$MeshFormat\n4.1");
+            let twice =
+                [packed(compression, b"$MeshFormat"), packed(compression, b"\n4.1")].concat();
+            assert_eq!(decompressed(&twice), b"$MeshFormat\n4.1");
         }
-        let skipped = [&packed(Packing::Zstd, b"a")[..], b"\x53\x2A\x4D\x18\x02\0\0\0xy"].concat();
-        assert_eq!(unpack(&skipped).unwrap().unwrap().1, b"a");
+        let skipped =
+            [&packed(Compression::Zstd, b"a")[..], b"\x53\x2A\x4D\x18\x02\0\0\0xy"].concat();
+        assert_eq!(decompress(&skipped).unwrap().unwrap().1, b"a");
         assert!(problem(&skipped[..skipped.len() - 1]).contains("a frame is cut off"));
-        assert!(unpack(b"$MeshFormat").ok().flatten().is_none());
+        assert!(decompress(b"$MeshFormat").ok().flatten().is_none());
     }
 
     /// A file that the zstd command has written, with a checksum.
@@ -222,7 +228,7 @@ mod tests {
         // printf 'mesh mesh mesh mesh mesh mesh mesh mesh\n' | zstd
         let file =
             b"\x28\xb5\x2f\xfd\x04\x58\x65\x00\x00\x30\x6d\x65\x73\x68\x20\x0a\x01\x00\x70\x8a\x16\x9f\xd2\x6b\x88";
-        match unpack(file) {
+        match decompress(file) {
             Ok(Some((_, content))) => {
                 assert_eq!(content, b"mesh mesh mesh mesh mesh mesh mesh mesh\n")
             }
@@ -235,31 +241,35 @@ mod tests {
 
     #[test]
     fn a_decompression_bomb_is_refused() {
-        for packing in Packing::ALL {
-            let bomb = packed(packing, &vec![b' '; 50 << 20]);
+        for compression in Compression::ALL {
+            let bomb = packed(compression, &vec![b' '; 50 << 20]);
             assert!(bomb.len() < 100_000);
             assert!(problem(&bomb).starts_with("it unpacks to more than 200 times its size"));
-            assert!(problem(&packed(packing, &[b' '; 1000])).is_empty());
+            assert!(problem(&packed(compression, &[b' '; 1000])).is_empty());
         }
     }
 
     #[test]
     fn damaged_or_cut_off_compressed_bytes_are_an_error() {
-        for packing in Packing::ALL {
-            let whole = packed(packing, b"a mesh of some length, and more of it, and more of it");
+        for compression in Compression::ALL {
+            let whole =
+                packed(compression, b"a mesh of some length, and more of it, and more of it");
             for cut in 4..whole.len() {
-                assert!(problem(&whole[..cut]).contains("damaged or cut off"), "{packing:?} {cut}");
+                assert!(
+                    problem(&whole[..cut]).contains("damaged or cut off"),
+                    "{compression:?} {cut}"
+                );
             }
             for at in 4..whole.len() {
                 for byte in [0, 1, 0x7F, 0xFF] {
                     let mut wrong = whole.clone();
                     wrong[at] = byte;
                     // Damage must cause an error or no harm, but never a panic or a large use of memory.
-                    let _ = unpack(&wrong);
+                    let _ = decompress(&wrong);
                 }
             }
         }
-        let mut wrong = packed(Packing::Gzip, b"a mesh of some length, and more of it");
+        let mut wrong = packed(Compression::Gzip, b"a mesh of some length, and more of it");
         let checksum = wrong.len() - 6;
         wrong[checksum] ^= 1;
         assert!(problem(&wrong).contains("damaged or cut off"));

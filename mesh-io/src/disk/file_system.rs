@@ -4,8 +4,8 @@ use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// The file system, or a test's stand-in for it.
-pub(crate) trait Disk {
+/// The requests to the file system that writing files needs. Tests replace the system to make requests fail.
+pub(crate) trait FileSystem {
     /// Creates a file to write to, which must not exist yet.
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn NewFile>>;
     /// Gives a file a second name, by a hard link.
@@ -27,9 +27,9 @@ pub(crate) trait NewFile: Write + Send {
 }
 
 /// The file system of the operating system.
-pub(crate) struct System;
+pub(crate) struct OsFileSystem;
 
-impl Disk for System {
+impl FileSystem for OsFileSystem {
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn NewFile>> {
         Ok(Box::new(OpenOptions::new().write(true).create_new(true).open(path)?))
     }

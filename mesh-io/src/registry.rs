@@ -1,65 +1,67 @@
 //! The table of formats: how each is recognized, and its reader.
 
-use crate::compress::packed;
+use crate::compress::file::inner_name;
 use crate::disk::source::file_name;
 use crate::format::Format;
 use crate::formats::vtk::{legacy, xml};
 use crate::formats::{
-    abaqus, adcirc, cgns, container, exodus, freefem, fvcom, gmsh, jigsaw, med, mfem, mike,
+    abaqus, adcirc, cgns, exodus, freefem, fvcom, gmsh, hdf5_or_netcdf, jigsaw, med, mfem, mike,
     nastran, obj, off, ply, selafin, sms, stl, triangle, ugrid, xdmf,
 };
 use crate::formats::{medit, su2};
-use crate::visit::reader::{Reader, Walk};
+use crate::visit::reader::{FormatReader, ReaderFunctions};
 use std::path::Path;
 
-const fn reader<W: Walk>() -> Reader {
-    Reader::of::<W>()
+const fn reader<W: FormatReader>() -> ReaderFunctions {
+    ReaderFunctions::of::<W>()
 }
 
-/// A row of the table: formats that one reader reads, or a format that only messages name.
-pub(crate) struct Family {
+/// Entry of the registry: a reader with the formats it reads, or a format that is recognized only to be named in an
+/// error.
+pub(crate) struct FormatEntry {
     pub(crate) name: &'static str,
-    /// Endings of file names that belong to this format, the usual one first.
-    pub(crate) endings: &'static [&'static str],
-    /// The first bytes of a file of this format, after blanks and comment lines. Empty for formats that are told by
-    /// their first rows of numbers.
-    pub(crate) opens: &'static [&'static [u8]],
+    /// Endings of file names of the format, the usual one first.
+    pub(crate) extensions: &'static [&'static str],
+    /// The first bytes of a file of the format, after blanks and comment lines. Empty for formats that are recognized
+    /// by their first rows of numbers.
+    pub(crate) magic: &'static [&'static [u8]],
     /// The reader. `None` for formats that are not read.
-    pub(crate) reader: Option<Reader>,
-    /// What to do with a file of a format that is not read. If empty, the message lists the formats that are read.
-    pub(crate) instead: &'static str,
+    pub(crate) reader: Option<ReaderFunctions>,
+    /// Remedy for a file of a format that is not read. If empty, the message lists the formats that are read.
+    pub(crate) hint: &'static str,
 }
 
-impl Family {
+impl FormatEntry {
     /// Whether meshes of this format are read.
     pub(crate) fn is_read(&self) -> bool {
         self.reader.is_some()
     }
 
-    /// Whether the path ends as files of this format do, compressed or not, in capital or small letters.
-    pub(crate) fn has_ending_of(&self, path: &Path) -> bool {
-        let name = packed::inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
-        self.endings.iter().any(|ending| name.ends_with(ending))
+    /// Returns whether the path ends in one of the extensions, before the extension of a compression, in capital or
+    /// small letters.
+    pub(crate) fn matches_extension(&self, path: &Path) -> bool {
+        let name = inner_name(&file_name(path).to_ascii_lowercase()).to_owned();
+        self.extensions.iter().any(|ending| name.ends_with(ending))
     }
 }
 
-const fn family(
+const fn entry(
     name: &'static str,
     endings: &'static [&'static str],
     opens: &'static [&'static [u8]],
-    reader: Reader,
-) -> Family {
-    Family { name, endings, opens, reader: Some(reader), instead: "" }
+    reader: ReaderFunctions,
+) -> FormatEntry {
+    FormatEntry { name, extensions: endings, magic: opens, reader: Some(reader), hint: "" }
 }
 
-/// Makes a row for a format that is not read.
-const fn unread(
+/// Makes an entry for a format that is not read.
+const fn unsupported(
     name: &'static str,
     endings: &'static [&'static str],
     opens: &'static [&'static [u8]],
     instead: &'static str,
-) -> Family {
-    Family { name, endings, opens, reader: None, instead }
+) -> FormatEntry {
+    FormatEntry { name, extensions: endings, magic: opens, reader: None, hint: instead }
 }
 
 /// The remedy for a format that meshio reads.
@@ -67,17 +69,18 @@ const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for ex
 /// The remedy for a format that no common converter reads.
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
-/// Makes a static for each row, their list [`FAMILIES`], and [`Family::of`], which does not compile if a format is in no row.
+/// Makes a static for each entry, their list [`REGISTRY`], and [`FormatEntry::of`], which does not compile if a
+/// format is in no entry.
 macro_rules! families {
     ($($(#[$doc:meta])* $row:ident [$($format:ident),*] = $family:expr;)*) => {
-        $($(#[$doc])* pub(crate) static $row: Family = $family;)*
+        $($(#[$doc])* pub(crate) static $row: FormatEntry = $family;)*
 
-        /// Every family, in the order in which contents are compared with them.
-        pub(crate) static FAMILIES: &[&Family] = &[$(&$row),*];
+        /// All entries, in the order in which contents are compared with their magic bytes.
+        pub(crate) static REGISTRY: &[&FormatEntry] = &[$(&$row),*];
 
-        impl Family {
-            /// Returns the row of a format.
-            pub(crate) fn of(format: Format) -> &'static Family {
+        impl FormatEntry {
+            /// Returns the entry of a format.
+            pub(crate) fn of(format: Format) -> &'static FormatEntry {
                 match format {
                     $($(Format::$format => &$row,)*)*
                 }
@@ -88,129 +91,129 @@ macro_rules! families {
 
 // Contents are compared with the rows in this order. In brackets are the formats of a row.
 families! {
-    TRIANGLE [Triangle] = family(
+    TRIANGLE [Triangle] = entry(
         "Triangle .node/.ele",
         &[".node", ".ele"],
         &[],
         reader::<triangle::Triangle>(),
     );
-    GMSH [Gmsh22, Gmsh22Binary, Gmsh40, Gmsh40Binary, Gmsh41, Gmsh41Binary] = family(
+    GMSH [Gmsh22, Gmsh22Binary, Gmsh40, Gmsh40Binary, Gmsh41, Gmsh41Binary] = entry(
         "gmsh",
         &[".msh"],
         &[b"$MeshFormat", b"$Comments"],
         reader::<gmsh::Gmsh>(),
     );
-    VTK [Vtk, VtkBinary] = family(
+    VTK [Vtk, VtkBinary] = entry(
         "legacy VTK",
         &[".vtk"],
         &[b"# vtk DataFile", b"# VTK DataFile"],
         reader::<legacy::Vtk>(),
     );
-    SU2 [Su2] = family(
+    SU2 [Su2] = entry(
         "SU2",
         &[".su2"],
         &[b"NDIME", b"NZONE", b"IZONE", b"NELEM"],
         reader::<su2::read::Su2>(),
     );
-    MEDIT [Medit] = family(
+    MEDIT [Medit] = entry(
         "Medit",
         &[".mesh"],
         &[b"MeshVersionFormatted"],
         reader::<medit::text::Medit>(),
     );
-    MEDIT_BINARY [MeditBinary] = family(
+    MEDIT_BINARY [MeditBinary] = entry(
         "binary Medit",
         &[".meshb"],
         &[&[1, 0, 0, 0], &[0, 0, 0, 1]],
         reader::<medit::binary::MeditBinary>(),
     );
-    OBJ [Obj] = family(
+    OBJ [Obj] = entry(
         "Wavefront OBJ",
         &[".obj"],
         &[b"v ", b"v\t", b"mtllib ", b"o ", b"g ", b"vn ", b"vt "],
         reader::<obj::Obj>(),
     );
-    OFF [Off] = family(
+    OFF [Off] = entry(
         "OFF",
         &[".off"],
         &[b"OFF", b"COFF", b"NOFF", b"CNOFF"],
         reader::<off::Off>(),
     );
-    ADCIRC [Adcirc] = family(
+    ADCIRC [Adcirc] = entry(
         "ADCIRC or SCHISM grid",
         &["fort.14", ".14", ".gr3", ".grd"],
         &[],
         reader::<adcirc::Adcirc>(),
     );
-    SMS [Sms2dm] = family(
+    SMS [Sms2dm] = entry(
         "SMS 2dm",
         &[".2dm"],
         &[b"MESH2D", b"mesh2d", b"Mesh2D"],
         reader::<sms::Sms>(),
     );
-    MIKE [Mike] = family(
+    MIKE [Mike] = entry(
         "MIKE (DHI)",
         &[".mesh"],
         &[b"100079 ", b"100079\t"],
         reader::<mike::Mike>(),
     );
-    FVCOM [Fvcom] = family("FVCOM", &["_grd.dat"], &[b"Node Number"], reader::<fvcom::Fvcom>());
-    MFEM [Mfem] = family("MFEM", &[".mesh"], &[b"MFEM mesh"], reader::<mfem::Mfem>());
-    JIGSAW [Jigsaw] = family(
+    FVCOM [Fvcom] = entry("FVCOM", &["_grd.dat"], &[b"Node Number"], reader::<fvcom::Fvcom>());
+    MFEM [Mfem] = entry("MFEM", &[".mesh"], &[b"MFEM mesh"], reader::<mfem::Mfem>());
+    JIGSAW [Jigsaw] = entry(
         "JIGSAW",
         &[".msh"],
         &[b"MSHID", b"mshid"],
         reader::<jigsaw::Jigsaw>(),
     );
-    FREEFEM [FreeFem] = family("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
-    SELAFIN [Selafin] = family(
+    FREEFEM [FreeFem] = entry("FreeFem .msh", &[".msh"], &[], reader::<freefem::FreeFem>());
+    SELAFIN [Selafin] = entry(
         "SELAFIN",
         &[".slf", ".sel", ".selafin"],
         &[&[0, 0, 0, 80], &[80, 0, 0, 0]],
         reader::<selafin::Selafin>(),
     );
-    VTK_XML [Vtu] = family(
+    VTK_XML [Vtu] = entry(
         "VTK XML",
         &[".vtu", ".pvtu", ".pvd"],
         &[b"<VTKFile"],
         reader::<xml::Vtu>(),
     );
-    VTK_XML_POLYGONS [Vtp] = family(
+    VTK_XML_POLYGONS [Vtp] = entry(
         "VTK XML polygons",
         &[".vtp"],
         &[b"<VTKFile"],
         reader::<xml::Vtu>(),
     );
-    STL [Stl, StlBinary] = family(
+    STL [Stl, StlBinary] = entry(
         "STL",
         &[".stl"],
         &[b"solid ", b"solid\n", b"solid\r"],
         reader::<stl::Stl>(),
     );
-    PLY [Ply, PlyBinary] = family("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
+    PLY [Ply, PlyBinary] = entry("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
     /// Any of those in HDF5 or netCDF, where the ending does not tell which.
-    CONTAINER [] = family(
+    CONTAINER [] = entry(
         "HDF5 or netCDF",
         &[".h5", ".hdf5", ".nc", ".nc4"],
         &[b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05"],
-        reader::<container::Container>(),
+        reader::<hdf5_or_netcdf::Hdf5OrNetcdf>(),
     );
-    EXODUS [Exodus] = family(
+    EXODUS [Exodus] = entry(
         "Exodus II",
         &[".exo", ".e", ".ex2", ".g", ".exoii", ".nc", ".nc4", ".h5", ".hdf5"],
         &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
         reader::<exodus::Exodus>(),
     );
-    UGRID [Ugrid] = family(
+    UGRID [Ugrid] = entry(
         "UGRID",
         &[".nc", ".nc4", ".h5", ".hdf5"],
         &[b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF"],
         reader::<ugrid::Ugrid>(),
     );
-    MED [Med] = family("MED", &[".med", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<med::Med>());
-    CGNS [Cgns] = family("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
-    XDMF [Xdmf] = family("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
-    ABAQUS [Abaqus] = family(
+    MED [Med] = entry("MED", &[".med", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<med::Med>());
+    CGNS [Cgns] = entry("CGNS", &[".cgns", ".h5", ".hdf5"], &[b"\x89HDF"], reader::<cgns::Cgns>());
+    XDMF [Xdmf] = entry("XDMF", &[".xdmf", ".xmf", ".xdmf3"], &[b"<Xdmf"], reader::<xdmf::Xdmf>());
+    ABAQUS [Abaqus] = entry(
         "Abaqus",
         &[".inp"],
         &[
@@ -228,48 +231,48 @@ families! {
         ],
         reader::<abaqus::Abaqus>(),
     );
-    NASTRAN [Nastran] = family(
+    NASTRAN [Nastran] = entry(
         "Nastran",
         &[".bdf", ".nas"],
         &[b"BEGIN BULK"],
         reader::<nastran::Nastran>(),
     );
-    GMSH_1 [] = unread(
+    GMSH_1 [] = unsupported(
         "gmsh 1",
         &[],
         &[b"$NOD\n", b"$NOD\r"],
         "Open it in gmsh, and save it as version 4.1",
     );
-    UNV [] = unread("I-DEAS universal", &[".unv"], &[], "Open it in gmsh, and save it as .msh");
-    LS_DYNA [] = unread("LS-DYNA", &[".k", ".key"], &[b"*KEYWORD", b"$# LS-DYNA"], BY_OTHERS);
-    FLUENT [] = unread("Fluent", &[".cas"], &[b"(0 \"", b"(1 \"", b"(2 2)", b"(2 3)"], BY_MESHIO);
-    MFEM_OTHER [] = unread(
+    UNV [] = unsupported("I-DEAS universal", &[".unv"], &[], "Open it in gmsh, and save it as .msh");
+    LS_DYNA [] = unsupported("LS-DYNA", &[".k", ".key"], &[b"*KEYWORD", b"$# LS-DYNA"], BY_OTHERS);
+    FLUENT [] = unsupported("Fluent", &[".cas"], &[b"(0 \"", b"(1 \"", b"(2 2)", b"(2 3)"], BY_MESHIO);
+    MFEM_OTHER [] = unsupported(
         "nonconforming, NURBS or inline MFEM",
         &[],
         &[b"MFEM NC mesh", b"MFEM NURBS", b"MFEM INLINE"],
         "Save it as VTK: Mesh::PrintVTK of MFEM",
     );
-    DOLFIN [] = unread("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
-    COMSOL [] = unread(
+    DOLFIN [] = unsupported("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
+    COMSOL [] = unsupported(
         "COMSOL",
         &[".mphtxt", ".mphbin"],
         &[b"# Created by COMSOL"],
         "Export the mesh as VTK",
     );
-    TECPLOT [] = unread(
+    TECPLOT [] = unsupported(
         "Tecplot",
         &[".plt"],
         &[b"TITLE =", b"TITLE=", b"VARIABLES", b"#!TD"],
         BY_MESHIO,
     );
-    AVS [] = unread("AVS-UCD", &[".avs", ".ucd"], &[], BY_MESHIO);
-    NETGEN [] = unread("Netgen", &[".vol"], &[b"mesh3d"], BY_MESHIO);
-    FLAC [] = unread("FLAC3D", &[".f3grid"], &[b"* FLAC3D", b"* GRIDPOINTS"], BY_MESHIO);
-    PERMAS [] = unread("PERMAS", &[".post"], &[b"!PERMAS"], BY_MESHIO);
-    AFLR3 [] = unread("AFLR3 UGRID", &[".ugrid"], &[], BY_MESHIO);
-    RADIOSS [] = unread("Radioss", &[".rad"], &[b"#RADIOSS"], "Save the mesh as gmsh, VTK or SU2");
-    X3D [] = unread("X3D", &[".x3d"], &[b"<X3D"], "Save the mesh as PLY, OBJ or OFF");
-    GEOMETRY [] = unread(
+    AVS [] = unsupported("AVS-UCD", &[".avs", ".ucd"], &[], BY_MESHIO);
+    NETGEN [] = unsupported("Netgen", &[".vol"], &[b"mesh3d"], BY_MESHIO);
+    FLAC [] = unsupported("FLAC3D", &[".f3grid"], &[b"* FLAC3D", b"* GRIDPOINTS"], BY_MESHIO);
+    PERMAS [] = unsupported("PERMAS", &[".post"], &[b"!PERMAS"], BY_MESHIO);
+    AFLR3 [] = unsupported("AFLR3 UGRID", &[".ugrid"], &[], BY_MESHIO);
+    RADIOSS [] = unsupported("Radioss", &[".rad"], &[b"#RADIOSS"], "Save the mesh as gmsh, VTK or SU2");
+    X3D [] = unsupported("X3D", &[".x3d"], &[b"<X3D"], "Save the mesh as PLY, OBJ or OFF");
+    GEOMETRY [] = unsupported(
         "a geometry without a mesh (CAD or .geo)",
         &[".step", ".stp", ".iges", ".igs", ".brep", ".geo"],
         &[b"ISO-10303-21"],

@@ -1,51 +1,53 @@
 //! Checksums of metadata: Jenkins' lookup3.
 
-use super::bytes::{Bytes, Fault};
-use crate::edit::numbers::Splice;
+use super::bytes::{ByteReader, Hdf5Error};
+use crate::edit::numbers::ByteEdit;
 use std::ops::Range;
 
 /// A range of a file with a checksum, the four bytes after it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Sum {
-    pub(super) range: Range<usize>,
+pub(super) struct Checksum {
+    /// The range that the checksum covers.
+    pub(super) covered: Range<usize>,
 }
 
-impl Sum {
-    /// Where the checksum stands.
-    pub(super) fn place(&self) -> Range<usize> {
-        self.range.end..self.range.end + 4
+impl Checksum {
+    /// Returns the range of the checksum itself: the four bytes after the covered range.
+    pub(super) fn stored_range(&self) -> Range<usize> {
+        self.covered.end..self.covered.end + 4
     }
 
     /// Takes the checksum of what was taken since `start`, which has to be right. Fuzzers do not get beyond checksums by chance, so
     /// they are spared.
-    pub(super) fn take(start: usize, bytes: &mut Bytes<'_>) -> Result<Sum, Fault> {
+    pub(super) fn take(start: usize, bytes: &mut ByteReader<'_>) -> Result<Checksum, Hdf5Error> {
         let range = start..bytes.at();
         let own = bytes.within(range.clone()).take(range.len())?;
         let stored = bytes.number(4)?;
         match cfg!(any(fuzzing, test)) || u64::from(lookup3(own)) == stored {
-            true => Ok(Sum { range }),
+            true => Ok(Checksum { covered: range }),
             false => Err(bytes.damaged()),
         }
     }
 
-    /// The checksum once these ranges are replaced by as many bytes, if one of them is covered by it.
-    pub(super) fn again<'s>(
+    /// Returns the edit of the checksum after `edits`, which keep their lengths; `None` if no edit lies in the
+    /// covered range.
+    pub(super) fn update<'s>(
         &self,
         file: &[u8],
-        splices: impl Iterator<Item = &'s Splice>,
-    ) -> Option<Splice> {
-        let own = |splice: &&Splice| {
-            splice.range.start >= self.range.start && splice.range.end <= self.range.end
+        edits: impl Iterator<Item = &'s ByteEdit>,
+    ) -> Option<ByteEdit> {
+        let own = |edit: &&ByteEdit| {
+            edit.range.start >= self.covered.start && edit.range.end <= self.covered.end
         };
-        let mut bytes = file.get(self.range.clone())?.to_vec();
+        let mut bytes = file.get(self.covered.clone())?.to_vec();
         let mut is_touched = false;
-        for splice in splices.filter(own) {
-            let at = splice.range.start - self.range.start;
-            bytes.get_mut(at..at + splice.bytes.len())?.copy_from_slice(&splice.bytes);
+        for edit in edits.filter(own) {
+            let at = edit.range.start - self.covered.start;
+            bytes.get_mut(at..at + edit.bytes.len())?.copy_from_slice(&edit.bytes);
             is_touched = true;
         }
         let bytes = lookup3(&bytes).to_le_bytes().to_vec();
-        is_touched.then(|| Splice { range: self.place(), bytes })
+        is_touched.then(|| ByteEdit { range: self.stored_range(), bytes })
     }
 }
 

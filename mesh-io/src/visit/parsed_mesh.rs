@@ -2,26 +2,26 @@
 
 use crate::content::constraints::Constraints;
 use crate::content::remark::Remark;
-use crate::edit::numbers::{Encoded, Numbers, Places};
+use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, Offsets};
 use crate::format::Format;
 
-/// A mesh, and how its file stores the mesh.
-pub(crate) struct Parsed {
+/// The mesh of a file, with the storage of its coordinates.
+pub(crate) struct ParsedMesh {
     pub(crate) format: Format,
     /// x and y of each vertex.
     pub(crate) points: Vec<[f64; 2]>,
     /// The vertices of each triangle.
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Offset of each vertex's x in the file that holds the vertices, ascending.
-    pub(crate) x_at: Places,
+    pub(crate) x_offsets: Offsets,
     /// The vertex of each offset in `x_at`; `None` if there is one for each vertex in order.
     pub(crate) owners: Option<Vec<u32>>,
     /// How the file stores coordinates.
-    pub(crate) numbers: Numbers,
+    pub(crate) encoding: CoordinateEncoding,
     /// Which of the files of the mesh holds them, counted from zero.
-    pub(crate) part: usize,
+    pub(crate) file_index: usize,
     /// The points, if they are encoded.
-    pub(crate) encoded: Option<Box<dyn Encoded>>,
+    pub(crate) encoded: Option<Box<dyn EncodedArrays>>,
     /// The region of each triangle; `None` if all are of one.
     pub(crate) regions: Option<Vec<u32>>,
     /// Lines, points and periodic pairs of the file.

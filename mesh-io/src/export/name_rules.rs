@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-/// How a format spells names.
+/// Rules of a format for the names of groups and data.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Spelling {
+pub(crate) enum NameRules {
     /// As they are.
     Any,
     /// Between quotation marks, so that a name has none of its own. Groups have numbers besides.
@@ -18,22 +18,22 @@ pub(crate) enum Spelling {
     Label,
 }
 
-impl Spelling {
+impl NameRules {
     /// Whether names alone tell what they name.
     pub(crate) fn is_word(self) -> bool {
-        matches!(self, Spelling::Word | Spelling::Variable | Spelling::Label)
+        matches!(self, NameRules::Word | NameRules::Variable | NameRules::Label)
     }
 
     /// Returns what is the same for two names that the format does not tell apart.
     fn key(self, name: &str) -> String {
-        if self == Spelling::Label { name.to_ascii_lowercase() } else { name.to_owned() }
+        if self == NameRules::Label { name.to_ascii_lowercase() } else { name.to_owned() }
     }
 
     /// Spells a name as the format can hold it.
     pub(crate) fn of(self, name: &str) -> String {
         match self {
-            Spelling::Any => name.to_owned(),
-            Spelling::Quoted => {
+            NameRules::Any => name.to_owned(),
+            NameRules::Quoted => {
                 let held = |c: char| match c {
                     '"' => '\'',
                     c if c.is_control() => ' ',
@@ -41,14 +41,14 @@ impl Spelling {
                 };
                 name.chars().map(held).collect()
             }
-            Spelling::Word => {
+            NameRules::Word => {
                 // A percent sign starts a comment in SU2.
                 let is_blank = |c: char| c.is_whitespace() || c.is_control() || c == '%';
                 let words: Vec<&str> =
                     name.split(is_blank).filter(|word| !word.is_empty()).collect();
                 words.join("_")
             }
-            Spelling::Variable => {
+            NameRules::Variable => {
                 let is_blank = |c: char| c.is_whitespace() || c.is_control() || c == '/';
                 let words: Vec<&str> =
                     name.split(is_blank).filter(|word| !word.is_empty()).collect();
@@ -59,7 +59,7 @@ impl Spelling {
                     false => format!("_{word}"),
                 }
             }
-            Spelling::Label => {
+            NameRules::Label => {
                 let is_held = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
                 let word: String = name.chars().map(|c| if is_held(c) { c } else { '_' }).collect();
                 match word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
@@ -78,7 +78,7 @@ impl Spelling {
 /// nothing is left.
 pub(crate) fn distinct(
     names: &[&str],
-    spelling: Spelling,
+    spelling: NameRules,
     taken: &[&str],
     spare: impl Fn(usize) -> String,
 ) -> Vec<String> {
@@ -117,7 +117,7 @@ pub(crate) fn distinct(
 mod tests {
     use super::*;
 
-    fn spelled(names: &[&str], spelling: Spelling) -> Vec<String> {
+    fn spelled(names: &[&str], spelling: NameRules) -> Vec<String> {
         distinct(names, spelling, &["x"], |at| at.to_string())
     }
 
@@ -125,21 +125,21 @@ mod tests {
     fn names_that_can_stay_do_and_all_others_differ_from_them() {
         let names = ["a b", "a_b", "a\tb", "wall", "wall", "a_b_2", "50%", "", " ", "x"];
         let words = ["a_b_3", "a_b", "a_b_4", "wall", "wall_2", "a_b_2", "50", "7", "8", "x_2"];
-        assert_eq!(spelled(&names, Spelling::Word), words);
+        assert_eq!(spelled(&names, NameRules::Word), words);
     }
 
     #[test]
     fn variables_have_no_slash_and_start_with_a_letter_or_digit() {
         let names = ["a/b", "a_b", "/", "-x", "7", "h\u{f6}he", "T (K)", "x", ""];
         let words = ["a_b_2", "a_b", "2", "_-x", "7", "h\u{f6}he", "T_(K)", "x_2", "8"];
-        assert_eq!(spelled(&names, Spelling::Variable), words);
+        assert_eq!(spelled(&names, NameRules::Variable), words);
     }
 
     #[test]
     fn labels_are_plain_words_whatever_their_capitals() {
         let names = ["Wall", "wall", "a b", "a,b", "7", "-x", "_5", "h\u{f6}he", "", "x"];
         let labels = ["Wall", "wall_2", "a_b", "a_b_2", "set7", "set-x", "_5", "h_he", "8", "x_2"];
-        assert_eq!(spelled(&names, Spelling::Label), labels);
+        assert_eq!(spelled(&names, NameRules::Label), labels);
     }
 
     /// Names between quotation marks are given numbers besides, so equal ones stay.
@@ -147,13 +147,13 @@ mod tests {
     fn only_quotation_marks_are_changed_between_them() {
         let names = ["a\"b", "a'b", "wall", "wall", "in let", "a\nb"];
         let quoted = ["a'b_2", "a'b", "wall", "wall", "in let", "a b"];
-        assert_eq!(spelled(&names, Spelling::Quoted), quoted);
+        assert_eq!(spelled(&names, NameRules::Quoted), quoted);
     }
 
     #[test]
     fn many_groups_of_one_name_differ() {
         let names = vec!["wall"; 100_000];
-        let words = spelled(&names, Spelling::Word);
+        let words = spelled(&names, NameRules::Word);
         assert_eq!(words[99_999], "wall_100000");
     }
 }

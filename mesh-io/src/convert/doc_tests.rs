@@ -1,12 +1,12 @@
 //! Makes the tables of docs/formats.md from the rows of formats and targets, and tests that the document has them.
 //!
-//! After a change, `UPDATE_DOCS=1 cargo test --lib documented` writes them anew.
+//! After a change, `UPDATE_DOCS=1 cargo test --lib doc_tests` writes them anew.
 
 use super::tables;
 use super::targets::TARGETS;
-use crate::compress::packed::Packing;
-use crate::families::{FAMILIES, Family};
+use crate::compress::file::Compression;
 use crate::format::Format;
+use crate::registry::{FormatEntry, REGISTRY};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -289,7 +289,7 @@ fn formats() -> String {
     for Row { formats, layouts, fixed, region, named, limits } in ROWS {
         let names: Vec<String> = formats.iter().map(ToString::to_string).collect();
         let mut endings: Vec<String> = Vec::new();
-        for ending in formats.iter().flat_map(|&format| Family::of(format).endings) {
+        for ending in formats.iter().flat_map(|&format| FormatEntry::of(format).extensions) {
             let ending = format!("`{ending}`");
             if !endings.contains(&ending) {
                 endings.push(ending);
@@ -309,7 +309,7 @@ fn formats() -> String {
 
 /// Lists the formats that are recognized but not read.
 fn not_read() -> String {
-    let unread = FAMILIES.iter().filter(|family| !family.is_read());
+    let unread = REGISTRY.iter().filter(|family| !family.is_read());
     let names: Vec<&str> = unread.map(|family| family.name).collect();
     format!("**Not read,** but known by name: {}.\n", names.join(", "))
 }
@@ -338,7 +338,7 @@ fn the_document_has_the_tables_of_the_code() {
     }
     let differs =
         expected.lines().zip(document.lines()).find(|(expected, found)| expected != found);
-    let remedy = "UPDATE_DOCS=1 cargo test -p mesh-io --lib documented writes the tables of docs/formats.md anew";
+    let remedy = "UPDATE_DOCS=1 cargo test -p mesh-io --lib doc_tests writes the tables of docs/formats.md anew";
     assert_eq!(differs, None, "{remedy}");
     assert_eq!(document.len(), expected.len(), "{remedy}");
 }
@@ -347,7 +347,7 @@ fn the_document_has_the_tables_of_the_code() {
 fn every_format_has_one_row() {
     for format in Format::ALL {
         let rows = ROWS.iter().filter(|row| row.formats.contains(&format)).count();
-        assert_eq!(rows, 1, "ROWS of mesh-io/src/convert/documented.rs needs one row for {format}");
+        assert_eq!(rows, 1, "ROWS of mesh-io/src/convert/doc_tests.rs needs one row for {format}");
     }
 }
 
@@ -368,18 +368,18 @@ fn part<'d>(document: &'d str, mark: &str, end: &str) -> &'d str {
 fn the_lists_of_formats_in_both_readme_files_have_every_format() {
     let readme = document("README.md");
     let of_library = document("mesh-io/README.md");
-    let families = || FAMILIES.iter().filter(|family| family.is_read());
+    let families = || REGISTRY.iter().filter(|family| family.is_read());
     for (name, list) in [
         ("the paragraph **Formats.** of README.md", part(&readme, "**Formats.**", "\n\n")),
         ("the table of mesh-io/README.md", part(&of_library, "## Formats", "\n\n[")),
     ] {
         for family in families().filter(|family| !HOLDS_OTHERS.contains(&family.name)) {
-            let ending = format!("`{}`", family.endings[0]);
+            let ending = format!("`{}`", family.extensions[0]);
             let has = list.contains(&ending) || list.contains(family.name);
             assert!(has, "{name} must name {} by its ending {ending}", family.name);
         }
     }
-    assert!(Packing::of(Path::new("m.msh.gz")).is_some() && readme.contains("`.gz`"));
+    assert!(Compression::of(Path::new("m.msh.gz")).is_some() && readme.contains("`.gz`"));
 }
 
 /// Names of rows that stand for several formats, which have rows of their own.

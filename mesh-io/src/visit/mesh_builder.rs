@@ -1,39 +1,47 @@
 //! Makes a mesh from a file's nodes and elements.
 
 use crate::content::constraints::{Constraints, PeriodicPairs};
-use crate::content::regions::{Numbering, Regions};
+use crate::content::id_index::IdIndexBuilder;
+use crate::content::regions::{Interner, TriangleRegions};
 use crate::content::remark::Remark;
-use crate::content::tags::TagIndex;
 use crate::disk::source::Source;
-use crate::edit::numbers::{FoundPlaces, Places};
+use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
-use crate::visit::items::{Element, Kind, Pairs};
-use crate::visit::locate::{Found, List, locate};
-use crate::visit::parsed::Parsed;
-use crate::visit::reader::Reader;
+use crate::visit::items::{CellKind, Element, PeriodicNodes};
+use crate::visit::locate::{ItemList, ItemLocation, locate};
+use crate::visit::parsed_mesh::ParsedMesh;
+use crate::visit::reader::ReaderFunctions;
 use crate::visit::records::{NodeRecords, TriangleRecords};
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Copies, Layout};
+use crate::visit::storage::{CoordinateStorage, RepeatedVertices};
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashSet;
 
 /// Reads a mesh, long lists on all threads.
-pub(crate) fn parse(reader: &Reader, source: &Source) -> Result<Parsed, ReadError> {
+pub(crate) fn parse(reader: &ReaderFunctions, source: &Source) -> Result<ParsedMesh, ReadError> {
     parse_by(reader, source, true)
 }
 
 /// Reads a mesh: long lists on all threads if `takes_ahead`, else all of it item by item.
 pub(crate) fn parse_by(
-    reader: &Reader,
+    reader: &ReaderFunctions,
     source: &Source,
     takes_ahead: bool,
-) -> Result<Parsed, ReadError> {
+) -> Result<ParsedMesh, ReadError> {
     let vertices_of = reader.vertices;
-    let mut assembler = Assembler { vertices_of, takes_ahead, ..Assembler::default() };
-    let Layout { format, numbers, encoded, copies, part } = (reader.walk)(source, &mut assembler)?;
+    let mut assembler =
+        MeshBuilder { vertices_of, allows_parallel: takes_ahead, ..MeshBuilder::default() };
+    let CoordinateStorage {
+        format,
+        encoding: numbers,
+        encoded,
+        repeated_vertices: copies,
+        file_index,
+    } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
-    let Assembler { mut points, triangles, x_at, regions, constraints, .. } = assembler;
-    let Assembler { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
+    let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
+        assembler;
+    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
     if quadrilaterals > 0 {
         remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
     }
@@ -44,8 +52,9 @@ pub(crate) fn parse_by(
     for (vertex, point) in points.iter_mut().enumerate() {
         *point = point.map(|x| precision.rounded(x));
         if !point.iter().all(|x| x.is_finite()) {
-            let Found { location, label, part } = locate(reader, source, List::Nodes, &[vertex])[0];
-            let source = source.parts().nth(part).unwrap_or(source);
+            let ItemLocation { location, id: label, file_index } =
+                locate(reader, source, ItemList::Nodes, &[vertex])[0];
+            let source = source.files().nth(file_index).unwrap_or(source);
             let problem =
                 format!("a coordinate of vertex {label} is too large for single precision");
             return Err(source.error_at(location, problem, CORRECT));
@@ -54,16 +63,16 @@ pub(crate) fn parse_by(
     let regions = regions.finish();
     let (x_at, owners) = match copies {
         None => (x_at.finish(), None),
-        Some(Copies { x_at, vertices }) => (Places::List(x_at), Some(vertices)),
+        Some(RepeatedVertices { x_at, vertices }) => (Offsets::List(x_at), Some(vertices)),
     };
-    Ok(Parsed {
+    Ok(ParsedMesh {
         format,
         points,
         triangles,
-        x_at,
+        x_offsets: x_at,
         owners,
-        numbers,
-        part,
+        encoding: numbers,
+        file_index,
         encoded,
         regions,
         constraints,
@@ -74,16 +83,17 @@ pub(crate) fn parse_by(
     })
 }
 
+/// Visitor that builds a [`ParsedMesh`].
 #[derive(Default)]
-struct Assembler {
+struct MeshBuilder {
     /// Whether items that were read on all threads are taken.
-    takes_ahead: bool,
+    allows_parallel: bool,
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
-    x_at: FoundPlaces,
-    tags: TagIndex,
-    region_names: Numbering<[i64; 2]>,
-    regions: Regions,
+    x_offsets: OffsetsBuilder,
+    ids: IdIndexBuilder,
+    region_names: Interner<[i64; 2]>,
+    regions: TriangleRegions,
     constraints: Constraints,
     quadrilaterals: u64,
     remarks: Vec<Remark>,
@@ -100,37 +110,37 @@ struct Assembler {
     on_lower: usize,
 }
 
-impl Assembler {
+impl MeshBuilder {
     /// Returns the index of a node of an element, or an error that names the element.
     #[inline]
     fn index(
         &self,
         cursor: &Cursor<'_>,
-        kind: Kind,
-        tag: u64,
+        kind: CellKind,
+        id: u64,
         node: u64,
     ) -> Result<u32, ReadError> {
-        self.tags.index(node).ok_or_else(|| {
+        self.ids.index(node).ok_or_else(|| {
             let (kind, list) = (kind.name(), self.vertices_of);
-            let problem = format!("{kind} {tag} has node {node}, which {list} does not list");
+            let problem = format!("{kind} {id} has node {node}, which {list} does not list");
             cursor.error(problem, CORRECT)
         })
     }
 }
 
-impl Sink for Assembler {
-    fn takes_ahead(&self) -> bool {
-        self.takes_ahead
+impl MeshVisitor for MeshBuilder {
+    fn allows_parallel(&self) -> bool {
+        self.allows_parallel
     }
 
     fn expect_nodes(&mut self, count: usize) {
         self.points.reserve_exact(count);
-        self.x_at.expect(count);
-        self.tags.found().expect(count);
+        self.x_offsets.expect(count);
+        self.ids.list().expect(count);
     }
 
     #[inline]
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, dimension: u64, x_at: usize, at: [f64; 2]) {
+    fn node(&mut self, _: &Cursor<'_>, id: u64, dimension: u64, x_at: usize, at: [f64; 2]) {
         if dimension < 2 {
             // On a point or curve of the model. It may lie inside the domain without being saved as line elements, such
             // as the interface of two surfaces.
@@ -140,46 +150,46 @@ impl Sink for Assembler {
         if dimension == 0 {
             self.constraints.anchored.push(self.points.len() as u32);
         }
-        self.tags.push(tag);
-        self.x_at.push(x_at);
+        self.ids.push(id);
+        self.x_offsets.push(x_at);
         self.points.push(at);
     }
 
     fn node_records(&mut self, records: &NodeRecords<'_>) -> usize {
-        if !self.takes_ahead {
+        if !self.allows_parallel {
             return 0;
         }
-        records.read(&mut self.points, self.tags.found(), &mut self.x_at)
+        records.read(&mut self.points, self.ids.list(), &mut self.x_offsets)
     }
 
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         _: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
-        let index = |&node: &u64| self.index(cursor, Kind::Point, tag, node);
+        let index = |&node: &u64| self.index(cursor, CellKind::Point, id, node);
         let vertices = nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
         self.constraints.lines.extend(vertices.windows(2).map(|pair| [pair[0], pair[1]]));
         self.constraints.vertices.extend(vertices);
         Ok(())
     }
 
-    fn asks_for_pairs(&self) -> bool {
+    fn asks_for_periodic_pairs(&self) -> bool {
         true
     }
 
-    fn pairs(&mut self, pairs: Option<Vec<Pairs>>) {
+    fn periodic_pairs(&mut self, pairs: Option<Vec<PeriodicNodes>>) {
         let Constraints { anchored, periodic, motions, has_unread_pairs, .. } =
             &mut self.constraints;
         *has_unread_pairs |= pairs.is_none();
         let mut unlisted = 0;
-        for Pairs { motion, nodes } in pairs.into_iter().flatten() {
+        for PeriodicNodes { motion, nodes } in pairs.into_iter().flatten() {
             motions.extend(motion.filter(|_| nodes.is_empty()));
             let mut pairs = Vec::with_capacity(nodes.len());
             for [a, b] in nodes {
-                match (self.tags.index(a), self.tags.index(b)) {
+                match (self.ids.index(a), self.ids.index(b)) {
                     (Some(a), Some(b)) => pairs.push([a, b]),
                     (a, b) => {
                         // The known node of the pair cannot move along its curve.
@@ -223,9 +233,9 @@ impl Sink for Assembler {
     }
 
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
-        let Err((tag, second)) = self.tags.finish() else { return Ok(()) };
-        let problem = format!("node {tag} is listed a second time");
-        let location = cursor.location_of(self.x_at.at(second));
+        let Err((id, second)) = self.ids.finish() else { return Ok(()) };
+        let problem = format!("node {id} is listed a second time");
+        let location = cursor.location_of(self.x_offsets.at(second));
         Err(cursor.source.error_at(location, problem, "Give each node a tag of its own"))
     }
 
@@ -234,44 +244,44 @@ impl Sink for Assembler {
     }
 
     fn triangle_records(&mut self, records: &TriangleRecords<'_>) -> usize {
-        let Self { tags, takes_ahead: true, triangles, regions, region_names, .. } = self else {
+        let Self { ids, allows_parallel: true, triangles, regions, region_names, .. } = self else {
             return 0;
         };
-        let Some(map) = tags.map() else { return 0 };
+        let Some(map) = ids.map() else { return 0 };
         records.read(map, triangles, |region, count| {
-            let number = region_names.number(region);
+            let number = region_names.intern(region);
             (0..count).for_each(|_| regions.push(number));
         })
     }
 
     #[inline]
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        let &Element { tag, kind, region, nodes } = element;
+        let &Element { id, kind, region, nodes } = element;
         let nodes = &nodes[..kind.nodes()];
         let mut vertices = [0; 4];
         for (vertex, &node) in vertices.iter_mut().zip(nodes) {
-            *vertex = self.index(cursor, kind, tag, node)?;
+            *vertex = self.index(cursor, kind, id, node)?;
         }
         let [a, b, c, _] = vertices;
         match kind {
-            Kind::Triangle if a == b || b == c || c == a => {
+            CellKind::Triangle if a == b || b == c || c == a => {
                 let twice = if b == c { nodes[1] } else { nodes[0] };
-                let problem = format!("triangle {tag} lists node {twice} twice");
+                let problem = format!("triangle {id} lists node {twice} twice");
                 Err(cursor.error(problem, "Remove the triangle, or correct its nodes"))
             }
-            Kind::Triangle => {
+            CellKind::Triangle => {
                 self.triangles.push([a, b, c]);
-                self.regions.push(self.region_names.number(region));
+                self.regions.push(self.region_names.intern(region));
                 Ok(())
             }
-            Kind::Point | Kind::Corner | Kind::Line | Kind::Quadrilateral => {
+            CellKind::Point | CellKind::Polygon | CellKind::Line | CellKind::Quadrilateral => {
                 let fixed = &vertices[..nodes.len()];
                 self.constraints.vertices.extend_from_slice(fixed);
                 match kind {
-                    Kind::Line => self.constraints.lines.push([a, b]),
+                    CellKind::Line => self.constraints.lines.push([a, b]),
                     _ => self.constraints.anchored.extend_from_slice(fixed),
                 }
-                self.quadrilaterals += u64::from(kind == Kind::Quadrilateral);
+                self.quadrilaterals += u64::from(kind == CellKind::Quadrilateral);
                 Ok(())
             }
         }

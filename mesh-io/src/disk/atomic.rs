@@ -1,8 +1,8 @@
 //! Replaces files as a whole: whatever happens, the old content is there or the new one, and several files are
 //! replaced together or not at all.
 
+use crate::disk::file_system::{FileSystem, NewFile, OsFileSystem};
 use crate::disk::paths::{directory_of, resolve};
-use crate::disk::system::{Disk, NewFile, System};
 use crate::error::WriteError;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -10,8 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A file to be written: its path, and what writes its content.
-pub(crate) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
+/// A file to be written: its path, and a function that writes its content.
+pub(crate) type FileWrite<'a> =
+    (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
 
 /// Writes a file so that it has either its old content or all of the new one, whatever happens meanwhile.
 ///
@@ -20,31 +21,30 @@ pub(crate) type Job<'a> = (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::R
 ///
 /// # Errors
 /// [`WriteError::Io`] if the system refuses; what stood at `path` then still stands there.
-pub fn replace(path: &Path, content: &[u8]) -> Result<(), WriteError> {
-    replace_all(&[(path.to_owned(), Box::new(|out| out.write_all(content)))])
+pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+    write_all(&[(path.to_owned(), Box::new(|out| out.write_all(content)))])
 }
 
-/// Writes all of the files, each as [`replace`] does, or none.
+/// Writes several files as [`write()`] does, all or none.
 ///
-/// The first file is put in place last. It should be the file without which the others are no mesh. Where the
-/// process is killed between, a file that was not there before is then not there yet, and of a mesh that is replaced by
-/// the same with other coordinates, every moment is the old or the new one. Where other files change as well, the first is
-/// out of its place until they have: no moment is a mixture.
-pub(crate) fn replace_all(jobs: &[Job<'_>]) -> Result<(), WriteError> {
-    replace_all_if(&System, jobs, &|| Ok(()))
+/// Contents go to temporary files first, which are renamed from the last entry to the first. The first entry should
+/// be the file without which the others are no mesh: until the first entry is renamed, readers see no new mesh. If
+/// another file changes too, the old first file is moved aside before, so that old and new files are never mixed.
+pub(crate) fn write_all(writes: &[FileWrite<'_>]) -> Result<(), WriteError> {
+    write_all_if(&OsFileSystem, writes, &|| Ok(()))
 }
 
-/// Writes all of the files as [`replace_all`] does, on this disk. Once all new content is written under temporary names,
-/// `check` may refuse: then no file is replaced.
+/// Writes several files as [`write_all`] does, to the file system `disk`. If `check` returns an error once all
+/// contents are in temporary files, no file is replaced.
 ///
 /// # Errors
-/// Those of [`replace_all`], and the error of `check`.
-pub(crate) fn replace_all_if(
-    disk: &dyn Disk,
-    jobs: &[Job<'_>],
+/// The errors of [`write_all`], and the error of `check`.
+pub(crate) fn write_all_if(
+    disk: &dyn FileSystem,
+    writes: &[FileWrite<'_>],
     check: &dyn Fn() -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
-    let staged = jobs.iter().map(|(path, content)| stage(disk, path, content));
+    let staged = writes.iter().map(|(path, content)| stage(disk, path, content));
     let staged = staged.collect::<Result<Vec<_>, _>>()?;
     // Declared before what it protects, so that it is dropped after it.
     let _committing = lock(&COMMITTING);
@@ -87,29 +87,29 @@ fn lock<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps every thread from writing mesh files, see [`abandon_writes`].
-pub struct AbandonedWrites {
+/// Keeps every thread from writing mesh files, see [`discard_pending_writes`].
+pub struct BlockedWrites {
     _committing: MutexGuard<'static, ()>,
     _temporaries: MutexGuard<'static, Vec<PathBuf>>,
 }
 
-/// Abandons what [`MeshFile::write`](crate::MeshFile::write) is doing on other threads, for a program that is about to
-/// end: removes the temporary files, which [`std::process::exit`] would leave behind. If written files are just taking
-/// their places, it waits until all of them have. No thread can write a mesh file as long as the returned value lives.
-pub fn abandon_writes() -> AbandonedWrites {
+/// Removes the temporary files of all writes that are under way on other threads, for a program that is about to end:
+/// [`std::process::exit`] would leave the files behind. Waits until writes that are renaming their files have
+/// finished. No thread can write a mesh file as long as the returned value lives.
+pub fn discard_pending_writes() -> BlockedWrites {
     let (committing, mut temporaries) = (lock(&COMMITTING), lock(&TEMPORARIES));
     for path in temporaries.drain(..) {
         let _ = fs::remove_file(path);
     }
-    AbandonedWrites { _committing: committing, _temporaries: temporaries }
+    BlockedWrites { _committing: committing, _temporaries: temporaries }
 }
 
-/// Checks, as far as is possible without writing, whether [`replace`] can work: that the directory exists and takes new
+/// Checks, as far as is possible without writing, whether [`write()`] can work: that the directory exists and takes new
 /// files, and that no directory or read-only file is in the way.
 ///
 /// # Errors
 /// [`WriteError::Io`] that says what is wrong.
-pub fn check(path: &Path) -> Result<(), WriteError> {
+pub fn ensure_writable(path: &Path) -> Result<(), WriteError> {
     let (target, existing) = resolve(path).map_err(|source| refused(path, source))?;
     match existing {
         Some(existing) if existing.is_dir() => {
@@ -134,7 +134,9 @@ pub fn check(path: &Path) -> Result<(), WriteError> {
             remedy: "Create the directory first, or write to another one".into(),
         });
     }
-    Temporary::create(&System, directory).map(drop).map_err(|source| refused(directory, source))
+    Temporary::create(&OsFileSystem, directory)
+        .map(drop)
+        .map_err(|source| refused(directory, source))
 }
 
 fn refused(path: &Path, source: io::Error) -> WriteError {
@@ -165,7 +167,7 @@ struct Staged<'d> {
 }
 
 fn stage<'d>(
-    disk: &'d dyn Disk,
+    disk: &'d dyn FileSystem,
     path: &Path,
     content: &dyn Fn(&mut (dyn Write + Send)) -> io::Result<()>,
 ) -> Result<Staged<'d>, WriteError> {
@@ -203,7 +205,7 @@ impl<'d> Staged<'d> {
     }
 
     /// Gives the file that stands there another name.
-    fn set_aside(&mut self, disk: &'d dyn Disk) -> io::Result<()> {
+    fn set_aside(&mut self, disk: &'d dyn FileSystem) -> io::Result<()> {
         // What is no file stays in the way, and is told as that.
         if self.content.is_some() && self.target.is_file() {
             let directory = directory_of(&self.target);
@@ -216,7 +218,7 @@ impl<'d> Staged<'d> {
         Ok(())
     }
 
-    fn commit(&mut self, disk: &'d dyn Disk, revertible: bool) -> io::Result<()> {
+    fn commit(&mut self, disk: &'d dyn FileSystem, revertible: bool) -> io::Result<()> {
         let Some(content) = &self.content else { return Ok(()) };
         let directory = directory_of(&self.target);
         if revertible && self.existed {
@@ -254,13 +256,13 @@ impl<'d> Staged<'d> {
 /// The path of a temporary file. Dropping it removes the file, unless the file was renamed.
 struct Temporary<'d> {
     path: PathBuf,
-    disk: &'d dyn Disk,
+    disk: &'d dyn FileSystem,
     is_kept: bool,
 }
 
 impl<'d> Temporary<'d> {
     fn create(
-        disk: &'d dyn Disk,
+        disk: &'d dyn FileSystem,
         directory: &Path,
     ) -> io::Result<(Temporary<'d>, Box<dyn NewFile>)> {
         loop {
@@ -278,7 +280,7 @@ impl<'d> Temporary<'d> {
     }
 
     /// A name that a file may be given.
-    fn named(disk: &'d dyn Disk, directory: &Path) -> Self {
+    fn named(disk: &'d dyn FileSystem, directory: &Path) -> Self {
         Temporary { path: Self::unused_name(directory), disk, is_kept: false }
     }
 
@@ -309,7 +311,7 @@ impl Drop for Temporary<'_> {
 mod tests {
     use super::*;
 
-    fn job(path: PathBuf, text: &'static str) -> Job<'static> {
+    fn file_write(path: PathBuf, text: &'static str) -> FileWrite<'static> {
         (path, Box::new(move |out| out.write_all(text.as_bytes())))
     }
 
@@ -322,14 +324,14 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [a, b] = ["a", "b"].map(|name| directory.path().join(name));
         fs::write(&a, "old").unwrap();
-        let failing: Job<'_> = (
+        let failing: FileWrite<'_> = (
             b,
             Box::new(|out| {
                 out.write_all(b"half")?;
                 Err(ErrorKind::StorageFull.into())
             }),
         );
-        let error = replace_all(&[job(a.clone(), "new"), failing]).unwrap_err().to_string();
+        let error = write_all(&[file_write(a.clone(), "new"), failing]).unwrap_err().to_string();
         assert!(error.contains("Make room"), "{error}");
         assert_eq!(fs::read_to_string(&a).unwrap(), "old");
         assert_eq!(entries(directory.path()), 1);
@@ -342,8 +344,9 @@ mod tests {
         fs::write(&a, "old").unwrap();
         // No file can take the place of a directory.
         fs::create_dir(&c).unwrap();
-        let jobs = [job(c, "new"), job(b.clone(), "new"), job(a.clone(), "new")];
-        assert!(replace_all(&jobs).is_err());
+        let writes =
+            [file_write(c, "new"), file_write(b.clone(), "new"), file_write(a.clone(), "new")];
+        assert!(write_all(&writes).is_err());
         assert_eq!(fs::read_to_string(&a).unwrap(), "old");
         assert!(!b.exists());
         assert_eq!(entries(directory.path()), 2);
@@ -354,8 +357,8 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [a, b] = ["a", "b"].map(|name| directory.path().join(name));
         fs::write(&a, "old").unwrap();
-        check(&a).unwrap();
-        replace_all(&[job(a.clone(), "1"), job(b.clone(), "2")]).unwrap();
+        ensure_writable(&a).unwrap();
+        write_all(&[file_write(a.clone(), "1"), file_write(b.clone(), "2")]).unwrap();
         assert_eq!(fs::read_to_string(&a).unwrap(), "1");
         assert_eq!(fs::read_to_string(&b).unwrap(), "2");
         assert_eq!(entries(directory.path()), 2);

@@ -1,7 +1,7 @@
 //! Lists of whole numbers, kept as they are in a binary file.
 
-use crate::binary::number_field::Field;
-use crate::binary::order::Order;
+use crate::binary::byte_order::ByteOrder;
+use crate::binary::number_field::NumberField;
 use crate::parallel::map_ranges;
 
 use std::borrow::Cow;
@@ -10,23 +10,28 @@ use std::ops::Range;
 /// Numbers that one thread compares at a time.
 const CHUNK: usize = 1 << 14;
 
-/// A list of unsigned whole numbers. Numbers from text are kept in as little memory as binary ones.
-pub(crate) struct Whole<'a> {
+/// Unsigned integers of one width: those of a binary file, or collected ones, which take 4 bytes each, or 8 if one of
+/// them needs more.
+pub(crate) struct IntArray<'a> {
     bytes: Cow<'a, [u8]>,
     /// The bytes of a number.
     size: usize,
-    order: Order,
+    order: ByteOrder,
 }
 
-impl<'a> Whole<'a> {
+impl<'a> IntArray<'a> {
     /// Makes a list of binary numbers, of `size` bytes each. Bytes that are left at the end are ignored.
-    pub(crate) fn binary(bytes: Cow<'a, [u8]>, size: usize, order: Order) -> Whole<'a> {
-        Whole { bytes, size, order }
+    pub(crate) fn binary(bytes: Cow<'a, [u8]>, size: usize, order: ByteOrder) -> IntArray<'a> {
+        IntArray { bytes, size, order }
     }
 
     /// Makes an empty list with room for `count` numbers.
-    pub(crate) fn with_capacity(count: usize) -> Whole<'a> {
-        Whole { bytes: Cow::Owned(Vec::with_capacity(4 * count)), size: 4, order: Order::Little }
+    pub(crate) fn with_capacity(count: usize) -> IntArray<'a> {
+        IntArray {
+            bytes: Cow::Owned(Vec::with_capacity(4 * count)),
+            size: 4,
+            order: ByteOrder::Little,
+        }
     }
 
     /// Appends a number to a list made by [`with_capacity`](Self::with_capacity).
@@ -73,9 +78,9 @@ impl<'a> Whole<'a> {
     }
 
     /// Returns every `step`-th number from index `from` on, as a field of records.
-    pub(crate) fn field(&self, from: usize, step: usize) -> Field<'_> {
+    pub(crate) fn field(&self, from: usize, step: usize) -> NumberField<'_> {
         let bytes = from.checked_mul(self.size).and_then(|at| self.bytes.get(at..));
-        Field::new(bytes, step * self.size, self.size, self.order)
+        NumberField::new(bytes, step * self.size, self.size, self.order)
     }
 }
 
@@ -86,7 +91,7 @@ mod tests {
     #[test]
     fn numbers_of_text_are_kept_whatever_their_size() {
         let numbers = [3, 0, u64::from(u32::MAX), 7, 1 << 40, u64::MAX, 1];
-        let mut whole = Whole::with_capacity(2);
+        let mut whole = IntArray::with_capacity(2);
         for (count, &number) in numbers.iter().enumerate() {
             whole.push(number);
             let all: Vec<u64> = whole.range(0..whole.len()).collect();
@@ -99,7 +104,8 @@ mod tests {
     fn a_list_is_sorted_if_no_number_is_less_than_the_one_before() {
         for count in [0, 1, 2, CHUNK, CHUNK + 1, 3 * CHUNK] {
             let bytes: Vec<u8> = (1..=count as u32).flat_map(u32::to_be_bytes).collect();
-            let is_sorted = |bytes: &[u8]| Whole::binary(bytes.into(), 4, Order::Big).is_sorted();
+            let is_sorted =
+                |bytes: &[u8]| IntArray::binary(bytes.into(), 4, ByteOrder::Big).is_sorted();
             assert!(is_sorted(&bytes), "{count}");
             for wrong in [1, CHUNK - 1, CHUNK, count / 2, count.saturating_sub(1)] {
                 if (1..count).contains(&wrong) {

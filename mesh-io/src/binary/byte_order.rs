@@ -2,29 +2,29 @@
 
 use crate::precision::Precision;
 
-/// The byte order of a number.
+/// The order of the bytes of a binary number: little-endian or big-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Order {
+pub(crate) enum ByteOrder {
     /// The lowest byte comes first.
     Little,
     /// The highest byte comes first.
     Big,
 }
 
-impl Order {
+impl ByteOrder {
     #[inline]
     pub(crate) fn i32(self, bytes: [u8; 4]) -> i32 {
         match self {
-            Order::Little => i32::from_le_bytes(bytes),
-            Order::Big => i32::from_be_bytes(bytes),
+            ByteOrder::Little => i32::from_le_bytes(bytes),
+            ByteOrder::Big => i32::from_be_bytes(bytes),
         }
     }
 
     #[inline]
     pub(crate) fn u64(self, bytes: [u8; 8]) -> u64 {
         match self {
-            Order::Little => u64::from_le_bytes(bytes),
-            Order::Big => u64::from_be_bytes(bytes),
+            ByteOrder::Little => u64::from_le_bytes(bytes),
+            ByteOrder::Big => u64::from_be_bytes(bytes),
         }
     }
 
@@ -36,8 +36,8 @@ impl Order {
     #[inline]
     pub(crate) fn f32(self, bytes: [u8; 4]) -> f32 {
         match self {
-            Order::Little => f32::from_le_bytes(bytes),
-            Order::Big => f32::from_be_bytes(bytes),
+            ByteOrder::Little => f32::from_le_bytes(bytes),
+            ByteOrder::Big => f32::from_be_bytes(bytes),
         }
     }
 
@@ -62,8 +62,8 @@ impl Order {
         }
         let append = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
         match self {
-            Order::Big => bytes.iter().fold(0, append),
-            Order::Little => bytes.iter().rev().fold(0, append),
+            ByteOrder::Big => bytes.iter().fold(0, append),
+            ByteOrder::Little => bytes.iter().rev().fold(0, append),
         }
     }
 
@@ -77,16 +77,16 @@ impl Order {
     #[inline]
     pub(crate) fn single_bytes(self, number: f32) -> [u8; 4] {
         match self {
-            Order::Little => number.to_le_bytes(),
-            Order::Big => number.to_be_bytes(),
+            ByteOrder::Little => number.to_le_bytes(),
+            ByteOrder::Big => number.to_be_bytes(),
         }
     }
 
     #[inline]
     pub(crate) fn bytes(self, number: f64) -> [u8; 8] {
         match self {
-            Order::Little => number.to_le_bytes(),
-            Order::Big => number.to_be_bytes(),
+            ByteOrder::Little => number.to_le_bytes(),
+            ByteOrder::Big => number.to_be_bytes(),
         }
     }
 }

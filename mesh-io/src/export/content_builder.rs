@@ -1,52 +1,53 @@
 //! Makes a description of a mesh from what a reader hands on.
 
-use super::content::{Content, ContentGroup, Data};
+use super::content::{Content, ContentGroup, DataArray};
 use crate::content::group_keys::GroupKeys;
-use crate::content::label::Label;
-use crate::content::tags::TagIndex;
+use crate::content::group_label::GroupLabel;
+use crate::content::id_index::IdIndexBuilder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::scatter;
-use crate::visit::items::{Column, Element, Kind, PointNumbers, Within};
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, Element, GroupScope, PointNumbers, RegionAttribute};
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
 /// Reads the description of a mesh, from a file that was read before.
-pub(crate) fn content(reader: &Reader, source: &Source) -> Result<Content, ReadError> {
-    let mut collector = Collector::default();
-    (reader.walk)(source, &mut collector)?;
+pub(crate) fn content(reader: &ReaderFunctions, source: &Source) -> Result<Content, ReadError> {
+    let mut collector = ContentBuilder::default();
+    (reader.visit)(source, &mut collector)?;
     Ok(collector.finish())
 }
 
-/// Collects all that a reader hands on.
+/// Visitor that builds a [`Content`].
 #[derive(Default)]
-struct Collector {
+struct ContentBuilder {
     content: Content,
-    tags: TagIndex,
-    columns: Vec<Column>,
+    ids: IdIndexBuilder,
+    columns: Vec<RegionAttribute>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
-    within: Vec<(String, Label, Option<u8>)>,
+    within: Vec<(String, GroupLabel, Option<u8>)>,
     keys: GroupKeys,
     vertex_keys: GroupKeys,
     sets: HashMap<Vec<u32>, u32>,
     /// The last set of cells of a dimension and region, as long as the groups they stand within are the same.
     last: HashMap<(u8, [i64; 2]), u32>,
     /// The array that was announced last.
-    announced: Option<Announced>,
+    announced: Option<PendingArray>,
     /// How many data have the same name, for names with more than one.
     steps: HashMap<String, usize>,
     /// The last vertex of a line that may be continued.
     open_end: Option<u32>,
     /// Data of cells, with the tags of their elements.
-    by_tag: Vec<(Data, Option<Vec<u64>>)>,
+    by_tag: Vec<(DataArray, Option<Vec<u64>>)>,
 }
 
 /// What data are called that have no name.
 const UNNAMED: &str = "unnamed";
 
-struct Announced {
+/// An array of data that the reader announced and whose numbers come next.
+struct PendingArray {
     name: String,
     components: usize,
     is_real: bool,
@@ -54,32 +55,32 @@ struct Announced {
 }
 
 /// Returns the common name for a kind of group, which formats call differently.
-fn common(what: &str) -> String {
-    let small = what.to_ascii_lowercase();
+fn common_kind(kind: &str) -> String {
+    let small = kind.to_ascii_lowercase();
     let common = match small.as_str() {
         "gmsh:physical" => "physical",
         "gmsh:geometrical" => "entity",
         "medit:ref" => "reference",
         "materialids" | "material_id" | "materials" => "material",
-        _ => what,
+        _ => kind,
     };
     common.to_owned()
 }
 
-impl Collector {
+impl ContentBuilder {
     /// Returns the description after all was handed on.
     fn finish(self) -> Content {
         let Self { mut content, keys, by_tag, .. } = self;
         let of_vertices = content.vertex_groups.iter_mut().map(|(group, _)| group);
         for group in content.groups.iter_mut().chain(of_vertices) {
-            group.name = keys.name_of(&group.what, group.dimension, &group.label);
+            group.name = keys.name_of(&group.kind, group.dimension, &group.label);
         }
-        let first = content.heights.first().copied();
-        if content.heights.iter().all(|&z| Some(z) == first) {
-            content.height = first.unwrap_or(0.0);
-            content.heights.clear();
+        let first = content.z_values.first().copied();
+        if content.z_values.iter().all(|&z| Some(z) == first) {
+            content.common_z = first.unwrap_or(0.0);
+            content.z_values.clear();
         }
-        let (count, left_out) = (content.points.len(), &mut content.left_out);
+        let (count, left_out) = (content.points.len(), &mut content.unsupported);
         content.point_data.retain(|data| {
             let fits = data.components > 0
                 && Some(data.values.len()) == count.checked_mul(data.components);
@@ -96,26 +97,27 @@ impl Collector {
             };
             let each = data.components;
             let mut values = Vec::with_capacity(content.cells.len() * each);
-            for tag in &content.cells.tags {
+            for tag in &content.cells.ids {
                 match rows.get(tag).and_then(|row| data.values.get(row * each..(row + 1) * each)) {
                     Some(own) => values.extend_from_slice(own),
                     None => values.resize(values.len() + each, f64::NAN),
                 }
             }
-            content.cell_data.push(Data { values, ..data });
+            content.cell_data.push(DataArray { values, ..data });
         }
         // Data that tell regions are kept as groups.
         let groups = &content.groups;
-        let is_group = |data: &Data| groups.iter().any(|group| group.what == common(&data.name));
+        let is_group =
+            |data: &DataArray| groups.iter().any(|group| group.kind == common_kind(&data.name));
         content.cell_data.retain(|data| !is_group(data));
         content
     }
 
-    fn group(&mut self, what: &str, dimension: u8, label: Label) -> u32 {
-        let what = common(what);
-        let (number, is_new) = self.keys.number(&what, dimension, &label);
+    fn group(&mut self, kind: &str, dimension: u8, label: GroupLabel) -> u32 {
+        let kind = common_kind(kind);
+        let (number, is_new) = self.keys.number(&kind, dimension, &label);
         if is_new {
-            self.content.groups.push(ContentGroup { what, dimension, label, name: None });
+            self.content.groups.push(ContentGroup { kind, dimension, label, name: None });
         }
         number as u32
     }
@@ -128,13 +130,13 @@ impl Collector {
         let mut groups = Vec::new();
         let of_columns = self.columns.iter().zip(region).filter_map(|(column, number)| {
             let label = (column.label)(number).filter(|_| dimension >= column.from_dimension)?;
-            Some((column.what.clone(), dimension, label))
+            Some((column.kind.clone(), dimension, label))
         });
         // Each dimension has groups of its own here, even if the format has not.
         let within = self.within.iter();
-        let within = within.map(|(what, label, _)| (what.clone(), dimension, label.clone()));
-        for (what, dimension, label) in of_columns.chain(within).collect::<Vec<_>>() {
-            let group = self.group(&what, dimension, label);
+        let within = within.map(|(kind, label, _)| (kind.clone(), dimension, label.clone()));
+        for (kind, dimension, label) in of_columns.chain(within).collect::<Vec<_>>() {
+            let group = self.group(&kind, dimension, label);
             if !groups.contains(&group) {
                 groups.push(group);
             }
@@ -149,52 +151,52 @@ impl Collector {
     }
 
     fn vertices(&self, nodes: &[u64]) -> Vec<u32> {
-        nodes.iter().filter_map(|&node| self.tags.index(node)).collect()
+        nodes.iter().filter_map(|&node| self.ids.index(node)).collect()
     }
 }
 
-impl Sink for Collector {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for ContentBuilder {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, at: [f64; 2]) {
-        self.tags.push(tag);
-        self.content.labels.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, at: [f64; 2]) {
+        self.ids.push(id);
+        self.content.vertex_ids.push(id);
         self.content.points.push(at);
     }
 
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        let &Element { tag, kind, region, nodes } = element;
+        let &Element { id, kind, region, nodes } = element;
         self.open_end = None;
-        if kind == Kind::Corner {
+        if kind == CellKind::Polygon {
             // The corners of required triangles, which are listed a second time.
-            self.leaves_out("the list of required triangles");
+            self.unsupported("the list of required triangles");
             return Ok(());
         }
         let set = self.set(kind.dimension(), region);
         let vertices = self.vertices(&nodes[..kind.nodes()]);
-        self.content.cells.push(kind, &vertices, set, tag);
+        self.content.cells.push(kind, &vertices, set, id);
         Ok(())
     }
 
     fn polygon(
         &mut self,
         _: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         region: [i64; 2],
         corners: &[u64],
     ) -> Result<(), ReadError> {
         let set = self.set(2, region);
         let vertices = self.vertices(corners);
-        self.content.cells.push(Kind::Corner, &vertices, set, tag);
+        self.content.cells.push(CellKind::Polygon, &vertices, set, id);
         Ok(())
     }
 
     fn polyline(
         &mut self,
         _: &Cursor<'_>,
-        tag: u64,
+        id: u64,
         region: [i64; 2],
         nodes: &[u64],
     ) -> Result<(), ReadError> {
@@ -204,7 +206,7 @@ impl Sink for Collector {
         let before = self.open_end.take().filter(|_| goes_on);
         let all: Vec<u32> = before.into_iter().chain(vertices).collect();
         for ends in all.windows(2) {
-            self.content.cells.push(Kind::Line, ends, set, tag);
+            self.content.cells.push(CellKind::Line, ends, set, id);
         }
         self.open_end = all.last().copied();
         Ok(())
@@ -218,14 +220,14 @@ impl Sink for Collector {
         true
     }
 
-    fn columns(&mut self, columns: Vec<Column>) {
+    fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
         self.columns = columns;
         self.last.clear();
     }
 
-    fn within(&mut self, groups: &[Within<'_>]) {
+    fn group_scopes(&mut self, groups: &[GroupScope<'_>]) {
         let owned =
-            |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+            |group: &GroupScope<'_>| (group.kind.to_owned(), group.label.clone(), group.dimension);
         let within: Vec<_> = groups.iter().map(owned).collect();
         // A line is continued only within the same group. Calls without groups in between do not end it.
         if !within.is_empty() && within != self.within {
@@ -233,9 +235,9 @@ impl Sink for Collector {
                 let set = &self.content.sets[set as usize];
                 set.iter().any(|&group| {
                     let group = &self.content.groups[group as usize];
-                    within
-                        .iter()
-                        .any(|(what, label, _)| common(what) == group.what && *label == group.label)
+                    within.iter().any(|(kind, label, _)| {
+                        common_kind(kind) == group.kind && *label == group.label
+                    })
                 })
             });
             if !same {
@@ -246,19 +248,19 @@ impl Sink for Collector {
         self.last.clear();
     }
 
-    fn node_within(&mut self, node: u32, what: &str, label: &Label) {
+    fn node_group(&mut self, node: u32, kind: &str, label: &GroupLabel) {
         let groups = &mut self.content.vertex_groups;
-        let (number, is_new) = self.vertex_keys.number(what, 0, label);
+        let (number, is_new) = self.vertex_keys.number(kind, 0, label);
         if is_new {
-            let (what, label) = (common(what), label.clone());
-            groups.push((ContentGroup { what, dimension: 0, label, name: None }, Vec::new()));
+            let (kind, label) = (common_kind(kind), label.clone());
+            groups.push((ContentGroup { kind, dimension: 0, label, name: None }, Vec::new()));
         }
         groups[number].1.push(node);
     }
 
-    fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+    fn group_name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         let name = String::from_utf8_lossy(name).into_owned();
-        self.keys.set_name(&common(what), dimension, tag, name);
+        self.keys.set_name(&common_kind(kind), dimension, tag, name);
     }
 
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
@@ -268,11 +270,11 @@ impl Sink for Collector {
             _ => String::from_utf8_lossy(name).into_owned(),
         };
         let components = usize::try_from(components).unwrap_or(usize::MAX);
-        self.announced = Some(Announced { name, components, is_real, is_height: false });
+        self.announced = Some(PendingArray { name, components, is_real, is_height: false });
         true
     }
 
-    fn height_array(&mut self, name: &[u8]) -> bool {
+    fn z_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true);
         // Depths are positive downwards, so they are not third coordinates.
         self.announced.iter_mut().for_each(|array| array.is_height = name == b"z");
@@ -280,23 +282,24 @@ impl Sink for Collector {
     }
 
     fn point_numbers(&mut self, numbers: PointNumbers) {
-        let Some(Announced { name, components, is_real, is_height }) = self.announced.take() else {
+        let Some(PendingArray { name, components, is_real, is_height }) = self.announced.take()
+        else {
             return;
         };
         let PointNumbers { numbers, nodes, .. } = numbers;
         if is_height {
-            self.content.heights = numbers;
+            self.content.z_values = numbers;
             return;
         }
         let values = match nodes {
             None => numbers,
             Some(nodes) => {
-                let index = |&node: &u64| self.tags.index(node).unwrap_or(u32::MAX);
+                let index = |&node: &u64| self.ids.index(node).unwrap_or(u32::MAX);
                 scatter(&numbers, components, self.content.points.len(), nodes.iter().map(index))
             }
         };
         // Each part of a mesh may have its own values.
-        let same = |data: &&mut Data| data.name == name && data.components == components;
+        let same = |data: &&mut DataArray| data.name == name && data.components == components;
         if let Some(data) = self.content.point_data.iter_mut().find(same)
             && data.values.len() == values.len()
             && data.values.iter().zip(&values).all(|(a, b)| a.is_nan() || b.is_nan())
@@ -316,7 +319,7 @@ impl Sink for Collector {
                 format!("{name} {step}")
             }
         };
-        self.content.point_data.push(Data { name, components, is_real, values });
+        self.content.point_data.push(DataArray { name, components, is_real, values });
     }
 
     fn cell_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
@@ -324,7 +327,7 @@ impl Sink for Collector {
     }
 
     fn cell_numbers(&mut self, values: Vec<f64>, tags: Option<Vec<u64>>) {
-        if let Some(Announced { name, components, is_real, .. }) = self.announced.take() {
+        if let Some(PendingArray { name, components, is_real, .. }) = self.announced.take() {
             // Each part of a mesh may have its own values.
             let before = self.by_tag.iter_mut().find(|(data, _)| data.name == name);
             if let (Some((data, Some(known))), Some(tags)) = (before, &tags)
@@ -335,13 +338,13 @@ impl Sink for Collector {
                 known.extend(tags);
                 return;
             }
-            self.by_tag.push((Data { name, components, is_real, values }, tags));
+            self.by_tag.push((DataArray { name, components, is_real, values }, tags));
         }
     }
 
-    fn leaves_out(&mut self, what: &str) {
-        if !self.content.left_out.iter().any(|known| known == what) {
-            self.content.left_out.push(what.to_owned());
+    fn unsupported(&mut self, what: &str) {
+        if !self.content.unsupported.iter().any(|known| known == what) {
+            self.content.unsupported.push(what.to_owned());
         }
     }
 }

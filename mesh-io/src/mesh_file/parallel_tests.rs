@@ -2,9 +2,9 @@
 
 use crate::detect;
 use crate::disk::source::{Companion, Source};
-use crate::edit::numbers::Places;
-use crate::visit::assemble::parse_by;
-use crate::visit::parsed::Parsed;
+use crate::edit::numbers::Offsets;
+use crate::visit::mesh_builder::parse_by;
+use crate::visit::parsed_mesh::ParsedMesh;
 
 /// Vertices along a side, so that all lists are long enough to be read on all threads.
 const SIDE: usize = 135;
@@ -257,9 +257,10 @@ fn read(name: &str, bytes: &[u8], ahead: bool) -> Result<impl PartialEq, String>
     }
     let reader = detect::reader(&source).map_err(|e| e.to_string())?;
     let parsed = parse_by(reader, &source, ahead).map_err(|e| e.to_string())?;
-    let Parsed { points, triangles, constraints, x_at, regions, remarks, .. } = parsed;
+    let ParsedMesh { points, triangles, constraints, x_offsets: x_at, regions, remarks, .. } =
+        parsed;
     let places: Vec<usize> = (0..points.len()).map(|v| x_at.at(v)).collect();
-    let is_regular = matches!(x_at, Places::Regular { .. });
+    let is_regular = matches!(x_at, Offsets::Regular { .. });
     Ok(((points, triangles, constraints), places, regions, remarks, is_regular))
 }
 

@@ -1,19 +1,19 @@
 //! Third coordinates and depths, which are data of points.
 
-use crate::binary::number_field::Field;
-use crate::edit::numbers::{Form, Places};
+use crate::binary::number_field::NumberField;
+use crate::edit::numbers::{NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
-use crate::text::cursor_numbers::NO_HEIGHT;
+use crate::text::cursor_numbers::NO_Z;
 use crate::visit::items::PointNumbers;
-use crate::visit::records::LONG;
-use crate::visit::sink::Sink;
-use crate::visit::storage::{Home, Stored};
+use crate::visit::records::MIN_PARALLEL_RECORDS;
+use crate::visit::storage::{ArrayLocation, ByteSpace};
+use crate::visit::visitor::MeshVisitor;
 
-/// Collects the third coordinates of points as they are read: whether they differ, and all numbers if the sink asks for
+/// Notes whether the third coordinates of the nodes differ, and collects the coordinates if the visitor asks for
 /// data.
-pub(crate) struct Heights {
+pub(crate) struct ZValues {
     first: Option<f64>,
     differ: bool,
     collected: Option<(Vec<usize>, Vec<f64>)>,
@@ -21,31 +21,31 @@ pub(crate) struct Heights {
     is_partial: bool,
 }
 
-impl Heights {
-    pub(crate) fn new(sink: &dyn Sink) -> Heights {
-        let collected = sink.asks_for_data().then(Default::default);
-        Heights { first: None, differ: false, collected, is_partial: false }
+impl ZValues {
+    pub(crate) fn new(visitor: &dyn MeshVisitor) -> ZValues {
+        let collected = visitor.asks_for_data().then(Default::default);
+        ZValues { first: None, differ: false, collected, is_partial: false }
     }
 
     /// Takes the third coordinate of the next point, with its offset in the file.
     #[inline]
-    pub(crate) fn see(&mut self, (at, z): (usize, f64)) {
-        self.is_partial |= at == NO_HEIGHT.0;
+    pub(crate) fn push(&mut self, (at, z): (usize, f64)) {
+        self.is_partial |= at == NO_Z.0;
         match self.first {
             None => self.first = Some(z),
             Some(first) => self.differ |= z != first,
         }
-        if let Some((places, numbers)) = &mut self.collected {
-            places.push(at);
+        if let Some((offsets, numbers)) = &mut self.collected {
+            offsets.push(at);
             numbers.push(z);
         }
     }
 
     /// Takes the third coordinates of all records of a binary list. `at` is the offset of the first.
-    pub(crate) fn see_all(&mut self, z: Field<'_>, count: usize, at: usize) {
-        if self.collected.is_some() || count < LONG {
+    pub(crate) fn push_records(&mut self, z: NumberField<'_>, count: usize, at: usize) {
+        if self.collected.is_some() || count < MIN_PARALLEL_RECORDS {
             z.real(0..count).enumerate().for_each(|(index, z_of)| {
-                self.see((at + index * z.stride(), z_of));
+                self.push((at + index * z.stride(), z_of));
             });
         } else if let Some(own) = z.real(0..1).next() {
             let first = *self.first.get_or_insert(own);
@@ -53,36 +53,36 @@ impl Heights {
         }
     }
 
-    /// Hands the numbers to the sink under this name, if they differ or if the sink asks for data.
-    pub(crate) fn send(self, name: &str, form: Form, sink: &mut dyn Sink) {
-        self.send_from(name, form, Home::File, 0, sink);
+    /// Hands the numbers to the visitor under this name, if they differ or if the visitor asks for data.
+    pub(crate) fn send(self, name: &str, encoding: NumberEncoding, visitor: &mut dyn MeshVisitor) {
+        self.send_from(name, encoding, ByteSpace::File, 0, visitor);
     }
 
     /// The same, if they stand elsewhere than in the file itself, or in this one of the files of the mesh.
     pub(crate) fn send_from(
         self,
         name: &str,
-        form: Form,
-        home: Home,
-        part: usize,
-        sink: &mut dyn Sink,
+        encoding: NumberEncoding,
+        home: ByteSpace,
+        file_index: usize,
+        visitor: &mut dyn MeshVisitor,
     ) {
         let is_any = self.collected.is_some() && self.first.is_some() && !self.is_partial;
         let is_told = self.differ || is_any;
         if is_told
-            && sink.height_array(name.as_bytes())
-            && let Some((places, mut numbers)) = self.collected
+            && visitor.z_array(name.as_bytes())
+            && let Some((offsets, mut numbers)) = self.collected
         {
-            let precision = form.precision();
+            let precision = encoding.precision();
             numbers.iter_mut().for_each(|z| *z = precision.rounded(*z));
             // There is no place for those that a file does not have.
-            let stored = (!self.is_partial).then_some(Stored {
-                places: Places::List(places),
-                form,
-                home,
-                part,
+            let stored = (!self.is_partial).then_some(ArrayLocation {
+                offsets: Offsets::List(offsets),
+                encoding,
+                space: home,
+                file_index,
             });
-            sink.point_numbers(PointNumbers { numbers, nodes: None, stored });
+            visitor.point_numbers(PointNumbers { numbers, nodes: None, location: stored });
         }
     }
 }
@@ -90,7 +90,7 @@ impl Heights {
 /// Collects numbers of a text with their offsets.
 #[derive(Default)]
 pub(crate) struct TextNumbers {
-    places: Vec<usize>,
+    offsets: Vec<usize>,
     numbers: Vec<f64>,
 }
 
@@ -99,7 +99,7 @@ impl TextNumbers {
     pub(crate) fn read(&mut self, cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
         let at = cursor.at();
         let number = cursor.real("a number of a point")?;
-        self.places.push(at);
+        self.offsets.push(at);
         self.numbers.push(number);
         Ok(())
     }
@@ -121,9 +121,10 @@ impl TextNumbers {
 
     /// Returns all numbers. `nodes` are the nodes they belong to; `None` if they belong to all nodes in order.
     pub(crate) fn finish(self, precision: Precision, nodes: Option<Vec<u64>>) -> PointNumbers {
-        let Self { places, mut numbers } = self;
+        let Self { offsets, mut numbers } = self;
         numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));
-        let stored = Stored::in_place(Places::List(places), Form::Text(precision));
-        PointNumbers { numbers, nodes, stored }
+        let stored =
+            ArrayLocation::in_place(Offsets::List(offsets), NumberEncoding::Text(precision));
+        PointNumbers { numbers, nodes, location: stored }
     }
 }

@@ -1,49 +1,50 @@
-//! Walks again through a file for what the reading of the mesh leaves out: groups, and the labels of vertices.
+//! Visitors for a second reading of a file: for its groups, and for the ids of its vertices.
 
-use crate::content::label::Label;
-use crate::content::regions::Numbering;
-use crate::content::tags::TagIndex;
+use crate::content::group_label::GroupLabel;
+use crate::content::id_index::IdIndexBuilder;
+use crate::content::regions::Interner;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::group_table::GroupTable;
-use crate::visit::items::{Column, Element, Kind, Within};
-use crate::visit::reader::Reader;
-use crate::visit::sink::Sink;
+use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::visitor::MeshVisitor;
 
 /// Gathers the groups of a file.
-pub(crate) fn groups(reader: &Reader, source: &Source) -> Result<GroupTable, ReadError> {
-    let mut gatherer = Gatherer::default();
-    (reader.walk)(source, &mut gatherer)?;
+pub(crate) fn groups(reader: &ReaderFunctions, source: &Source) -> Result<GroupTable, ReadError> {
+    let mut gatherer = GroupVisitor::default();
+    (reader.visit)(source, &mut gatherer)?;
     Ok(gatherer.table)
 }
 
 /// Returns the file's number or tag of each vertex.
-pub(crate) fn labels(reader: &Reader, source: &Source) -> Result<Vec<u64>, ReadError> {
-    let mut labels = Labels::default();
-    (reader.walk)(source, &mut labels)?;
-    Ok(labels.tags)
+pub(crate) fn vertex_ids(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u64>, ReadError> {
+    let mut labels = VertexIdVisitor::default();
+    (reader.visit)(source, &mut labels)?;
+    Ok(labels.ids)
 }
 
+/// Visitor that collects the groups of a file in a [`GroupTable`].
 #[derive(Default)]
-struct Gatherer {
+struct GroupVisitor {
     table: GroupTable,
-    tags: TagIndex,
+    ids: IdIndexBuilder,
     triangles: u32,
-    columns: Vec<Column>,
+    columns: Vec<RegionAttribute>,
     /// For each column, the numbers that were met, by dimension.
-    met: Vec<Numbering<(u8, i64)>>,
+    met: Vec<Interner<(u8, i64)>>,
     /// For each column, the group of each number that was met, if it has one.
     groups: Vec<Vec<Option<usize>>>,
     /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
-    within: Vec<(String, Label, Option<u8>)>,
+    within: Vec<(String, GroupLabel, Option<u8>)>,
     /// The groups of `within` for elements of each dimension, once such an element was met.
     within_groups: [Option<Vec<usize>>; 3],
     /// The groups of the current element.
     of_element: Vec<usize>,
 }
 
-impl Gatherer {
+impl GroupVisitor {
     /// Finds the groups of an element and puts them into `of_element`.
     fn find(&mut self, dimension: u8, region: [i64; 2]) {
         let Self { table, columns, met, groups, within, within_groups, of_element, .. } = self;
@@ -53,17 +54,17 @@ impl Gatherer {
             if dimension < column.from_dimension {
                 continue;
             }
-            let name = met.number((dimension, number)) as usize;
+            let name = met.intern((dimension, number)) as usize;
             if name == groups.len() {
                 let label = (column.label)(number);
-                let group = label.map(|label| table.number(&column.what, dimension, &label));
+                let group = label.map(|label| table.number(&column.kind, dimension, &label));
                 groups.push(group);
             }
             of_element.extend(groups[name]);
         }
         let within = within_groups[usize::from(dimension)].get_or_insert_with(|| {
-            let number = |(what, label, own): &(String, Label, Option<u8>)| {
-                table.number(what, own.unwrap_or(dimension), label)
+            let number = |(kind, label, own): &(String, GroupLabel, Option<u8>)| {
+                table.number(kind, own.unwrap_or(dimension), label)
             };
             within.iter().map(number).collect()
         });
@@ -74,25 +75,25 @@ impl Gatherer {
     }
 }
 
-impl Sink for Gatherer {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for GroupVisitor {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { kind, region, nodes, .. } = element;
         self.find(kind.dimension(), region);
-        if kind == Kind::Triangle {
+        if kind == CellKind::Triangle {
             for &group in &self.of_element {
                 self.table.add_triangle(group, self.triangles);
             }
             self.triangles += 1;
         } else {
-            let index = |&node: &u64| self.tags.index(node);
+            let index = |&node: &u64| self.ids.index(node);
             let vertices: Vec<u32> = nodes[..kind.nodes()].iter().filter_map(index).collect();
             for &group in &self.of_element {
                 self.table.add(group, kind, &vertices);
@@ -105,41 +106,42 @@ impl Sink for Gatherer {
         true
     }
 
-    fn columns(&mut self, columns: Vec<Column>) {
-        self.met = columns.iter().map(|_| Numbering::default()).collect();
+    fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
+        self.met = columns.iter().map(|_| Interner::default()).collect();
         self.groups = columns.iter().map(|_| Vec::new()).collect();
         self.columns = columns;
     }
 
-    fn within(&mut self, groups: &[Within<'_>]) {
+    fn group_scopes(&mut self, groups: &[GroupScope<'_>]) {
         let owned =
-            |group: &Within<'_>| (group.what.to_owned(), group.label.clone(), group.dimension);
+            |group: &GroupScope<'_>| (group.kind.to_owned(), group.label.clone(), group.dimension);
         self.within = groups.iter().map(owned).collect();
         self.within_groups = [None, None, None];
     }
 
-    fn node_within(&mut self, node: u32, what: &str, label: &Label) {
-        let group = self.table.number(what, 0, label);
+    fn node_group(&mut self, node: u32, kind: &str, label: &GroupLabel) {
+        let group = self.table.number(kind, 0, label);
         self.table.add_vertex(group, node);
     }
 
-    fn name(&mut self, what: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
-        self.table.name(what, dimension, tag, name);
+    fn group_name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
+        self.table.name(kind, dimension, tag, name);
     }
 }
 
+/// Visitor that collects the ids of the vertices.
 #[derive(Default)]
-struct Labels {
-    tags: Vec<u64>,
+struct VertexIdVisitor {
+    ids: Vec<u64>,
 }
 
-impl Sink for Labels {
-    fn takes_ahead(&self) -> bool {
+impl MeshVisitor for VertexIdVisitor {
+    fn allows_parallel(&self) -> bool {
         true
     }
 
-    fn node(&mut self, _: &Cursor<'_>, tag: u64, _: u64, _: usize, _: [f64; 2]) {
-        self.tags.push(tag);
+    fn node(&mut self, _: &Cursor<'_>, id: u64, _: u64, _: usize, _: [f64; 2]) {
+        self.ids.push(id);
     }
 
     fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {

@@ -1,25 +1,25 @@
 //! One group and number for each element, for formats that hold no more.
 
 use super::content::{Content, ContentGroup};
-use crate::content::label::Label;
+use crate::content::group_label::GroupLabel;
 use std::collections::{HashMap, HashSet};
 
-/// The most important group of each element, and a number for each group.
-pub(crate) struct Tags {
+/// The number that a writer gives to each group.
+pub(crate) struct GroupNumbers {
     /// For each dimension, the most important group of each cell.
     columns: [Vec<Option<u32>>; 3],
     /// The number of each group. Only a group that has number 0 itself gets it.
     numbers: Vec<i64>,
 }
 
-impl Tags {
+impl GroupNumbers {
     /// Chooses the groups and numbers. `negative` says whether numbers may be negative.
-    pub(crate) fn new(content: &Content, negative: bool) -> Tags {
-        let column = |dimension| match content.whats(dimension).first() {
-            Some(what) => content.column(what),
+    pub(crate) fn new(content: &Content, negative: bool) -> GroupNumbers {
+        let column = |dimension| match content.group_kinds(dimension).first() {
+            Some(kind) => content.column(kind),
             None => Vec::new(),
         };
-        Tags { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
+        GroupNumbers { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
     }
 
     /// Returns the most important group of a cell.
@@ -29,7 +29,7 @@ impl Tags {
     }
 
     /// Returns the number of the most important group of a cell, or 0.
-    pub(crate) fn tag(&self, content: &Content, cell: usize) -> i64 {
+    pub(crate) fn number_of_cell(&self, content: &Content, cell: usize) -> i64 {
         self.group(content, cell).map_or(0, |group| self.numbers[group as usize])
     }
 
@@ -45,18 +45,18 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     let is_fit = |tag: i64| i32::try_from(tag).is_ok_and(|tag| negative || tag >= 0);
     let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();
     for group in groups {
-        if let Label::Tag(tag) = group.label {
-            taken.insert((&group.what, group.dimension, tag));
+        if let GroupLabel::Tag(tag) = group.label {
+            taken.insert((&group.kind, group.dimension, tag));
         }
     }
     let mut next: HashMap<(&str, u8), i64> = HashMap::new();
     let number = |group: &'_ ContentGroup| -> i64 {
         match group.label {
-            Label::Tag(tag) if is_fit(tag) => tag,
+            GroupLabel::Tag(tag) if is_fit(tag) => tag,
             _ => {
-                let (what, dimension) = (groups_what(groups, group), group.dimension);
-                let next = next.entry((what, dimension)).or_insert(1);
-                while taken.contains(&(what, dimension, *next)) {
+                let (kind, dimension) = (shared_kind(groups, group), group.dimension);
+                let next = next.entry((kind, dimension)).or_insert(1);
+                while taken.contains(&(kind, dimension, *next)) {
                     *next += 1;
                 }
                 *next += 1;
@@ -67,15 +67,15 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     groups.iter().map(number).collect()
 }
 
-fn groups_what<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
-    groups.iter().find(|own| own.what == group.what).map_or("", |own| &own.what)
+fn shared_kind<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
+    groups.iter().find(|own| own.kind == group.kind).map_or("", |own| &own.kind)
 }
 
-/// Whether an element's group of the kind `main` determines its group of the kind `other`. Then only numbers are lost
-/// if `other` is not written.
-pub(crate) fn decides(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
+/// Returns whether elements of the dimension with equal `main` groups have equal `other` groups, and no `other` group
+/// has a name. Leaving out `other` then loses only its numbers.
+pub(crate) fn determines(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
     let named = |group: &ContentGroup| group.dimension == dimension && group.name().is_some();
-    if content.groups.iter().any(|group| group.what == other && named(group)) {
+    if content.groups.iter().any(|group| group.kind == other && named(group)) {
         return false;
     }
     let (main, other) = (content.column(main), content.column(other));

@@ -1,0 +1,311 @@
+//! What each format holds, and what of a mesh is lost in it.
+
+use super::content::{Content, ContentGroup, DataArray};
+use super::group_numbers::{GroupNumbers, determines};
+use super::name_rules::NameRules;
+use super::sides;
+use crate::content::group_label::GroupLabel;
+use crate::precision::Precision;
+use crate::visit::items::CellKind;
+
+/// The parts of a mesh that a format can store.
+#[derive(Clone, Copy)]
+pub(crate) struct Capabilities {
+    pub(crate) points: ElementSupport,
+    pub(crate) lines: ElementSupport,
+    pub(crate) quadrilaterals: bool,
+    pub(crate) polygons: bool,
+    /// Whether vertices have third coordinates.
+    pub(crate) z: bool,
+    /// Whether vertices keep their ids, whatever these are.
+    pub(crate) keeps_vertex_ids: bool,
+    /// Which groups an element can belong to.
+    pub(crate) groups: GroupSupport,
+    /// Whether groups of points, lines and surfaces have names.
+    pub(crate) names: [bool; 3],
+    /// The rules for names of groups and data.
+    pub(crate) name_rules: NameRules,
+    /// A kind of group whose names belong to the format itself, such as the lists of Medit; empty if the format has
+    /// no such kind.
+    pub(crate) builtin_group_kind: &'static str,
+    /// Whether the numbers of groups may be negative.
+    pub(crate) allows_negative_numbers: bool,
+    /// Whether each vertex has the number of a group.
+    pub(crate) vertex_groups: bool,
+    /// Whether vertices are in sets with names instead.
+    pub(crate) vertex_sets: bool,
+    /// The precision of coordinates.
+    pub(crate) precision: Precision,
+    pub(crate) point_data: DataSupport,
+    pub(crate) cell_data: DataSupport,
+}
+
+/// The elements of a dimension that a format can store.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum ElementSupport {
+    None,
+    All,
+    /// Only elements that belong to a group.
+    OfGroups,
+}
+
+/// The groups of elements that a format can store.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum GroupSupport {
+    None,
+    /// One group for each element. All elements of a dimension have the same kind of group.
+    One,
+    /// One group for each line, and none for other elements.
+    OneOfLines,
+    /// A physical group, or the most important kind of group, and an entity of the model.
+    PhysicalAndEntity,
+    /// One group of each kind.
+    Each,
+    /// A block of elements of one kind and group; for lines also a side set.
+    Blocks,
+}
+
+/// The data arrays that a format can store.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum DataSupport {
+    None,
+    All,
+    /// Data of one number.
+    Scalars,
+    /// Data of one number, without names.
+    Unnamed,
+    /// Only data of one number with this name.
+    Only(&'static str),
+}
+
+impl Capabilities {
+    /// A format that stores nothing but triangles.
+    pub(crate) const TRIANGLES: Capabilities = Capabilities {
+        points: ElementSupport::None,
+        lines: ElementSupport::None,
+        quadrilaterals: false,
+        polygons: false,
+        z: false,
+        keeps_vertex_ids: false,
+        groups: GroupSupport::None,
+        names: [false; 3],
+        name_rules: NameRules::Any,
+        builtin_group_kind: "",
+        allows_negative_numbers: true,
+        vertex_groups: false,
+        vertex_sets: false,
+        precision: Precision::Double,
+        point_data: DataSupport::None,
+        cell_data: DataSupport::None,
+    };
+
+    /// Lists the parts of a mesh that the format cannot store, one line each.
+    pub(crate) fn losses(&self, content: &Content) -> Vec<String> {
+        let mut lost = Vec::new();
+        self.element_losses(content, &mut lost);
+        if !self.z && !content.z_values.is_empty() {
+            lost.push("third coordinates".into());
+        }
+        let starts = content.first_vertex_id().is_some_and(|first| first <= 1);
+        let mut numbers = content.points.as_flattened().iter().chain(&content.z_values);
+        if numbers.any(|&x| self.precision.rounded(x).to_bits() != x.to_bits()) {
+            lost.push("digits of coordinates, of which 20 characters are written".into());
+        }
+        if !self.keeps_vertex_ids && !starts {
+            lost.push("the vertices' own numbers, which are not consecutive".into());
+        }
+        self.group_losses(content, &mut lost);
+        if self.groups == GroupSupport::Blocks {
+            sides::lost_in_blocks(content, &mut lost);
+        } else {
+            let names: Vec<_> = content.vertex_groups.iter().map(|(group, _)| group).collect();
+            let names: Vec<_> = names.into_iter().filter(|group| group.name().is_some()).collect();
+            if self.vertex_groups && !names.is_empty() {
+                let names = group_names(names.into_iter());
+                lost.push(format!("names of groups of vertices, which become numbers: {names}"));
+            }
+        }
+        let is_negative = |group: &&ContentGroup| matches!(group.label, GroupLabel::Tag(..0));
+        if !self.allows_negative_numbers && content.groups.iter().any(|group| is_negative(&group)) {
+            let groups = group_names(content.groups.iter().filter(is_negative));
+            lost.push(format!("negative numbers of groups, which become others: {groups}"));
+        }
+        if !self.vertex_groups && !self.vertex_sets && !content.vertex_groups.is_empty() {
+            let groups = content.vertex_groups.iter().map(|(group, _)| group);
+            lost.push(format!("groups of vertices: {}", group_names(groups)));
+        }
+        self.point_data.losses("data of vertices", &content.point_data, &mut lost);
+        self.cell_data.losses("data of elements", &content.cell_data, &mut lost);
+        lost.extend(content.unsupported.iter().cloned());
+        lost
+    }
+
+    /// Returns whether the format can store a cell.
+    pub(crate) fn supports_cell(
+        &self,
+        content: &Content,
+        tags: &GroupNumbers,
+        cell: usize,
+    ) -> bool {
+        let of = |elements: ElementSupport| match elements {
+            ElementSupport::None => false,
+            ElementSupport::All => true,
+            ElementSupport::OfGroups => tags.group(content, cell).is_some(),
+        };
+        match content.cells.kinds[cell] {
+            CellKind::Point => of(self.points),
+            CellKind::Line => of(self.lines),
+            CellKind::Triangle => true,
+            CellKind::Quadrilateral => self.quadrilaterals,
+            CellKind::Polygon => self.polygons,
+        }
+    }
+
+    fn element_losses(&self, content: &Content, lost: &mut Vec<String>) {
+        let tags = GroupNumbers::new(content, self.allows_negative_numbers);
+        for (kind, what) in [
+            (CellKind::Point, "point"),
+            (CellKind::Line, "line"),
+            (CellKind::Quadrilateral, "quadrilateral"),
+            (CellKind::Polygon, "polygon of more than four corners"),
+        ] {
+            let dropped = |&cell: &usize| !self.supports_cell(content, &tags, cell);
+            let count = content.cells.all(kind).filter(dropped).count();
+            let elements = if kind == CellKind::Point { self.points } else { self.lines };
+            let of_none = match kind {
+                CellKind::Point | CellKind::Line if elements == ElementSupport::OfGroups => {
+                    " of no group"
+                }
+                _ => "",
+            };
+            match count {
+                0 => {}
+                1 => lost.push(format!("1 {what}{of_none}")),
+                count => {
+                    let what = what.replacen("point", "points", 1).replacen("line", "lines", 1);
+                    let what = what.replacen("lateral", "laterals", 1);
+                    let what = what.replacen("polygon", "polygons", 1);
+                    lost.push(format!("{count} {what}{of_none}"));
+                }
+            }
+        }
+    }
+
+    fn group_losses(&self, content: &Content, lost: &mut Vec<String>) {
+        let several = content.sets.iter().any(|set| {
+            let kind = |group: &u32| &content.groups[*group as usize].kind;
+            set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| kind(b) == kind(group)))
+        });
+        if several && self.groups != GroupSupport::None {
+            lost.push(
+                "that elements are of several groups of a kind: the first one is kept".into(),
+            );
+        }
+        for (dimension, of) in [(0, "points"), (1, "lines"), (2, "surfaces")] {
+            let kinds = content.group_kinds(dimension);
+            let Some(&main) = kinds.first() else { continue };
+            let dropped = |kind: &&str| match self.groups {
+                GroupSupport::None => true,
+                GroupSupport::One => *kind != main && !determines(content, dimension, main, kind),
+                GroupSupport::OneOfLines => {
+                    dimension != 1 || (*kind != main && !determines(content, 1, main, kind))
+                }
+                GroupSupport::PhysicalAndEntity => {
+                    *kind != main
+                        && *kind != "entity"
+                        && !determines(content, dimension, main, kind)
+                }
+                GroupSupport::Each => false,
+                GroupSupport::Blocks => {
+                    *kind != main && *kind != "block" && !determines(content, dimension, main, kind)
+                }
+            };
+            let one = |kind: &str| {
+                let groups = content.groups.iter();
+                groups.filter(|group| group.dimension == dimension && group.kind == kind).count()
+                    == 1
+            };
+            for kind in kinds.iter().copied().filter(dropped) {
+                let groups =
+                    || content.groups.iter().filter(|g| g.dimension == dimension && g.kind == kind);
+                // If there is one group without a name, only its number is lost.
+                let keeps_none = match self.groups {
+                    GroupSupport::None => true,
+                    GroupSupport::OneOfLines => dimension != 1,
+                    _ => false,
+                };
+                if keeps_none && one(kind) && groups().all(|group| group.name().is_none()) {
+                    continue;
+                }
+                lost.push(format!("groups of {of} ({kind}): {}", group_names(groups())));
+            }
+            let kept = kinds.iter().copied().filter(|kind| !dropped(kind));
+            let kept: Vec<&str> = kept.collect();
+            let named = |group: &&ContentGroup| {
+                let is_kept = kept.contains(&group.kind.as_str());
+                let is_told = is_kept && group.kind != self.builtin_group_kind;
+                group.dimension == dimension && is_told && group.name().is_some()
+            };
+            let named: Vec<&ContentGroup> = content.groups.iter().filter(named).collect();
+            if !self.names[usize::from(dimension)] && !named.is_empty() {
+                let names = group_names(named.into_iter());
+                lost.push(format!("names of groups of {of}, which become numbers: {names}"));
+            }
+        }
+    }
+}
+
+impl DataSupport {
+    /// Returns whether the format can store a data array.
+    pub(crate) fn supports(self, data: &DataArray) -> bool {
+        match self {
+            DataSupport::None => false,
+            DataSupport::All => true,
+            DataSupport::Scalars | DataSupport::Unnamed => data.components == 1,
+            DataSupport::Only(name) => data.name == name && data.components == 1,
+        }
+    }
+
+    fn losses(self, what: &str, data: &[DataArray], lost: &mut Vec<String>) {
+        let names = |kept: bool| -> Vec<&str> {
+            let of = data.iter().filter(|data| self.supports(data) == kept);
+            let mut names: Vec<&str> = of.map(|data| data.name.as_str()).collect();
+            names.dedup();
+            names
+        };
+        let dropped = names(false);
+        if !dropped.is_empty() {
+            lost.push(format!("{what}: {}", join_first(&dropped)));
+        }
+        let mut kept = names(true);
+        // Names such as `attribute1` are the format's own.
+        kept.retain(|name| !name.starts_with("attribute"));
+        if self == DataSupport::Unnamed && !kept.is_empty() {
+            lost.push(format!("names of {what}: {}", join_first(&kept)));
+        }
+    }
+}
+
+/// Lists the names or numbers of the first groups, and counts the rest.
+fn group_names<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
+    let names: Vec<String> = groups
+        .map(|group| match (group.name(), &group.label) {
+            (Some(name), _) => name.to_owned(),
+            (None, label) => match label {
+                GroupLabel::Tag(tag) => tag.to_string(),
+                GroupLabel::Name(name) => name.clone(),
+            },
+        })
+        .collect();
+    join_first(&names.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// Joins the first 8 names by commas, and counts the rest.
+pub(crate) fn join_first(names: &[&str]) -> String {
+    const MAX_NAMES: usize = 8;
+    let told = names[..names.len().min(MAX_NAMES)].join(", ");
+    match names.len().saturating_sub(MAX_NAMES) {
+        0 => told,
+        more => format!("{told} and {more} more"),
+    }
+}

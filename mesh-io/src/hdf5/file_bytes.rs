@@ -1,0 +1,141 @@
+//! The bytes of a file, and how much of them was read.
+
+use super::bytes::{ByteReader, FieldWidths, Hdf5Error};
+use super::checksum::Checksum;
+use std::cell::{Cell, RefCell};
+use std::ops::Range;
+
+/// What a file starts with.
+pub(crate) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1A\n";
+
+/// The bytes of an HDF5 file, with the contents of its superblock.
+pub(super) struct FileBytes<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) widths: FieldWidths,
+    pub(super) end: EndAddress,
+    /// Byte ranges read so far, each with the offset of the object that owns the range. Ranges of two owners must not
+    /// overlap, or an edit of one would damage the other.
+    claimed: RefCell<Vec<(Range<usize>, usize)>>,
+    /// How many bytes of metadata may still be read. Where parts of a file lead to each other in circles, they would be read
+    /// forever.
+    left: Cell<usize>,
+}
+
+/// Limit on metadata reads after the object tree is built, in multiples of the file length. The limit stops files
+/// whose structures refer to each other in a circle.
+const MAX_REREADS: usize = 64;
+
+/// The end address in the superblock, which is the length of the file.
+#[derive(Clone, Debug)]
+pub(super) struct EndAddress {
+    pub(super) range: Range<usize>,
+    pub(super) sum: Option<Checksum>,
+}
+
+impl<'a> FileBytes<'a> {
+    /// Reads the superblock. Returns where the header of the root group stands, too.
+    pub(super) fn new(bytes: &'a [u8]) -> Result<(FileBytes<'a>, usize), Hdf5Error> {
+        let what = "the superblock of the HDF5 file";
+        let none = FieldWidths { address: 8, length: 8 };
+        let mut own = ByteReader::new(bytes, 0, none, what);
+        own.expect(SIGNATURE)?;
+        let version = own.byte()?;
+        own.skip(match version {
+            0 | 1 => 4,
+            2 | 3 => 0,
+            _ => return Err(own.unread(format!("HDF5 with a superblock of version {version}"))),
+        })?;
+        let widths = FieldWidths { address: own.byte()?.into(), length: own.byte()?.into() };
+        if ![widths.address, widths.length].iter().all(|width| [2, 4, 8].contains(width)) {
+            return Err(own.damaged());
+        }
+        // Those of the trees, and flags.
+        own.skip(match version {
+            0 => 1 + 4 + 4,
+            1 => 1 + 4 + 4 + 4,
+            _ => 1,
+        })?;
+        let mut own = ByteReader::new(bytes, own.at(), widths, what);
+        if own.address()? != Some(0) {
+            return Err(own.unread("HDF5 that does not start with the file"));
+        }
+        own.skip(widths.address)?;
+        let place = own.at()..own.at() + widths.address;
+        own.skip(widths.address)?;
+        let sum;
+        let root;
+        if version < 2 {
+            // What the driver needs, and the name of the root group.
+            own.skip(2 * widths.address)?;
+            (root, sum) = (own.address()?, None);
+        } else {
+            root = own.address()?;
+            sum = Some(Checksum::take(0, &mut own)?);
+        }
+        let root = root.ok_or_else(|| own.damaged())?;
+        let taken = RefCell::new(vec![(0..own.at(), 0)]);
+        let left = Cell::new(bytes.len());
+        Ok((
+            FileBytes {
+                bytes,
+                widths,
+                end: EndAddress { range: place, sum },
+                claimed: taken,
+                left,
+            },
+            root,
+        ))
+    }
+
+    /// Stands at a place of the file.
+    pub(super) fn at(&self, at: usize, what: &'static str) -> ByteReader<'a> {
+        ByteReader::new(self.bytes, at, self.widths, what)
+    }
+
+    /// Notes that a range of metadata was read.
+    ///
+    /// # Errors
+    /// If the range ends after the file, or if too much metadata was read.
+    pub(super) fn claim(&self, range: Range<usize>, of: &ByteReader<'_>) -> Result<(), Hdf5Error> {
+        if range.end > self.bytes.len() {
+            return Err(of.damaged());
+        }
+        self.count_metadata(range.len(), of)?;
+        self.claimed.borrow_mut().push((range.clone(), range.start));
+        Ok(())
+    }
+
+    /// Counts `bytes` bytes of metadata as read.
+    ///
+    /// # Errors
+    /// If more metadata was read than the limit allows.
+    pub(super) fn count_metadata(
+        &self,
+        bytes: usize,
+        of: &ByteReader<'_>,
+    ) -> Result<(), Hdf5Error> {
+        let left = self.left.get().checked_sub(bytes);
+        self.left.set(left.ok_or_else(|| of.damaged())?);
+        Ok(())
+    }
+
+    /// Notes that the data of the object at offset `object` were read.
+    pub(super) fn claim_data(&self, ranges: impl Iterator<Item = Range<usize>>, object: usize) {
+        self.claimed.borrow_mut().extend(ranges.map(|range| (range, object)));
+    }
+
+    /// Allows metadata to be read again, up to [`MAX_REREADS`] times, once the object tree is built.
+    pub(super) fn allow_rereads(&self) {
+        self.left.set(self.bytes.len().saturating_mul(MAX_REREADS));
+    }
+
+    /// Returns the start of a range that overlaps the range sorted before it; `None` if no ranges overlap.
+    pub(super) fn first_overlap(&self) -> Option<usize> {
+        let mut taken = self.claimed.borrow_mut();
+        taken.retain(|(range, _)| !range.is_empty());
+        taken.sort_by_key(|(range, owner)| (range.start, range.end, *owner));
+        taken.dedup();
+        let shared = taken.windows(2).find(|pair| pair[0].0.end > pair[1].0.start);
+        shared.map(|pair| pair[1].0.start)
+    }
+}
