@@ -1,5 +1,7 @@
 //! A patch as a list of weighted corner triangles, and its objective by a metric.
 
+use std::ops::Mul;
+
 use crate::metric::{Corner, Dual, EdgeSlopes, Formulas, Real, Smoothing};
 use crate::patch::acceptance::{is_positive, is_within};
 use crate::patch::direction::{Direction, newton_direction};
@@ -21,10 +23,11 @@ pub(crate) trait Corners<T: Numbers> {
     /// Returns the slopes of the edges of a corner.
     fn slopes(&self, i: usize) -> Self::Slopes;
 
-    /// Returns the factor of a corner in sums over the patch: 1 for a triangle, 1/4 for a corner of a quadrilateral.
+    /// Returns a term of a corner times the weight of the corner: 1 for a triangle, 1/4 for a corner of a
+    /// quadrilateral. A factor of 1 is left out of the code, which is compiled for each metric.
     #[inline(always)]
-    fn weight(&self, _: usize) -> f64 {
-        1.0
+    fn weighted<V: Mul<f64, Output = V>>(&self, _: usize, term: V) -> V {
+        term
     }
 
     /// Returns the sum of the weights.
@@ -90,7 +93,7 @@ impl<T: Numbers, P: Corners<T>, F: Formulas> Objective<T> for MetricObjective<'_
         for i in 0..self.patch.count() {
             let corner = self.patch.corner(i, at);
             let shown = self.formulas.expansion(&corner, self.patch.slopes(i), self.smoothing);
-            sum = sum + self.patch.pull_back(i, shown) * self.patch.weight(i);
+            sum = sum + self.patch.weighted(i, self.patch.pull_back(i, shown));
         }
         sum
     }
@@ -106,7 +109,7 @@ impl<T: Numbers, P: Corners<T>, F: Formulas> Objective<T> for MetricObjective<'_
             if is_guarded {
                 feasible = feasible & is_within(self.formulas, &corner, max_imr);
             }
-            sum = sum + self.formulas.model(&corner, self.smoothing) * self.patch.weight(i);
+            sum = sum + self.patch.weighted(i, self.formulas.model(&corner, self.smoothing));
         }
         (sum, feasible)
     }

@@ -1,6 +1,7 @@
 //! Tests of the Newton step for `f64`, for lanes, and for corners with slopes of their own.
 
 use std::cell::RefCell;
+use std::ops::Mul;
 
 use fearless_simd::Level;
 use fearless_simd::prelude::*;
@@ -160,8 +161,8 @@ impl Corners<f64> for Quadrilaterals {
         Given(from_right_angle([[-1.0, -1.0], [0.0, 1.0], [1.0, 0.0]][i % 3]))
     }
 
-    fn weight(&self, _: usize) -> f64 {
-        0.25
+    fn weighted<V: Mul<f64, Output = V>>(&self, _: usize, term: V) -> V {
+        term * 0.25
     }
 
     fn total_weight(&self) -> f64 {
