@@ -6,7 +6,7 @@
 mod plate;
 mod scene;
 
-use gpu_smooth::{Backend, Gpu, Metric, Options, Outcome, SmoothError, Smoother, outcome::Objectives};
+use gpu_smooth::{Backend, Gpu, Metric, Options, Outcome, Quality, SmoothError, Smoother, outcome::Objectives};
 use wasm_bindgen::prelude::*;
 
 use plate::Plate;

@@ -1,6 +1,6 @@
 //! The mesh on the device, everything that is bound to it, and its frames.
 
-use gpu_smooth::{Gpu, Method, Options, SmoothError, gpu::{BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer}, wgpu::{BufferUsages as Usage, self}};
+use gpu_smooth::{Gpu, Method, Options, SmoothError, Stopping, gpu::{BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer}, wgpu::{BufferUsages as Usage, self}};
 
 use crate::plate::{Plate, Random};
 

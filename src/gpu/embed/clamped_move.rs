@@ -59,7 +59,7 @@ impl Moves {
 /// mesh is dropped.
 ///
 /// ```no_run
-/// # use gpu_smooth::*;
+/// # use gpu_smooth::{*, gpu::*};
 /// # fn f(
 /// #     mesh: &DeviceMesh, hole: &[u32], targets: &wgpu::Buffer, numbers: &wgpu::Buffer, queue: &wgpu::Queue,
 /// #     sweeps: &mut Sweeps, vertices: &BoundVertices, encoder: &mut wgpu::CommandEncoder, where_to: &[[f32; 2]],

@@ -19,7 +19,7 @@ const COPIES: usize = 3;
 /// those of a frame or two ago. The application polls the device, as it does for its own work.
 ///
 /// ```no_run
-/// # use gpu_smooth::*;
+/// # use gpu_smooth::{*, gpu::*};
 /// # fn f(
 /// #     gpu: &Gpu, numbers: &wgpu::Buffer, objective: &BoundObjective, encoder: &mut wgpu::CommandEncoder,
 /// # ) -> Result<(), GpuError> {

@@ -25,7 +25,7 @@ const EACH: u32 = 8;
 /// triangle is inverted or flat, they check the triangles once and leave every position as it is, bit by bit.
 ///
 /// ```no_run
-/// # use gpu_smooth::*;
+/// # use gpu_smooth::{*, gpu::*};
 /// # fn f(
 /// #     mesh: &DeviceMesh, vertices: &BoundVertices, sweeps: &mut Sweeps, encoder: &mut wgpu::CommandEncoder,
 /// # ) -> Result<(), GpuError> {

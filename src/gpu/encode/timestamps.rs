@@ -22,7 +22,7 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// longer.
 ///
 /// ```no_run
-/// # use gpu_smooth::{*, gpu::Timestamps};
+/// # use gpu_smooth::{*, gpu::*};
 /// # fn f(gpu: &Gpu, sweeps: &mut Sweeps, vertices: &BoundVertices) -> Result<(), GpuError> {
 /// let mut timestamps = Timestamps::new(gpu)?;
 ///
