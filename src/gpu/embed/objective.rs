@@ -41,7 +41,7 @@ use crate::run::{Plan, Stop};
 pub struct ObjectiveValues {
     /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]. Only the scheme's base metric is evaluated, and
     /// the others are 0, unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are inverted,
-    /// f by a metric with a barrier ([`Properties::barrier`](crate::Metric::has_barrier)) is meaningless.
+    /// f by a metric with a barrier ([`Metric::has_barrier`]) is meaningless.
     pub f: [f32; Metric::ALL.len()],
     /// Number of triangles that are inverted or flat, in single precision.
     pub inverted: u32,
