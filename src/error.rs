@@ -174,7 +174,7 @@ pub enum SmoothError {
     /// The mesh cannot be smoothed.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// An option is out of its range, or does not go with another feature of the run.
+    /// A number out of the range of an option, or two features that do not go together.
     #[error(transparent)]
     Option(#[from] crate::options::OptionError),
     /// The checkpoint is from another run.
@@ -189,7 +189,7 @@ pub enum SmoothError {
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// There is no adapter, or none with the wanted name.
+    /// The machine has no adapter, or no adapter with the wanted name.
     #[error("no GPU adapter{}", lacking(wanted.as_deref(), available))]
     NoAdapter {
         /// The name that was asked for.
@@ -230,9 +230,9 @@ pub enum GpuError {
         vertices: usize,
         /// Number of triangles.
         triangles: usize,
-        /// The most vertices that the kernels can number.
+        /// Largest number of vertices for the kernels.
         most_vertices: usize,
-        /// The most triangles that the kernels can number.
+        /// Largest number of triangles for the kernels.
         most_triangles: usize,
     },
     /// The adapter's compiler reorders or drops operations that the kernels rely on, so results would be silently
@@ -260,7 +260,7 @@ pub enum GpuError {
     /// A buffer of the application lacks the needed size, usage or layout, was destroyed, or belongs to another device.
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
-    /// The queue does not belong to the device that it was given with.
+    /// The queue belongs to another device.
     #[error("the queue is not that of the device: both must come from one call of request_device")]
     Queue,
     /// The call would block the thread, which a page in a browser cannot do.

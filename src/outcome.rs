@@ -10,53 +10,55 @@ use crate::run::Stop;
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Position of every vertex, in the mesh's order and units: the best state by the base metric. It is the mesh
-    /// before the run if f of that state is not lower by more than rounding (1e-9 of f), unless
-    /// [`Options::improve_worst`](crate::Options::improve_worst) has made the worst triangle better. By exact
-    /// predicates on these values, no triangle is inverted or flat.
+    /// Position of every vertex, in the order and unit of the mesh: the positions with the least f by the base metric. If
+    /// the run lowered f by no more than rounding (1e-9 of f), these are the positions before the run, unless
+    /// [`Options::improve_worst`](crate::Options::improve_worst) has made the worst triangle better. Exact predicates on
+    /// these values find no triangle inverted or flat.
     pub points: Vec<[f64; 2]>,
-    /// Why the run ended.
+    /// The reason why the run ended.
     pub stop: Stop,
     /// Number of sweeps done.
     pub sweeps: u32,
-    /// Number of sweeps in which the metrics of the scheme took turns. The sweeps after them were by the base metric,
-    /// so that corrections could follow.
+    /// Number of first sweeps in which the metrics of the scheme took turns. Later sweeps used the base metric alone, as
+    /// corrections need.
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
     /// Number of sweeps done on the CPU although the backend is a GPU, because triangles were too flat or too small for
-    /// single precision. These are the first sweeps, or all if the first ones did not open every triangle.
+    /// single precision: the first sweeps, or every sweep of a run whose first sweeps left such triangles.
     pub opening_sweeps: u32,
     /// Whether [`Method::Auto`](crate::Method::Auto) ran without corrections because the coarser levels do not fit the
     /// device's limits.
     pub levels_left_out: bool,
-    /// The sweep after which the mesh was as in `points`; 0 for the mesh before the run.
+    /// The sweep whose positions are [`points`](Self::points); 0 for the mesh before the run.
     pub best_sweep: u32,
-    /// Objectives before the first sweep and after each.
+    /// Objectives: entry 0 before the first sweep, entry k after sweep k.
     pub history: Vec<Objectives>,
-    /// The share of f, or of 1e-6 where f is less, that further sweeps are estimated to gain, extrapolated from the decay of the
-    /// last sweeps, and at most what f is above its ideal; `None` if they do not decay or are too few. After a run by EDGE with
-    /// corrections, it includes what EDGE's p-norm leaves of f.
+    /// The gain that further sweeps are estimated to bring, as a share of f (of 1e-6 if f is smaller). The estimate
+    /// extrapolates the decay of f in the last sweeps; the distance of f to its ideal bounds the estimate. `None` if the
+    /// sweeps are too few or do not decay. After a run by EDGE with corrections, the estimate includes the distance between
+    /// the minima of f and of EDGE's p-norm.
     pub remaining: Option<f64>,
-    /// Number of vertices that a guard kept from moving further at the end of a run that has otherwise converged, or has done
-    /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. Without [`Guard::Worst`](crate::Guard::Worst) a converged run is then
-    /// said to have ended for this reason ([`Stop::HeldBack`]).
+    /// Number of vertices that a guard kept from moving further at the end of a run that has converged or has done
+    /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. If this is above 0, a run that has converged without
+    /// [`Guard::Worst`](crate::Guard::Worst) reports [`Stop::HeldBack`].
     pub held_back: usize,
-    /// The share of the gain in f that is lost when positions are rounded to the digits that coordinates have, and
-    /// vertices are set back because of it. Near 1 for a mesh as fine as its numbers.
+    /// The share of the gain in f that was lost by rounding positions to [`Options::stored`](crate::Options::stored), and
+    /// by setting back vertices whose rounding inverted a triangle. Near 1 for a mesh whose elements are as small as the
+    /// last digit of its coordinates.
     pub lost: f64,
-    /// How far the run went toward its goal, if it had one.
+    /// The way toward the goal; `None` for a run without a goal.
     pub goal: Option<GoalOutcome>,
-    /// Number of vertices set back to their positions before the run, because rounding had inverted a triangle, or had
-    /// made its altitude smaller than [`Options::keep_altitude`](crate::Options::keep_altitude) allows.
+    /// Number of vertices set back to their positions before the run because rounding had inverted a triangle, or had left
+    /// an altitude below the bound of [`Options::keep_altitude`](crate::Options::keep_altitude).
     pub returned: usize,
-    /// The result for vertices on curves, if vertices were to slide; see
+    /// The result of sliding; `None` if no vertex could slide; see
     /// [`Smoother::set_slide`](crate::Smoother::set_slide).
     pub slid: Option<Slid>,
-    /// The result of improving the worst triangles, if it was asked for; see
+    /// The result of improving the worst triangles; `None` without
     /// [`Options::improve_worst`](crate::Options::improve_worst).
     pub improved: Option<Improved>,
-    /// The fault of the device after which the run continued on the CPU, if there was one.
+    /// The device fault after which the run continued on the CPU; `None` if the device did not fail.
     pub device_fault: Option<DeviceFault>,
     /// The duration of the run, including the search for a desired objective.
     pub smooth: Duration,
@@ -65,34 +67,33 @@ pub struct Outcome {
 /// The result of improving the worst triangles after the last sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Improved {
-    /// The measure that defines the worst.
+    /// The measure that ranks triangles.
     pub by: WorstBy,
-    /// Number of vertices that were moved.
+    /// Number of moved vertices.
     pub vertices: usize,
-    /// The worst triangle with a free vertex after the last sweep, and as returned: an inverse mean ratio, an angle in
-    /// degrees, or an altitude in the unit of the mesh.
+    /// Measure of the worst triangle with a free vertex, after the last sweep and in [`Outcome::points`]: an inverse mean
+    /// ratio, an angle in degrees, or an altitude in the unit of the mesh.
     pub worst: [f64; 2],
-    /// Number of triangles that are worse than that but cannot be improved, as they have no vertex that is free or may
-    /// slide.
+    /// Number of worse triangles without a vertex that is free or slides. No vertex can improve such a triangle.
     pub stuck: usize,
-    /// The objective by the base metric: after the last sweep, and as returned.
+    /// f by the base metric, after the last sweep and in [`Outcome::points`].
     pub f: [f64; 2],
 }
 
 /// The result of sliding in a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slid {
-    /// Number of vertices that were allowed to slide.
+    /// Number of vertices that could slide.
     pub vertices: usize,
-    /// Number of these vertices that have moved.
+    /// Number of vertices that slid.
     pub moved: usize,
-    /// Number of pairs among these vertices that move together; see [`Slide::periodic`](crate::Slide::periodic).
+    /// Number of pairs of vertices that slide together; see [`Slide::periodic`](crate::Slide::periodic).
     pub pairs: usize,
-    /// Number of periods, each of sweeps over free vertices and then along the curves.
+    /// Number of periods. A period consists of sweeps over free vertices, then of sweeps along the curves.
     pub rounds: u32,
-    /// The largest distance of the lines between vertices from those in the mesh before the run, in its unit.
+    /// Largest distance between the curves' edges before and after the run, in the unit of the mesh.
     pub off: f64,
-    /// The change of the area of all triangles, as a share of that area.
+    /// Relative change of the area of the mesh.
     pub area: f64,
 }
 
@@ -100,7 +101,7 @@ pub struct Slid {
 /// [`CheckpointPolicy::falls_back_to_cpu`](crate::CheckpointPolicy::falls_back_to_cpu).
 #[derive(Clone, Debug)]
 pub struct DeviceFault {
-    /// The last sweep on the device whose result was kept.
+    /// The last sweep on the device whose positions the run kept.
     pub sweep: u32,
     /// The error of the device.
     pub error: GpuError,
@@ -109,13 +110,13 @@ pub struct DeviceFault {
 /// How far a run went toward its [`Goal`](crate::Goal).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalOutcome {
-    /// The share that [`Goal::fraction`](crate::Goal::fraction) asked for.
+    /// The wanted share, [`Goal::fraction`](crate::Goal::fraction).
     pub fraction: f64,
     /// The desired objective.
     pub desired: f64,
-    /// The origin of the desired objective: "given", or a description of the runs that found it.
+    /// The origin of the desired objective: "given", or a description of the search runs.
     pub origin: String,
-    /// The share of the way from the initial to the desired objective that is reached by [`Outcome::points`]; 1 if both
-    /// were equal from the start.
+    /// The share of the way from the initial to the desired objective that [`Outcome::points`] reach; 1 if both objectives
+    /// are equal.
     pub best_fraction: f64,
 }

@@ -24,7 +24,7 @@ const CHANGING: &str =
 const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
 const TANGLED: &str = "inverted triangles give no bound; untangle the mesh in a run of its own";
 
-/// Every pair of features that do not go together, in the order in which a run is checked.
+/// All conflicts. A run reports the first row whose two features it has.
 pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::TargetField, Feature::Slide, CHANGING),
     row(Feature::TargetField, Feature::MaxMove, CHANGING),

@@ -2,7 +2,7 @@
 
 use crate::options::feature::Feature;
 
-/// An option is out of its range, or does not go with another feature of the run.
+/// A number out of the range of an option, or two features that do not go together.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OptionError {

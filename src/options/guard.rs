@@ -1,10 +1,10 @@
-//! The limit on how bad a step may make a triangle.
+//! The limit on the shape of triangles after a step.
 
-/// A limit on how bad a step may make a triangle.
+/// A limit on the inverse mean ratio of triangles after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Guard {
-    /// With a metric that has a barrier, no limit but the objective. With other metrics, a step may leave no triangle
+    /// Metrics with a barrier: no limit but the objective. With other metrics, a step may leave no triangle
     /// with an inverse mean ratio larger than that of the worst triangle with a free vertex before the run, nor larger
     /// than 30, unless the patch already had a worse triangle.
     #[default]

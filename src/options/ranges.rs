@@ -2,7 +2,7 @@
 
 use crate::options::error::OptionError;
 
-/// The range of a number in the options of a run. A command line parses its values by the same ranges.
+/// The range of a numeric option. The command line parses its values by the same ranges.
 #[derive(Clone, Copy)]
 pub struct OptionRange {
     /// The name of the option.
@@ -70,7 +70,7 @@ impl OptionRange {
         (self.contains)(value)
     }
 
-    /// Fails if a number is outside of the range.
+    /// Checks a number against the range.
     ///
     /// # Errors
     /// [`OptionError::OutOfRange`].

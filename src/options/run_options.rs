@@ -25,7 +25,7 @@ pub struct Options {
     pub stopping: Stopping,
     /// The most sweeps of the run.
     pub max_sweeps: u32,
-    /// A limit on how bad a step may make a triangle. No step ever inverts a triangle.
+    /// A limit on the inverse mean ratio of triangles after a step. No step ever inverts a triangle.
     pub guard: Guard,
     /// The largest distance of a vertex from its position before the run, divided by the mean length of the edges there
     /// before. Above 0; `None` for no bound. Only for whole runs, by one metric other than edge.
@@ -38,9 +38,8 @@ pub struct Options {
     /// triangle around them becomes less bad, and none becomes worse than that was. f may rise a little; where the worst
     /// triangle of the mesh becomes no better, nothing moves. Only for whole runs, and not after a run that was canceled.
     pub improve_worst: Option<WorstBy>,
-    /// The precision in which the result will be stored. The result is rounded to it before it is checked: as stored,
-    /// it has no inverted triangle and a lower f. Fixed vertices are rounded as well, if the mesh is not in that
-    /// precision.
+    /// The precision of the file or buffer that will store the result. The run rounds all positions, of fixed vertices too,
+    /// to this precision before it checks them: the rounded mesh has no inverted triangle and a lower f.
     pub stored: Precision,
     /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`], as far
     /// as the tolerance asks, in runs with corrections and [`PNormExponent::FIXED`] in runs of sweeps alone.

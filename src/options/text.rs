@@ -1,4 +1,4 @@
-//! The options as lines of text, by which a checkpoint tells the options of its run.
+//! The options as lines of text, which checkpoints store and compare.
 
 use crate::options::method::{Derivatives, Method, Paper, Relaxed};
 use crate::options::norm::PNormExponent;
@@ -67,7 +67,7 @@ impl Options {
     }
 }
 
-/// Returns a number with all its digits, or "none".
+/// Writes a number with all digits, or "none".
 fn optional(number: Option<f64>) -> String {
     number.map_or("none".to_owned(), |number| number.to_string())
 }

@@ -14,11 +14,11 @@ use crate::run::saved::{CPU, EngineState, PeriodState, Saved};
 pub struct Checkpoint {
     pub(crate) about: About,
     pub(crate) saved: Saved,
-    /// The state of the stages between sweeps, if the run has any.
+    /// State of the stages; `None` for a run without stages.
     pub(crate) period: Option<PeriodState>,
 }
 
-/// The data of a checkpoint other than the state of the sweeps.
+/// Fingerprint of the mesh and of the options, the goal, and the opening sweeps on the CPU.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct About {
     /// A hash of the mesh, of its targets and of the curves on which vertices slide.
@@ -32,12 +32,12 @@ pub(crate) struct About {
 }
 
 impl Checkpoint {
-    /// The first bytes of every checkpoint, of any version of the format.
+    /// The first bytes of a checkpoint file, whatever the version of the format.
     pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
     /// The version of the format that this version of the library reads and writes, which follows [`Self::MAGIC`].
     const VERSION: &[u8; 2] = b"2\n";
 
-    /// Returns the number of sweeps that were done.
+    /// Returns the number of sweeps before the checkpoint.
     pub fn sweeps(&self) -> u32 {
         let opened = self.about.opened.as_ref().map_or(0, Opened::sweeps);
         opened + self.saved.sweeps()

@@ -31,7 +31,7 @@ impl Writer {
         list.iter().for_each(|item| write(self, item));
     }
 
-    /// Writes a number that may be missing, as a list of up to one number.
+    /// Writes a list of one number, or an empty list for `None`.
     pub(crate) fn optional(&mut self, number: Option<f64>) {
         self.list(number.as_slice(), |out, number| out.real(*number));
     }
@@ -161,8 +161,8 @@ impl<'b> Reader<'b> {
 pub(crate) struct Records<'b>(Vec<(&'b str, Reader<'b>)>);
 
 impl<'b> Records<'b> {
-    /// Reads the whole content of the record with this name. `None` if there is no such record, or if `read` leaves a
-    /// part of its content.
+    /// Reads the content of the record called `name` by `read`. `None` if the record is missing, or if `read` leaves bytes
+    /// unread.
     pub(crate) fn read<T>(
         &mut self,
         name: &str,
@@ -174,7 +174,7 @@ impl<'b> Records<'b> {
         content.is_empty().then_some(value)
     }
 
-    /// Reads a record as [`read`](Self::read) does, if there is one: `Some(None)` if there is none.
+    /// Reads an optional record like [`read`](Self::read). `Some(None)` if the record is missing.
     pub(crate) fn read_if_any<T>(
         &mut self,
         name: &str,

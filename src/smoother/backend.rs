@@ -1,6 +1,6 @@
-//! The place where the sweeps of a run are computed.
+//! The engine of a run: the CPU or a device.
 
-/// Where the sweeps of a run are computed.
+/// The engine that computes the sweeps of a run.
 pub enum Backend {
     /// All cores of the CPU, in double precision.
     Cpu,

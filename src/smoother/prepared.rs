@@ -1,4 +1,4 @@
-//! A prepared mesh: its targets, its vertices that slide, and what is known of it without a run.
+//! A prepared mesh: topology, layout, targets and curves, which serve any number of runs.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -21,10 +21,10 @@ pub struct Smoother<'a> {
     pub(super) mesh: Cow<'a, Mesh>,
     pub(super) topology: Topology<'a>,
     pub(super) problem: Problem,
-    /// The curves on which vertices slide, as the caller has given them.
+    /// The caller's curves, for the fingerprint in checkpoints.
     pub(super) slide: Option<Slide>,
     pub(super) sliding: Option<Sliding>,
-    /// Number of pairs that slide, and of pairs that do not move, as the motion of the others does not fit them.
+    /// Number of periodic pairs that slide, and number of pairs that stay because the common motion does not fit them.
     pairs: [usize; 2],
     /// The field of targets, if targets belong to points of the plane and not to vertices.
     pub(super) field: Option<TargetField>,

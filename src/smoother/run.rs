@@ -87,7 +87,7 @@ impl<'r> Run<'r> {
     /// Smooths the mesh. Blocks until the run ends.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] if an option is out of its range, or does not go with another option;
+    /// [`SmoothError::Option`] for a number out of its range, or for two features that do not go together;
     /// [`SmoothError::Mesh`] with [`MeshError::NothingFree`](crate::MeshError::NothingFree) if no vertex is free and none
     /// slides; [`SmoothError::Checkpoint`] if the checkpoint is of another run; [`SmoothError::Gpu`] if the device fails
     /// and the policy does not let the run fall back to the CPU. If the mesh does not fit the device, the error holds
