@@ -1,6 +1,6 @@
 //! How the edges of a triangle depend on the position of the visited vertex.
 
-/// The slopes of the two edges of a [`Corner`](crate::Corner): if the visited vertex moves by d, the edges a and b
+/// The slopes of the two edges of a [`Corner`](crate::metric::Corner): if the visited vertex moves by d, the edges a and b
 /// change by α d and β d.
 ///
 /// A triangle whose edges start from the visited vertex has the slopes of [`Own`]. In a quadrilateral, the vertex is

@@ -203,6 +203,10 @@ fn a_run_ended_by_the_shape_guard_is_not_called_converged() {
     let outcome = run(&smoother, &few, &backends()[0]);
     assert_eq!(outcome.stop, Stop::MaxSweeps);
     assert!(outcome.held_back > 0);
+    // The bound of its move holds a vertex too, and the guard does not count the vertex then.
+    let bounded = Options { scheme: Metric::Rms.into(), max_move: Some(1e-4), ..few };
+    let outcome = run(&smoother, &bounded, &backends()[0]);
+    assert_eq!(outcome.held_back, 0, "{:?}", outcome.stop);
     // A metric with a barrier has no guard.
     let outcome = run(&smoother, &Options::default(), &backends()[0]);
     assert_eq!((outcome.stop, outcome.held_back), (Stop::Converged, 0));
