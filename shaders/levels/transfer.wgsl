@@ -2,7 +2,8 @@
 // vertices is never stored: the weight of an edge is the product of the roots of its two vertices. The bindings are
 // `Transfer` in src/gpu/kernels/layouts.rs.
 
-// The square root of a free vertex's weight: the stiffness of the metric over the size of the vertex's elements.
+// The root r(v) = √(mean |eigenvalue| of the Hessian of Σ q² by v / number of neighbors). The edge between v and w
+// weighs r(v) r(w).
 fn root(v: u32) -> f32 {
     return values[op.roots + v];
 }

@@ -38,7 +38,8 @@ pub struct Problem {
     /// The target map of each vertex, if the mesh has targets. In single precision, so that both engines use the same
     /// values.
     targets: Option<Arc<[[f32; 3]]>>,
-    /// Whether targets are longer in one direction than in another.
+    /// Whether some target map is anisotropic. Coarse levels then work in coordinates transformed by the maps, in which
+    /// neighbors across a layer are as near as neighbors along the layer.
     is_stretched: bool,
     mean_area: f64,
 }

@@ -29,9 +29,8 @@ impl Smoothing {
         self.penalized < f64::INFINITY
     }
 
-    /// The penalty: [`PENALTY`] times the k-th power of a triangle's inverse mean ratio over that of the guard. It is negligible
-    /// unless these are as near to each other as the p-norm is to the maximum. Beyond the guard it is constant: triangles that
-    /// were worse are left to the metric.
+    /// The penalty [`PENALTY`] · min(imr / guard, 1)^k, with k the exponent of the p-norm. The penalty is constant beyond the
+    /// guard: triangles that start there feel no force from the penalty.
     #[inline(always)]
     pub(super) fn penalty<T: Real>(&self, t: &Corner<T>) -> T {
         let [_, ratio] = self.ratio(t);

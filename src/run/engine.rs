@@ -57,8 +57,9 @@ pub(crate) trait Engine: Send {
     /// Hands the coarser levels to the engine. Fails with [`GpuError::Limit`] if there is no room for them.
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
 
-    /// The square root of the base metric's stiffness at each free vertex: of the mean absolute eigenvalue of the Hessian
-    /// of Σ q² with respect to the vertex, over the number of its neighbors. EDGE is replaced by what `smoothing` makes of it.
+    /// Returns, for each free vertex, the root r = √((|λ₁| + |λ₂|) / 2 / degree), with λ the eigenvalues of the Hessian of
+    /// Σ q² over the patch by the base metric. `smoothing` makes EDGE smooth. The levels are built from edge weights
+    /// r(v) r(w).
     fn stiffness_roots(
         &mut self,
         smoothing: Smoothing,

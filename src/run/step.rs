@@ -14,8 +14,8 @@ pub struct Step {
     pub inner: u32,
     /// The log2 of the exponent k of EDGE's p-norm.
     pub sharpness: u32,
-    /// The inverse mean ratio in front of which a penalty is added to EDGE's p-norm, so that steps turn before the shape guard
-    /// refuses them; infinite for none.
+    /// A penalty that grows steeply toward this inverse mean ratio is added to EDGE's p-norm, so that Newton directions bend
+    /// away before the shape guard rejects a step. Infinite for no penalty.
     pub penalized: f64,
     /// How the metric is differentiated.
     pub derivatives: Derivatives,
@@ -24,8 +24,8 @@ pub struct Step {
     /// [`Plan::shape_guard`](super::Plan::shape_guard) and the metric's own guard, minus a reserve for rounding.
     /// Infinite for no guard.
     pub shape_guard: f64,
-    /// How many times as long as Newton's a step may be tried where nearly flat triangles make up most of a patch's objective; 1
-    /// for never.
+    /// Upper limit of the factor by which a Newton step is lengthened where nearly flat triangles dominate the objective of a
+    /// patch: 8 in multilevel runs, 1 to turn lengthening off.
     pub longest: f64,
 }
 

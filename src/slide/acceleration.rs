@@ -7,8 +7,8 @@ use crate::slide::params::{Params, read_params, write_params};
 
 /// The most rounds that are stored.
 const MOST: usize = 6;
-/// The share by which the diagonal of the normal equations is raised, so that similar residuals do not make them
-/// singular.
+/// Tikhonov term of Anderson's least squares, relative to the diagonal of the normal equations. Without the term, similar
+/// residuals would make the equations singular.
 const LEAST: f64 = 1e-10;
 
 /// The latest rounds, for Anderson's acceleration (D. G. Anderson, J. ACM 12, 1965) of the map from one round to the

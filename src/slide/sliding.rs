@@ -149,9 +149,9 @@ impl Sliding {
         self.tracks.iter().zip(before).zip(after).flat_map(of_track).collect()
     }
 
-    /// Moves the vertices that slide to `params`. A vertex goes to its parameter in `safe` instead if it would not be
-    /// between its neighbors, be too far from the given lines, or, by `reach`, be too far from its given position.
-    /// Returns whether all are then sound.
+    /// Writes the points of the curve parameters `params` to `positions`. Up to [`GIVE_WAY`] times, each vertex that would
+    /// pass a neighbor, leave the tolerance of the given lines or exceed its reach is reset to its parameter in `safe`.
+    /// Returns false if some vertex still does.
     pub(crate) fn place(
         &self,
         problem: &Problem,

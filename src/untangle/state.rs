@@ -34,7 +34,8 @@ pub(crate) struct Assessment {
 impl Assessment {
     const EMPTY: Self = Self { least: f64::INFINITY, bad: 0 };
 
-    /// About how much area is inverted, in units of that of a triangle.
+    /// Returns the depth of the most inverted triangle, in target areas, times the number of bad triangles; 0 if no area is
+    /// negative.
     pub(crate) fn far(&self) -> f64 {
         -self.least.min(0.0) * self.bad as f64
     }

@@ -31,9 +31,8 @@ pub(crate) fn least_of(problem: &Problem) -> f64 {
     least(problem.triangles(), |v| problem.positions()[v as usize])
 }
 
-/// Brings the vertices of triangles whose altitude is below `floor` back toward their old positions: half of the way,
-/// `halved` times, and then completely. This is repeated until no triangle is too low that was not so before. Returns
-/// the vertices that were brought back.
+/// Repeats passes until no triangle below `floor` has a moved vertex. The first `halved` passes halve the moves of the
+/// vertices of triangles below `floor`; later passes undo the moves. Returns every vertex whose move was shortened.
 fn bring_back(
     triangles: &[[u32; 3]],
     before: &[DVec2],

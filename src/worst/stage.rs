@@ -9,11 +9,11 @@ use crate::worst::badness::Badness;
 use crate::worst::region::{Region, Rules};
 use crate::worst::regions::around;
 
-/// Of this number of triangles one is improved: the worst of those with a free vertex.
+/// One of this many triangles with a free vertex is improved, the worst ones first.
 const SHARE: usize = 1000;
-/// The least number of triangles to be improved.
+/// Smallest number of triangles to improve.
 const FEWEST: usize = 10;
-/// The most triangles to be improved, so that the stage takes seconds for the largest mesh.
+/// Largest number of triangles to improve. The stage then takes seconds for the largest mesh.
 const MOST: usize = 1000;
 /// The number of rings of vertices around these triangles that move too. With three, the worst triangle improves no
 /// further, and f rises more.

@@ -153,7 +153,6 @@ impl BoundMove {
     /// the bound, except for rounding (a relative error of 5e-7 times the ratio). A triangle that already has a larger
     /// one does not get worse. Triangles that are inverted beforehand, or have an inverse mean ratio above 500,000, do
     /// not limit the move. If a target is not finite, its vertex stays.
-    /// finite point counts as where its vertex is.
     pub fn encode_move(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth move");
         passes.run(&self.find_share, None, |pass| {

@@ -87,7 +87,6 @@ impl<T: Pod> Readback<T> {
     /// # Errors
     /// [`GpuError::Buffer`] if the buffer is too small, was created without `COPY_SRC` or belongs to another device, or
     /// if the offset or the size of a value is not a multiple of 4. Another [`GpuError`] if the device fails.
-    /// or the size of a value is no multiple of 4; or what the device refuses.
     pub fn new(
         gpu: &Gpu,
         buffer: &wgpu::Buffer,

@@ -59,14 +59,13 @@ impl Sweeps {
     /// The levels are built for the positions that are on the device at the call, which waits for all work submitted
     /// before. Their aggregates stay the same; each correction fits the levels to the present sizes of elements. Levels
     /// take some 70 bytes on the device for each vertex.
-    /// device for each vertex.
     ///
     /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] does so beforehand.
     ///
+    /// # Errors
     /// [`SmoothError::Option`] for an option out of its range, or for corrections of a scheme that has none;
     /// [`GpuError::Limit`] if the levels are too large for the device; another [`GpuError`] if the device fails. A
     /// browser returns an error for sweeps with corrections, which only [`new_async`](Self::new_async) makes there.
-    /// sweeps are made by [`new_async`](Self::new_async) only.
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         blocking(Self::by(mesh, options, Ending::Never, Waiting::Block))
     }
