@@ -54,7 +54,7 @@ impl Precision {
     }
 }
 
-/// Number of characters that a number of [`Precision::Text20`] may have.
+/// Field width of [`Precision::Text20`], in characters.
 const MAX_CHARACTERS: usize = 20;
 /// The largest number that has at most 20 characters. Larger doubles are rounded to this number, as their rounding to
 /// 20 characters would be infinite.

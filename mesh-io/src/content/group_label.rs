@@ -1,6 +1,6 @@
 //! The label of a group: a number or a name.
 
-/// The number or name that distinguishes a group from others of its kind.
+/// Number or name of a group, unique among groups of one kind.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum GroupLabel {
     Tag(i64),

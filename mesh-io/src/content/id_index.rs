@@ -120,7 +120,7 @@ impl IdList {
     }
 }
 
-/// The ids of the nodes, and the map that is made of them once all are known.
+/// Node ids in file order, and the map from ids to indices, which is built at the first lookup.
 #[derive(Default)]
 pub(crate) struct IdIndexBuilder {
     list: IdList,

@@ -27,8 +27,8 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 
 /// Writes several files as [`write()`] does, all or none.
 ///
-/// Contents go to temporary files first, which are renamed from the last entry to the first. The first entry should
-/// be the file without which the others are no mesh: until the first entry is renamed, readers see no new mesh. If
+/// Contents go to temporary files first, which are renamed from the last entry to the first. The first entry is
+/// the main file of the mesh, which readers open: until the main file is renamed, readers see no new mesh. If
 /// another file changes too, the old first file is moved aside before, so that old and new files are never mixed.
 pub(crate) fn write_all(writes: &[FileWrite<'_>]) -> Result<(), WriteError> {
     write_all_if(&OsFileSystem, writes, &|| Ok(()))

@@ -30,9 +30,9 @@ pub(crate) struct Capabilities {
     pub(crate) builtin_group_kind: &'static str,
     /// Whether the numbers of groups may be negative.
     pub(crate) allows_negative_numbers: bool,
-    /// Whether each vertex has the number of a group.
+    /// Whether the format stores one group number per vertex.
     pub(crate) vertex_groups: bool,
-    /// Whether vertices are in sets with names instead.
+    /// Whether the format stores named sets of vertices.
     pub(crate) vertex_sets: bool,
     /// The precision of coordinates.
     pub(crate) precision: Precision,

@@ -4,7 +4,7 @@ use super::content::{Content, ContentGroup};
 use crate::content::group_label::GroupLabel;
 use std::collections::{HashMap, HashSet};
 
-/// The number that a writer gives to each group.
+/// Group numbers for a writer, and the group of each cell.
 pub(crate) struct GroupNumbers {
     /// For each dimension, the most important group of each cell.
     columns: [Vec<Option<u32>>; 3],

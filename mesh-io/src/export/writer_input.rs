@@ -13,7 +13,7 @@ pub(crate) struct WriterInput<'a> {
     pub(crate) creator: &'a str,
     pub(crate) capabilities: Capabilities,
     pub(crate) group_numbers: GroupNumbers,
-    /// The number of each vertex, if none is 0.
+    /// File ids of the vertices; `None` if the content has no ids, or the id 0.
     numbers: Option<&'a [u64]>,
 }
 

@@ -2,8 +2,8 @@
 //!
 //! A real number has a point, and its exponent needs no letter: `1.5-3` is 0.0015, and `.5` is a half.
 
-/// Number of characters in which any number has all of its digits: a sign, a point, seventeen digits, and an exponent
-/// of five.
+/// Field width that holds every double with all its digits: a sign, a point, seventeen digits and an exponent of five
+/// characters.
 pub(crate) const MAX_LENGTH: usize = 24;
 
 /// Writes a finite number in at most `most` characters, 8 or more, with as many digits as fit, but no more than it needs.

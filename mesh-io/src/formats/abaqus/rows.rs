@@ -153,7 +153,7 @@ fn skip_continuation(cursor: &mut Cursor<'_>) {
 /// Checks that a row has no more nodes than its kind of element.
 ///
 /// # Errors
-/// If the row has another node. A line may have one more, which gives the direction of a beam.
+/// If the row has another node. The row of a line may end with a node that orients the beam.
 #[inline]
 fn check_row_end(cursor: &Cursor<'_>, kind: CellKind, id: u64) -> Result<(), ReadError> {
     if kind == CellKind::Line || cursor.is_at_end() {

@@ -129,8 +129,8 @@ impl<'a> File<'a> {
         Ok(CellNumbers::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
     }
 
-    /// Hands on triangles of a file beside the XML, as many as the visitor takes at once. Returns how many these are, and how many
-    /// numbers they have.
+    /// Hands triangles of a file beside the XML to the visitor in bulk. Returns the count of triangles that the visitor took,
+    /// and the count of their integers.
     fn triangles(
         &self,
         item: &Item,
