@@ -4,10 +4,10 @@ use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
 use crate::layout::Problem;
-use crate::metric::{Corner, Formulas, Metric, OfEdges, Smoothing, TargetMap};
+use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
 use crate::parallel::{collect, map_parts};
-use crate::patch::is_kept;
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, target_maps, with_lanes};
+use crate::patch::{is_kept, is_no_worse, is_positive, is_within};
 use crate::run::Step;
 
 /// Number of triangles of one task.
@@ -76,9 +76,7 @@ pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bo
         ring.iter().any(|&neighbor| {
             let triangle = [v as u32, before, neighbor];
             before = neighbor;
-            let position = |v: u32| along.positions[v as usize];
-            let now = problem.corner(&triangle, |v| position(v) + along.step(v) * along.length);
-            !is_kept(OfEdges, &problem.corner(&triangle, position), &now, guard)
+            !along.keeps(problem, &triangle, guard)
         })
     })
 }
@@ -105,15 +103,22 @@ fn excess_along<S: Simd, const MAPPED: bool>(
         let (q, moved_q) = along.points(simd, [t[1], u[1], v[1], w[1]]);
         let (r, moved_r) = along.points(simd, [t[2], u[2], v[2], w[2]]);
         let now = corner([moved_p, moved_q, moved_r], problem, &map);
-        borne &= is_kept(formulas, &corner([p, q, r], problem, &map), &now, guard);
+        borne &= is_positive(&now);
+        if guard.is_finite() {
+            let mut kept = is_within(formulas, &now, sum.constant(guard));
+            // Few moves break the guard, so the triangles before the move are evaluated only then.
+            if !kept.all_true() {
+                kept |= is_no_worse(formulas, &corner([p, q, r], problem, &map), &now);
+            }
+            borne &= kept;
+        }
         sum += formulas.model(&now, step.smoothing());
     }
     let mut last = 0.0;
     for t in rest {
         let position = |v: u32| along.positions[v as usize];
         let now = problem.corner(t, |v| position(v) + along.step(v) * along.length);
-        let is_kept = is_kept(formulas, &problem.corner(t, position), &now, guard);
-        borne &= Mask::splat(simd, is_kept);
+        borne &= Mask::splat(simd, along.keeps(problem, t, guard));
         last += formulas.model(&now, step.smoothing());
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
@@ -158,6 +163,14 @@ impl Along<'_> {
         let dx = Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]);
         let dy = Lanes::simd_from(simd, [a.y, b.y, c.y, d.y]);
         ([x, y], [x + dx * self.length, y + dy * self.length])
+    }
+
+    /// Whether the move keeps a triangle, as [`is_kept`] says. Compiled once for all metrics.
+    #[inline(never)]
+    fn keeps(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
+        let position = |v: u32| self.positions[v as usize];
+        let now = problem.corner(triangle, |v| position(v) + self.step(v) * self.length);
+        is_kept(&problem.corner(triangle, position), &now, guard)
     }
 
     /// The direction of a vertex; zero if it is fixed.

@@ -30,8 +30,8 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
-    /// Calls a function of such numbers. For SIMD vectors it is compiled as separate code for their instructions, so
-    /// that the caller stays small enough to be compiled in seconds.
+    /// Calls a function of numbers of this type. The function is compiled as separate code (for SIMD vectors with their
+    /// instructions), so that callers stay small enough to be compiled in seconds.
     #[inline(always)]
     fn apart<R>(self, function: impl FnOnce() -> R) -> R {
         function()
@@ -53,6 +53,10 @@ impl Real for f64 {
     }
     fn max(self, other: Self) -> Self {
         self.max(other)
+    }
+    #[inline(never)]
+    fn apart<R>(self, function: impl FnOnce() -> R) -> R {
+        function()
     }
 }
 

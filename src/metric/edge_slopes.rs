@@ -36,24 +36,27 @@ impl EdgeSlopes for Own {
     }
 }
 
+/// Any two slopes α and β, for tests.
+#[cfg(test)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Given(pub(crate) f64, pub(crate) f64);
+
+#[cfg(test)]
+impl EdgeSlopes for Given {
+    fn alpha(self) -> f64 {
+        self.0
+    }
+
+    fn beta(self) -> f64 {
+        self.1
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::metric::table::Formulas;
     use crate::metric::{Corner, Dual, Metric, Smoothing};
-
-    /// Any two slopes.
-    #[derive(Clone, Copy, Debug)]
-    struct Given(f64, f64);
-
-    impl EdgeSlopes for Given {
-        fn alpha(self) -> f64 {
-            self.0
-        }
-        fn beta(self) -> f64 {
-            self.1
-        }
-    }
 
     const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
 

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::metric::{Corner, Formulas};
-use crate::patch::numbers::{Mask, Numbers};
+use crate::metric::{Corner, Formulas, OfEdges};
+use crate::patch::numbers::Numbers;
 
 /// Whether a triangle is neither inverted nor flat, by its rounded area.
 #[inline(always)]
@@ -24,27 +24,22 @@ pub(crate) fn is_within<T: Numbers>(
     numerator.le(max_imr * area)
 }
 
-/// Whether a moved triangle has positive area, and an inverse mean ratio of at most `guard` or of at most the ratio
-/// `before` the move.
+/// Whether the inverse mean ratio of a triangle is no larger than `before` a move. The area `now` must be positive.
 #[inline(always)]
-pub(crate) fn is_kept<T: Numbers>(
+pub(crate) fn is_no_worse<T: Numbers>(
     formulas: impl Formulas,
     before: &Corner<T>,
     now: &Corner<T>,
-    guard: f64,
 ) -> T::Mask {
-    let positive = is_positive(now);
-    if !guard.is_finite() {
-        return positive;
-    }
-    let within = is_within(formulas, now, now.a[0].constant(guard));
-    // Few moves break the guard, so the triangle before the move is evaluated only then.
-    if within.all() {
-        return positive;
-    }
     let (numerator, area) = formulas.inverse_mean_ratio(now);
     let (numerator_before, area_before) = formulas.inverse_mean_ratio(before);
-    positive & (within | (numerator * area_before).le(numerator_before * area))
+    (numerator * area_before).le(numerator_before * area)
+}
+
+/// Whether a moved triangle has positive area, and an inverse mean ratio of at most `guard` or of at most the ratio
+/// `before` the move.
+pub(crate) fn is_kept(before: &Corner<f64>, now: &Corner<f64>, guard: f64) -> bool {
+    is_positive(now) && (is_within(OfEdges, now, guard) || is_no_worse(OfEdges, before, now))
 }
 
 /// A circle that limits the moves of a vertex; an infinite radius stands for no limit.

@@ -14,12 +14,12 @@ pub(crate) mod search_rule;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use acceptance::{Circle, is_kept};
+pub(crate) use acceptance::{Circle, is_kept, is_no_worse, is_positive, is_within};
 pub(crate) use corners::{Corners, MetricObjective, is_acceptable};
 pub(crate) use direction::Direction;
 #[cfg(test)]
 pub(crate) use direction::newton_direction;
 pub(crate) use fan::{Fan, FanCorner, FanPatch};
-pub(crate) use newton_step::{Objective, newton_step};
+pub(crate) use newton_step::{Objective, newton_step, step_alone};
 pub(crate) use ring::{Rings, Scratch};
 pub(crate) use search_rule::SearchRule;

@@ -49,7 +49,7 @@ pub(crate) trait Objective<T: Numbers> {
 /// vertices took a step.
 #[inline(always)]
 pub(crate) fn newton_step<T: Numbers>(
-    objective: &impl Objective<T>,
+    objective: &(impl Objective<T> + ?Sized),
     at: [T; 2],
     going: T::Mask,
     rule: &SearchRule,
@@ -96,6 +96,17 @@ pub(crate) fn newton_step<T: Numbers>(
         length = T::select(feasible, shorter, length * rule.shorten_infeasible);
     }
     (end, stepped)
+}
+
+/// Takes one Newton step of a single vertex by [`newton_step`]. Returns the new position, and whether the vertex took a
+/// step. The search is compiled once for all objectives of `f64`.
+#[inline(never)]
+pub(crate) fn step_alone(
+    objective: &dyn Objective<f64>,
+    at: [f64; 2],
+    rule: &SearchRule,
+) -> ([f64; 2], bool) {
+    newton_step(objective, at, true, rule)
 }
 
 /// Returns the first length of a search, longer where nearly flat triangles make up most of the objective; see

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::layout::{Problem, prepare};
 use crate::mesh::Mesh;
-use crate::metric::{Corner, Dual, EdgeSlopes, Metric, OfEdges, Smoothing};
+use crate::metric::{Corner, Dual, Given, Metric, Smoothing};
 
 /// A hexagon of six triangles around one free vertex.
 fn hexagon() -> Problem {
@@ -110,24 +110,10 @@ fn a_step_inverts_no_triangle_and_leaves_none_above_the_guard_and_the_worst_befo
 #[test]
 fn a_triangle_is_kept_if_it_is_positive_and_within_the_guard_or_no_worse_than_before() {
     let corner = |height: f64| Corner { a: [1.0, 0.0], b: [0.5, height], mean_area: 0.5 };
-    let kept =
-        |before: f64, now: f64, guard: f64| is_kept(OfEdges, &corner(before), &corner(now), guard);
+    let kept = |before: f64, now: f64, guard: f64| is_kept(&corner(before), &corner(now), guard);
     assert!(kept(0.1, 0.8, 2.0) && kept(0.1, 0.2, 2.0) && kept(0.8, 0.1, f64::INFINITY));
     assert!(!kept(0.8, 0.1, 2.0) && !kept(0.8, -0.8, f64::INFINITY));
     assert!(!kept(0.8, f64::NAN, 2.0) && !kept(0.8, 0.0, f64::INFINITY));
-}
-
-/// Slopes of a corner of a quadrilateral, after the map that makes a square's corner equilateral.
-#[derive(Clone, Copy)]
-struct Given([f64; 2]);
-
-impl EdgeSlopes for Given {
-    fn alpha(self) -> f64 {
-        self.0[0]
-    }
-    fn beta(self) -> f64 {
-        self.0[1]
-    }
 }
 
 /// Maps the two edges of a square's corner to two edges of an equilateral triangle.
@@ -158,7 +144,8 @@ impl Corners<f64> for Quadrilaterals {
     }
 
     fn slopes(&self, i: usize) -> Given {
-        Given(from_right_angle([[-1.0, -1.0], [0.0, 1.0], [1.0, 0.0]][i % 3]))
+        let [alpha, beta] = from_right_angle([[-1.0, -1.0], [0.0, 1.0], [1.0, 0.0]][i % 3]);
+        Given(alpha, beta)
     }
 
     fn weighted<V: Mul<f64, Output = V>>(&self, _: usize, term: V) -> V {

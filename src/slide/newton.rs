@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::layout::Problem;
 use crate::metric::{AnyFormulas, Dual, Smoothing};
 use crate::patch::{
-    Corners, Direction, FanPatch, MetricObjective, Objective, SearchRule, newton_step,
+    Corners, Direction, FanPatch, MetricObjective, Objective, SearchRule, step_alone,
 };
 use crate::run::Step;
 use crate::slide::curve::{Curve, Place};
@@ -91,7 +91,7 @@ pub(crate) fn visit(
     }
     let objective = CurveObjective { problem, on_curves, window, reach, step: rule.step };
     let Window { low, at, high } = window;
-    let ([to, _], has_stepped) = newton_step(&objective, [at, 0.0], true, &SearchRule::CURVE);
+    let ([to, _], has_stepped) = step_alone(&objective, [at, 0.0], &SearchRule::CURVE);
     (has_stepped && to != at && low < to && to < high).then_some(to)
 }
 

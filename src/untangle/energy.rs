@@ -96,7 +96,7 @@ impl<T: Real> Corner<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::Own;
+    use crate::metric::{Given, Own};
     use crate::patch::{Direction, SearchRule, newton_direction};
     use glam::DVec2;
 
@@ -142,19 +142,6 @@ mod tests {
                 close(found.hessian[1], x.y, scale);
                 close(found.hessian[2], y.y, scale);
             }
-        }
-    }
-
-    /// The slopes of an edge that ends at the visited vertex, and of any other edges.
-    #[derive(Clone, Copy, Debug)]
-    struct Given(f64, f64);
-
-    impl EdgeSlopes for Given {
-        fn alpha(self) -> f64 {
-            self.0
-        }
-        fn beta(self) -> f64 {
-            self.1
         }
     }
 

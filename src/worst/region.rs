@@ -7,7 +7,7 @@ use glam::DVec2;
 use crate::layout::Problem;
 use crate::metric::{Dual, Smoothing, TargetMap};
 use crate::patch::{
-    Circle, FanCorner, FanPatch, MetricObjective, Objective, SearchRule, is_acceptable, newton_step,
+    Circle, FanCorner, FanPatch, MetricObjective, Objective, SearchRule, is_acceptable, step_alone,
 };
 use crate::run::Step;
 use crate::worst::badness::Badness;
@@ -143,7 +143,7 @@ impl<'a> Region<'a> {
         let (patch, badness) = (&self.patch(v), self.rules.badness);
         let unit = badness.worst_of(patch, self.positions[v]);
         let power = PowerObjective { patch, badness, unit, doublings };
-        self.step(v, patch, power, f64::INFINITY)
+        self.step(v, patch, &power, f64::INFINITY)
     }
 
     /// Takes a Newton step by the metric of the run, after which no triangle around the vertex is worse than `limit`.
@@ -153,7 +153,7 @@ impl<'a> Region<'a> {
         let formulas = metric.formulas();
         let shape_guard = f64::INFINITY;
         let metric = MetricObjective { patch, formulas, smoothing, shape_guard };
-        self.step(v, patch, metric, limit);
+        self.step(v, patch, &metric, limit);
     }
 
     /// Moves a vertex by a Newton step of an objective by [`SearchRule::WORST`], within all rules. Returns the length of
@@ -162,14 +162,13 @@ impl<'a> Region<'a> {
         &mut self,
         v: usize,
         patch: &FanPatch,
-        objective: impl Objective<f64>,
+        objective: &dyn Objective<f64>,
         limit: f64,
     ) -> f64 {
         let (rules, bound) = (self.rules, self.bounds[v]);
         let constrained = Constrained { objective, patch, rules, bound, limit };
         let here = self.positions[v];
-        let (to, has_stepped) =
-            newton_step(&constrained, here.to_array(), true, &SearchRule::WORST);
+        let (to, has_stepped) = step_alone(&constrained, here.to_array(), &SearchRule::WORST);
         if !has_stepped {
             return 0.0;
         }
@@ -212,8 +211,8 @@ impl Objective<f64> for PowerObjective<'_> {
 }
 
 /// An objective for positions of a vertex that keep all rules.
-struct Constrained<'a, O> {
-    objective: O,
+struct Constrained<'a> {
+    objective: &'a dyn Objective<f64>,
     patch: &'a FanPatch,
     rules: &'a Rules<'a>,
     bound: Circle,
@@ -221,16 +220,16 @@ struct Constrained<'a, O> {
     limit: f64,
 }
 
-impl<O: Objective<f64>> Objective<f64> for Constrained<'_, O> {
+impl Objective<f64> for Constrained<'_> {
     fn expansion(&self, at: [f64; 2]) -> Dual {
         self.objective.expansion(at)
     }
 
     fn trial(&self, to: [f64; 2], max_imr: f64) -> (f64, bool) {
-        let Self { objective, patch, rules, bound, limit } = self;
+        let Self { objective, patch, rules, bound, limit } = *self;
         let is_allowed = bound.contains(to.into())
-            && is_acceptable(*patch, rules.step.metric.formulas(), to, rules.shape)
-            && (limit.is_infinite() || rules.badness.worst_of(patch, to.into()) <= *limit);
+            && is_acceptable(patch, rules.step.metric.formulas(), to, rules.shape)
+            && (limit.is_infinite() || rules.badness.worst_of(patch, to.into()) <= limit);
         if is_allowed { objective.trial(to, max_imr) } else { (f64::INFINITY, false) }
     }
 }
