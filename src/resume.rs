@@ -32,11 +32,12 @@ pub(crate) fn check(
         !opened.log.is_empty() && fits(&opened.positions) && fits(&opened.best)
     });
     let is_of_stages = period.as_ref().is_none_or(|period| {
-        let PeriodState { began, before, f_before, held, .. } = period;
+        let PeriodState { began, before, f_before, held, on_cpu_from, .. } = period;
         fits(before)
             && held.len() == problem.free_count()
             && (*began as usize) < saved.log.len()
             && f_before.is_finite()
+            && on_cpu_from.is_none_or(|from| from <= *began)
     });
     if own.mesh != about.mesh || !is_whole || !is_of_stages {
         return Err(foreign());
@@ -80,7 +81,7 @@ mod tests {
     use crate::run::{CheckpointPolicy, Stop};
     use crate::{Backend, GpuError, Outcome, Quality, Slide, Smoother, topology};
 
-    /// A keeper that takes the first checkpoint, and continues on the CPU if asked to.
+    /// A policy that takes the first checkpoint, and continues on the CPU if asked to.
     #[derive(Default)]
     struct First {
         checkpoint: Option<Checkpoint>,
@@ -200,9 +201,16 @@ mod tests {
             for _ in 0..rounds {
                 let mut hostile = bytes[..bytes.len() - 4].to_vec();
                 for _ in 0..=random(2) {
-                    let word =
-                        [0, 1, 7, u64::MAX, f64::NAN.to_bits(), 1e300_f64.to_bits(), 1 << 40]
-                            [random(7)];
+                    let word = [
+                        0,
+                        1,
+                        7,
+                        u32::MAX.into(),
+                        u64::MAX,
+                        f64::NAN.to_bits(),
+                        1e300_f64.to_bits(),
+                        1 << 40,
+                    ][random(8)];
                     // Half of the changes are in the bytes before the long lists.
                     let most = if random(2) == 0 { hostile.len() } else { hostile.len().min(3000) };
                     let at = random(most - 8);
@@ -235,7 +243,23 @@ mod tests {
         assert!(refused > 50 && went_on > 50, "{refused} refused, {went_on} went on");
     }
 
-    /// A keeper that keeps the latest checkpoint.
+    /// The sweeps on the CPU were once counted from a sweep that the checkpoint does not have.
+    #[test]
+    fn a_checkpoint_whose_cpu_took_over_later_than_its_period_began_is_refused() {
+        let mesh = lattice(6);
+        let mut smoother = Smoother::new(&mesh).unwrap();
+        smoother.set_slide(Some(&Slide::default())).unwrap();
+        let mut kept = Latest::default();
+        let options = Options::default();
+        smoother.run(&options).checkpoints(&mut kept).block().unwrap();
+        let mut checkpoint = kept.0.unwrap();
+        let period = checkpoint.period.as_mut().unwrap();
+        period.on_cpu_from = Some(period.began + 1);
+        let error = smoother.run(&options).resume(&checkpoint).block().unwrap_err();
+        assert!(matches!(error, SmoothError::Checkpoint(_)), "{error}");
+    }
+
+    /// A policy that keeps the latest checkpoint.
     #[derive(Default)]
     struct Latest(Option<Checkpoint>);
 

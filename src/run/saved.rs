@@ -38,7 +38,7 @@ pub(crate) struct PeriodState {
     pub(crate) f_before: f64,
     /// For each free vertex, whether sweeps are not to move it.
     pub(crate) held: Vec<bool>,
-    /// The number of sweeps after which the CPU took over from the device.
+    /// The last sweep on the device, after which the CPU continued; `None` if the CPU did not take over.
     pub(crate) on_cpu_from: Option<u32>,
     /// The name and the state of each stage, in the order in which the stages work.
     pub(crate) stages: Vec<(String, Vec<u8>)>,

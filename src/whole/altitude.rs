@@ -117,7 +117,7 @@ impl Stage for AltitudeStage<'_> {
         host: &mut Host<'_>,
         _: &dyn Fn(&[DVec2]) -> bool,
     ) -> Result<Worked, MeshError> {
-        self.count += 1;
+        self.count = self.count.saturating_add(1);
         let Host { problem, before, positions, held, .. } = host;
         let returned = bring_back(problem.triangles(), before, positions, self.least, HALVED);
         let mut is_settled = true;

@@ -9,7 +9,7 @@ use crate::measure::mean_edges;
 use crate::mesh::Mesh;
 use crate::metric::{AnyFormulas, Dual, Smoothing};
 use crate::patch::{
-    Circle, Direction, Fan, FanPatch, MetricObjective, Objective, SearchRule, newton_step,
+    Circle, Direction, Fan, FanPatch, MetricObjective, Objective, SearchRule, step_alone,
 };
 use crate::precision::Precision;
 use crate::run::records::{Reader, Writer};
@@ -128,7 +128,7 @@ impl<'s> MoveLimitStage<'s> {
             let metric = MetricObjective { patch, formulas, smoothing, shape_guard };
             let objective = BoundObjective { metric, bound: self.bound(v) };
             let here = host.positions[v].to_array();
-            host.positions[v] = newton_step(&objective, here, true, &SearchRule::BOUND).0.into();
+            host.positions[v] = step_alone(&objective, here, &SearchRule::BOUND).0.into();
         }
     }
 }

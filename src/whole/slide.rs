@@ -103,7 +103,7 @@ impl Stage for SlideStage<'_> {
         host: &mut Host<'_>,
         allows: &dyn Fn(&[DVec2]) -> bool,
     ) -> Result<Worked, MeshError> {
-        self.count += 1;
+        self.count = self.count.saturating_add(1);
         let step = host.plan.base_step(1.0);
         let began = self.params.clone();
         for _ in 0..SLIDES {

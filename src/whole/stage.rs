@@ -108,7 +108,7 @@ impl PeriodRule {
         self.f.push(period.f[1]);
         let judged = self.rule.judge(&self.f, self.f.len() - 1, 1);
         let agrees = judged.is_some() && period.is_settled;
-        self.estimates = if agrees { self.estimates + 1 } else { 0 };
+        self.estimates = if agrees { self.estimates.saturating_add(1) } else { 0 };
         let stop = match judged {
             Some(Stop::Reached) => judged,
             Some(_) if self.estimates >= ESTIMATES => judged,

@@ -126,7 +126,7 @@ impl Stage for TargetFieldStage<'_> {
         };
         let to_come = gain * (share / (1.0 - share)).max(1.0) / last;
         self.gained = Some(gain);
-        self.settled = if to_come <= self.tolerance { self.settled + 1 } else { 0 };
+        self.settled = if to_come <= self.tolerance { self.settled.saturating_add(1) } else { 0 };
         let stop = match self.settled >= SETTLED || !self.has_moved {
             true => Some(Stop::Converged),
             false => period.is_last.then_some(Stop::MaxSweeps),

@@ -10,7 +10,7 @@ use gpu_smooth::{
 
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
 
-/// A keeper that takes every checkpoint it can.
+/// A policy that takes every checkpoint it can.
 #[derive(Default)]
 struct All(Vec<Checkpoint>);
 
@@ -46,7 +46,7 @@ fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend,
     assert_goes_on_as("", smoother, options, backend, every);
 }
 
-/// Does the same for a run whose failures are told by `label`.
+/// Checks a run like [`assert_goes_on`]. `label` begins the message of a failure.
 fn assert_goes_on_as(
     label: &str,
     smoother: &Smoother<'_>,
