@@ -2,8 +2,8 @@
 
 use crate::support;
 use gpu_smooth::{
-    Backend, Gpu, Mesh, Method, Metric, Options, Quality, Smoother, Stopping, Topology,
-    internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu},
+    Backend, Gpu, Mesh, Method, Metric, Options, Quality, Smoother, Topology,
+    internal::{Coloring, Plan, Problem, Stepwise, StopRule, prepare, run_on_cpu, run_on_gpu},
     options::{Derivatives, PNormExponent, Paper},
 };
 
@@ -52,33 +52,73 @@ fn a_sweep_by_differences_is_a_little_off() {
     }
 }
 
+/// Returns f by `metric` before the run and the least f of an over-relaxed run. [`Method::Paper`] has differences with plain
+/// steps only, so the plan is made by hand.
+fn over_relaxed(
+    mesh: &Mesh,
+    metric: Metric,
+    derivatives: Derivatives,
+    gpu: Option<&Gpu>,
+) -> [f64; 2] {
+    let (topology, problem) = prepare(mesh).unwrap();
+    // Without corrections, as runs by differences have none: EDGE would end at another minimum.
+    let options = Options { scheme: metric.into(), method: Method::RELAXED, ..Options::default() };
+    let plan = Plan {
+        derivatives: [derivatives; Metric::ALL.len()],
+        shape_guard: Quality::of(&mesh.points, &topology).unwrap().worst_movable_imr,
+        ..Plan::new(&options)
+    };
+    let positions = problem.positions();
+    let mut run: Box<dyn Stepwise> = match gpu {
+        None => Box::new(run_on_cpu(&problem, positions, plan)),
+        Some(gpu) => Box::new(run_on_gpu(gpu, &problem, positions, plan).unwrap()),
+    };
+    let history = run.advance(options.max_sweeps).unwrap();
+    let f = history.iter().map(|objectives| objectives.of(metric).unwrap());
+    [history[0].of(metric).unwrap(), f.fold(f64::INFINITY, f64::min)]
+}
+
 #[test]
 fn runs_by_differences_end_near_the_optimum_on_both_engines() {
     let mesh = plate();
+    let gpu = Gpu::open(None).unwrap();
+    for &metric in Metric::ALL {
+        let [start, exact] = over_relaxed(&mesh, metric, Derivatives::Analytic, None);
+        for device in [None, Some(&gpu)] {
+            let [_, near] = over_relaxed(&mesh, metric, Derivatives::FiniteDifference, device);
+            // The minimum is missed by half a width of the differences. For smooth metrics f then differs in second order,
+            // for EDGE, which has a kink there, in first order. The ideal of AREA is 0 and is reached nearly, so f is compared
+            // with the total gain. The shape guard stops runs of AREA where their path led them, so either run may end lower.
+            let is_reached = metric.ideal_squared() == 0.0 && !metric.has_barrier();
+            let (missed, bound) = match (is_reached, metric.is_smooth()) {
+                (true, _) => (((near - exact) / (start - exact)).abs(), 2e-2),
+                (false, true) => (near / exact - 1.0, 1e-3),
+                (false, false) => (near / exact - 1.0, 5e-3),
+            };
+            assert!((0.0..bound).contains(&missed), "{metric}: {near} for {exact}");
+        }
+    }
+}
+
+/// Plain steps by differences end farther from the optimum than over-relaxed steps: by up to 3e-3 of f (tmop-80).
+#[test]
+fn the_paper_method_by_differences_ends_near_the_optimum_on_both_engines() {
+    let mesh = plate();
     let smoother = Smoother::new(&mesh).unwrap();
     let backends = [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())];
-    for &metric in Metric::ALL {
+    for &metric in
+        Metric::ALL.iter().filter(|metric| metric.ideal_squared() > 0.0 || metric.has_barrier())
+    {
         let f = |derivatives, backend| {
-            // Without corrections, as runs by differences have none: EDGE would end at another minimum.
             let method = Method::Paper(Paper { derivatives, ..Paper::default() });
-            let stopping = Stopping::Tolerance(1e-8);
-            let options = Options { scheme: metric.into(), method, stopping, ..Options::default() };
+            let options = Options { scheme: metric.into(), method, ..Options::default() };
             let outcome = smoother.run(&options).on(backend).block().unwrap();
             Quality::of(&outcome.points, smoother.topology()).unwrap().f(metric)
         };
         let exact = f(Derivatives::Analytic, &backends[0]);
-        let gone = Quality::of(&mesh.points, smoother.topology()).unwrap().f(metric) - exact;
         for backend in &backends {
             let near = f(Derivatives::FiniteDifference, backend);
-            // Differences miss the minimum by half of their width, so that f ends up to 3e-3 of f above it (tmop-80). The ideal
-            // of AREA is 0 and is reached nearly, so f is compared with the total gain. The shape guard stops runs of AREA
-            // where their path led them, so either run may end lower.
-            let is_reached = metric.ideal_squared() == 0.0 && !metric.properties().barrier;
-            let (missed, bound) = match is_reached {
-                true => (((near - exact) / gone).abs(), 2e-2),
-                false => (near / exact - 1.0, 5e-3),
-            };
-            assert!((0.0..bound).contains(&missed), "{metric}: {near} for {exact}");
+            assert!((0.0..5e-3).contains(&(near / exact - 1.0)), "{metric}: {near} for {exact}");
         }
     }
 }
