@@ -24,6 +24,8 @@ pub use corner::Corner;
 #[doc(hidden)]
 pub use corner::{InvariantSlopes, Invariants, Slopes};
 pub use dual::{Dual, Real};
+#[cfg(test)]
+pub(crate) use edge_slopes::Given;
 pub(crate) use edge_slopes::{EdgeSlopes, Own};
 #[doc(hidden)]
 pub use properties::Properties;

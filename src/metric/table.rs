@@ -339,6 +339,17 @@ impl Metric {
         self.properties().ideal
     }
 
+    /// The over-relaxation of sweeps by this metric alone, if [`Relaxed::omega`](crate::options::Relaxed::omega) is `None`.
+    pub const fn omega(self) -> f64 {
+        self.properties().omega
+    }
+
+    /// The largest inverse mean ratio that a step by this metric may leave, unless the patch had a larger ratio before.
+    /// Infinite for a metric with a barrier.
+    pub const fn shape_guard(self) -> f64 {
+        self.properties().shape_guard
+    }
+
     /// Whether q grows to infinity as a triangle's area goes to zero.
     pub const fn has_barrier(self) -> bool {
         self.properties().barrier

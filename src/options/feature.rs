@@ -42,6 +42,12 @@ pub enum Feature {
 }
 
 impl Feature {
+    /// Returns the features whose condition holds.
+    pub fn present(conditions: impl IntoIterator<Item = (Self, bool)>) -> Vec<Self> {
+        let is_present = |(feature, holds): (Self, bool)| holds.then_some(feature);
+        conditions.into_iter().filter_map(is_present).collect()
+    }
+
     /// Every feature.
     pub const ALL: [Self; 16] = [
         Self::UnevenScheme,

@@ -37,7 +37,7 @@ impl PNormExponent {
     }
 
     /// The largest log2 k that is allowed: powers of ratios have an error of 1e-3 by then in single precision.
-    pub const MOST: u32 = 13;
+    pub const MAX: u32 = 13;
 
     /// Returns the log2 of k in a sweep; sweeps count from 1.
     pub fn of(self, sweep: u32) -> u32 {

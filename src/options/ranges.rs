@@ -1,6 +1,9 @@
 //! The ranges of numbers in the options.
 
+use crate::metric::Scheme;
 use crate::options::error::OptionError;
+use crate::options::method::Paper;
+use crate::options::norm::PNormExponent;
 
 /// The range of a numeric option. The command line parses its values by the same ranges.
 #[derive(Clone, Copy)]
@@ -14,56 +17,40 @@ pub struct OptionRange {
 
 impl OptionRange {
     /// [`Stopping::Tolerance`](crate::Stopping::Tolerance).
-    pub const TOLERANCE: Self =
-        Self { option: "tolerance", words: "0 or above", contains: |t| t >= 0.0 && t.is_finite() };
+    pub const TOLERANCE: Self = Self::new("tolerance", "0 or above", |t| t >= 0.0 && t.is_finite());
     /// [`Goal::fraction`](crate::Goal::fraction).
-    pub const FRACTION: Self = Self {
-        option: "fraction",
-        words: "above 0 and at most 1",
-        contains: |share| share > 0.0 && share <= 1.0,
-    };
+    pub const FRACTION: Self =
+        Self::new("fraction", "above 0 and at most 1", |share| share > 0.0 && share <= 1.0);
     /// [`Goal::desired`](crate::Goal::desired).
-    pub const DESIRED: Self =
-        Self { option: "desired", words: "a finite number", contains: f64::is_finite };
+    pub const DESIRED: Self = Self::new("desired", "a finite number", f64::is_finite);
     /// [`Relaxed::omega`](crate::options::Relaxed::omega).
-    pub const OMEGA: Self = Self {
-        option: "omega",
-        words: "above 0 and below 2",
-        contains: |omega| omega > 0.0 && omega < 2.0,
-    };
+    pub const OMEGA: Self = Self::new("omega", "above 0 and below 2", |w| w > 0.0 && w < 2.0);
     /// [`Paper::newton_steps`](crate::options::Paper::newton_steps).
-    pub const NEWTON_STEPS: Self = Self {
-        option: "newton steps",
-        words: "a number from 1 to 1000",
-        contains: |steps| (1.0..=1000.0).contains(&steps),
-    };
+    pub const NEWTON_STEPS: Self = Self::new("newton steps", "a number from 1 to 1000", |steps| {
+        (1.0..=f64::from(Paper::MAX_NEWTON_STEPS)).contains(&steps)
+    });
     /// [`Options::max_move`](crate::Options::max_move).
-    pub const MAX_MOVE: Self =
-        Self { option: "max move", words: "above 0", contains: |m| m > 0.0 && m.is_finite() };
+    pub const MAX_MOVE: Self = Self::new("max move", "above 0", is_positive);
     /// [`PNormExponent::first`](crate::options::PNormExponent::first).
-    pub const EXPONENT: Self = Self {
-        option: "edge norm",
-        words: "from 0 to 13, the log2 of the exponent, and the last not below the first",
-        contains: |log2| (0.0..=13.0).contains(&log2),
-    };
+    pub const EXPONENT: Self = Self::new(
+        "edge norm",
+        "from 0 to 13, the log2 of the exponent, and the last not below the first",
+        |log2| (0.0..=f64::from(PNormExponent::MAX)).contains(&log2),
+    );
     /// The number of metrics in [`Options::scheme`](crate::Options::scheme).
-    pub const SCHEME_LENGTH: Self = Self {
-        option: "scheme length",
-        words: "60 metrics at most",
-        contains: |length| length <= crate::metric::Scheme::LONGEST as f64,
-    };
+    pub const SCHEME_LENGTH: Self =
+        Self::new("scheme length", "60 metrics at most", |n| n <= f64::from(Scheme::LONGEST));
     /// [`Slide::corner_angle`](crate::Slide::corner_angle).
-    pub const CORNER_ANGLE: Self = Self {
-        option: "corner angle",
-        words: "an angle from 0 to 180 degrees",
-        contains: |angle| (0.0..=180.0).contains(&angle),
-    };
+    pub const CORNER_ANGLE: Self =
+        Self::new("corner angle", "an angle from 0 to 180 degrees", |angle| {
+            (0.0..=180.0).contains(&angle)
+        });
     /// [`Slide::hausdorff`](crate::Slide::hausdorff).
-    pub const HAUSDORFF: Self = Self {
-        option: "hausdorff",
-        words: "a length above 0",
-        contains: |length| length > 0.0 && length.is_finite(),
-    };
+    pub const HAUSDORFF: Self = Self::new("hausdorff", "a length above 0", is_positive);
+
+    const fn new(option: &'static str, words: &'static str, contains: fn(f64) -> bool) -> Self {
+        Self { option, words, contains }
+    }
 
     /// Whether a number is within the range. NaN is within none.
     pub fn contains(&self, value: f64) -> bool {
@@ -84,5 +71,27 @@ impl OptionRange {
     pub(super) fn refuse(&self, value: f64) -> OptionError {
         let Self { option, words, .. } = *self;
         OptionError::OutOfRange { option, value, range: words }
+    }
+}
+
+fn is_positive(number: f64) -> bool {
+    number > 0.0 && number.is_finite()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The words are typed by hand beside the constants.
+    #[test]
+    fn the_words_of_a_range_have_its_limits() {
+        for (range, limit) in [
+            (OptionRange::NEWTON_STEPS, Paper::MAX_NEWTON_STEPS),
+            (OptionRange::EXPONENT, PNormExponent::MAX),
+            (OptionRange::SCHEME_LENGTH, Scheme::LONGEST),
+        ] {
+            let limit = limit.to_string();
+            assert!(range.words.split([' ', ',']).any(|word| word == limit), "{}", range.words);
+        }
     }
 }

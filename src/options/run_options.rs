@@ -97,7 +97,7 @@ impl Options {
         let searches = matches!(goal, Some(Goal { desired: None, .. }));
         let has_differences = self.method.paper().derivatives == Derivatives::FiniteDifference;
         let is_uneven = self.scheme.period() > 1 || !self.scheme.is_monotone();
-        [
+        Feature::present([
             (Feature::UnevenScheme, is_uneven),
             (Feature::UncorrectedScheme, !self.scheme.base().supports_multilevel()),
             (Feature::Multilevel, self.method == Method::Multilevel),
@@ -108,10 +108,7 @@ impl Options {
             (Feature::MaxMove, self.max_move.is_some()),
             (Feature::KeepAltitude, self.keep_altitude),
             (Feature::ImproveWorst, self.improve_worst.is_some()),
-        ]
-        .into_iter()
-        .filter_map(|(feature, is_wanted)| is_wanted.then_some(feature))
-        .collect()
+        ])
     }
 
     fn check_ranges(&self) -> Result<(), OptionError> {

@@ -96,12 +96,11 @@ impl Smoother<'_> {
 
     /// Lists the features that a run has by this smoother.
     fn features(&self) -> Vec<Feature> {
-        let of_smoother = [
+        Feature::present([
             (Feature::Slide, self.sliding.is_some()),
             (Feature::Targets, self.problem.targets().is_some()),
             (Feature::TargetField, self.field.is_some()),
-        ];
-        of_smoother.into_iter().filter(|(_, has)| *has).map(|(feature, _)| feature).collect()
+        ])
     }
 
     /// Whether a triangle is so flat, or so small beside the others, that double precision cannot judge it as the metric does,

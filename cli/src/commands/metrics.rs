@@ -8,20 +8,20 @@ use crate::terminal::tell::say;
 /// Prints the properties of all metrics, for `gpu-smooth metrics`.
 pub(crate) fn run() -> Result<(), CliError> {
     for metric in Metric::ALL {
-        let row = metric.properties();
-        say(&format!("{:<10} q = {}", row.name, row.formula));
-        say(&format!("           {}", row.purpose));
-        let barrier = if row.barrier { "barrier at zero area" } else { "no barrier" };
-        let guard = match row.shape_guard {
+        say(&format!("{:<10} q = {}", metric.name(), metric.formula()));
+        say(&format!("           {}", metric.purpose()));
+        let barrier = if metric.has_barrier() { "barrier at zero area" } else { "no barrier" };
+        let guard = match metric.shape_guard() {
             guard if guard.is_finite() => format!(", shape guard at imr {guard}"),
             _ => String::new(),
         };
         // Single precision has the digits that tell, and none that only rounding has made.
         say(&format!(
             "           best q {}, {barrier}{guard}, omega {}",
-            row.ideal as f32, row.omega
+            metric.ideal() as f32,
+            metric.omega()
         ));
-        say(&format!("           {}\n", row.citation));
+        say(&format!("           {}\n", metric.citation()));
     }
     Ok(())
 }

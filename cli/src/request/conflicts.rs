@@ -99,14 +99,12 @@ pub(super) const OF_CONVERT: &[Conflict<ConvertArgs>] =
 pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
     let targets = args.target.target != Target::Equilateral
         || args.target.surface.surface == OnSurface::Sphere;
-    let more = [
+    let more = Feature::present([
         (Feature::Slide, args.sliding.slide),
         (Feature::Targets, targets),
         (Feature::TargetField, args.target.is_of_places()),
         (Feature::Untangle, args.untangle),
-    ];
-    let more: Vec<Feature> =
-        more.into_iter().filter_map(|(feature, has)| has.then_some(feature)).collect();
+    ]);
     match options(args).check_with(&more) {
         Err(OptionError::Conflict { features, why }) => {
             let [a, b] = features.map(|feature| flag(feature, args));
@@ -254,6 +252,17 @@ mod tests {
     #[test]
     fn each_pair_of_a_run_is_refused_by_its_own_words() {
         check(OF_RUN, &["gpu-smooth", "in", "out"], |cli| &cli.smooth);
+    }
+
+    /// A feature of the library without an option of its own here would be refused in the words of the library.
+    #[test]
+    fn each_feature_of_a_run_has_an_option() {
+        let cli = Cli::try_parse_from(["gpu-smooth", "in", "out"]).unwrap();
+        for feature in Feature::ALL {
+            let is_encoded = matches!(feature, Feature::Encoded | Feature::EncodedCorrections);
+            let option = flag(feature, &cli.smooth);
+            assert!(is_encoded || option.starts_with("--"), "add an arm to `flag`: {option}");
+        }
     }
 
     #[test]

@@ -87,9 +87,8 @@ fn vertices_held_by_the_file_are_remarked() {
 fn metrics_lists_every_metric() {
     let out = Folder::new(&[]).line("metrics").clean().out;
     for metric in Metric::ALL {
-        let row = metric.properties();
-        assert!(out.lines().any(|line| line.starts_with(&format!("{:<10} q = ", row.name))));
-        assert_holds(&out, &[row.formula, row.purpose, row.citation]);
+        assert!(out.lines().any(|line| line.starts_with(&format!("{:<10} q = ", metric.name()))));
+        assert_holds(&out, &[metric.formula(), metric.purpose(), metric.citation()]);
     }
 }
 

@@ -225,7 +225,7 @@ impl DeviceMesh {
 
     /// Lists the features that sweeps have by this mesh.
     pub(super) fn features(&self) -> Vec<Feature> {
-        self.problem.targets().map(|_| Feature::Targets).into_iter().collect()
+        Feature::present([(Feature::Targets, self.problem.targets().is_some())])
     }
 
     /// The vertices of a triangle, counter-clockwise, given its number on the device
