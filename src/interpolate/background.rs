@@ -26,9 +26,11 @@ pub(crate) struct Spot {
 }
 
 impl Background {
-    /// Returns the position of each vertex.
-    pub(crate) fn points(&self) -> &[[f64; 2]] {
-        &self.points
+    /// Returns all data as words, for the fingerprint of a run.
+    pub(crate) fn words(&self) -> Vec<u64> {
+        let points = self.points.as_flattened().iter().map(|x| x.to_bits());
+        let triangles = self.topology.triangles().as_flattened().iter().map(|&v| u64::from(v));
+        points.chain(triangles).collect()
     }
 
     /// Makes a background of a mesh.

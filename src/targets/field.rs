@@ -106,9 +106,8 @@ impl TargetField {
     /// Returns all data as words, by whose hash a checkpoint tells the field of its run.
     pub(crate) fn words(&self) -> Vec<u64> {
         let Self { background, logarithms, surface } = self;
-        let points = background.points().as_flattened().iter();
-        let logarithms = logarithms.iter().flat_map(|tensor| &tensor.0);
-        let mut words: Vec<u64> = points.chain(logarithms).map(|x| x.to_bits()).collect();
+        let mut words = background.words();
+        words.extend(logarithms.iter().flat_map(|tensor| &tensor.0).map(|x| x.to_bits()));
         words.push((*surface == Surface::Plane).into());
         words
     }
