@@ -265,7 +265,7 @@ pub enum GpuError {
     Queue,
     /// The call would block the thread, which a page in a browser cannot do.
     #[error(
-        "a browser cannot wait in a blocking call: use the call of this name that ends in _async"
+        "a browser cannot wait in a blocking call: await a run, or use the call of this name that ends in _async"
     )]
     WouldBlock,
     /// wgpu refused a call: a bug in this library, or a device created with limits other than those required.

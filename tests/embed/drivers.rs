@@ -76,7 +76,7 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
     }
 }
 
-/// A keeper that lets the run go on on the CPU when the device fails.
+/// A policy that lets the run go on on the CPU when the device fails.
 struct GoesOn;
 
 impl CheckpointPolicy for GoesOn {

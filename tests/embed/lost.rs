@@ -62,7 +62,7 @@ fn a_run_says_that_the_device_was_lost() {
     });
 }
 
-/// A keeper that lets the run go on on the CPU when the device fails.
+/// A policy that lets the run go on on the CPU when the device fails.
 struct GoesOn {
     interval: Duration,
     told: Vec<(GpuError, u32)>,
@@ -88,7 +88,7 @@ fn run_with_a_loss(
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
     let device = app.device().clone();
-    let mut keeper = GoesOn { interval: Duration::ZERO, told: Vec::new() };
+    let mut policy = GoesOn { interval: Duration::ZERO, told: Vec::new() };
     let killer = std::thread::spawn(move || {
         std::thread::sleep(after);
         device.destroy();
@@ -96,23 +96,23 @@ fn run_with_a_loss(
     let outcome = smoother
         .run(options)
         .on(&backend)
-        .checkpoints(&mut keeper)
+        .checkpoints(&mut policy)
         .observe(|_: &Progress| ControlFlow::Continue(()))
         .block()
         .unwrap();
     killer.join().unwrap();
-    (outcome, keeper)
+    (outcome, policy)
 }
 
 /// The time of a run on a device that is not lost.
 fn time_of_a_run(smoother: &Smoother<'_>, options: &Options) -> Duration {
     let backend = Backend::Gpu(App::new().another_gpu());
-    let mut keeper = GoesOn { interval: Duration::ZERO, told: Vec::new() };
+    let mut policy = GoesOn { interval: Duration::ZERO, told: Vec::new() };
     let start = Instant::now();
     smoother
         .run(options)
         .on(&backend)
-        .checkpoints(&mut keeper)
+        .checkpoints(&mut policy)
         .observe(|_: &Progress| ControlFlow::Continue(()))
         .block()
         .unwrap();
@@ -137,20 +137,20 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
             let on_cpu = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
             // A share of the time that a run takes on this machine: on a fast one the run would else be done before.
             let after = time_of_a_run(&smoother, &options).mul_f64(0.8 * random.unit());
-            let (outcome, keeper) = run_with_a_loss(&smoother, &options, after);
+            let (outcome, policy) = run_with_a_loss(&smoother, &options, after);
             let f = |o: &Outcome| Quality::of(&o.points, smoother.topology()).unwrap().f(base);
             let smoothed = Mesh { points: outcome.points.clone(), ..mesh.clone() };
             assert!(check::is_valid(&smoothed) && check::same_orientations(&mesh, &smoothed));
             assert_eq!(outcome.stop, on_cpu.stop, "round {round}");
             assert!((f(&outcome) - f(&on_cpu)).abs() < 2e-3 * f(&on_cpu), "round {round}");
             let Some(fault) = &outcome.device_fault else {
-                assert!(keeper.told.is_empty());
+                assert!(policy.told.is_empty());
                 continue;
             };
             lost += 1;
             assert_lost(&fault.error);
-            assert_eq!(keeper.told.len(), 1);
-            assert!(fault.sweep <= outcome.sweeps && keeper.told[0].1 == fault.sweep);
+            assert_eq!(policy.told.len(), 1);
+            assert!(fault.sweep <= outcome.sweeps && policy.told[0].1 == fault.sweep);
             assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1);
         }
         sender.send(lost).unwrap();
@@ -169,7 +169,7 @@ fn a_run_goes_on_from_what_was_kept() {
         for (interval, from) in [(Duration::ZERO, 6), (Duration::MAX, 0)] {
             let app = App::new();
             let backend = Backend::Gpu(app.another_gpu());
-            let mut keeper = GoesOn { interval, told: Vec::new() };
+            let mut policy = GoesOn { interval, told: Vec::new() };
             let mut lost_at = None;
             let mut observe = |progress: &Progress| {
                 // The state of a sweep is kept after the observer is called, so the loss shows one sweep later.
@@ -182,7 +182,7 @@ fn a_run_goes_on_from_what_was_kept() {
             let outcome = smoother
                 .run(&options)
                 .on(&backend)
-                .checkpoints(&mut keeper)
+                .checkpoints(&mut policy)
                 .observe(&mut observe)
                 .block()
                 .unwrap();
@@ -210,7 +210,7 @@ fn a_run_with_stages_leaves_a_lost_device_once() {
             smoother.set_slide(slides.then(Slide::default).as_ref()).unwrap();
             let app = App::new();
             let backend = Backend::Gpu(app.another_gpu());
-            let mut keeper = GoesOn { interval: Duration::ZERO, told: Vec::new() };
+            let mut policy = GoesOn { interval: Duration::ZERO, told: Vec::new() };
             let mut is_lost = false;
             let mut observe = |progress: &Progress| {
                 if progress.sweep >= 2 && !is_lost {
@@ -222,11 +222,11 @@ fn a_run_with_stages_leaves_a_lost_device_once() {
             let outcome = smoother
                 .run(&options)
                 .on(&backend)
-                .checkpoints(&mut keeper)
+                .checkpoints(&mut policy)
                 .observe(&mut observe)
                 .block()
                 .unwrap();
-            assert_eq!(keeper.told.len(), 1, "{:?}", keeper.told);
+            assert_eq!(policy.told.len(), 1, "{:?}", policy.told);
             assert!(outcome.device_fault.is_some());
             assert_eq!(outcome.stop, Stop::Converged);
             let smoothed = Mesh { points: outcome.points, ..mesh.clone() };
