@@ -73,14 +73,14 @@ pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
 /// A leg of a run: sweeps between two works of the host.
 #[derive(Clone, Copy)]
 pub(crate) struct Leg<'l> {
-    /// The number of sweeps after which the leg ends.
+    /// The leg ends after this sweep.
     pub(crate) until: u32,
     /// Whether a device without room for the coarser levels is an error: true for
     /// [`Method::Multilevel`](crate::Method::Multilevel).
     pub(crate) requires_levels: bool,
-    /// The part of the run that the observer is told.
+    /// The phase in reports to the observer.
     pub(crate) phase: Phase,
-    /// The number of sweeps before this run of the engine. The observer is told their sum.
+    /// Sweeps on the CPU before the engine began. Reports to the observer add this number.
     pub(crate) done: u32,
     /// The state of the host and of the stages, for checkpoints.
     pub(crate) period: PeriodSource<'l>,

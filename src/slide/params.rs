@@ -10,7 +10,8 @@ pub(crate) fn write_params(params: &Params, out: &mut Writer) {
     out.list(params, |out, of_curve| out.reals(of_curve));
 }
 
-/// Reads parameters from a checkpoint. `None` if they are not finite, or not as many as `like` has on each curve.
+/// Reads parameters from a checkpoint. `None` if a parameter is not finite, or if a curve has another number of
+/// parameters than in `like`.
 pub(crate) fn read_params(like: &Params, from: &mut Reader<'_>) -> Option<Params> {
     let params = from.list(8, Reader::reals)?;
     let counts = |params: &Params| params.iter().map(Vec::len).collect::<Vec<_>>();

@@ -183,7 +183,7 @@ impl Sliding {
         })
     }
 
-    /// Whether each vertex that slides is between its neighbors on the curve, and every other vertex where it was given.
+    /// Whether every sliding vertex lies between its neighbors on the curve, and every other vertex at its given parameter.
     pub(crate) fn is_in_order(&self, params: &Params) -> bool {
         self.tracks.iter().zip(params).all(|(track, params)| {
             let is_in_order = |k: usize| match track.slides(k) {

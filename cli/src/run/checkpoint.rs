@@ -38,7 +38,7 @@ pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>
 }
 
 /// Keeps the state of a run as the command line asks.
-pub(crate) struct CheckpointKeeper<'a, 'f> {
+pub(crate) struct CheckpointSaver<'a, 'f> {
     /// Where and how often checkpoints are saved; `None` if they are not.
     plan: Option<&'a CheckpointPlan>,
     follow: &'a Mutex<&'f mut dyn Follow>,
@@ -49,7 +49,7 @@ pub(crate) struct CheckpointKeeper<'a, 'f> {
     told_of_fault: bool,
 }
 
-impl<'a, 'f> CheckpointKeeper<'a, 'f> {
+impl<'a, 'f> CheckpointSaver<'a, 'f> {
     pub(crate) fn new(
         plan: Option<&'a CheckpointPlan>,
         follow: &'a Mutex<&'f mut dyn Follow>,
@@ -73,7 +73,7 @@ impl<'a, 'f> CheckpointKeeper<'a, 'f> {
     }
 }
 
-impl CheckpointPolicy for CheckpointKeeper<'_, '_> {
+impl CheckpointPolicy for CheckpointSaver<'_, '_> {
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
         self.plan.is_some() && (is_ending || self.due.is_some_and(|due| Instant::now() >= due))
     }
@@ -147,7 +147,7 @@ mod tests {
     fn the_cpu_takes_over_once_from_a_failed_device_but_not_at_a_start_without_memory() {
         let mut remarks = Remarks::default();
         let follow: Mutex<&mut dyn Follow> = Mutex::new(&mut remarks);
-        let mut kept = CheckpointKeeper::new(None, &follow);
+        let mut kept = CheckpointSaver::new(None, &follow);
         assert!(!kept.falls_back_to_cpu(&GpuError::OutOfMemory("full".into()), 0));
         assert!(kept.falls_back_to_cpu(&GpuError::OutOfMemory("full".into()), 7));
         assert!(kept.falls_back_to_cpu(&GpuError::Lost("gone".into()), 0));

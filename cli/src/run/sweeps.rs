@@ -12,7 +12,7 @@ use gpu_smooth::{
 use crate::error::CliError;
 use crate::load::{Choice, LoadedMesh, explain};
 use crate::request::{EngineRequest, SmoothRequest};
-use crate::run::checkpoint::CheckpointKeeper;
+use crate::run::checkpoint::CheckpointSaver;
 use crate::run::engine::{self, Taken};
 use crate::run::input::Input;
 use crate::run::observer::Follow;
@@ -71,7 +71,7 @@ pub(super) fn smooth(
     let mut clock =
         SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };
     let follow = Mutex::new(follow);
-    let mut kept = CheckpointKeeper::new(request.outputs.checkpoint.as_ref(), &follow);
+    let mut kept = CheckpointSaver::new(request.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
             follow.lock().unwrap_or_else(PoisonError::into_inner).sweep(progress);
