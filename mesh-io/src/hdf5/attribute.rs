@@ -9,7 +9,7 @@ use super::heap::FractalHeap;
 use super::strings;
 use super::types::{Dataspace, Datatype};
 
-/// The content of an attribute.
+/// The value of an attribute: its type and its undecoded bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Attribute<'a> {
     pub(crate) number: Datatype,
@@ -17,13 +17,13 @@ pub(crate) struct Attribute<'a> {
 }
 
 impl<'a> Hdf5<'a> {
-    /// The attribute of this name; none if there is none that can be read.
+    /// Returns the attribute with this name; `None` if the object has none, or if the attribute cannot be read.
     pub(crate) fn attribute(&self, object: &Object, name: &[u8]) -> Option<Attribute<'a>> {
         let mut all = self.attributes(object).into_iter();
         all.find(|(own, _)| *own == name).map(|(_, attribute)| attribute)
     }
 
-    /// All attributes that can be read, by name.
+    /// Returns the name and the value of each attribute. Attributes that cannot be read are skipped.
     pub(crate) fn attributes(&self, object: &Object) -> Vec<(&'a [u8], Attribute<'a>)> {
         let Ok(header) = &object.header else { return Vec::new() };
         let raw = &self.raw;
@@ -36,7 +36,7 @@ impl<'a> Hdf5<'a> {
 }
 
 impl<'a> Attribute<'a> {
-    /// Its text, up to where it ends.
+    /// Returns the text up to its first zero byte; `None` if the attribute is not text.
     pub(crate) fn text(&self) -> Option<&'a [u8]> {
         let Datatype::Text(_) = self.number else { return None };
         self.bytes.split(|&byte| byte == 0).next()
@@ -44,14 +44,14 @@ impl<'a> Attribute<'a> {
 }
 
 impl Attribute<'_> {
-    /// The first of its whole numbers.
+    /// Returns the first integer; `None` if the attribute has another type or no items.
     pub(crate) fn whole(&self) -> Option<i64> {
         let Datatype::Whole(size, order) = self.number else { return None };
         Some(order.signed(self.bytes.get(..size)?))
     }
 }
 
-/// Attributes of an object that has many, in a heap.
+/// Returns the attributes that an object with many of them stores in a fractal heap.
 fn elsewhere<'a>(
     raw: &FileBytes<'a>,
     header: &Header,
@@ -72,7 +72,7 @@ fn elsewhere<'a>(
     Ok(all)
 }
 
-/// The name and the content of an attribute message.
+/// Reads an attribute message: its name and its value. A single text of variable length is read from the global heap.
 fn read<'a>(
     raw: &FileBytes<'a>,
     mut bytes: ByteReader<'a>,

@@ -1,38 +1,39 @@
-//! Trees of both versions that tell where parts of a file stand.
+//! B-trees of versions 1 and 2, which lead to the links of groups, to attributes and to chunks.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use super::checksum::Checksum;
 use super::file_bytes::FileBytes;
 
-/// Limit on the levels of a tree. A deeper tree would have more leaves than there are bytes on any disk.
+/// Limit on the levels of a tree. The leaves of a deeper tree would exceed the bytes of any disk.
 const MAX_DEPTH: u8 = 32;
 
-/// A tree of version 1.
+/// A B-tree of version 1.
 pub(super) struct Tree<'r, 'a> {
     raw: &'r FileBytes<'a>,
     kind: u8,
-    /// How many bytes there are between the addresses of two nodes.
+    /// Size in bytes of the key before each child address.
     key: usize,
 }
 
 impl<'r, 'a> Tree<'r, 'a> {
-    /// Of tables of links.
+    /// Makes a reader of the tree of a group, whose leaves lead to tables of links.
     pub(super) fn of_groups(raw: &'r FileBytes<'a>) -> Self {
         Tree { raw, kind: 0, key: raw.widths.length }
     }
 
-    /// Of the chunks of a dataset of so many dimensions.
+    /// Makes a reader of the tree of chunks of a dataset with `rank` dimensions.
     pub(super) fn of_chunks(raw: &'r FileBytes<'a>, rank: usize) -> Self {
         Tree { raw, kind: 1, key: 4 + 4 + 8 * (rank + 1) }
     }
 
-    /// Hands on what the leaves lead to: the key before it, its address, and where the address stands.
+    /// Calls `take` for each child of a leaf: with a reader at the key before the child, the child's address, and the
+    /// offset of the address field.
     pub(super) fn each(
         &self,
         root: usize,
         take: &mut dyn FnMut(ByteReader<'a>, usize, usize) -> Result<(), Hdf5Error>,
     ) -> Result<(), Hdf5Error> {
-        // The nodes to be read, the next one last, and the level of each.
+        // Nodes still to be read, the next node last, each with its expected level.
         let mut nodes = vec![(root, None)];
         while let Some((node, expected)) = nodes.pop() {
             let mut bytes = self.raw.at(node, "a tree of the HDF5 file");
@@ -61,7 +62,7 @@ impl<'r, 'a> Tree<'r, 'a> {
     }
 }
 
-/// The records of a tree of version 2.
+/// Returns the records of the B-tree of version 2 at offset `at`, in no particular order.
 pub(super) fn records<'a>(raw: &FileBytes<'a>, at: usize) -> Result<Vec<&'a [u8]>, Hdf5Error> {
     let mut bytes = raw.at(at, "a tree of the HDF5 file");
     bytes.expect(b"BTHD\0")?;
@@ -101,11 +102,12 @@ pub(super) fn records<'a>(raw: &FileBytes<'a>, at: usize) -> Result<Vec<&'a [u8]
     Ok(records)
 }
 
-/// How many bytes the number of records of a leaf has, and that of all below a node, by level.
+/// Returns the widths in bytes of the record counts in a node pointer. Element 0 is for the child's own records,
+/// element n for all records in and below a child of level n.
 fn widths(raw: &FileBytes<'_>, [node, record, depth]: [usize; 3]) -> Vec<usize> {
     let width = |most: usize| most.max(1).ilog2() as usize / 8 + 1;
     let room = node.saturating_sub(10);
-    // The most records of a leaf, and of all below a node of the level.
+    // The largest number of records in a leaf, and in and below a node of each level.
     let leaf = room / record;
     let (mut widths, mut all) = (vec![width(leaf)], leaf);
     for level in 1..=depth {

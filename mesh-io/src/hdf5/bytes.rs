@@ -1,4 +1,4 @@
-//! The bytes that the metadata of a file consist of.
+//! Reader of the metadata of an HDF5 file, and the errors of damaged or unsupported metadata.
 
 use crate::binary::byte_order::ByteOrder;
 use std::ops::Range;
@@ -6,16 +6,16 @@ use std::ops::Range;
 /// Damage or an unsupported feature of a part of an HDF5 file.
 #[derive(Clone, Debug)]
 pub(crate) struct Hdf5Error {
-    /// The byte at which that part starts.
+    /// Offset of the damaged or unsupported part in the file.
     pub(crate) at: usize,
     pub(crate) problem: String,
     pub(crate) remedy: &'static str,
 }
 
-/// What to do about metadata that contradict themselves.
+/// Remedy for metadata that are cut off or contradict each other.
 pub(super) const DAMAGED: &str =
     "The file is damaged or cut off: copy it again, or write the mesh again";
-/// What to do about layouts that are not read.
+/// Remedy for unsupported layouts, filters and versions of messages.
 pub(super) const REPACK: &str =
     "Rewrite it with `h5repack -l CONTI -f NONE IN OUT`, or save it in another format";
 
@@ -45,13 +45,15 @@ pub(super) struct ByteReader<'a> {
     at: usize,
     end: usize,
     widths: FieldWidths,
-    /// What is read, for messages, and where it starts.
+    /// Name of the metadata object in error messages, such as "the superblock of the HDF5 file".
     what: &'static str,
+    /// Offset of the metadata object in the file, which errors report.
     start: usize,
 }
 
 impl<'a> ByteReader<'a> {
-    /// Stands at a byte of the file, which need not be there.
+    /// Returns a reader at offset `at` of the file `all`. An offset beyond the end is an error only when bytes are
+    /// taken.
     pub(super) fn new(
         all: &'a [u8],
         at: usize,
@@ -61,7 +63,7 @@ impl<'a> ByteReader<'a> {
         ByteReader { all, at, end: all.len(), widths, what, start: at }
     }
 
-    /// Stands at the start of a range, of which it sees no more.
+    /// Returns a reader that is limited to `range`, cut off at the end of the file.
     pub(super) fn within(&self, range: Range<usize>) -> ByteReader<'a> {
         ByteReader { at: range.start, end: range.end.min(self.all.len()), ..*self }
     }
@@ -100,12 +102,12 @@ impl<'a> ByteReader<'a> {
         self.take(count).map(drop)
     }
 
-    /// Takes a number of up to eight bytes.
+    /// Takes an unsigned integer of `width` bytes, at most 8.
     pub(super) fn number(&mut self, width: usize) -> Result<u64, Hdf5Error> {
         Ok(ByteOrder::Little.whole(self.take(width)?))
     }
 
-    /// The same as a count or a place, the largest there is if it is beyond that.
+    /// Takes an unsigned integer of `width` bytes as a `usize`. Larger values become `usize::MAX`.
     pub(super) fn count(&mut self, width: usize) -> Result<usize, Hdf5Error> {
         Ok(usize::try_from(self.number(width)?).unwrap_or(usize::MAX))
     }
@@ -114,7 +116,7 @@ impl<'a> ByteReader<'a> {
         Ok(self.take(1)?[0])
     }
 
-    /// Takes an address; none if it is that of nothing.
+    /// Takes an address; `None` for the undefined address, whose bits are all set.
     pub(super) fn address(&mut self) -> Result<Option<usize>, Hdf5Error> {
         let bytes = self.take(self.widths.address)?;
         let is_none = bytes.iter().all(|&byte| byte == 0xFF);
@@ -126,7 +128,7 @@ impl<'a> ByteReader<'a> {
         self.count(self.widths.length)
     }
 
-    /// Takes a word that marks what follows.
+    /// Takes the bytes `mark`, the signature and version of a metadata object. Other bytes are an error.
     pub(super) fn expect(&mut self, mark: &[u8]) -> Result<(), Hdf5Error> {
         match self.take(mark.len())? == mark {
             true => Ok(()),
@@ -134,7 +136,7 @@ impl<'a> ByteReader<'a> {
         }
     }
 
-    /// Takes bytes up to the next multiple of so many, counted from a place.
+    /// Skips padding up to the next multiple of `to` bytes, counted from offset `from`.
     pub(super) fn align(&mut self, from: usize, to: usize) -> Result<(), Hdf5Error> {
         self.skip((to - (self.at - from) % to) % to)
     }

@@ -4,7 +4,7 @@ use super::bytes::{ByteReader, Hdf5Error};
 use crate::edit::numbers::ByteEdit;
 use std::ops::Range;
 
-/// A range of a file with a checksum, the four bytes after it.
+/// A checksummed range of a file. The checksum is stored in the four bytes after the range.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Checksum {
     /// The range that the checksum covers.
@@ -17,8 +17,8 @@ impl Checksum {
         self.covered.end..self.covered.end + 4
     }
 
-    /// Takes the checksum of what was taken since `start`, which has to be right. Fuzzers do not get beyond checksums by chance, so
-    /// they are spared.
+    /// Takes the checksum of the bytes from offset `start` to the reader's position. A wrong checksum is an error,
+    /// except in tests and under a fuzzer: random damage would almost never get past a checksum.
     pub(super) fn take(start: usize, bytes: &mut ByteReader<'_>) -> Result<Checksum, Hdf5Error> {
         let range = start..bytes.at();
         let own = bytes.within(range.clone()).take(range.len())?;
@@ -51,7 +51,7 @@ impl Checksum {
     }
 }
 
-/// Bob Jenkins' hash of 2006, of bytes and without an initial value.
+/// Returns Bob Jenkins' hash lookup3 (2006) of bytes, with the initial value 0.
 fn lookup3(bytes: &[u8]) -> u32 {
     let start = 0xDEAD_BEEF_u32.wrapping_add(bytes.len() as u32);
     let [mut a, mut b, mut c] = [start; 3];
@@ -68,7 +68,7 @@ fn lookup3(bytes: &[u8]) -> u32 {
         let [x, y, z] = words(head);
         (a, b, c) = (a.wrapping_add(x), b.wrapping_add(y), c.wrapping_add(z));
         for (turn, by) in [4, 6, 8, 16, 19, 4].into_iter().enumerate() {
-            // Each of the three in turn, with the one before it and the one after.
+            // Each word in turn, with the word before and the word after.
             let [one, other, next] = match turn % 3 {
                 0 => [&mut a, &mut c, &mut b],
                 1 => [&mut b, &mut a, &mut c],
@@ -99,7 +99,7 @@ fn lookup3(bytes: &[u8]) -> u32 {
 mod tests {
     use super::*;
 
-    /// The values that the author of the hash gives with it.
+    /// The values are from the self-test of Jenkins' source file lookup3.c.
     #[test]
     fn hashes_match_the_published_values_of_their_author() {
         assert_eq!(lookup3(b""), 0xDEAD_BEEF);

@@ -1,4 +1,4 @@
-//! The chunks of a dataset: where each stands, and which of the items it has.
+//! The grid of a dataset's chunks: the items of each chunk, and its byte range in the file.
 
 use super::btree::Tree;
 use super::bytes::Hdf5Error;
@@ -9,21 +9,25 @@ use super::filters::Filter;
 use super::fixed_array::{self, FixedArrayElement};
 use super::layout::Index;
 
-/// The division of a dataset into a grid of chunks. A dataset that is not chunked is one chunk.
+/// The division of a dataset into a grid of chunks. A compact or contiguous dataset counts as one chunk.
 #[derive(Clone, Debug)]
 pub(super) struct ChunkGrid {
-    /// How many items there are in each dimension, at least one of which there is, and how many in each of a chunk.
+    /// Shape of the dataset: its number of items in each dimension; `[1]` for a dataspace without dimensions.
     shape: Vec<usize>,
+    /// Shape of a chunk: its number of items in each dimension.
     lengths: Vec<usize>,
-    /// How many bytes an item has.
+    /// Size of an item in bytes.
     item: usize,
-    /// How many chunks there are in each dimension, and how many the index has room for.
+    /// Number of chunks in each dimension.
     counts: Vec<usize>,
+    /// Number of chunks in each dimension of the largest shape to which the dataset may grow.
     max_counts: Vec<usize>,
 }
 
 impl ChunkGrid {
-    /// None if its sizes are no numbers. `most` are the lengths that the dataset may grow to.
+    /// Makes the grid of a dataset of `shape`, which may grow to `most` items in each dimension. A chunk has `lengths`
+    /// items in each dimension, and an item has `item` bytes. `None` if a size in bytes or the number of chunks exceeds
+    /// `usize`.
     pub(super) fn new(
         shape: &[u64],
         most: &[u64],
@@ -45,29 +49,30 @@ impl ChunkGrid {
         let grid = ChunkGrid { shape, lengths, item, counts, max_counts };
         let product =
             |of: &[usize]| of.iter().try_fold(item.max(1), |all: usize, &n| all.checked_mul(n));
-        // Both sizes are numbers, and so is the number of chunks.
+        // The sizes of dataset and chunk and the number of chunks must fit in a `usize`.
         product(&grid.shape)?;
         product(&grid.lengths)?;
         product(&grid.counts)?;
         Some(grid)
     }
 
-    /// How many bytes all items have.
+    /// Returns the size of all items in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.shape.iter().product::<usize>() * self.item
     }
 
-    /// How many bytes a chunk has.
+    /// Returns the size of a chunk before filtering, in bytes. Chunks at the edge of the dataset have the full size
+    /// too.
     pub(super) fn chunk_bytes(&self) -> usize {
         self.lengths.iter().product::<usize>() * self.item
     }
 
-    /// How many chunks there are.
+    /// Returns the number of chunks.
     pub(super) fn count(&self) -> usize {
         self.counts.iter().product()
     }
 
-    /// The number of the chunk whose first item is this one; none if there is no such chunk.
+    /// Returns the number of the chunk whose first item has the indices `first`; `None` if no chunk starts there.
     fn number_of(&self, first: impl Iterator<Item = usize>) -> Option<usize> {
         let mut each = first.zip(&self.lengths).zip(&self.counts);
         each.try_fold(0, |number: usize, ((at, length), count)| {
@@ -76,7 +81,8 @@ impl ChunkGrid {
         })
     }
 
-    /// Returns the position of a chunk in the index of the chunks to which the dataset may grow.
+    /// Returns the position of a chunk in an index with room for all chunks of the largest shape; `None` above
+    /// `usize::MAX`.
     fn index_position(&self, number: usize) -> Option<usize> {
         let places = self.position(number);
         places
@@ -85,7 +91,7 @@ impl ChunkGrid {
             .try_fold(0, |all: usize, (place, room)| all.checked_mul(*room)?.checked_add(*place))
     }
 
-    /// Returns the number of chunks to which the dataset may grow.
+    /// Returns the number of chunks of the largest shape; `usize::MAX` if the dataset may grow without limit.
     pub(super) fn max_count(&self) -> usize {
         self.max_counts
             .iter()
@@ -102,11 +108,12 @@ impl ChunkGrid {
         places
     }
 
-    /// Hands on each run of bytes that stand side by side both among all items and in a chunk: where they start in each, and how many
-    /// there are.
+    /// Calls `take` for each run of bytes that is contiguous both in the dataset and in the chunk, with three values in
+    /// bytes: offset in the dataset, offset in the chunk, and length.
     pub(super) fn runs(&self, number: usize, mut take: impl FnMut(usize, usize, usize)) {
         let rank = self.shape.len();
-        // From this dimension on all items of the chunk are side by side.
+        // In dimensions after `last` the chunk spans the dataset, so items with equal indices up to `last` are
+        // contiguous.
         let whole = |d: &usize| self.lengths[*d] == self.shape[*d];
         let last = rank - 1 - (1..rank).rev().take_while(whole).count();
         let inner = self.shape[last + 1..].iter().product::<usize>() * self.item;
@@ -124,14 +131,17 @@ impl ChunkGrid {
             outer = outer * self.shape[last] + starts[last];
             own *= self.lengths[last];
             take(outer * inner, own * inner, extents[last] * inner);
-            // The next row.
+            // The next run: the last index that can grow is incremented, and later indices restart at 0.
             let Some(d) = (0..last).rev().find(|&d| at[d] + 1 < extents[d]) else { break };
             at[d] += 1;
             at[d + 1..].fill(0);
         }
     }
 
-    /// Finds the chunks of an index, in the order of their numbers. All have to be there.
+    /// Returns all chunks of an index, in the order of their numbers. `at` is the offset of the dataset's header.
+    ///
+    /// # Errors
+    /// If the index is damaged, if a chunk is missing or listed twice, or if the chunks do not fit in the file.
     pub(super) fn chunks(
         &self,
         raw: &FileBytes<'_>,
@@ -156,7 +166,7 @@ impl ChunkGrid {
                         for _ in &self.shape {
                             first.push(key.count(8)?);
                         }
-                        // Chunks may be left of when the dataset was larger.
+                        // Entries outside of the grid are leftovers of a dataset that was larger.
                         if let Some(number) = self.number_of(first.into_iter()) {
                             let entry = Some(Entry { address: place, size: Some(size), sum: None });
                             let range = address..address.saturating_add(length);
@@ -208,7 +218,8 @@ impl ChunkGrid {
         Ok(chunks)
     }
 
-    /// Chunks lie in the file, and no two of them are the same bytes.
+    /// Returns `None` if a chunk ends beyond the file, if an unfiltered chunk has a wrong size, or if all chunks
+    /// together are longer than the file.
     fn check(&self, raw: &FileBytes<'_>, chunks: &[Chunk], filters: &[Filter]) -> Option<()> {
         let mut left = raw.bytes.len();
         for chunk in chunks {

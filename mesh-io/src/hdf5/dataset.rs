@@ -1,4 +1,4 @@
-//! Datasets: what their headers say, and their numbers.
+//! Datasets: type, shape, layout and filters from the object header, and the bytes of the items.
 
 use super::bytes::{DAMAGED, Hdf5Error};
 use super::checksum::Checksum;
@@ -15,53 +15,53 @@ use crate::parallel::map_parts;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// A dataset, by its header.
+/// A dataset as its object header describes it.
 pub(crate) struct Dataset {
-    /// Where its header stands.
+    /// Offset of the object header in the file.
     pub(crate) at: usize,
     pub(crate) datatype: Datatype,
     space: Dataspace,
     layout: Layout,
     filters: Vec<Filter>,
-    /// The checksum that covers the layout.
+    /// Checksum that covers the layout message; `None` in object headers of version 1.
     sum: Option<Checksum>,
 }
 
-/// The items of a dataset, with their location in the file.
+/// The decoded items of a dataset, with the location of its chunks in the file.
 pub(crate) struct DatasetArray<'a> {
-    /// One item after another, the last dimension first.
+    /// Items one after another. The last dimension varies fastest.
     pub(crate) bytes: Cow<'a, [u8]>,
     pub(super) storage: DatasetStorage,
 }
 
-/// Location of the items of a dataset in the file: its chunks with their filters, or one chunk for items that are not
-/// chunked.
+/// Chunks of a dataset with their filters. A compact or contiguous dataset has a single chunk without filters.
 #[derive(Clone, Debug)]
 pub(super) struct DatasetStorage {
     /// The grid of chunks; `None` if the dataset has no items.
     pub(super) grid: Option<ChunkGrid>,
     pub(super) chunks: Vec<Chunk>,
     pub(super) filters: Vec<Filter>,
-    /// The checksum that covers the items themselves, where they stand in the header.
+    /// Checksum that covers the items of a compact dataset, which are part of the object header.
     pub(super) sum: Option<Checksum>,
 }
 
-/// Number of chunks that are decompressed at a time.
+/// Number of chunks that all threads decode before the items are copied to the array. The number limits the memory for
+/// decoded chunks.
 const CHUNKS_PER_BATCH: usize = 64;
 
 impl Dataset {
-    /// How many items there are in each dimension; none for a single item.
+    /// Returns the number of items in each dimension; empty for a single item.
     pub(crate) fn shape(&self) -> &[u64] {
         &self.space.shape
     }
 
-    /// Whether it may grow without limit in its first dimension.
+    /// Returns whether the dataset may grow without limit in its first dimension.
     pub(crate) fn grows(&self) -> bool {
         self.space.max_shape.first() == Some(&u64::MAX)
     }
 }
 
-/// A message of the object, wherever it stands, and the checksum that covers it.
+/// Reads the datatype message of an object. A shared message leads to the header of a named datatype.
 fn type_of(raw: &FileBytes<'_>, header: &Header, at: usize) -> Result<Datatype, Hdf5Error> {
     let damaged = || Hdf5Error::damaged(at, "the type of a dataset");
     let message = header.of(TYPE).next().ok_or_else(damaged)?;
@@ -69,7 +69,7 @@ fn type_of(raw: &FileBytes<'_>, header: &Header, at: usize) -> Result<Datatype, 
     if !message.is_shared {
         return Datatype::read(bytes.within(message.content.clone()));
     }
-    // A named type, in the header of an object of its own.
+    // A shared message holds the address of a named datatype's header.
     let (version, kind) = (bytes.byte()?, bytes.byte()?);
     bytes.skip(if version == 1 { 6 } else { 0 })?;
     if version == 3 && kind != 2 {
@@ -81,10 +81,10 @@ fn type_of(raw: &FileBytes<'_>, header: &Header, at: usize) -> Result<Datatype, 
 }
 
 impl<'a> Hdf5<'a> {
-    /// The dataset that an object is. None if it is none.
+    /// Returns the dataset of an object; `None` if the object is a group or a named datatype.
     ///
     /// # Errors
-    /// If its header is damaged, or of a kind that is not read.
+    /// If the object header is damaged, or if it uses an unsupported feature.
     pub(crate) fn dataset(&self, object: &Object) -> Result<Option<Dataset>, ReadError> {
         self.dataset_of(object).map_err(|fault| self.error(fault))
     }
@@ -110,7 +110,8 @@ impl<'a> Hdf5<'a> {
         Ok(Some(Dataset { at, datatype: number, space, layout, filters, sum }))
     }
 
-    /// The whole numbers of the dataset that an object is; none if it has none that can be read.
+    /// Returns the items of a dataset of integers. `None` if the object is anything else, or if the dataset cannot be
+    /// read.
     pub(crate) fn integers(&self, object: &Object) -> Option<Vec<i64>> {
         let dataset = self.dataset(object).ok()??;
         let Datatype::Whole(size, order) = dataset.datatype else { return None };
@@ -118,13 +119,13 @@ impl<'a> Hdf5<'a> {
         Some(array.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
     }
 
-    /// The items of a dataset.
+    /// Reads the items of a dataset.
     ///
     /// # Errors
-    /// If they do not all stand in the file, or are damaged.
+    /// If items were never written or lie beyond the file, or if a chunk is damaged.
     pub(crate) fn array(&self, dataset: &Dataset) -> Result<DatasetArray<'a>, ReadError> {
         let array = dataset.storage(&self.raw).and_then(|storage| {
-            // What stands in the header was read with it.
+            // The items of a compact dataset are part of the object header, which is claimed already.
             if !matches!(dataset.layout, Layout::Compact(_)) {
                 let ranges = storage.chunks.iter().map(|chunk| chunk.range.clone());
                 self.raw.claim_data(ranges, dataset.at);
@@ -137,7 +138,7 @@ impl<'a> Hdf5<'a> {
 }
 
 impl Dataset {
-    /// Finds where the items stand.
+    /// Returns the chunks of the dataset with their byte ranges in the file.
     fn storage(&self, raw: &FileBytes<'_>) -> Result<DatasetStorage, Hdf5Error> {
         let Dataset { space, filters, at, .. } = self;
         let damaged = || Hdf5Error::damaged(*at, "a dataset of the HDF5 file");
@@ -187,7 +188,8 @@ impl Dataset {
 }
 
 impl DatasetStorage {
-    /// The items, from the bytes of the file.
+    /// Returns the items, decoded from the bytes of the file, or borrowed if the file holds them as they are. Errors
+    /// report the offset `at` of the object header.
     fn items<'a>(&self, file: &'a [u8], at: usize) -> Result<Cow<'a, [u8]>, Hdf5Error> {
         let Some(grid) = &self.grid else { return Ok(Cow::default()) };
         if let Some(range) = self.whole() {
@@ -202,7 +204,7 @@ impl DatasetStorage {
         for (wave, chunks) in self.chunks.chunks(CHUNKS_PER_BATCH).enumerate() {
             let unpacked = map_parts(chunks, |_, chunk| self.chunk(file, chunk));
             if wave == 0 {
-                // Only once some of them are what they are said to be.
+                // Memory for all items is allocated only after the first chunks proved to be sound.
                 unpacked.iter().all(Option::is_some).then_some(()).ok_or_else(damaged)?;
                 all = vec![0; grid.bytes()];
             }
@@ -216,7 +218,8 @@ impl DatasetStorage {
         Ok(all.into())
     }
 
-    /// The range of the file that holds all items as they are; none if they are in several, compressed or under a checksum.
+    /// Returns the range of the file that holds all items as they are. `None` if the items are in several chunks,
+    /// filtered, or under a checksum.
     pub(super) fn whole(&self) -> Option<Range<usize>> {
         let length = self.grid.as_ref()?.bytes();
         match &self.chunks[..] {
@@ -227,22 +230,22 @@ impl DatasetStorage {
         }
     }
 
-    /// What a chunk holds; none if it is damaged.
+    /// Returns the decoded bytes of a chunk; `None` if the chunk is damaged.
     pub(super) fn chunk<'a>(&self, file: &'a [u8], chunk: &Chunk) -> Option<Cow<'a, [u8]>> {
         let length = self.grid.as_ref()?.chunk_bytes();
         let stored = file.get(chunk.range.clone())?;
-        // One that is not in chunks may be followed by bytes that are not its own.
         filters::unfiltered(&self.filters, chunk.mask, stored, length)
     }
 }
 
 impl DatasetArray<'_> {
-    /// Where in the file the first of its items stands, if all stand there as they are, one after another.
+    /// Returns the offset of the first item, if the file holds all items as they are; else `None`.
     pub(crate) fn start(&self) -> Option<usize> {
         self.storage.whole().map(|range| range.start)
     }
 
-    /// The byte of the file at or near which an item stands, for messages, given where it is among the bytes of all.
+    /// Returns the offset in the file of byte `at` of the items, for messages. If the items are filtered or in several
+    /// chunks, returns the start of the first chunk, or 0 without chunks.
     pub(crate) fn byte_of(&self, at: usize) -> usize {
         match (self.start(), self.storage.chunks.first()) {
             (Some(start), _) => start + at,

@@ -1,4 +1,4 @@
-//! What becomes of a file when numbers of its datasets change.
+//! Edits of a file that store new numbers in its datasets: chunks, index entries, checksums and the end address.
 
 use super::checksum::Checksum;
 use super::dataset::{DatasetArray, DatasetStorage};
@@ -9,26 +9,28 @@ use super::filters;
 use crate::edit::numbers::{ByteEdit, EncodedArrays};
 use std::ops::Range;
 
-/// Datasets whose numbers may change, one after another. A chunk that is compressed anew and is no longer than before takes the
-/// place it had, else it goes to the end of the file. Chunks of these datasets that lie at the end of the file already are put
-/// there one after another again, so that a file that is written in place many times does not grow without bound.
+/// Datasets of one file whose numbers may change, decoded and concatenated.
+///
+/// A changed chunk passes through its filters again. If its new length does not exceed the old one, the chunk keeps its
+/// offset; else it is appended to the file. Chunks that already form the end of the file are instead rewritten one
+/// after another, so repeated writes in place do not make the file grow without bound.
 pub(crate) struct Hdf5Arrays {
     parts: Vec<DatasetBytes>,
-    /// The numbers of all of them.
+    /// Decoded numbers of all datasets, in the order of `parts`.
     bytes: Vec<u8>,
     end: EndAddress,
-    /// How many bytes an address has.
+    /// Width of an address in bytes.
     address: usize,
 }
 
 struct DatasetBytes {
     storage: DatasetStorage,
-    /// Its bytes among those of all.
+    /// Range of the dataset in the numbers of all datasets.
     own: Range<usize>,
 }
 
 impl Hdf5Arrays {
-    /// Of some datasets of a file.
+    /// Concatenates decoded datasets of `file`, in the given order.
     pub(crate) fn new(file: &Hdf5<'_>, arrays: Vec<DatasetArray<'_>>) -> Hdf5Arrays {
         let mut bytes = Vec::new();
         let mut parts = Vec::new();
@@ -43,13 +45,14 @@ impl Hdf5Arrays {
         Hdf5Arrays { parts, bytes, end: file.raw.end.clone(), address: file.raw.widths.address }
     }
 
-    /// The byte of the file near which one of the bytes stands, for messages.
+    /// Returns an offset near byte `at` of the numbers, for messages: the start of the dataset's first chunk, or 0
+    /// without chunks.
     pub(crate) fn byte_of(&self, at: usize) -> usize {
         let part = self.parts.iter().find(|part| part.own.end > at);
         part.and_then(|part| part.storage.chunks.first()).map_or(0, |chunk| chunk.range.start)
     }
 
-    /// The numbers of all of them.
+    /// Returns the decoded numbers of all datasets, in the order in which the datasets were given.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -58,7 +61,7 @@ impl Hdf5Arrays {
         self.parts.iter().flat_map(|part| &part.storage.chunks)
     }
 
-    /// The checksums that may change with what they cover.
+    /// Returns the checksums that cover index entries, items of compact datasets, or the end address.
     fn sums(&self) -> impl Iterator<Item = &Checksum> {
         let entries = self.chunks().filter_map(|chunk| chunk.entry.as_ref()?.sum.as_ref());
         let items = self.parts.iter().filter_map(|part| part.storage.sum.as_ref());
@@ -69,8 +72,9 @@ impl Hdf5Arrays {
         (value as u64).to_le_bytes()[..self.address.min(8)].to_vec()
     }
 
-    /// Rewrites the chunks at the end of the file that are adjacent, from the first one on that changes its length.
-    /// New bytes come from `changed`. Does nothing if bytes were appended to the file before.
+    /// Rewrites the adjacent chunks at the end of the file, from the first chunk whose length changes. Takes the new
+    /// bytes from `changed`, adds the edits, and sets `end` to the new length of the file. Does nothing if bytes were
+    /// appended to the file before.
     fn rewrite_trailing_chunks(
         &self,
         changed: &mut [(&Chunk, Option<Vec<u8>>)],
@@ -81,7 +85,7 @@ impl Hdf5Arrays {
         if *end != file.len() {
             return;
         }
-        // Each chunk of the file with its index in `changed`.
+        // Indices into `changed`, ascending by the offsets of the chunks.
         let mut by_start: Vec<usize> = (0..changed.len()).collect();
         by_start.sort_unstable_by_key(|&at| changed[at].0.range.start);
         let index_of = |chunk: &Chunk| {
@@ -115,7 +119,8 @@ impl Hdf5Arrays {
         edits.push(ByteEdit { range: start..file.len(), bytes });
     }
 
-    /// What replaces a chunk that becomes these bytes; `end` is where the file ends so far.
+    /// Adds the edits that store `bytes` as the chunk: at the chunk's offset if the bytes fit, else at the end of the
+    /// file. `end` is the file's length including all previous edits.
     fn stored(
         &self,
         chunk: &Chunk,
@@ -134,7 +139,7 @@ impl Hdf5Arrays {
         edits.push(ByteEdit { range: place, bytes });
     }
 
-    /// Changes what the index says of a chunk that gets another place or length.
+    /// Adds the edits of the index entry of a chunk that moves to offset `start` or changes its stored length.
     fn update_index(&self, chunk: &Chunk, start: usize, length: usize, edits: &mut Vec<ByteEdit>) {
         let Chunk { range, entry, .. } = chunk;
         if let Some(Entry { address, size, .. }) = entry {
@@ -177,11 +182,11 @@ impl EncodedArrays for Hdf5Arrays {
                 grid.runs(chunk.number, |at, _, length| {
                     is_same &= old[at..at + length] == new[at..at + length];
                 });
-                // What was read once can be read again.
+                // The chunk was decoded when the file was read, so it can be decoded again.
                 let Some(mut bytes) = storage.chunk(file, chunk).filter(|_| !is_same) else {
                     continue;
                 };
-                // What a chunk at the edge has beside the items stays.
+                // Bytes of the chunk beyond the edge of the dataset stay as they were.
                 grid.runs(chunk.number, |at, to, length| {
                     bytes.to_mut()[to..to + length].copy_from_slice(&new[at..at + length]);
                 });

@@ -1,28 +1,29 @@
-//! Where a chunk of a dataset stands, and where the file says so.
+//! Chunks of a dataset, with the locations of their addresses and sizes in the metadata of the file.
 
 use super::checksum::Checksum;
 use std::ops::Range;
 
-/// Where a chunk stands, and where the file says so.
+/// The stored bytes of one chunk, with the location of its index entry.
 #[derive(Clone, Debug)]
 pub(super) struct Chunk {
-    /// Its place among all chunks of the dataset, the last dimension first.
+    /// Number of the chunk in the grid of the dataset, counted from 0. The last dimension varies fastest.
     pub(super) number: usize,
-    /// The bytes of it in the file.
+    /// Range of the file with the stored bytes, after all filters.
     pub(super) range: Range<usize>,
-    /// The filters that were left out.
+    /// Filters that were skipped for the chunk: bit n stands for filter n of the dataset.
     pub(super) mask: u32,
-    /// None where its place follows from that of others, or is the only one.
+    /// The index entry. `None` if the chunk never moves: the index is implicit, or the dataset is compact or
+    /// contiguous.
     pub(super) entry: Option<Entry>,
 }
 
-/// Where an index has the place of a chunk.
+/// Location of the address and the size of a chunk in the metadata of the file.
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
-    /// Where its address starts.
+    /// Offset of the address field in the file.
     pub(super) address: usize,
-    /// Where its size stands, if that is told.
+    /// Range of the size field. `None` if the index stores no sizes, as the dataset has no filters.
     pub(super) size: Option<Range<usize>>,
-    /// The checksum that covers these.
+    /// Checksum that covers both fields, if their block of metadata has one.
     pub(super) sum: Option<Checksum>,
 }

@@ -1,4 +1,4 @@
-//! A file as the tree of its groups and datasets.
+//! An HDF5 file as the tree of its groups and datasets.
 
 use super::bytes::{DAMAGED, Hdf5Error};
 use super::file_bytes::{FileBytes, SIGNATURE};
@@ -8,24 +8,25 @@ use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use std::collections::HashMap;
 
-/// A file with all its objects.
+/// An HDF5 file with the headers and links of all its objects.
 pub(crate) struct Hdf5<'a> {
     pub(crate) source: &'a Source,
     pub(super) raw: FileBytes<'a>,
-    /// The root group is the first.
+    /// All objects to which the links of the root group lead. The root group is the first.
     objects: Vec<Object>,
 }
 
-/// A group, a dataset or a named type.
+/// A group, a dataset or a named datatype.
 pub(crate) struct Object {
-    /// Where its header stands.
+    /// Offset of the object header in the file.
     pub(crate) at: usize,
     pub(super) header: Result<Header, Hdf5Error>,
     links: Vec<Link>,
 }
 
 impl<'a> Hdf5<'a> {
-    /// Reads the tree of a file. What is wrong with an object is told once it is asked for.
+    /// Reads the headers and links of all objects. The error of a damaged header is stored, and returned once the
+    /// object is used.
     pub(crate) fn open(source: &'a Source) -> Result<Hdf5<'a>, ReadError> {
         let told = |fault| error_of(source, fault);
         let (raw, root) = FileBytes::new(&source.bytes).map_err(told)?;
@@ -46,7 +47,7 @@ impl<'a> Hdf5<'a> {
                         })
                     });
                     links.push(Link { name, target });
-                    // Names that many links share are no program's work.
+                    // The names of all links exceed the file only if many links share a name, which no program writes.
                     match letters > source.bytes.len() {
                         true => Err(Hdf5Error::damaged(at, "a group with its names")),
                         false => Ok(()),
@@ -60,7 +61,7 @@ impl<'a> Hdf5<'a> {
         Ok(Hdf5 { source, raw, objects })
     }
 
-    /// The same of a file that may be of another format; none if it is.
+    /// Reads a file of HDF5 or any other format; `None` if the file does not start with the HDF5 signature.
     pub(crate) fn open_any(source: &'a Source) -> Result<Option<Hdf5<'a>>, ReadError> {
         match source.bytes.starts_with(SIGNATURE) {
             true => Hdf5::open(source).map(Some),
@@ -68,22 +69,22 @@ impl<'a> Hdf5<'a> {
         }
     }
 
-    /// The root group.
+    /// Returns the root group.
     pub(crate) fn root(&self) -> &Object {
         &self.objects[0]
     }
 
-    /// The object of a path, with a slash between names. None if there is none.
+    /// Returns the object at a path from the root group, with slashes between names; `None` if there is none.
     pub(crate) fn find(&self, path: &[u8]) -> Option<&Object> {
         self.follow(self.root(), path, &mut 32)
     }
 
-    /// What a group has by a name or a path; none if it has nothing so called.
+    /// Returns the object at a path from `group`, with slashes between names; `None` if there is none.
     pub(crate) fn child<'h>(&'h self, group: &'h Object, path: &[u8]) -> Option<&'h Object> {
         self.follow(group, path, &mut 32)
     }
 
-    /// What a group holds, by name, in the order of the file.
+    /// Returns the names and objects of a group, in the order of the file. Links without a readable target are skipped.
     pub(crate) fn children<'h>(
         &'h self,
         group: &'h Object,
@@ -110,10 +111,9 @@ impl<'a> Hdf5<'a> {
         self.objects.iter().find(|object| object.at == at)
     }
 
-    /// Follows a path over so many links to other paths.
+    /// Follows a path from an object, over at most `left` soft links.
     fn follow<'h>(&'h self, from: &'h Object, path: &[u8], left: &mut u32) -> Option<&'h Object> {
-        // Longer paths are no program's work.
-        /// Limit on the names of a path. Programs write no longer paths.
+        /// Limit on the names in a path. No program writes longer paths.
         const MAX_PATH_NAMES: usize = 64;
         let mut object = from;
         for (number, name) in path.split(|&byte| byte == b'/').enumerate() {
@@ -128,13 +128,13 @@ impl<'a> Hdf5<'a> {
         Some(object)
     }
 
-    /// The error of a fault in this file.
+    /// Makes the read error of damage or an unsupported feature, with the name of this file.
     #[cold]
     pub(crate) fn error(&self, fault: Hdf5Error) -> ReadError {
         error_of(self.source, fault)
     }
 
-    /// Opens a file, reads it, and checks that no two of the parts that were read share bytes.
+    /// Opens a file, calls `read`, and checks that the byte ranges of different objects do not overlap.
     pub(crate) fn read<T>(
         source: &Source,
         read: impl FnOnce(&Hdf5<'_>) -> Result<T, ReadError>,
@@ -145,7 +145,7 @@ impl<'a> Hdf5<'a> {
         Ok(found)
     }
 
-    /// Checks that no two of the things that were read share bytes, so that what is written to one changes no other.
+    /// Checks that the byte ranges of different objects do not overlap, so that an edit of one object changes no other.
     pub(crate) fn check_no_overlaps(&self) -> Result<(), ReadError> {
         match self.raw.first_overlap() {
             None => Ok(()),

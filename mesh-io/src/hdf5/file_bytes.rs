@@ -1,11 +1,11 @@
-//! The bytes of a file, and how much of them was read.
+//! The bytes of an HDF5 file, the ranges that were read, and a limit on reads of metadata.
 
 use super::bytes::{ByteReader, FieldWidths, Hdf5Error};
 use super::checksum::Checksum;
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
-/// What a file starts with.
+/// Signature of the superblock: the first eight bytes of a file.
 pub(crate) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1A\n";
 
 /// The bytes of an HDF5 file, with the contents of its superblock.
@@ -16,8 +16,8 @@ pub(super) struct FileBytes<'a> {
     /// Byte ranges read so far, each with the offset of the object that owns the range. Ranges of two owners must not
     /// overlap, or an edit of one would damage the other.
     claimed: RefCell<Vec<(Range<usize>, usize)>>,
-    /// How many bytes of metadata may still be read. Where parts of a file lead to each other in circles, they would be read
-    /// forever.
+    /// Remaining number of metadata bytes that may be read. Without this limit, structures that refer to each other in
+    /// a circle would be read forever.
     left: Cell<usize>,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct FileBytes<'a> {
 /// whose structures refer to each other in a circle.
 const MAX_REREADS: usize = 64;
 
-/// The end address in the superblock, which is the length of the file.
+/// Location of the end-of-file address in the superblock, which changes with the length of the file.
 #[derive(Clone, Debug)]
 pub(super) struct EndAddress {
     pub(super) range: Range<usize>,
@@ -33,7 +33,7 @@ pub(super) struct EndAddress {
 }
 
 impl<'a> FileBytes<'a> {
-    /// Reads the superblock. Returns where the header of the root group stands, too.
+    /// Reads the superblock. Returns the file with its field widths, and the offset of the root group's header.
     pub(super) fn new(bytes: &'a [u8]) -> Result<(FileBytes<'a>, usize), Hdf5Error> {
         let what = "the superblock of the HDF5 file";
         let none = FieldWidths { address: 8, length: 8 };
@@ -49,7 +49,7 @@ impl<'a> FileBytes<'a> {
         if ![widths.address, widths.length].iter().all(|width| [2, 4, 8].contains(width)) {
             return Err(own.damaged());
         }
-        // Those of the trees, and flags.
+        // A reserved byte, the ranks (K) of the B-trees, and the consistency flags.
         own.skip(match version {
             0 => 1 + 4 + 4,
             1 => 1 + 4 + 4 + 4,
@@ -65,7 +65,7 @@ impl<'a> FileBytes<'a> {
         let sum;
         let root;
         if version < 2 {
-            // What the driver needs, and the name of the root group.
+            // The address of the driver information, and the offset of the root group's name.
             own.skip(2 * widths.address)?;
             (root, sum) = (own.address()?, None);
         } else {
@@ -87,15 +87,15 @@ impl<'a> FileBytes<'a> {
         ))
     }
 
-    /// Stands at a place of the file.
+    /// Returns a reader at offset `at`. Errors call the metadata object `what`.
     pub(super) fn at(&self, at: usize, what: &'static str) -> ByteReader<'a> {
         ByteReader::new(self.bytes, at, self.widths, what)
     }
 
-    /// Notes that a range of metadata was read.
+    /// Records a range of metadata as read, owned by the object at its start, and counts its bytes.
     ///
     /// # Errors
-    /// If the range ends after the file, or if too much metadata was read.
+    /// If the range ends beyond the file, or if more metadata was read than the limit allows.
     pub(super) fn claim(&self, range: Range<usize>, of: &ByteReader<'_>) -> Result<(), Hdf5Error> {
         if range.end > self.bytes.len() {
             return Err(of.damaged());
@@ -119,12 +119,13 @@ impl<'a> FileBytes<'a> {
         Ok(())
     }
 
-    /// Notes that the data of the object at offset `object` were read.
+    /// Records byte ranges with the items of the dataset whose header is at offset `object`.
     pub(super) fn claim_data(&self, ranges: impl Iterator<Item = Range<usize>>, object: usize) {
         self.claimed.borrow_mut().extend(ranges.map(|range| (range, object)));
     }
 
-    /// Allows metadata to be read again, up to [`MAX_REREADS`] times, once the object tree is built.
+    /// Resets the limit on metadata reads to [`MAX_REREADS`] times the file length. Called once the object tree is
+    /// built.
     pub(super) fn allow_rereads(&self) {
         self.left.set(self.bytes.len().saturating_mul(MAX_REREADS));
     }

@@ -1,21 +1,22 @@
-//! What is done to a chunk before it is stored, and the way back.
+//! Filters of chunks: compression, shuffled bytes and checksums, in both directions.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use crate::compress::zlib;
 use std::borrow::Cow;
 
-/// A filter that chunks go through.
+/// A filter through which the chunks of a dataset pass before storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Filter {
-    /// Compression at this level.
+    /// Compression by zlib at a level from 0 to 9.
     Deflate(u32),
-    /// The first bytes of all items of this size, then the second ones, and so on.
+    /// Bytes of items of this size, regrouped: the bytes at index 0 of all items, then the bytes at index 1, and so on.
     Shuffle(usize),
-    /// A checksum at the end.
+    /// Fletcher32 checksum, in four bytes after the chunk.
     Fletcher,
 }
 
-/// Reads a filter message.
+/// Reads a filter pipeline message. Returns the filters in the order of the message, which is that of compression. An
+/// unsupported filter is an error.
 pub(super) fn read(mut bytes: ByteReader<'_>) -> Result<Vec<Filter>, Hdf5Error> {
     let version = bytes.byte()?;
     let count = bytes.byte()?;
@@ -57,7 +58,8 @@ fn name_of(filter: u64) -> String {
     name.to_owned()
 }
 
-/// What a stored chunk of so many bytes was. Filters whose bits are set in `mask` were left out. None if it is damaged.
+/// Returns the `length` bytes of a chunk before filtering. Filters whose bits are set in `mask` were skipped. `None` if
+/// the chunk is damaged.
 pub(super) fn unfiltered<'a>(
     filters: &[Filter],
     mask: u32,
@@ -68,7 +70,7 @@ pub(super) fn unfiltered<'a>(
     for filter in used(filters, mask).rev() {
         bytes = match filter {
             Filter::Deflate(_) => {
-                // Checksums may stand beside the items.
+                // Each checksum that was added before compression takes four bytes.
                 let most = length.checked_add(4 * filters.len())?;
                 if !zlib::can_expand(bytes.len(), length) {
                     return None;
@@ -80,7 +82,7 @@ pub(super) fn unfiltered<'a>(
                 let (own, sum) = bytes.split_last_chunk::<4>()?;
                 let stored = u32::from_le_bytes(*sum);
                 let found = fletcher(own);
-                // Versions before 1.6.3 have the bytes of both halves in the other order.
+                // HDF5 before version 1.6.3 swapped the two bytes of each half of the checksum.
                 let old = (found & 0x00FF_00FF) << 8 | (found >> 8) & 0x00FF_00FF;
                 if stored != found && stored != old {
                     return None;
@@ -92,7 +94,7 @@ pub(super) fn unfiltered<'a>(
     (bytes.len() == length).then_some(bytes)
 }
 
-/// What is stored of a chunk.
+/// Returns the bytes to be stored for a chunk. Filters whose bits are set in `mask` are skipped.
 pub(super) fn filtered(filters: &[Filter], mask: u32, chunk: Vec<u8>) -> Vec<u8> {
     used(filters, mask).fold(chunk, |mut bytes, filter| match filter {
         Filter::Deflate(level) => zlib::compress(&bytes, *level),
@@ -109,8 +111,8 @@ fn used(filters: &[Filter], mask: u32) -> impl DoubleEndedIterator<Item = &Filte
     numbered.filter(move |(number, _)| mask >> (number % 32) & 1 == 0).map(|(_, filter)| filter)
 }
 
-/// The bytes of items of this size, sorted by their places in the items, or the other way round. What is left at the end
-/// stays there.
+/// Returns the bytes of items of `size` bytes, grouped by their position in the item, or with `forth` false the
+/// inverse. Bytes after the last whole item keep their place.
 fn shuffled(bytes: &[u8], size: usize, forth: bool) -> Vec<u8> {
     let mut out = bytes.to_vec();
     let count = if size > 1 { bytes.len() / size } else { 0 };
@@ -126,12 +128,12 @@ fn shuffled(bytes: &[u8], size: usize, forth: bool) -> Vec<u8> {
     out
 }
 
-/// Fletcher's checksum of words of two bytes, the highest first.
+/// Returns the Fletcher32 checksum of big-endian 16-bit words. An odd last byte is the high byte of a word.
 fn fletcher(bytes: &[u8]) -> u32 {
     let fold = |sum: u32| (sum & 0xFFFF) + (sum >> 16);
     let (words, last) = bytes.as_chunks::<2>();
     let (mut a, mut b) = (0_u32, 0_u32);
-    // As many words as cannot overflow.
+    // The sums of 360 words do not overflow 32 bits.
     for part in words.chunks(360) {
         for word in part {
             a += u32::from(u16::from_be_bytes(*word));

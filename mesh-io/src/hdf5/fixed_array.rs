@@ -1,39 +1,42 @@
-//! Fixed arrays, in which datasets that do not grow have the places of their chunks.
+//! Fixed arrays: the index of chunks of a dataset whose dimensions have limits.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use super::checksum::Checksum;
 use super::entry::Entry;
 use super::file_bytes::FileBytes;
 
-/// The index of the chunks of a dataset that does not grow: a fixed array of addresses.
+/// Fixed array: an entry with an address for each chunk of the dataset's largest shape.
 pub(super) struct FixedArray {
-    /// How many there are, and how many stand together under a checksum.
+    /// Number of entries.
     count: usize,
+    /// Number of entries per page. An array with more entries than a page has a checksum for each page.
     page: usize,
-    /// How many bytes each has.
+    /// Width of an entry in bytes.
     size: usize,
+    /// Whether entries also hold the stored size and the filter mask, as in datasets with filters.
     has_sizes: bool,
-    /// Where the first slot stands; the pages follow each other.
+    /// Offset of the first entry. Pages are adjacent, each followed by its checksum.
     first: usize,
-    /// Which pages there are, a bit for each from the highest on; none if the slots are all on one.
+    /// Bitmap of the pages that were written, the highest bit first; `None` if a single page holds all entries.
     pages: Option<Vec<u8>>,
-    /// The checksum of all, if they are on one page.
+    /// Checksum of all entries; `None` if several pages have checksums of their own.
     sum: Option<Checksum>,
 }
 
-/// The entry of one chunk in a fixed array.
+/// Contents of an entry, with the locations of its fields.
 pub(super) struct FixedArrayElement {
     pub(super) address: usize,
-    /// How many bytes it has, if that is told.
+    /// Stored size of the chunk in bytes; `None` without filters.
     pub(super) length: Option<usize>,
-    /// The filters that were left out.
+    /// Mask of the filters that were skipped for the chunk.
     pub(super) mask: u32,
     pub(super) entry: Entry,
 }
 
 const OBJECT_NAME: &str = "the list of chunks of a dataset";
 
-/// Reads the array at an address, of at least so many slots.
+/// Reads the header of the fixed array at offset `at`, which must have at least `least` entries. `has_sizes` is whether
+/// the dataset has filters.
 pub(super) fn read(
     raw: &FileBytes<'_>,
     at: usize,
@@ -79,7 +82,7 @@ impl FixedArray {
         self.count
     }
 
-    /// What a slot says of its chunk; none if there is no chunk.
+    /// Returns the contents of entry `number`; `None` if the chunk was never written.
     pub(super) fn slot(
         &self,
         raw: &FileBytes<'_>,
@@ -94,7 +97,7 @@ impl FixedArray {
             }
             start += page * (self.page * self.size + 4);
             let own = self.page.min(self.count - page * self.page) * self.size;
-            // Once for each page.
+            // The checksum of a page is verified once, with the page's first entry.
             match place {
                 0 => sum = Some(self.page_sum(raw, &mut raw.at(start, OBJECT_NAME), own)?),
                 _ => sum = Some(Checksum { covered: start..start + own }),

@@ -1,4 +1,4 @@
-//! The links of a group, in each of the ways that files have them.
+//! Links of groups: link messages, symbol tables, and link messages in a fractal heap.
 
 use super::btree::{self, Tree};
 use super::bytes::{ByteReader, Hdf5Error};
@@ -6,18 +6,19 @@ use super::file_bytes::FileBytes;
 use super::header::{Header, LINK, LINK_INFO, SYMBOL_TABLE};
 use super::heap::FractalHeap;
 
-/// What a group calls one of its objects.
+/// A named link in a group.
 pub(super) struct Link {
     pub(super) name: Vec<u8>,
     pub(super) target: Target<usize>,
 }
 
-/// What a link leads to.
+/// Target of a link. `O` identifies an object: by the offset of its header, or by an index into [`Hdf5`](super::Hdf5)'s
+/// objects.
 pub(super) enum Target<O> {
     Object(O),
-    /// Another path.
+    /// A soft link: a path, from the root group if it starts with a slash, else from the group of the link.
     Soft(Vec<u8>),
-    /// An object of another file, which is not read.
+    /// A link to another file, or of a type that applications define. Such a link is not followed.
     OtherFile,
 }
 
@@ -31,10 +32,10 @@ impl<O> Target<O> {
     }
 }
 
-/// Called with the name and the target of each link of a group.
+/// Callback for the name and the target of each link.
 type LinkVisitor<'t> = dyn FnMut(Vec<u8>, Target<usize>) -> Result<(), Hdf5Error> + 't;
 
-/// Hands on the links of a group; none if the object is no group.
+/// Calls `take` for each link of a group. Objects other than groups have no links.
 pub(super) fn links(
     raw: &FileBytes<'_>,
     header: &Header,
@@ -60,7 +61,7 @@ pub(super) fn links(
         let (heap, tree) = (bytes.address()?, bytes.address()?);
         if let (Some(heap), Some(tree)) = (heap, tree) {
             let heap = FractalHeap::read(raw, heap)?;
-            // Each record is a hash of the name, and where the link is.
+            // A record holds a hash of the name in four bytes, then the heap ID of the link message.
             for record in btree::records(raw, tree)? {
                 let id = record.get(4..).unwrap_or_default();
                 link(heap.object(raw, id)?, take)?;
@@ -70,12 +71,12 @@ pub(super) fn links(
     Ok(())
 }
 
-/// A link message.
+/// Reads a link message, and calls `take` with its name and target.
 fn link(mut bytes: ByteReader<'_>, take: &mut LinkVisitor<'_>) -> Result<(), Hdf5Error> {
     bytes.expect(&[1])?;
     let flags = bytes.byte()?;
     let kind = if flags & 8 != 0 { bytes.byte()? } else { 0 };
-    // When it was made, and how its name is coded.
+    // The creation order, and the character set of the name.
     bytes.skip(if flags & 4 != 0 { 8 } else { 0 })?;
     bytes.skip(if flags & 16 != 0 { 1 } else { 0 })?;
     let length = bytes.count(1 << (flags & 3))?;
@@ -91,7 +92,7 @@ fn link(mut bytes: ByteReader<'_>, take: &mut LinkVisitor<'_>) -> Result<(), Hdf
     take(name, target)
 }
 
-/// The links of a group of the old style: a tree of tables, whose names stand in a heap.
+/// Reads the links of a symbol table: a B-tree of tables, with the names of links in a local heap.
 fn old_links(
     raw: &FileBytes<'_>,
     tree: usize,
@@ -127,7 +128,7 @@ fn old_links(
                 text.get(..memchr::memchr(0, text)?).map(<[u8]>::to_vec)
             };
             let target = match kind {
-                // The path of a soft link stands in the heap too.
+                // The path of a soft link is in the local heap too, at the offset in the scratch space.
                 2 => Target::Soft(text(scratch as usize).ok_or_else(|| object.damaged())?),
                 _ => Target::Object(address.ok_or_else(|| object.damaged())?),
             };

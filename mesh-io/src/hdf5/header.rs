@@ -1,29 +1,30 @@
-//! The header of an object: its messages, which tell what it is.
+//! Object headers: the messages that describe a group, a dataset or a named datatype.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use super::checksum::Checksum;
 use super::file_bytes::FileBytes;
 use std::ops::Range;
 
-/// A message of a header.
+/// A message of an object header.
 #[derive(Clone, Debug)]
 pub(super) struct Message {
     pub(super) kind: u16,
+    /// Range of the file with the content of the message.
     pub(super) content: Range<usize>,
-    /// Whether its content stands elsewhere, and it tells where.
+    /// Whether the content is the location of a message that several objects share.
     pub(super) is_shared: bool,
-    /// The checksum that covers it, by its place among those of the header.
+    /// Index in [`Header::sums`] of the checksum that covers the message; `None` in headers of version 1.
     pub(super) sum: Option<usize>,
 }
 
-/// The messages of an object and the checksums that cover them.
+/// The messages of an object, and the checksums of its header blocks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Header {
     pub(super) messages: Vec<Message>,
     pub(super) sums: Vec<Checksum>,
 }
 
-/// The kinds of messages.
+/// Types of messages, by their numbers in the format specification.
 pub(super) const SPACE: u16 = 1;
 pub(super) const LINK_INFO: u16 = 2;
 pub(super) const TYPE: u16 = 3;
@@ -36,7 +37,7 @@ pub(super) const SYMBOL_TABLE: u16 = 17;
 pub(super) const ATTRIBUTE_INFO: u16 = 21;
 
 impl Header {
-    /// Reads the header at this address.
+    /// Reads the object header at offset `at`, of version 1 or 2.
     pub(super) fn read(raw: &FileBytes<'_>, at: usize) -> Result<Header, Hdf5Error> {
         match raw.bytes.get(at..).is_some_and(|bytes| bytes.starts_with(b"OHDR")) {
             true => Self::second(raw, at),
@@ -44,12 +45,12 @@ impl Header {
         }
     }
 
-    /// Those of a kind.
+    /// Returns the messages of one type, in the order of the header.
     pub(super) fn of(&self, kind: u16) -> impl Iterator<Item = &Message> {
         self.messages.iter().filter(move |message| message.kind == kind)
     }
 
-    /// Version 1: messages that start at multiples of eight bytes, without checksums.
+    /// Reads a header of version 1, whose messages start at multiples of eight bytes and have no checksums.
     fn first(raw: &FileBytes<'_>, at: usize) -> Result<Header, Hdf5Error> {
         let mut bytes = raw.at(at, "the header of an object");
         bytes.expect(&[1])?;
@@ -60,7 +61,7 @@ impl Header {
         let mut blocks = vec![first];
         raw.claim(at..bytes.at(), &bytes)?;
         let mut header = Header::default();
-        // Blocks are found while others are read.
+        // Continuation messages add blocks to the list while blocks are read.
         let mut next = 0;
         while let Some(block) = blocks.get(next).cloned() {
             next += 1;
@@ -79,12 +80,12 @@ impl Header {
         Ok(header)
     }
 
-    /// Version 2: blocks with checksums.
+    /// Reads a header of version 2, whose blocks have a checksum each.
     fn second(raw: &FileBytes<'_>, at: usize) -> Result<Header, Hdf5Error> {
         let mut bytes = raw.at(at, "the header of an object");
         bytes.expect(b"OHDR\x02")?;
         let flags = bytes.byte()?;
-        // Times, and when attributes are stored elsewhere.
+        // Four time stamps, and the limits on the number of attributes in the header.
         bytes.skip(if flags & 32 != 0 { 16 } else { 0 })?;
         bytes.skip(if flags & 16 != 0 { 4 } else { 0 })?;
         let size = bytes.count(1 << (flags & 3))?;
@@ -96,14 +97,15 @@ impl Header {
         while let Some(Range { start, end }) = blocks.get(next).cloned() {
             next += 1;
             bytes.within(start..end).expect(b"OCHK")?;
-            // The last four bytes are the checksum.
+            // The last four bytes of the block are its checksum.
             let messages = start + 4..end.saturating_sub(4).max(start + 4);
             header.block(raw, start, messages, flags, &mut blocks)?;
         }
         Ok(header)
     }
 
-    /// Reads the messages of a block that starts at a place.
+    /// Reads `messages`, the messages of a block that starts at offset `start`, and verifies the checksum of the block.
+    /// Adds blocks of continuation messages to `blocks`.
     fn block(
         &mut self,
         raw: &FileBytes<'_>,
@@ -120,7 +122,7 @@ impl Header {
         let number = self.sums.len() - 1;
         let mut block = bytes.within(messages);
         let head = if flags & 4 != 0 { 6 } else { 4 };
-        // A few bytes at the end may be too few for a message.
+        // A gap at the end of a block is shorter than the head of a message.
         while block.left() >= head {
             let (kind, size) = (u16::from(block.byte()?), block.count(2)?);
             let is_shared = block.byte()? & 2 != 0;
@@ -134,7 +136,7 @@ impl Header {
         Ok(())
     }
 
-    /// Adds a message, or the block that goes on with them.
+    /// Adds a message to the header, or the block of a continuation message to `blocks`. Padding (type 0) is skipped.
     fn add(
         &mut self,
         message: Message,

@@ -1,31 +1,35 @@
-//! Fractal heaps, which hold the links and attributes of objects that have many.
+//! Fractal heaps, which hold the links or attributes of an object with many of them.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use super::file_bytes::FileBytes;
 
-/// A fractal heap, with the addresses of its blocks.
+/// A fractal heap with the addresses of its direct blocks.
 pub(super) struct FractalHeap {
+    /// Offset of the heap header in the file.
     at: usize,
-    /// How many bytes the place of an object has, and its length.
+    /// Widths in bytes of the offset and of the length in a heap ID.
     widths: [usize; 2],
-    /// The place of each block in the heap, its size, and its address, by place.
+    /// Direct blocks, ascending: offset in the heap, size in bytes, address in the file.
     blocks: Vec<(usize, usize, usize)>,
 }
 
-/// Sizes of the blocks in each row of a fractal heap.
+/// Doubling table of a fractal heap: the sizes and the number of blocks per row.
 struct DoublingTable {
+    /// Number of blocks in a row.
     width: usize,
+    /// Size in bytes of the blocks in the first two rows. Blocks of each later row are twice as large.
     first: usize,
-    /// The number of rows of blocks that hold objects; those after it hold tables of blocks.
+    /// Number of rows of direct blocks, which hold objects. Later rows hold indirect blocks, which are tables of
+    /// blocks.
     direct: usize,
-    /// How many bytes a place in the heap has.
+    /// Width in bytes of an offset in the heap.
     place: usize,
 }
 
 const OBJECT_NAME: &str = "a heap of the HDF5 file";
 
 impl FractalHeap {
-    /// Reads where the blocks of a heap stand.
+    /// Reads the heap header at offset `at`, and finds the direct blocks.
     pub(super) fn read(raw: &FileBytes<'_>, at: usize) -> Result<FractalHeap, Hdf5Error> {
         let mut bytes = raw.at(at, OBJECT_NAME);
         bytes.expect(b"FRHP\0")?;
@@ -34,7 +38,7 @@ impl FractalHeap {
         bytes.skip(1)?;
         let most = bytes.count(4)?;
         let (address, length) = (raw.widths.address, raw.widths.length);
-        // What is known of objects that are huge or tiny, and of free space.
+        // Fields about huge objects, free space and the numbers of objects.
         bytes.skip(2 * length + 2 * address + 8 * length)?;
         let width = bytes.count(2)?;
         let (first, largest) = (bytes.length()?, bytes.length()?);
@@ -59,7 +63,8 @@ impl FractalHeap {
         let place = bits.div_ceil(8);
         let table = DoublingTable { width, first, direct, place };
         let mut heap = FractalHeap { at, widths: [place, 0], blocks: Vec::new() };
-        // The length of an object has as many bytes as places in the largest block, or as the size of the largest object.
+        // A length in a heap ID is as wide as an offset in the largest direct block, or as the largest object's size if
+        // narrower.
         let of_place = largest.ilog2().div_ceil(8);
         heap.widths[1] = of_place.min(most.max(1).ilog2() / 8 + 1) as usize;
         match (root, rows) {
@@ -71,7 +76,7 @@ impl FractalHeap {
         Ok(heap)
     }
 
-    /// Reads tables of blocks, from the one with so many rows on.
+    /// Adds the direct blocks below the indirect block at address `root`, which has `rows` rows.
     fn indirect(
         &mut self,
         raw: &FileBytes<'_>,
@@ -95,7 +100,7 @@ impl FractalHeap {
                         match row < table.direct {
                             true => self.blocks.push((place, size, child)),
                             false => {
-                                // As many rows as make up the size of the block.
+                                // An indirect block has as many rows as cover its size.
                                 let rows = size.ilog2() + 1;
                                 let less = table.first.ilog2() + table.width.ilog2();
                                 let rows = rows.checked_sub(less).ok_or_else(|| bytes.damaged())?;
@@ -111,7 +116,7 @@ impl FractalHeap {
         Ok(())
     }
 
-    /// The object of an identifier.
+    /// Returns a reader of the object with a heap ID.
     pub(super) fn object<'a>(
         &self,
         raw: &FileBytes<'a>,
@@ -121,7 +126,7 @@ impl FractalHeap {
         let mut own = ByteReader::new(id, 0, raw.widths, OBJECT_NAME);
         match own.byte().map_err(|_| damaged())? >> 4 & 3 {
             0 => {}
-            // Objects beyond the size of a block, and some that stand in their identifiers.
+            // Huge objects are larger than a block, and tiny objects are stored in the heap ID itself.
             _ => return Err(Hdf5Error::unread(self.at, "a group with names longer than a block")),
         }
         let mut number = |width| own.count(width).map_err(|_| damaged());
@@ -139,7 +144,7 @@ impl FractalHeap {
 }
 
 impl DoublingTable {
-    /// The size of the blocks of a row.
+    /// Returns the size in bytes of the blocks in a row; `None` if it overflows.
     fn size(&self, row: usize) -> Option<usize> {
         self.first.checked_shl(row.saturating_sub(1) as u32).filter(|&size| size >= self.first)
     }

@@ -1,37 +1,36 @@
-//! How the items of a dataset are laid out in the file.
+//! Layout messages: whether a dataset is compact, contiguous or chunked, and the index of its chunks.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use std::ops::Range;
 
-/// Where the items of a dataset stand.
+/// Location of a dataset's items according to its layout message.
 #[derive(Clone, Debug)]
 pub(super) enum Layout {
-    /// In the header, in these bytes.
+    /// In the object header, in this range of the file.
     Compact(Range<usize>),
-    /// In one piece, from this address on; none if they were never written.
+    /// In one piece from this address on; `None` if the items were never written.
     Contiguous(Option<usize>),
-    /// In chunks of these lengths.
+    /// In chunks of `lengths` items in each dimension. `address` is the offset of the index, or of the first chunk if
+    /// the index is `Single` or `Implicit`; `None` if no chunk was written.
     Chunked { lengths: Vec<u64>, index: Index, address: Option<usize> },
 }
 
-/// How the places of chunks are told.
+/// Kind of index from chunk numbers to chunk addresses.
 #[derive(Clone, Debug)]
 pub(super) enum Index {
-    /// A tree of version 1.
+    /// B-tree of version 1, whose keys hold the size, the filter mask and the first item of each chunk.
     Tree,
-    /// There is one chunk alone. Its size and which filters were left out, if there are filters, and where the size stands; and where
-    /// its address stands.
-    Single {
-        stored: Option<(usize, u32, Range<usize>)>,
-        place: usize,
-    },
-    /// One chunk after another.
+    /// A single chunk. `stored` is present if filters apply: the chunk's size in bytes, the mask of skipped filters,
+    /// and the range of the file with the size. `place` is the offset of the chunk's address.
+    Single { stored: Option<(usize, u32, Range<usize>)>, place: usize },
+    /// No index: the chunks of the largest shape follow each other in the order of their numbers.
     Implicit,
+    /// Fixed array, with an entry for each chunk of the largest shape.
     FixedArray,
 }
 
 impl Layout {
-    /// Reads a layout message of a dataset of so many dimensions.
+    /// Reads a layout message of a dataset with `rank` dimensions.
     pub(super) fn read(mut bytes: ByteReader<'_>, rank: usize) -> Result<Layout, Hdf5Error> {
         match bytes.byte()? {
             1 | 2 => Self::first(bytes, rank),
@@ -54,7 +53,7 @@ impl Layout {
             }
             1 => Ok(Layout::Contiguous(address)),
             2 => {
-                // The last one is the size of an item.
+                // The last length is the size of an item in bytes.
                 lengths.pop();
                 Self::chunked(&bytes, lengths, rank, Index::Tree, address)
             }

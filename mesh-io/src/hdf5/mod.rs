@@ -1,7 +1,9 @@
-//! HDF5: what a file holds by its paths, where the numbers of a dataset stand, and what it becomes with other numbers.
+//! HDF5: the objects of a file by path, the chunks of a dataset with their byte ranges, and the edits that store new
+//! numbers in a dataset.
 //!
-//! The format: <https://docs.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>, versions 0 to 3 of the superblock. Groups of the
-//! old style and of the new; datasets in the header, in one piece or in chunks; of filters deflate, shuffle and Fletcher's checksum.
+//! The format: <https://docs.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>. Supported are superblocks of
+//! versions 0 to 3; groups as symbol tables and as link messages; compact, contiguous and chunked datasets; the filters
+//! deflate, shuffle and Fletcher32.
 
 mod attribute;
 mod btree;

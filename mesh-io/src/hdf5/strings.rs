@@ -1,11 +1,11 @@
-//! Texts of attributes that stand elsewhere in the file, in a collection of a global heap, as h5py and h5netcdf write them.
+//! Texts of variable length, which h5py and h5netcdf write for attributes: objects in a collection of a global heap.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use super::file_bytes::FileBytes;
 
 const OBJECT_NAME: &str = "a text in the HDF5 file";
 
-/// Follows the place of a text: its length, the address of a collection, and its number there. Returns the text.
+/// Returns the text to which the reference at `place` leads: a length, a collection's address, and an object's number.
 pub(super) fn read<'a>(
     raw: &FileBytes<'a>,
     mut place: ByteReader<'_>,
@@ -14,14 +14,14 @@ pub(super) fn read<'a>(
     let collection = place.address()?;
     let number = place.count(4)?;
     match collection {
-        // An empty text has no place.
+        // An empty text has no object in a collection.
         None | Some(0) if length == 0 => Ok(&[]),
         None => Err(place.damaged()),
         Some(at) => object(raw, at, number)?.take(length),
     }
 }
 
-/// Finds an object of a collection.
+/// Returns a reader of object `number` in the collection at offset `at`.
 fn object<'a>(raw: &FileBytes<'a>, at: usize, number: usize) -> Result<ByteReader<'a>, Hdf5Error> {
     let mut bytes = raw.at(at, OBJECT_NAME);
     bytes.expect(b"GCOL\x01")?;
@@ -36,7 +36,7 @@ fn object<'a>(raw: &FileBytes<'a>, at: usize, number: usize) -> Result<ByteReade
         let own = bytes.count(2)?;
         bytes.skip(2 + 4)?;
         let length = bytes.length()?;
-        // Number 0 is the free space, which ends the collection.
+        // Object 0 is the free space, which ends the collection.
         if own == 0 {
             return Err(bytes.damaged());
         }

@@ -1,4 +1,4 @@
-//! Files that other programs made, in `tests/formats/h5`.
+//! Tests with files of other programs, in `tests/formats/h5`.
 
 use super::{Datatype, Hdf5, Hdf5Arrays};
 use crate::disk::source::Source;
@@ -24,12 +24,12 @@ fn load(name: &str) -> Source {
     Source::load(&folder.join(name)).unwrap()
 }
 
-/// The paths of all datasets with real numbers, found group by group.
+/// Returns the paths of all datasets of real numbers, group by group.
 fn paths(file: &Hdf5<'_>) -> Vec<Vec<u8>> {
     let mut groups = vec![Vec::new()];
     let mut found = Vec::new();
     while let Some(group) = groups.pop() {
-        // A damaged name may have slashes.
+        // A damaged name may contain slashes, so its path may lead nowhere.
         let Some(object) = file.find(&group) else { continue };
         if groups.len() > 1000 {
             break;
@@ -53,7 +53,7 @@ fn array<'a>(file: &Hdf5<'a>, path: &[u8]) -> Option<(super::DatasetArray<'a>, D
     Some((file.array(&dataset).ok()?, dataset.datatype))
 }
 
-/// The file with all numbers of a dataset changed.
+/// Changes all numbers of a dataset. Returns the new file and the new numbers.
 fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     let file = Hdf5::open(source).unwrap();
     let (array, number) = array(&file, path).unwrap();
@@ -61,7 +61,7 @@ fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     let encoding = Hdf5Arrays::new(&file, vec![array]);
     let mut new = EncodedArrays::bytes(&encoding).to_vec();
     for (k, number) in new.chunks_exact_mut(size).enumerate() {
-        // Digits that no compressor makes shorter.
+        // Bytes that no compressor shortens, so that chunks outgrow their place.
         let digits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).to_le_bytes();
         number[..size - 2].copy_from_slice(&digits[..size - 2]);
     }
@@ -77,7 +77,8 @@ fn changed(source: &Source, path: &[u8]) -> (Vec<u8>, Vec<u8>) {
     (out, new)
 }
 
-/// Every dataset of real numbers, in every layout: it alone changes, and has the numbers it was given.
+/// Changes each dataset of real numbers, in every layout: the dataset must hold its new numbers, and all other datasets
+/// their old numbers.
 #[test]
 fn numbers_of_every_layout_are_replaced() {
     let mut replaced = 0;
@@ -130,7 +131,7 @@ fn a_cut_file_never_panics() {
     }
 }
 
-/// Reads all datasets of a file that may be damaged, and changes those that can be read.
+/// Reads all datasets of a file that may be damaged, and changes each readable dataset of less than 64 KiB.
 fn use_all(source: &Source) {
     let Ok(file) = Hdf5::open(source) else { return };
     for path in paths(&file) {
@@ -141,7 +142,8 @@ fn use_all(source: &Source) {
     let _ = file.check_no_overlaps();
 }
 
-/// Checksums are not looked at in these tests, so that damage gets beyond them.
+/// Damages random bytes of each file. In tests no checksum is verified, so damage reaches the code behind the
+/// checksums.
 #[test]
 fn damaged_files_never_panic() {
     let mut state = 7_u64;

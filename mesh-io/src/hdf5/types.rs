@@ -1,4 +1,4 @@
-//! What a dataset consists of: its type and its lengths.
+//! Datatype and dataspace messages: the type of a dataset's items, and the dataset's shape.
 
 use super::bytes::{ByteReader, Hdf5Error};
 use crate::binary::byte_order::ByteOrder;
@@ -7,19 +7,20 @@ use crate::precision::Precision;
 /// The type of the items of a dataset or attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Datatype {
-    /// Letters, so many to an item.
+    /// Text of this many bytes per item.
     Text(usize),
-    /// Whole numbers of so many bytes.
+    /// Integers of this many bytes, signed or unsigned.
     Whole(usize, ByteOrder),
+    /// IEEE floating-point numbers of single or double precision.
     Real(Precision, ByteOrder),
-    /// The address of a text of variable length, in this number of bytes.
+    /// Reference to a text of variable length. The reference itself has this many bytes.
     VariableText(usize),
-    /// Anything else of this size.
+    /// Any other type, whose items have this many bytes.
     Other(usize),
 }
 
 impl Datatype {
-    /// How many bytes an item has.
+    /// Returns the size of an item in bytes.
     pub(crate) fn bytes(self) -> usize {
         match self {
             Datatype::Text(bytes)
@@ -45,7 +46,8 @@ impl Datatype {
                 }
             }
             (1, 4 | 8) if bits & 64 == 0 => {
-                // The offset and the number of bits, the places of exponent and mantissa, and what is added to the exponent.
+                // Bit offset and precision, location and size of the exponent and of the mantissa, and the exponent
+                // bias.
                 let own = bytes.take(12)?;
                 let single = [0, 0, 32, 0, 23, 8, 0, 23, 127, 0, 0, 0];
                 let double = [0, 0, 64, 0, 52, 11, 0, 52, 255, 3, 0, 0];
@@ -65,11 +67,11 @@ impl Datatype {
 /// The dimensions of a dataset or attribute.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Dataspace {
-    /// One length for each dimension; none for a single item.
+    /// Number of items in each dimension; empty for a single item.
     pub(super) shape: Vec<u64>,
-    /// The largest length of each dimension; `u64::MAX` without a limit.
+    /// Largest number of items in each dimension; `u64::MAX` without a limit.
     pub(super) max_shape: Vec<u64>,
-    /// Whether there is no item at all.
+    /// Whether the dataspace is null: a dataset without any item.
     pub(super) is_null: bool,
 }
 
@@ -96,7 +98,7 @@ impl Dataspace {
         };
         let shape = lengths(&mut bytes)?;
         let unlimited = |most: &mut u64| {
-            // All bits set, in as many bytes as a length has.
+            // A dimension without a limit has all bits of its length field set.
             let has_limit = *most != u64::MAX >> (64 - 8 * widths.length.min(8));
             *most = if has_limit { *most } else { u64::MAX };
         };
@@ -105,7 +107,7 @@ impl Dataspace {
         Ok(Dataspace { shape, max_shape: most, is_null })
     }
 
-    /// How many items there are; none if that is no number.
+    /// Returns the number of items; `None` if the number exceeds `u64`.
     pub(super) fn count(&self) -> Option<u64> {
         match self.is_null {
             true => Some(0),
