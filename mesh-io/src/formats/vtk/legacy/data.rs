@@ -17,7 +17,7 @@ use std::borrow::Cow;
 /// Region arrays of a file, at most [`MAX_ARRAYS`].
 #[derive(Default)]
 pub(super) struct RegionArrays {
-    /// Name of each array, with the label of each region number.
+    /// Array names, with a function from region numbers to labels.
     pub(super) columns: Vec<RegionAttribute>,
     /// Region number of each cell, array by array. In text, and in binary arrays of real numbers, the number is the
     /// bits of a real number.
