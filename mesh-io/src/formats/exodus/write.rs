@@ -166,8 +166,8 @@ fn points(out: &mut NetCdfWriter, input: &WriterInput<'_>, width: usize) {
     out.variable("coor_names", &["num_dim", "len_name"], Vec::new(), names);
 }
 
-/// Assigns distinct numbers to groups. A group without a number, with a number above 32 bits, or with the number of an
-/// earlier group gets a new one.
+/// Assigns distinct 32-bit numbers to groups. The smallest unused numbers from 1 on replace missing, larger and
+/// repeated ones.
 fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
     let wanted: Vec<Option<i32>> =
         wanted.map(|own| own.and_then(|own| i32::try_from(own).ok())).collect();

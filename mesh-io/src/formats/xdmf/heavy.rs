@@ -30,7 +30,7 @@ pub(super) struct HeavyArray<'a> {
     pub(super) bytes: Cow<'a, [u8]>,
     /// Offset of the first number. `None` if the file does not store the numbers as a single range of plain bytes.
     pub(super) start: Option<usize>,
-    /// Offset of the first number (in a chunked dataset, of the first chunk), for messages.
+    /// Offset for messages, of the first number or chunk of the dataset.
     at: usize,
     /// The HDF5 dataset, until [`HeavyData::encoding`] takes it; `None` in a raw file.
     array: Option<DatasetArray<'a>>,
