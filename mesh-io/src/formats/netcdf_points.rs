@@ -27,7 +27,7 @@ impl RecordParts {
 }
 
 /// Reader of node and face data, which visits the node data. All parts and records of a compressed variable share an
-/// encoding, as an edit rewrites the whole variable.
+/// encoding, so that their edits are encoded together.
 pub(crate) struct PointData<'h, 'a> {
     header: &'h Header<'a>,
     /// HDF5 variables read so far that edits must encode again, by name: compressed ones, or those in several chunks.

@@ -64,8 +64,8 @@ impl Boundaries {
 }
 
 impl<'a> File<'a> {
-    /// Reads all boundary conditions. Visits the vertices of those on vertices as groups, and returns those on
-    /// elements. Boundary conditions without a readable list or range are left out.
+    /// Reads all boundary conditions. Boundary conditions on vertices are visited as groups, those on elements are
+    /// returned. Boundary conditions without a readable list or range are left out.
     pub(super) fn boundaries(&self, vertices: usize, visitor: &mut dyn MeshVisitor) -> Boundaries {
         let mut boundaries = Boundaries::default();
         let mut tag = 0;

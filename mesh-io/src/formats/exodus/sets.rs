@@ -95,8 +95,7 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Visits the names of all side sets or node sets, whose elements or nodes have the given dimension. Returns the
-    /// ids of the sets.
+    /// Visits the names of all side sets (dimension 1) or node sets (dimension 0). Returns the ids of the sets.
     fn named(
         &self,
         what: &str,

@@ -1,4 +1,4 @@
-//! Nodes of version 4.0 in binary. They form a block for each entity of the model; a tag of four bytes precedes the
+//! Nodes of version 4.0 in binary, in a block for each entity of the model. A tag of four bytes precedes the
 //! coordinates of each node.
 
 use super::binary4::{BLOCK_HEADER, counts};

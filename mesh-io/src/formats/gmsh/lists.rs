@@ -1,4 +1,4 @@
-//! Lists and blocks of a text section: counts, headers, and the layout of items on rows.
+//! Lists and blocks of a section: counts, block headers, and the layout of items on rows of text.
 
 use super::words::Progress;
 use crate::content::remark::Remark;

@@ -1,4 +1,4 @@
-//! Nodes of version 4.0 as text. They form a block for each entity of the model; the tag of each node precedes its
+//! Nodes of version 4.0 as text, in a block for each entity of the model. The tag of each node precedes its
 //! coordinates.
 
 use super::lists::{all_in_blocks, block_fits, by_rows, counts, each, head, note_parameters};

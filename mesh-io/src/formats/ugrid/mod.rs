@@ -1,8 +1,8 @@
 //! UGRID, the convention of coastal and atmospheric models, in netCDF's classic formats and in netCDF-4.
 //!
-//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. A mesh is a variable without
-//! numbers, whose attributes name the variables of coordinates and connectivity. Faces are triangles, quadrilaterals
-//! and larger polygons.
+//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. The mesh variable has no numbers;
+//! its attributes name the variables of coordinates and connectivity. Faces are triangles, quadrilaterals and larger
+//! polygons.
 
 mod centers;
 mod data;

@@ -30,7 +30,7 @@ pub(super) struct HeavyArray<'a> {
     pub(super) bytes: Cow<'a, [u8]>,
     /// Offset of the first number. `None` if the file does not store the numbers as a single range of plain bytes.
     pub(super) start: Option<usize>,
-    /// Offset for messages, of the first number or chunk of the dataset.
+    /// Offset that messages name: start of the numbers, or of the dataset's first chunk.
     at: usize,
     /// The HDF5 dataset, until [`HeavyData::encoding`] takes it; `None` in a raw file.
     array: Option<DatasetArray<'a>>,

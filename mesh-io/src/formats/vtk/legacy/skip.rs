@@ -94,8 +94,8 @@ pub(super) fn skip_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), Re
     Ok(())
 }
 
-/// Takes `count` binary items of `size` bytes, from the line after the cursor's on. All words of the cursor's line must
-/// have been read.
+/// Takes `count` binary items of `size` bytes, which start on the next line, or after the bytes taken last. All words
+/// of the cursor's line must have been read.
 pub(super) fn take<'a>(
     cursor: &mut Cursor<'a>,
     count: u64,
