@@ -33,7 +33,7 @@
 //! [`Quality`] compares a mesh before and after smoothing. The crate `mesh-io` reads and writes mesh files.
 //!
 //! The feature `gpu`, which is on by default, adds the GPU engine: `Gpu`, all else that computes on a device, and the
-//! dependency wgpu. Without the feature, all runs are on the CPU.
+//! dependency wgpu. Without the feature, every run uses the CPU engine.
 //!
 #![cfg_attr(feature = "gpu", doc = include_str!("gpu/application.md"))]
 //!
