@@ -99,7 +99,7 @@ pub enum MeshError {
     Target {
         /// The first vertex with an invalid target.
         vertex: usize,
-        /// Description of the defect, without subject.
+        /// Description of the vertex's defect.
         problem: &'static str,
     },
     /// A pole of the sphere is inside a triangle or on an edge, where longitude has no direction; see
@@ -144,7 +144,7 @@ pub enum MeshError {
 pub struct BadTriangle {
     /// Index of the triangle in [`Mesh::triangles`](crate::Mesh::triangles).
     pub triangle: usize,
-    /// Vertices of the triangle, in counter-clockwise order of the untangled mesh.
+    /// Vertices of the triangle, with the winding that is counter-clockwise once the triangle is no longer inverted.
     pub vertices: [u32; 3],
     /// Whether the triangle's area is zero. If false, the triangle is inverted.
     pub flat: bool,
@@ -270,8 +270,7 @@ pub enum GpuError {
         "a browser cannot wait in a blocking call: await a run, or use the call of this name that ends in _async"
     )]
     WouldBlock,
-    /// wgpu refused a call. Either this library has a bug, or the device was created with limits below the required
-    /// ones.
+    /// wgpu refused a call. Cause: a bug in this library, or a device created with limits below the required limits.
     #[error("the device refused: {0}")]
     Refused(String),
     /// A sweep made the objective infinite or NaN, which indicates a bug in this library or in the driver.

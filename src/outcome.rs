@@ -19,8 +19,8 @@ pub struct Outcome {
     pub stop: Stop,
     /// Number of sweeps done.
     pub sweeps: u32,
-    /// Number of sweeps at the start of the run that alternated between the metrics of the scheme. Later sweeps used
-    /// only the base metric, which corrections require.
+    /// Number of sweeps, from the first on, in which the scheme's metrics alternated. Later sweeps used only the base
+    /// metric, which corrections require.
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,

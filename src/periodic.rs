@@ -8,7 +8,7 @@ pub type Motion = [[f64; 3]; 2];
 pub struct Periodic {
     /// The pairs, in any order.
     pub pairs: Vec<[u32; 2]>,
-    /// The motion, if the caller knows it. If it is `None` or does not fit most pairs, the motion is computed from the
-    /// pairs.
+    /// The motion, if the caller knows it. `None`, or a motion that does not fit most pairs, is replaced by a motion
+    /// computed from the pairs.
     pub motion: Option<Motion>,
 }

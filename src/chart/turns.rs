@@ -80,7 +80,7 @@ struct Parts {
     /// Parent of each vertex in its part (a root is its own parent), and the turns of the vertex relative to its
     /// parent.
     toward: Vec<(u32, i32)>,
-    /// Whether a part closes around the globe, indexed by the least vertex of the part.
+    /// Flags of parts that close around the globe, indexed by the least vertex of each part.
     is_closed: Vec<bool>,
 }
 

@@ -33,7 +33,7 @@ impl Background {
         points.chain(triangles).collect()
     }
 
-    /// Makes a background with a copy of the mesh.
+    /// Makes a background; copies the mesh.
     ///
     /// # Errors
     /// [`MeshError::Infeasible`] if triangles are inverted or flat, or an error of [`Topology::new`].

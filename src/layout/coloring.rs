@@ -85,7 +85,7 @@ impl Coloring {
     }
 }
 
-/// Place of a fixed or boundary vertex, which [`Places`] does not number.
+/// Marker for vertices without a place: fixed and boundary vertices.
 const NOWHERE: u32 = u32::MAX;
 
 /// Places of the free vertices on a curve. A place is a 0-based index in `curve`.

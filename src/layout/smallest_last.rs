@@ -149,7 +149,7 @@ const FOUR: u32 = 4;
 /// Largest degree of a vertex that [`Graph::save_colors`] recolors.
 const MANY: usize = 64;
 
-/// Marker in place of the degree of a removed vertex, or of a vertex to be kept.
+/// Marker that replaces the degree of removed vertices and of vertices to be kept.
 const STAYS: u32 = u32::MAX;
 
 /// Vertices sorted by degree, the number of neighbors that are not yet removed.

@@ -13,8 +13,8 @@ pub struct Change {
     /// Factor by which the element size at a vertex grew or shrank, always 1 or more. The element size is the square
     /// root of the geometric mean of the areas of the triangles at the vertex.
     pub size: Spread,
-    /// Least altitude of all triangles before and after, in the unit of the points. The altitude bounds the time step
-    /// of explicit solvers.
+    /// Least triangle altitude before and after, in the unit of the points. The altitude bounds the time step of
+    /// explicit solvers.
     pub least_altitude: [f64; 2],
 }
 

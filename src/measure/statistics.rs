@@ -43,7 +43,7 @@ pub struct Statistics {
 /// The triangles over which statistics are taken.
 #[derive(Clone, Copy)]
 enum Selection<'s> {
-    /// Every triangle of a mesh that has the given number of triangles.
+    /// All triangles of the mesh; the field is their number.
     All(usize),
     /// Triangles with the listed indices.
     Of(&'s [u32]),

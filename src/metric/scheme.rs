@@ -12,7 +12,7 @@ impl Scheme {
     /// 256 evaluations.
     pub const LONGEST: u32 = 60;
 
-    /// Makes a scheme of the given metrics, `None` if there are none.
+    /// Makes a scheme of the given metrics, `None` for an empty list.
     pub fn new(metrics: impl Into<Vec<Metric>>) -> Option<Self> {
         let metrics = metrics.into();
         (!metrics.is_empty()).then_some(Self(metrics))

@@ -23,7 +23,7 @@ impl Smoothing {
         Self { sharpness, penalized: f64::INFINITY }
     }
 
-    /// Returns whether the penalty is part of the objective.
+    /// Returns whether the objective includes a penalty.
     #[inline(always)]
     pub(crate) fn is_penalized(&self) -> bool {
         self.penalized < f64::INFINITY

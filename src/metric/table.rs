@@ -36,7 +36,7 @@ macro_rules! metrics {
         pub(crate) enum OfInvariants { $($variant,)* $($rare,)* }
 
         impl Metric {
-            /// Every metric: first the metrics of the paper, in the order of its Table 1, then all others.
+            /// Every metric: first Park & Shontz's metrics in the order of their Table 1, then further metrics.
             pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)*];
 
             /// Returns the metric's row of properties, for this project's own tests and benchmarks.

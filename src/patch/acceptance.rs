@@ -51,7 +51,7 @@ pub(crate) struct Circle {
 }
 
 impl Circle {
-    /// Returns whether a point is in the circle or on its edge.
+    /// Returns whether a point is inside or on the circle.
     pub(crate) fn contains(self, at: DVec2) -> bool {
         !self.radius.is_finite() || at.distance(self.center) <= self.radius
     }

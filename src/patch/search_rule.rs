@@ -1,7 +1,8 @@
 //! The constants of all line searches for the step of a vertex, side by side.
 
-/// Parameters of a line search: the lengths of trials, and the condition by which a trial is accepted. Each kind of
-/// visit has a constant of this type below. Callers replace fields that depend on a metric or a sweep.
+/// Parameters of a line search: the lengths of trials, and the condition by which a trial is accepted. Sweeps, sliding,
+/// bounds, worst triangles and untangling have a constant each. Callers replace fields that depend on a metric or a
+/// sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SearchRule {
     /// Length of the first trial; 1 is a full Newton step.

@@ -35,8 +35,8 @@ impl Topology<'_> {
         others_at_edge(self.triangles(), self.stars(), side.triangle, self.ends(side)).next()
     }
 
-    /// Returns the boundary as closed loops of vertices, with the mesh on the left. A loop lists each vertex once; its
-    /// last edge runs from the last vertex to the first.
+    /// Returns the boundary as closed loops of vertices, with the mesh on the left. A loop lists each vertex once; a
+    /// closing edge leads from the last vertex to the first.
     ///
     /// Loops are counter-clockwise around the outside and clockwise around a hole, so the sign of [`signed_area`] tells
     /// them apart. No loop passes a vertex twice: parts or holes that touch in a vertex have separate loops. Each loop

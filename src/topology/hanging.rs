@@ -29,9 +29,9 @@ impl Topology<'_> {
     /// Returns the hanging nodes of a mesh with its vertices at `points`, ascending, each once. Hanging nodes never
     /// move in a run: the edges on both sides are boundary edges, so every hanging node is on the boundary.
     ///
-    /// The ends of the long edge must be vertices of both sides. Sides whose ends are separate vertices at equal
-    /// places, as slits and interfaces have them on purpose, have no hanging nodes. A node may lie off the edge by up
-    /// to a thousandth of the edge length. The cost is about that of one pass over the triangles.
+    /// Both sides must share the end vertices of the long edge. Sides whose ends are separate vertices at equal places,
+    /// as slits and interfaces have them on purpose, have no hanging nodes. A node may lie off the edge by up to a
+    /// thousandth of the edge length. The search costs about one pass over the triangles.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
