@@ -49,8 +49,9 @@ impl Background {
 
     /// Locates points, on all cores. Returns a spot per point, in the order of `places`.
     ///
-    /// # Errors [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the
-    /// index of the point in `places`.
+    /// # Errors
+    /// [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the index of the
+    /// point in `places`.
     pub(crate) fn find(&self, places: &[[f64; 2]]) -> Result<Vec<Spot>, MeshError> {
         if let Some(vertex) = places.iter().position(|place| !place.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });

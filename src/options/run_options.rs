@@ -35,9 +35,9 @@ pub struct Options {
     pub keep_altitude: bool,
     /// Measure by which the worst triangles are improved after the last sweep, on the CPU; `None` for no improvement.
     /// Free vertices around the worst thousandth of the triangles (at least 10, at most 1000 triangles) move so that
-    /// the worst triangle around them becomes less bad. No triangle becomes worse than the worst one was. f may rise a
-    /// little. If the worst triangle of the mesh becomes no better, no vertex moves. Only for whole runs, and not after
-    /// a canceled run.
+    /// the worst triangle around them becomes less bad, and no other triangle around them becomes worse than that
+    /// triangle was. f may rise a little. If the worst triangle of the mesh becomes no better, no vertex moves. Only
+    /// for whole runs, and not after a canceled run.
     pub improve_worst: Option<WorstBy>,
     /// Precision of the file or buffer that will store the result. The run rounds all positions, fixed vertices
     /// included, to this precision before the final checks: the rounded mesh has no inverted triangle and a lower f.
@@ -86,7 +86,8 @@ impl Options {
     /// are those of these options and `more` features of the run. [`Run`](crate::Run) checks its options too, together
     /// with the features of its smoother.
     ///
-    /// # Errors [`OptionError::OutOfRange`] for the first number outside its range. If all ranges hold,
+    /// # Errors
+    /// [`OptionError::OutOfRange`] for the first number outside its range. If all ranges hold,
     /// [`OptionError::Conflict`] for the first conflict in table order.
     pub fn check_with(&self, more: &[Feature]) -> Result<(), OptionError> {
         self.check_ranges()?;

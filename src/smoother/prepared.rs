@@ -106,8 +106,9 @@ impl<'a> Smoother<'a> {
     /// Lets vertices slide along the boundary and other curves in further runs; `None` turns sliding off. Returns the
     /// number of vertices that may slide.
     ///
-    /// # Errors [`SmoothError::Option`] if a number is outside its range, [`MeshError::IndexOutOfRange`] if a listed
-    /// vertex does not exist.
+    /// # Errors
+    /// [`SmoothError::Option`] if a number is outside its range, [`MeshError::IndexOutOfRange`] if a listed vertex does
+    /// not exist.
     pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
         (self.slide, self.sliding, self.pairs) = (None, None, [0; 2]);
         let Some(slide) = slide else { return Ok(0) };

@@ -86,7 +86,8 @@ impl<'r> Run<'r> {
 
     /// Smooths the mesh, and blocks until the run ends.
     ///
-    /// # Errors [`SmoothError::Option`] if a number is outside its range or two features are mutually exclusive;
+    /// # Errors
+    /// [`SmoothError::Option`] if a number is outside its range or two features are mutually exclusive;
     /// [`SmoothError::Mesh`] with [`MeshError::NothingFree`](crate::MeshError::NothingFree) if no vertex is free and no
     /// vertex slides; [`SmoothError::Checkpoint`] if the checkpoint belongs to another run; [`SmoothError::Gpu`] if the
     /// device fails and the policy does not let the run fall back to the CPU. If the mesh does not fit the device, the

@@ -120,8 +120,9 @@ impl TargetField {
 
     /// Returns the targets at the given points, and a summary of the points outside of the field's background.
     ///
-    /// # Errors [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the
-    /// index of the point in `places`.
+    /// # Errors
+    /// [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the index of the
+    /// point in `places`.
     pub fn at(&self, places: &[[f64; 2]]) -> Result<(Targets, Outside), MeshError> {
         let spots = self.find(places)?;
         let map = |i: usize| {
