@@ -117,7 +117,7 @@ pub enum MeshError {
         /// Number of points that were given.
         given: usize,
     },
-    /// The length of a data list does not match the number of vertices.
+    /// The length of a data list is not the number of vertices times the values per vertex.
     #[error("{given} numbers are given where the vertices of the mesh need {expected}")]
     ValueCount {
         /// Number of values that are needed: the values per vertex, times the number of vertices.
