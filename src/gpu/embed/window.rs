@@ -1,4 +1,4 @@
-//! The part of an application's buffer that a kernel can access.
+//! Checks and binds the range of an application's buffer that a kernel accesses.
 
 use wgpu::BufferUsages as Usage;
 
@@ -15,7 +15,8 @@ pub(crate) struct Window<'a> {
 }
 
 impl<'a> Window<'a> {
-    /// Checks that `bytes` bytes from `offset` on can be bound as storage.
+    /// Checks that `bytes` bytes from `offset` on can be bound as storage. Returns [`GpuError::Buffer`] if the usage,
+    /// the alignment or the size is wrong, and [`GpuError::Limit`] if the range exceeds a binding.
     pub(crate) fn new(
         gpu: &Gpu,
         buffer: &'a wgpu::Buffer,

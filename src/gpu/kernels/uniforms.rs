@@ -193,7 +193,7 @@ shared_structs! {
         members: u32,
         /// Offset in `values` of the root r(v) of each free vertex. The edge between v and w weighs r(v) r(w).
         roots: u32,
-        /// Offset in `values` of the reciprocal diagonal of the level's matrix.
+        /// Offset in `values` of the reciprocal diagonal of the free vertices' matrix.
         diagonal: u32,
         /// Offset in `vectors` of the square roots of the present stiffness, to which the levels are fitted; NONE for
         /// levels that are not fitted.
