@@ -53,8 +53,8 @@ pub struct DeviceMesh {
 }
 
 impl DeviceMesh {
-    /// Prepares a mesh and uploads it. Blocks the thread for about half a microsecond per vertex, mostly to color the
-    /// vertices on the CPU.
+    /// Prepares a mesh and uploads it. Blocks the thread for about half a microsecond per vertex (on two cores), mostly
+    /// to color the vertices on the CPU.
     ///
     /// Sweeps never move the vertices of [`Mesh::fixed`] and of the boundary. [`pin`](Self::pin) holds further vertices
     /// for a while.
