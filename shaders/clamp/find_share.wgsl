@@ -69,7 +69,7 @@ fn least_root(constant: f32, slope: f32, bend: f32) -> f32 {
     if discriminant < 0.0 {
         return 2.0;
     }
-    // Both roots by the formula that does not cancel.
+    // Both roots, by the formula without cancellation.
     let half = -0.5 * (slope + select(-1.0, 1.0, slope >= 0.0) * sqrt(discriminant));
     let first = half / bend;
     let second = constant / half;

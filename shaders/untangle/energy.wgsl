@@ -34,7 +34,7 @@ fn energy_derivatives(t: Corner, epsilon: f32) -> Derivatives {
     let s = PER_DOUBLED_AREA * squared_length_sum(t);
     let ds = (-2.0 * PER_DOUBLED_AREA) * (t.a + t.b);
     let ss = 4.0 * PER_DOUBLED_AREA * inverse;
-    // The slopes of d are divided by the root, as areas may be far from one.
+    // Division by the root keeps slopes in range for tiny and huge areas.
     let dd = vec2(t.a.y - t.b.y, t.b.x - t.a.x) * per_root;
     let mixed = -inverse * ds;
     let second = 2.0 * s * per_root;

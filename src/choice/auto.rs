@@ -12,7 +12,7 @@ impl Backend {
     /// Returns the backend on which a run is estimated to end soonest, and the reason. The estimate includes the start
     /// of the GPU's driver.
     ///
-    /// If the mesh is too small for any GPU to be faster, no driver is started. A software adapter is never chosen;
+    /// Meshes that are too small for any GPU to be faster start no driver. A software adapter is never chosen;
     /// `Gpu::open` opens one. The estimate assumes slow GPUs, as no graphics card has been measured yet:
     /// `gpu-smooth bench` measures which backend is fastest. Without the feature `gpu`, the CPU is chosen.
     pub fn auto(size: MeshSize, options: &Options) -> (Self, Reason) {
@@ -22,8 +22,8 @@ impl Backend {
     /// Chooses like [`auto`](Self::auto), but calls `try_drivers` before a driver is started in this process, as a
     /// driver that crashes would end the process. `try_drivers` may start the drivers in a separate process and watch
     /// that process, as the `gpu-smooth` command does. If `try_drivers` returns an error, such as
-    /// [`GpuError::Crashed`], the CPU is chosen. If the mesh is too small for any GPU to be faster, `try_drivers` is
-    /// not called.
+    /// [`GpuError::Crashed`], the CPU is chosen. `try_drivers` is not called for meshes that are too small for any GPU
+    /// to be faster.
     pub fn auto_tried(
         size: MeshSize,
         options: &Options,

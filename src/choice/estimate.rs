@@ -59,7 +59,7 @@ pub(super) fn choose(
     }
 }
 
-/// The adapter kind with the highest assumed speed. If a mesh is too small for this kind, no driver is started.
+/// The adapter kind with the highest assumed speed. Meshes too small for this kind start no driver.
 const FASTEST: &str = "discrete GPU";
 
 /// Returns the vertex updates per second of an adapter of this kind ([`AdapterSummary::kind`]). `None` for a software
@@ -80,8 +80,8 @@ fn expected_sweeps(options: &Options) -> f64 {
     usual.min(options.max_sweeps.into())
 }
 
-/// Returns the least number of vertices, rounded up to two digits, for which an adapter of this kind finishes before
-/// the CPU. `None` if the CPU always finishes first.
+/// Returns the mesh size in vertices, rounded up to two digits, from which an adapter of this kind finishes before the
+/// CPU. `None` if the CPU always finishes first.
 fn pays_from(kind: &str, cores: usize, sweeps: f64) -> Option<usize> {
     let cpu_updates = CPU_UPDATES_PER_CORE * cores as f64;
     let saved = sweeps * (1.0 / cpu_updates - 1.0 / gpu_updates(kind)?);

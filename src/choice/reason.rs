@@ -1,4 +1,4 @@
-//! The reason for the choice of a backend.
+//! Reasons for the choice of a backend.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub enum Reason {
     CpuIsFaster {
         /// The GPU that was found. `None` if no driver was started, as the mesh is too small for any GPU to be faster.
         adapter: Option<AdapterSummary>,
-        /// Least number of vertices for which the GPU is estimated to be faster; `None` if the CPU always is.
+        /// Mesh size, in vertices, from which the GPU is estimated to be faster; `None` if the CPU always is.
         pays_from: Option<usize>,
     },
     /// Every adapter is a software driver, and the CPU engine is faster than these.
@@ -24,7 +24,7 @@ pub enum Reason {
     GpuFails(GpuError),
     /// The GPU is estimated to finish before the CPU.
     GpuIsFaster {
-        /// Least number of vertices for which the GPU is estimated to be faster.
+        /// Mesh size, in vertices, from which the GPU is estimated to be faster.
         pays_from: usize,
     },
 }

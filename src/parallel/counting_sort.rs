@@ -6,11 +6,10 @@ use rayon::prelude::*;
 
 use crate::parallel::tasks::{collect, for_each, for_each_part, map_parts};
 
-/// Limit of the parts that are counted in parallel. Each part has a counter for every group, so parts take memory.
+/// Upper limit of parts counted in parallel. Memory grows with the parts, as each has a counter per group.
 const MOST_PARTS: usize = 8;
 
-/// Items that are worth a part: one part is made for each started multiple of this number, as fewer items are not worth
-/// another thread.
+/// Items that justify a part of their own. Fewer items are not worth another thread.
 const SMALL: usize = 1 << 14;
 
 /// Numbers in groups, ascending within each group.
@@ -60,9 +59,9 @@ impl Groups {
     }
 }
 
-/// Groups the numbers below `items` by their keys without storing the groups. Calls `put(number, index)` on any thread
-/// for each index in the grouped list that a number gets. Returns the offset of each group in this list, and behind
-/// these offsets the length of the list.
+/// Groups the numbers below `items` by their keys without storing the groups. Calls `put(number, index)`, from any
+/// thread, with each of a number's indices in the grouped list. Returns the offset of each group in this list, and
+/// behind these offsets the length of the list.
 pub(crate) fn place<const N: usize>(
     items: usize,
     groups: usize,
@@ -97,7 +96,7 @@ pub(crate) fn place<const N: usize>(
     start
 }
 
-/// Splits a slice into parts of the given lengths.
+/// Splits a mutable slice into parts of the given lengths.
 pub(crate) fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
     let take = |length| slice.split_off_mut(..length).unwrap_or_default();
     lengths.map(take).collect()

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-/// Calls `task` for every number below `count`, on all threads and in any order.
+/// Calls `task` in parallel for the numbers below `count`, in any order.
 pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
     if count <= 1 {
         // Handing a task to another thread and waiting for it takes longer than most tasks.
@@ -38,7 +38,7 @@ pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
     });
 }
 
-/// Calls `task(index, part)` for each part, on all threads. Parts may be owned values or mutable borrows.
+/// Calls `task(index, part)` for the parts in parallel. Parts may be owned values or mutable borrows.
 pub(crate) fn for_each_part<P: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) + Sync,
@@ -58,7 +58,7 @@ fn for_each_of<P: Send>(parts: Vec<P>, task: &(dyn Fn(usize, P) + Sync)) {
     });
 }
 
-/// Calls `task` as [`for_each_part`] does. Returns the results in the order of the parts.
+/// Calls `task` as [`for_each_part`] does. Results keep the order of the parts.
 pub(crate) fn map_parts<P: Send, T: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) -> T + Sync,

@@ -34,8 +34,8 @@ pub fn adapters() -> Vec<AdapterSummary> {
     ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
 }
 
-/// Returns the adapters that can compute, fastest kind first. OpenGL's adapters are the same devices again behind a
-/// driver that is slow to start, so they are listed only if no other backend has an adapter.
+/// Returns the adapters that can compute, fastest kind first. Adapters of OpenGL are listed only if other backends have
+/// none: they repeat the same devices, and their driver starts slowly.
 pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
     blocking(async { Ok::<_, GpuError>(ranked_adapters_async().await) }).unwrap_or_default()
 }

@@ -22,8 +22,7 @@ impl Gpu {
     /// second float of each. The kernels guard against reordered sums; this call runs one tiny kernel and compares its
     /// results with exact ones. [`Gpu::open`] and the runs of [`Smoother`](crate::Smoother) check the arithmetic
     /// themselves. An application that encodes sweeps on its own device ([`Gpu::new`]) should call this method when it
-    /// starts. Any thread may call this method, which polls the device and blocks until all work submitted so far is
-    /// done.
+    /// starts. Any thread may call this method, which polls the device and blocks until all submitted work is done.
     ///
     /// # Errors
     /// [`GpuError::Arithmetic`] if digits are lost, or another [`GpuError`] if the device fails.

@@ -39,10 +39,10 @@ impl Gpu {
     ///
     /// Any thread may call this function. Nothing is submitted. A poll of the device, which may run callbacks of the
     /// application, checks that the queue belongs to the device; only for a foreign queue polls are repeated, for some
-    /// 30 ms. While the device is busy, and in a browser, the queue is not checked: wgpu reports a foreign queue later,
-    /// to the error handler of the queue's own device.
+    /// 30 ms. A busy device, or a browser, cannot check the queue: wgpu reports a foreign queue later, to the error
+    /// handler of the queue's own device.
     ///
-    /// The arithmetic of the adapter is not checked here, as the check waits for the device. Runs of
+    /// `new` does not check the adapter's arithmetic, as the check waits for the device. Runs of
     /// [`Smoother`](crate::Smoother) check the arithmetic first. An application that encodes sweeps itself calls
     /// [`Gpu::check_arithmetic`] or [`Gpu::check_arithmetic_async`].
     ///
@@ -95,7 +95,7 @@ impl Gpu {
     /// Compiles the kernels that an application's frames need with these options: sweeps, objectives, import and export
     /// of vertices, moves, masks, untangling and, if [`Options::is_multilevel`], corrections. Afterwards neither
     /// [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer waits for the compiler; a frame never does.
-    /// Kernels that are compiled already take no time. Any thread may call this method.
+    /// Kernels compiled earlier take no time. Any thread may call this method.
     ///
     /// Meshes with targets, and meshes so large that their positions take two bindings, need other kernels, which are
     /// not included.

@@ -1,4 +1,4 @@
-//! Limits that the device of an application must have, and their check.
+//! Checks and raises the limits of an application's device.
 
 use crate::error::GpuError;
 use crate::gpu::kernels::dispatch::FOLD;

@@ -28,8 +28,8 @@ pub(crate) async fn read<T: Pod>(
     submit_and_copy::<T>(gpu, |_| {}, source, count)?.values(waiting).await
 }
 
-/// Submits what `encode` encodes and, in the same submission, a copy of `count` values from the start of `source`. A
-/// separate submission for the copy would make some drivers block the thread until the work before it is done.
+/// Submits what `encode` encodes and, in the same submission, a copy of `count` values from the start of `source`. With
+/// a separate submission for the copy, some drivers would block the thread until the earlier work is done.
 pub(crate) fn submit_and_copy<'g, T: Pod>(
     gpu: &'g Gpu,
     encode: impl FnOnce(&mut wgpu::CommandEncoder),
@@ -60,7 +60,7 @@ pub(crate) fn submit_and_copy<'g, T: Pod>(
     Ok(Copied { gpu, staging, arrival, values: PhantomData })
 }
 
-/// Values on their way to the host, in a staging buffer that is being mapped.
+/// Values in a staging buffer whose mapping to the host is under way.
 pub(crate) struct Copied<'g, T> {
     gpu: &'g Gpu,
     staging: wgpu::Buffer,

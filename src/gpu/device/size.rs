@@ -19,7 +19,7 @@ enum Spread {
     No,
     /// Two bindings, with half of the buffer in each.
     Two,
-    /// A dispatch for each part of the buffer. Parts have at least `least` bytes.
+    /// One dispatch per part of the buffer, with at least `least` bytes in each part.
     Parts { least: u64 },
 }
 
@@ -63,10 +63,10 @@ impl MeshSize {
         ]
     }
 
-    /// Returns an upper bound on the device memory for the mesh and its sweeps, in bytes: about 84 for each vertex. A
-    /// scheme whose last state is always its best takes 68 for each vertex. Corrections from coarser levels are not
-    /// included: some 60 bytes more for each vertex, and another 40 while corrections are accelerated. If the sum
-    /// overflows, returns [`u64::MAX`].
+    /// Returns an upper bound on the device memory for the mesh and its sweeps, in bytes: about 84 for each vertex.
+    /// Schemes that lower f in every sweep take 68 bytes per vertex. Corrections from coarser levels are not included:
+    /// some 60 bytes more for each vertex, and another 40 while corrections are accelerated. If the sum overflows,
+    /// returns [`u64::MAX`].
     pub fn bytes(self) -> u64 {
         self.needs(Positions::Whole).iter().fold(0, |sum, need| sum.saturating_add(need.bytes))
     }
@@ -135,8 +135,8 @@ pub(crate) fn check_limit(
     Ok(())
 }
 
-/// Returns the number of invocations for a sum over the triangles: few enough that one workgroup can complete the sum,
-/// enough to fill a large GPU.
+/// Returns how many invocations sum over the triangles: few enough that one workgroup can complete the sum, enough to
+/// fill a large GPU.
 pub(crate) fn objective_invocations(triangles: usize) -> u32 {
     u32::try_from(triangles).unwrap_or(u32::MAX).div_ceil(2048).clamp(1, 1024) * WORKGROUP
 }

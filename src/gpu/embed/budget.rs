@@ -1,4 +1,4 @@
-//! Chooses the number of sweeps for which a frame has time.
+//! Fits the sweeps of a frame into a time budget.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -12,7 +12,7 @@ use crate::gpu::embed::Readback;
 use crate::gpu::scope::scoped;
 
 /// A limit of the device's time for sweeps in each frame. Times of earlier frames determine the number of sweeps in the
-/// next frame: at least one, and at most twice the sweeps of the last measured frame.
+/// next frame: at least one sweep, and at most double the last measured frame's sweeps.
 ///
 /// With [`timed_by`](Self::timed_by), the device measures, and
 /// [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within) chooses, encodes and records. If the device has no
@@ -44,9 +44,9 @@ pub struct Budget {
     pub(crate) clock: Option<Clock>,
 }
 
-/// Number of measured frames that the estimate uses. A sweep is expected to take as long as in the second slowest
-/// frame. This rule prefers too few sweeps to a late frame, but ignores a single late frame, such as the first frame of
-/// a driver.
+/// Number of measured frames that the estimate uses. The estimate is the time per sweep in the second slowest frame.
+/// This rule prefers too few sweeps to a late frame, but ignores a single late frame, such as the first frame of a
+/// driver.
 const FRAMES: usize = 6;
 /// Default limit of the sweeps in a frame; see [`Budget::at_most`].
 const MOST: u32 = 100;
@@ -85,8 +85,8 @@ impl Budget {
         fit.min(self.last.saturating_mul(2)).clamp(1, self.most)
     }
 
-    /// Records a measurement: `sweeps` sweeps took `time`. A frame with 0 sweeps is ignored. Do not record sweeps
-    /// [`until_converged`](crate::gpu::Sweeps::until_converged) that had already ended, as they take no time.
+    /// Records a measurement: `sweeps` sweeps took `time`. A frame with 0 sweeps is ignored. Exclude sweeps
+    /// [`until_converged`](crate::gpu::Sweeps::until_converged) that had already ended, as such sweeps take no time.
     pub fn record(&mut self, sweeps: u32, time: Duration) {
         if sweeps == 0 {
             return;

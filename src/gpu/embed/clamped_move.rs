@@ -149,9 +149,9 @@ impl BoundMove {
     ///
     /// The move follows the rules of [`Topology::move_clamped`](crate::Topology::move_clamped), with the positions on
     /// the device. No triangle inverts or becomes flat, neither on the way nor at the end. No triangle gets an inverse
-    /// mean ratio above the bound, except for rounding (a relative error of 5e-7 times the ratio). A triangle that
-    /// already exceeds the bound does not get worse. Triangles that are inverted beforehand, or have an inverse mean
-    /// ratio above 500,000, do not limit the move. If a target is not finite, its vertex stays.
+    /// mean ratio above the bound, except for rounding (a relative error of 5e-7 times the ratio). Triangles already
+    /// beyond the bound never deteriorate. Triangles that are inverted beforehand, or have an inverse mean ratio above
+    /// 500,000, do not limit the move. If a target is not finite, its vertex stays.
     pub fn encode_move(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth move");
         passes.run(&self.find_share, None, |pass| {

@@ -70,7 +70,7 @@ impl BoundVertices {
     /// read from the application's vertex buffer.
     ///
     /// A vertex whose floats equal its position as exported has not been moved by the application, and keeps its full
-    /// precision. Any other floats count as a move by the application. A position that is not finite is ignored, and
+    /// precision. Different floats count as a move by the application. Infinite and NaN coordinates are ignored, and
     /// the vertex stays in place.
     ///
     /// If several buffers show one mesh, import only the buffer of the last export. If two buffers take turns, each

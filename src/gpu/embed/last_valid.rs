@@ -24,7 +24,7 @@ use crate::run::Plan;
 pub struct LastValid {
     evaluation: Dispatches,
     restore: Pipeline,
-    /// The bind group and vertex count of each part of the mesh.
+    /// Bind group and number of vertices, per part of the mesh.
     parts: Vec<(wgpu::BindGroup, u32)>,
 }
 
@@ -60,7 +60,7 @@ impl LastValid {
     /// first save, to the uploaded positions. All vertices return, including the boundary. Encode this call before the
     /// export, so that the application's vertices return too.
     ///
-    /// The call takes the time of an evaluation of f and a copy of the positions, less than a sweep.
+    /// On the device, evaluating f and copying positions take less time than a sweep.
     pub fn encode_restore_last_valid(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth restore");
         self.evaluation.encode_evaluation(&mut passes);

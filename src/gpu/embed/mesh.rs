@@ -42,10 +42,10 @@ pub struct DeviceMesh {
     pub(crate) gpu: Gpu,
     pub(crate) problem: Problem,
     pub(crate) buffers: MeshBuffers,
-    /// The application's number of each vertex on the device.
+    /// Map from device numbers to the application's vertex indices.
     numbers: wgpu::Buffer,
     vertex_count: usize,
-    /// Device number of each vertex of the application; [`NONE`] for a vertex of no triangle.
+    /// Map from the application's vertex indices to device numbers; [`NONE`] for a vertex of no triangle.
     places: Vec<u32>,
     pins: Pins,
     /// Vertices that no triangle uses, with their points. They are not on the device.
@@ -77,8 +77,8 @@ impl DeviceMesh {
         Self::made(gpu, mesh, Some(targets))
     }
 
-    /// Uploads a mesh with the layout and the targets of `prepared`, a problem of the same mesh. Only a mesh with fixed
-    /// vertices, or without free ones, is laid out again.
+    /// Uploads a mesh with the layout and the targets of `prepared`, a problem of the same mesh. Only meshes with fixed
+    /// vertices or without free vertices are laid out again.
     pub(crate) fn of(gpu: &Gpu, mesh: &Mesh, prepared: &Problem) -> Result<Self, SmoothError> {
         if mesh.fixed.is_empty() && prepared.free_count() > 0 {
             return Self::uploaded(gpu, mesh, prepared.clone());
@@ -128,28 +128,28 @@ impl DeviceMesh {
     /// the device.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if the mesh does not have a vertex; then nothing is pinned. [`SmoothError::Gpu`]
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then nothing is pinned. [`SmoothError::Gpu`]
     /// if the device fails.
     pub fn pin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
         self.change_pins(Change::Pin(&places))
     }
 
-    /// Unpins vertices in submissions after the call. The vertices of [`Mesh::fixed`] and of the boundary still stay in
-    /// place. If a mask holds an unpinned vertex, encode [`BoundMask::encode_mask`] again.
+    /// Unpins vertices in submissions after the call. Vertices of [`Mesh::fixed`] and of the boundary stay fixed. If a
+    /// mask holds an unpinned vertex, encode [`BoundMask::encode_mask`] again.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if the mesh does not have a vertex; then nothing is unpinned.
-    /// [`SmoothError::Gpu`] if the device fails.
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then nothing is unpinned. [`SmoothError::Gpu`]
+    /// if the device fails.
     pub fn unpin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
         self.change_pins(Change::Unpin(&places))
     }
 
-    /// Pins exactly the given vertices in submissions after the call, and unpins all others.
+    /// Pins exactly the given vertices and unpins all others, in later submissions.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if the mesh does not have a vertex; then no pin changes. [`SmoothError::Gpu`] if
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then no pin changes. [`SmoothError::Gpu`] if
     /// the device fails.
     pub fn set_pinned(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
@@ -245,8 +245,8 @@ impl DeviceMesh {
     }
 
     /// Returns the application's vertex indices of a triangle, counter-clockwise, given the triangle's device number
-    /// ([`ObjectiveValues::worst_triangle`](crate::gpu::ObjectiveValues::worst_triangle)). `None` if the mesh has no
-    /// such triangle.
+    /// ([`ObjectiveValues::worst_triangle`](crate::gpu::ObjectiveValues::worst_triangle)). `None` for a number out of
+    /// range.
     pub fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
         let corners = self.problem.triangles().get(triangle as usize)?;
         Some(corners.map(|v| self.problem.vertices()[v as usize]))
@@ -260,16 +260,16 @@ impl DeviceMesh {
     /// Call this method when a drag begins. During the drag, the application writes targets and encodes
     /// [`BoundMove::encode_move`] in each frame. Fixed vertices and vertices of the boundary can be moved too. Unless a
     /// free vertex is [pinned](Self::pin), sweeps move it away from its target. If a vertex is listed twice, the last
-    /// target counts. A vertex of no triangle is not on the device and never moves.
+    /// target counts. Vertices without triangles stay, as the device does not store them.
     ///
     /// No triangle gets an inverse mean ratio above `worst_imr`. A bound of about 8 leaves room for sweeps and for the
     /// rounding of vertex buffers. Bounds above 100,000 count as 100,000, up to which single precision reliably
     /// distinguishes a triangle from a flat one.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if the mesh does not have a vertex. [`MeshError::BoundNotANumber`] if `worst_imr`
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex. [`MeshError::BoundNotANumber`] if `worst_imr`
     /// is NaN. [`GpuError::Buffer`] if a buffer is too small, misaligned, was created without `STORAGE`, or belongs to
-    /// another device; if one buffer is given for targets and share; or if origin or scale are out of range.
+    /// another device; if targets and share use one buffer; or if the origin or the scale is invalid.
     /// [`GpuError::Limit`] if the triangles around the vertices, at 24 bytes each, exceed the device's
     /// `max_storage_buffer_binding_size`.
     pub fn bind_move(

@@ -51,11 +51,10 @@ pub struct ObjectiveValues {
     pub worst_imr: f32,
     /// The code of the reason why sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) have ended, so that
     /// further sweeps do nothing: 1 for [`Stop::Reached`], 2 for [`Stop::Converged`], 3 for [`Stop::Stalled`] and 4 for
-    /// [`Stop::MaxSweeps`]; see [`stop`](Self::stop). 0 while the sweeps go on, and always for sweeps without a stop
-    /// rule.
+    /// [`Stop::MaxSweeps`]; see [`stop`](Self::stop). 0 while sweeps continue, and for sweeps without a stop rule.
     pub stop: u32,
-    /// Number of sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) since their start, or since a change
-    /// of the mesh restarted them. Always 0 for sweeps without a stop rule.
+    /// Number of sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) since their start or the last restart
+    /// by a change of the mesh. Always 0 for sweeps without a stop rule.
     pub sweeps: u32,
     /// Device number of the triangle with the largest inverse mean ratio. While there are inverted or flat triangles,
     /// the number of an inverted or flat triangle. [`DeviceMesh::corners`](crate::gpu::DeviceMesh::corners) returns its
@@ -81,8 +80,8 @@ impl ObjectiveValues {
     }
 }
 
-/// Objectives bound to a range of an application's buffer: the objectives of the mesh on the device, or of the vertices
-/// as drawn. Created by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
+/// Objectives bound to a range of an application's buffer: objectives of the device's mesh or of the vertices as drawn.
+/// Created by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
 /// [`DeviceMesh::bind_drawn_objective`](crate::gpu::DeviceMesh::bind_drawn_objective); usable after the sweeps and the
 /// mesh are dropped.
 pub struct BoundObjective {

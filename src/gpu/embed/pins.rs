@@ -1,4 +1,4 @@
-//! Vertices that are held in place, by the host or by a mask of the application.
+//! Holds vertices in place, by pins of the host and by masks of the application.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -34,7 +34,7 @@ const PINNED: u8 = 2;
 /// Largest difference between the numbers of two changed vertices that are sent in one write, together with the
 /// unchanged vertices between them. A separate write would cost more.
 const GAP: u32 = 64;
-/// Limit of the ranges that one call sends. If changes are in more ranges, a single range spans all of them.
+/// Upper limit of ranges per call. If changes are in more ranges, a single range spans all of them.
 const WRITES: usize = 32;
 
 impl Pins {
@@ -194,8 +194,8 @@ impl BoundMask {
 
     /// Encodes the holding of vertices by the mask. When the command buffer runs, vertices with a nonzero word in the
     /// mask become held, and all other vertices are released. Vertices of [`Mesh::fixed`](crate::Mesh::fixed) and
-    /// [pinned](crate::gpu::DeviceMesh::pin) vertices stay held. Encode this call again after the mask has changed, and
-    /// after a vertex that the mask holds was unpinned.
+    /// [pinned](crate::gpu::DeviceMesh::pin) vertices stay held. Encode this call again after any change of the mask,
+    /// and after unpinning a masked vertex.
     pub fn encode_mask(&self, encoder: &mut impl Encoder) {
         encoder.passes("gpu-smooth mask").run(&self.pipeline, None, |pass| {
             pass.set_bind_group(0, &self.bind_group, &[]);

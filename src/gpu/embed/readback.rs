@@ -11,7 +11,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
 use crate::gpu::scope::{scoped, scoped_to_buffer};
 
-/// Limit of the copies in flight. While the device is so far behind, no further copy is encoded.
+/// Limit of the copies in flight. A device with three copies in flight gets no further copy.
 const COPIES: usize = 3;
 
 /// Reads a range of a buffer in each frame: [`ObjectiveValues`](crate::gpu::ObjectiveValues), the vertices or the share
@@ -86,8 +86,8 @@ impl<T: Pod> Readback<T> {
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the buffer is too small, was created without `COPY_SRC`, or belongs to another device;
-    /// if the offset or the size of all values in bytes is not a multiple of 4; or if the size is 0. Another
-    /// [`GpuError`] if the device fails.
+    /// if the offset or the total size, in bytes, is no multiple of 4; or if the size is 0. Another [`GpuError`] if the
+    /// device fails.
     pub fn new(
         gpu: &Gpu,
         buffer: &wgpu::Buffer,
@@ -132,8 +132,8 @@ impl<T: Pod> Readback<T> {
     }
 
     /// Encodes a copy of the bound range at this point of the command buffer. Does nothing while three copies are in
-    /// flight, because the device is behind or nobody polls the device. A copy in an encoder that is never submitted
-    /// has no effect.
+    /// flight, because the device is behind or nobody polls the device. Copies in encoders that are never submitted
+    /// have no effect.
     pub fn encode_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
         self.encode(encoder);
     }

@@ -53,8 +53,8 @@ impl Sweeps {
     /// With [`Method::Multilevel`], a correction from coarser levels follows each sweep. A large mesh is near its
     /// optimum after a dozen corrected sweeps instead of hundreds of sweeps alone. A corrected sweep takes as long as
     /// some four sweeps alone. The default, [`Method::Auto`], means sweeps alone here. A correction is taken only if it
-    /// lowers f, inverts no triangle and breaks no shape guard; while a triangle is inverted, there are no corrections.
-    /// EDGE and alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)).
+    /// lowers f, inverts no triangle and breaks no shape guard; corrections pause while a triangle is inverted. EDGE
+    /// and alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)).
     ///
     /// The call builds the levels for the positions on the device, after it has waited for all submitted work and read
     /// back a number for each free vertex. The aggregates of the levels never change; each correction fits the levels
@@ -64,7 +64,7 @@ impl Sweeps {
     /// this function.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] if an option is out of its range, or if the scheme has no corrections in frames;
+    /// [`SmoothError::Option`] for an option out of range, or a scheme whose corrections cannot be encoded;
     /// [`GpuError::Limit`] if the levels are too large for the device; [`GpuError::WouldBlock`] for corrected sweeps in
     /// a browser, where [`new_async`](Self::new_async) makes them; another [`GpuError`] if the device fails.
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
@@ -89,8 +89,8 @@ impl Sweeps {
     /// The sweeps begin again when the application changes the mesh: an import finds a moved vertex, a move has a share
     /// above 0, [`UntanglingSweeps`](crate::gpu::UntanglingSweeps) find inverted triangles,
     /// [`LastValid`](crate::gpu::LastValid) restores positions, a mask or the pins change, or
-    /// [`restart`](Self::restart) is called. Sweeps of another scheme on the mesh do not count as a change. An
-    /// evaluation of f follows each sweep and takes about a sixth of the sweep's time.
+    /// [`restart`](Self::restart) is called. Sweeps of other schemes on the mesh are no change. An evaluation of f
+    /// follows each sweep and takes about a sixth of the sweep's time.
     ///
     /// # Errors
     /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
@@ -154,8 +154,8 @@ impl Sweeps {
         self.encode(&mut encoder.passes(LABEL), sweeps);
     }
 
-    /// Encodes as many sweeps as a budget has time for, and returns the number of sweeps. The device measures the
-    /// sweeps if the budget is [timed](Budget::timed_by) by the device. Never waits.
+    /// Encodes sweeps for the time of a budget, and returns how many. The device measures the sweeps if the budget is
+    /// [timed](Budget::timed_by) by the device. Never waits.
     pub fn encode_within(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -201,8 +201,8 @@ impl Sweeps {
     }
 
     /// Starts the scheme again, with plain sweeps before over-relaxed sweeps. Call this method after the application
-    /// has moved vertices far. If these sweeps were made by [`until_converged`](Self::until_converged), the stop rule
-    /// of all schemes on the mesh starts again in submissions after the call.
+    /// has moved vertices far. For sweeps [`until_converged`](Self::until_converged), later submissions restart the
+    /// stop rule of all schemes on the mesh.
     pub fn restart(&mut self) {
         self.done = 0;
         if self.judged.is_some() {

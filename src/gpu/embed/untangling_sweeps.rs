@@ -45,19 +45,19 @@ const EACH: u32 = 8;
 /// triangle whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
 ///
 /// No proof guarantees that sweeps untangle every mesh that can be untangled.
-/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. Here and
-/// there, a triangle is inverted if its area is not positive in single precision.
+/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. For both,
+/// inverted triangles have areas that are not positive in single precision.
 pub struct UntanglingSweeps {
     find: Pipeline,
     regularize: Pipeline,
     untangle: Pipeline,
-    /// A bind group for each part of the mesh.
+    /// Bind groups by part of the mesh.
     bind_groups: Vec<wgpu::BindGroup>,
     dispatches: Dispatches,
 }
 
-/// Order of the uniforms, one for each dispatch: parts of the triangles in the first sweep of a call, parts of the
-/// triangles in further sweeps, then parts of the vertices by color.
+/// Uniforms of all dispatches, in this order: triangle parts in a call's first sweep, triangle parts in further sweeps,
+/// vertex parts by color.
 struct Dispatches {
     triangles: Vec<Range<u32>>,
     /// Color, part of the mesh and vertex range of each dispatch.

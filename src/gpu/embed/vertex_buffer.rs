@@ -24,8 +24,8 @@ pub struct VertexBuffer<'a> {
 
 impl<'a> VertexBuffer<'a> {
     /// Describes vertices in `buffer`, which needs the usage `STORAGE` in addition to the application's usages.
-    /// `stride` is the distance between successive vertices in bytes: a multiple of 4, at least 8. The call that binds
-    /// the buffer checks both.
+    /// `stride` is the distance between successive vertices in bytes: a multiple of 4, at least 8. Binding calls check
+    /// both values.
     pub fn new(buffer: &'a wgpu::Buffer, stride: u64) -> Self {
         Self { buffer, stride, offset: 0, origin: [0.0; 2], scale: 1.0 }
     }
@@ -89,7 +89,7 @@ impl<'a> VertexBuffer<'a> {
     /// Returns the coordinate system of the buffer, even if rounding inverts triangles of the problem.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the origin is not finite, or if the scale is not positive and finite.
+    /// [`GpuError::Buffer`] unless the origin is finite and the scale is positive and finite.
     pub(crate) fn unjudged_coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
         let refuse = |problem: String| Err(GpuError::Buffer(problem));
         let Self { origin, scale, .. } = *self;

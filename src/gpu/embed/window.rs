@@ -10,7 +10,7 @@ pub(crate) struct Window<'a> {
     buffer: &'a wgpu::Buffer,
     start: u64,
     size: u64,
-    /// Number of words from the start of the binding to the range.
+    /// Offset of the range in the binding, in words.
     pub(crate) offset: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Compute passes: one pass for all kernels of a call, or a timed pass for each kernel.
+//! Compute passes: a single pass for a call, or a timed pass per kernel.
 
 use std::ops::{Deref, DerefMut};
 
@@ -170,8 +170,8 @@ impl Timestamps {
 }
 
 impl Timed<'_> {
-    /// Ends the timing and encodes the copy of the times into a buffer. Without this call, kernels still run, but their
-    /// times are lost.
+    /// Ends the timing and encodes the copy of the times into a buffer. Without this call, kernels run, but their times
+    /// are lost.
     ///
     /// # Errors
     /// [`GpuError::OutOfMemory`], or another [`GpuError`] if the device fails.

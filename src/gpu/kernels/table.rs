@@ -462,8 +462,9 @@ kernels! {
 }
 
 impl Kernel {
-    /// Returns all kernels. A kernel of one metric is listed for each metric; the sweep kernel also for both kinds of
-    /// derivatives. A kernel that sums objectives is listed for each metric alone and for all metrics together.
+    /// Returns all kernels. A kernel of one metric is listed for each metric; the sweep kernel with analytic
+    /// derivatives and with differences. A kernel that sums objectives is listed for each metric alone and for all
+    /// metrics together.
     pub fn all() -> Vec<Kernel> {
         Self::list(None)
     }

@@ -343,7 +343,7 @@ shared_structs! {
         ring_base: u32,
         /// Number of free and held vertices. All further vertices are on the boundary.
         free: u32,
-        /// 1 for the first sweep of a call, which examines even a mesh that was valid before; 0 for further sweeps.
+        /// 1 for a call's first sweep, which examines a valid mesh too; 0 for further sweeps.
         begins: u32,
         padding: u32,
         more_padding: vec2u,

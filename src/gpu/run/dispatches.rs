@@ -1,4 +1,4 @@
-//! The dispatches of a run: the kernels of a sweep and of an evaluation.
+//! The dispatches of a run: kernels for sweeps and for evaluations.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ pub(crate) struct Dispatches {
     pub(crate) control: wgpu::Buffer,
     pub(crate) best: wgpu::Buffer,
     pub(crate) params: wgpu::Buffer,
-    /// A bind group for each part of the mesh; see [`Parts`].
+    /// Bind groups by part of the mesh; see [`Parts`].
     bind_groups: Vec<wgpu::BindGroup>,
     sweeps: Vec<(Metric, Derivatives, Pipeline)>,
     objective: Pipeline,
@@ -38,12 +38,12 @@ pub(crate) struct Dispatches {
     uniforms: Uniforms,
 }
 
-/// Order of the uniforms, one for each dispatch: sweeps by step, then by color and part; behind the sweeps the parts of
-/// the triangles, then the parts of the free vertices.
+/// Uniforms of all dispatches, in this order: sweeps by step, color and part; parts of the triangles; parts of the free
+/// vertices.
 struct Uniforms {
     /// Distinct steps of the run.
     steps: Vec<Step>,
-    /// Dispatches of one sweep, by color, then by part.
+    /// Dispatches of one sweep, ordered by color and part.
     sweep: Vec<ColorPart>,
     triangles: Vec<Range<u32>>,
     free: Vec<Range<u32>>,
@@ -54,7 +54,7 @@ struct Uniforms {
 /// Free vertices of one color whose one-rings fit one binding.
 struct ColorPart {
     color: u32,
-    /// Index of the part of the one-rings, and of the bind group.
+    /// Index of the bind group that holds these one-rings.
     part: usize,
     vertices: Range<u32>,
     ring_base: u32,
@@ -112,7 +112,7 @@ impl Uniforms {
         bytes
     }
 
-    /// Returns the index of a step's first uniform; `None` if the run has no such step.
+    /// Returns the index of a step's first uniform; `None` for a step outside of the run.
     fn of_step(&self, step: &Step) -> Option<usize> {
         Some(self.steps.iter().position(|known| known == step)? * self.sweep.len())
     }
@@ -127,8 +127,8 @@ impl Uniforms {
 }
 
 impl Dispatches {
-    /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, an evaluation
-    /// copies the positions if they are the best so far.
+    /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, each evaluation
+    /// copies the positions of a new lowest objective.
     pub(crate) fn new(
         gpu: &Gpu,
         problem: &Problem,

@@ -43,7 +43,7 @@ pub(crate) struct GpuEngine<'a> {
     dispatches: Dispatches,
     levels: Option<Levels>,
     secants: Option<Secants>,
-    /// The hierarchy on the host from which `levels` were made.
+    /// Source of `levels`: the hierarchy on the host.
     hierarchy: Option<Hierarchy>,
     waiting: Waiting,
     /// Number of evaluations read back so far.
@@ -52,8 +52,8 @@ pub(crate) struct GpuEngine<'a> {
 
 impl<'a> GpuEngine<'a> {
     /// Uploads the problem with its vertices at the normalized positions `start`, in the problem's order. Creates the
-    /// pipelines of `steps`, which are all steps that a run by the plan may take. The device ends [`Engine::sweeps`] by
-    /// the plan's stop rule.
+    /// pipelines for `steps`, all possible steps of a run by the plan. The device ends [`Engine::sweeps`] by the plan's
+    /// stop rule.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.

@@ -121,7 +121,7 @@ enum Groups {
     Just(u32),
 }
 
-/// The resources of a bind group by index: a part of the mesh, pages of structure and values, or both.
+/// Indices of a bind group's resources: mesh part, structure page and value page.
 #[derive(Clone, Copy, PartialEq)]
 enum Bound {
     Fine { part: usize },
@@ -492,8 +492,7 @@ impl Levels {
     }
 
     /// Encodes the exclusion of vertices from the correction, [`LEFT_OUT`] times: the vertices of triangles that the
-    /// correction would break. With `anew`, the correction is first computed again without the gradients of these
-    /// vertices.
+    /// correction would break. With `anew`, the correction is first recomputed without the gradients of these vertices.
     pub(crate) fn encode_left_out(&self, passes: &mut Passes<'_>, anew: bool) {
         let leave_out = |passes: &mut Passes<'_>| {
             self.left_out.iter().for_each(|step| self.encode(passes, step));
@@ -505,7 +504,7 @@ impl Levels {
         (0..LEFT_OUT).for_each(|_| leave_out(passes));
     }
 
-    /// Encodes the evaluation of the objective along the correction. The totals are then at the start of `vectors`.
+    /// Encodes the evaluation of the objective along the correction. `vectors` then begins with the four totals.
     pub(crate) fn encode_objective(&self, passes: &mut Passes<'_>) {
         self.objective.iter().for_each(|step| self.encode(passes, step));
         self.encode(passes, &self.sum);
