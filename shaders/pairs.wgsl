@@ -21,8 +21,8 @@ fn opaque2(v: vec2<f32>) -> vec2<f32> {
     return bitcast<vec2<f32>>(bitcast<vec2<u32>>(v) ^ vec2(runtime_zero()));
 }
 
-// Returns whether x is greater than zero and finite. A comparison would not do for NaN, as a compiler may turn !(x > 0)
-// into x <= 0.
+// Returns whether x is greater than zero and finite. A plain comparison would fail for NaN, as a compiler may turn !(x
+// > 0) into x <= 0.
 fn is_positive(x: f32) -> bool {
     return opaque_bits(x) - 1u < 0x7f7fffffu;
 }

@@ -2,8 +2,8 @@
 // are stored in single precision. From one correction to the next, the newer and the older pair exchange their slots.
 // The bindings are `Secants` in src/gpu/kernels/layouts.rs.
 
-// Indices in `sums`. Curvatures, factors aᵢ and factors cᵢ have the newer pair's value in x and the older pair's value
-// in y.
+// Indices in `sums`: curvatures s·y, factors aᵢ before the levels and factors cᵢ after the levels, each with the newer
+// pair's value in x and the older pair's in y.
 const CURVATURES: u32 = 0u;
 const BEFORE: u32 = 1u;
 const AFTER: u32 = 2u;

@@ -33,7 +33,8 @@ fn tangled_patch_of(vertex: u32) -> Patch {
 }
 
 // Returns the longest allowed step along an axis: twice the larger of the shortest edge and the desired edge length. A
-// distant vertex has only long edges and returns at once. Its neighbors have short edges too, and cannot follow.
+// distant vertex has only long edges and returns at once. Neighbors of a distant vertex have short edges too, and
+// cannot follow.
 fn reach(p: Patch, vertex: u32) -> f32 {
     var shortest = 3.0e38;
     for (var i = p.start; i < p.end; i++) {

@@ -38,9 +38,9 @@ impl Gpu {
     /// finished one or one of another device, wgpu reports the fault when the application finishes the encoder.
     ///
     /// Any thread may call this function. Nothing is submitted. A poll of the device, which may run callbacks of the
-    /// application, checks that the queue belongs to the device; only for a foreign queue polls are repeated, for some
-    /// 30 ms. A busy device, or a browser, cannot check the queue: wgpu reports a foreign queue later, to the error
-    /// handler of the queue's own device.
+    /// application, checks that the queue belongs to the device. A queue counts as foreign only after some 30 ms of
+    /// repeated polls. A busy device, or a browser, cannot check the queue: wgpu reports a foreign queue later, to the
+    /// error handler of the queue's own device.
     ///
     /// `new` does not check the adapter's arithmetic, as the check waits for the device. Runs of
     /// [`Smoother`](crate::Smoother) check the arithmetic first. An application that encodes sweeps itself calls
@@ -93,9 +93,9 @@ impl Gpu {
     }
 
     /// Compiles the kernels that an application's frames need with these options: sweeps, objectives, import and export
-    /// of vertices, moves, masks, untangling and, if [`Options::is_multilevel`], corrections. Afterwards neither
-    /// [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer waits for the compiler; a frame never does.
-    /// Kernels compiled earlier take no time. Any thread may call this method.
+    /// of vertices, moves, masks, untangling and, for [multilevel](Options::is_multilevel) options, corrections.
+    /// Afterwards neither [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer waits for the compiler;
+    /// a frame never does. Kernels compiled earlier take no time. Any thread may call this method.
     ///
     /// Meshes with targets, and meshes so large that their positions take two bindings, need other kernels, which are
     /// not included.

@@ -35,8 +35,7 @@ pub(crate) const NUMBER: u64 = size_of::<u32>() as u64;
 /// Largest number of triangles for the kernels. One-rings have at most one entry for each corner of a triangle, and the
 /// offsets of one-rings must stay below the bit [`HELD`] of a ring start.
 const MOST_TRIANGLES: usize = (HELD as usize - 1) / 3;
-/// Largest number of vertices for the kernels, which index vertices, and the end of the one-rings behind them, in 32
-/// bits.
+/// Largest number of vertices for the kernels, which number the vertices, and the end of the one-rings, in 32 bits.
 const MOST_VERTICES: usize = u32::MAX as usize - 1;
 
 impl MeshSize {

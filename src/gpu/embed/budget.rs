@@ -11,7 +11,7 @@ use crate::gpu::device::buffers::zeroed;
 use crate::gpu::embed::Readback;
 use crate::gpu::scope::scoped;
 
-/// A limit of the device's time for sweeps in each frame. Times of earlier frames determine the number of sweeps in the
+/// A limit on the device's time for sweeps in each frame. Times of earlier frames determine the number of sweeps in the
 /// next frame: at least one sweep, and at most double the last measured frame's sweeps.
 ///
 /// With [`timed_by`](Self::timed_by), the device measures, and

@@ -60,7 +60,7 @@ impl LastValid {
     /// first save, to the uploaded positions. All vertices return, including the boundary. Encode this call before the
     /// export, so that the application's vertices return too.
     ///
-    /// On the device, evaluating f and copying positions take less time than a sweep.
+    /// The call evaluates f and copies positions, which takes the device less time than a sweep.
     pub fn encode_restore_last_valid(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth restore");
         self.evaluation.encode_evaluation(&mut passes);

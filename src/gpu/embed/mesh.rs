@@ -175,7 +175,7 @@ impl DeviceMesh {
         BoundMask::new(gpu, problem, buffers, numbers, pins, &window)
     }
 
-    /// Creates a copy of the last valid positions, to undo frames in which the application has inverted triangles.
+    /// Creates a store for the last valid positions, to undo frames in which the application has inverted triangles.
     /// Takes 16 bytes on the device per vertex.
     ///
     /// # Errors

@@ -89,7 +89,7 @@ impl Sweeps {
     /// The sweeps begin again when the application changes the mesh: an import finds a moved vertex, a move has a share
     /// above 0, [`UntanglingSweeps`](crate::gpu::UntanglingSweeps) find inverted triangles,
     /// [`LastValid`](crate::gpu::LastValid) restores positions, a mask or the pins change, or
-    /// [`restart`](Self::restart) is called. Sweeps of other schemes on the mesh are no change. An evaluation of f
+    /// [`restart`](Self::restart) is called. Sweeps of other schemes on the mesh restart nothing. An evaluation of f
     /// follows each sweep and takes about a sixth of the sweep's time.
     ///
     /// # Errors
@@ -154,8 +154,8 @@ impl Sweeps {
         self.encode(&mut encoder.passes(LABEL), sweeps);
     }
 
-    /// Encodes sweeps for the time of a budget, and returns how many. The device measures the sweeps if the budget is
-    /// [timed](Budget::timed_by) by the device. Never waits.
+    /// Encodes as many sweeps as a budget allows, and returns their number. The device measures the sweeps if the
+    /// budget is [timed](Budget::timed_by) by the device. Never waits.
     pub fn encode_within(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -45,8 +45,8 @@ const EACH: u32 = 8;
 /// triangle whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
 ///
 /// No proof guarantees that sweeps untangle every mesh that can be untangled.
-/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. For both,
-/// inverted triangles have areas that are not positive in single precision.
+/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. Both count
+/// areas that are not positive in single precision as inverted.
 pub struct UntanglingSweeps {
     find: Pipeline,
     regularize: Pipeline,
