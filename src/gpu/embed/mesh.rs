@@ -48,7 +48,7 @@ pub struct DeviceMesh {
     /// Map from the application's vertex indices to device numbers; [`NONE`] for a vertex of no triangle.
     places: Vec<u32>,
     pins: Pins,
-    /// Vertices that no triangle uses, with their points. They are not on the device.
+    /// Vertices that no triangle uses, with their points. The device does not store these vertices.
     unused: Vec<(u32, [f64; 2])>,
 }
 

@@ -120,7 +120,7 @@ impl<T: Pod> Readback<T> {
             };
             (0..COPIES).map(copy).collect()
         })?;
-        // This copy is never submitted. It finds a buffer of another device now, not in a frame.
+        // This copy is never submitted, and finds a buffer of another device now, not in a frame.
         scoped_to_buffer(&gpu.device, || {
             let descriptor = wgpu::CommandEncoderDescriptor::default();
             let mut encoder = gpu.device.create_command_encoder(&descriptor);

@@ -45,8 +45,8 @@ const EACH: u32 = 8;
 /// triangle whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
 ///
 /// No proof guarantees that sweeps untangle every mesh that can be untangled.
-/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. Both count
-/// areas that are not positive in single precision as inverted.
+/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. Sweeps and
+/// values count areas that are not positive in single precision as inverted.
 pub struct UntanglingSweeps {
     find: Pipeline,
     regularize: Pipeline,
@@ -125,7 +125,7 @@ impl UntanglingSweeps {
         let vertices: Vec<TangledVertex> = vertices.collect();
         let targets = problem.positions().len() as u32;
         let params = Params::outside_runs(targets);
-        // Vertices are marked by numbers of sweeps, from 1 on. None is marked yet.
+        // Vertices are marked by numbers of sweeps, from 1 on. No vertex is marked yet.
         let tangle = Tangle { valid: 0, inverted: 0, depth: 0, epsilon: 0.0, sweep: 1, since: 1 };
         let bind_groups = scoped(&gpu.device, || {
             let params = filled(gpu, "untangling params", &[params], Usage::UNIFORM);

@@ -22,7 +22,8 @@ use crate::metric::Metric;
 use crate::options::Derivatives;
 use crate::run::{Plan, Step, StopRule};
 
-/// The dispatches of a plan, bound to a mesh on the device. They encode sweeps and evaluations, and submit nothing.
+/// The dispatches of a plan, bound to a mesh on the device. The methods encode sweeps and evaluations, and submit
+/// nothing.
 pub(crate) struct Dispatches {
     pub(crate) plan: Plan,
     pub(crate) control: wgpu::Buffer,

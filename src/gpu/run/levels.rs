@@ -25,7 +25,7 @@ use crate::metric::Smoothing;
 use crate::run::LEFT_OUT;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
-/// A hierarchy bound to a mesh on the device. It encodes corrections and submits nothing.
+/// A hierarchy bound to a mesh on the device. The methods encode corrections and submit nothing.
 pub(crate) struct Levels {
     bind_groups: Vec<wgpu::BindGroup>,
     ops: wgpu::Buffer,

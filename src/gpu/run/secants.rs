@@ -25,7 +25,7 @@ const SCALARS: u32 = 4;
 const STEPS: &str = "steps";
 const OP: &str = "secants";
 
-/// Two secant pairs bound to a mesh and its levels. They encode dispatches and submit nothing.
+/// Two secant pairs bound to a mesh and its levels. The methods encode dispatches and submit nothing.
 pub(crate) struct Secants {
     bind_group: wgpu::BindGroup,
     ops: wgpu::Buffer,
