@@ -56,7 +56,8 @@ pub(crate) enum GroupSupport {
     One,
     /// One group per line, and no groups of other elements.
     OneOfLines,
-    /// Two groups per element: an entity of the model, and a physical group or else a group of the most important kind.
+    /// Two groups per element: an entity of the model, and a physical group or, without physical groups, one of the
+    /// most important kind.
     PhysicalAndEntity,
     /// One group of each kind per element.
     Each,
@@ -73,7 +74,7 @@ pub(crate) enum DataSupport {
     Scalars,
     /// Arrays with one component, without their names.
     Unnamed,
-    /// Only an array with the given name and one component.
+    /// Arrays with the given name and one component.
     Only(&'static str),
 }
 
