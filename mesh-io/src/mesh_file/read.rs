@@ -19,8 +19,8 @@ impl MeshFile {
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of [`Format`](crate::Format),
     /// does not follow its format, has elements other than first-order elements of the plane, or has no triangle. An
-    /// STL is [`ReadError::Unwelded`] unless [`ReadOptions::weld`] is set. A mesh that names files outside of its directory is
-    /// [`ReadError::Outside`] unless [`ReadOptions::allow_outside`] is set.
+    /// STL is [`ReadError::Unwelded`] unless [`ReadOptions::weld`] is set. A mesh that names files outside of its
+    /// directory is [`ReadError::Outside`] unless [`ReadOptions::allow_outside`] is set.
     pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
         ReadOptions::new().read(path)
     }

@@ -54,8 +54,8 @@ pub(crate) fn unquoted(text: &[u8]) -> &[u8] {
     in_quotes(text).unwrap_or(text.trim_ascii())
 }
 
-/// Returns the two sides of the first equals sign of a row, without blanks around them. If there is no equals sign, the value
-/// is empty.
+/// Returns the key and the value around the first equals sign of a row, trimmed of blanks. Without an equals sign, the
+/// value is empty.
 pub(crate) fn key_value(row: &[u8]) -> (&[u8], &[u8]) {
     let equals = memchr::memchr(b'=', row).unwrap_or(row.len());
     (row[..equals].trim_ascii(), row.get(equals + 1..).unwrap_or_default().trim_ascii())
