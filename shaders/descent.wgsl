@@ -1,7 +1,7 @@
 // The direction of descent of a Newton step.
 
-// Returns the direction -H⁻¹g, with H made positive definite by absolute eigenvalues with a floor, and behind it the
-// slope g·d along this direction. The slope is zero where there is no descent.
+// Returns in xy the direction d = -H⁻¹g, with H made positive definite by absolute eigenvalues above a floor, and in z
+// the slope g·d, zero without descent. Zeros if H vanishes or overflows.
 fn descent(gradient: vec2<f32>, hessian: vec3<f32>) -> vec3<f32> {
     let scale = max(abs(hessian.x), max(abs(hessian.y), abs(hessian.z)));
     if !(scale > 0.0 && scale < 3.0e38) {

@@ -1,11 +1,11 @@
-// For the kernels that copy positions between this library's buffer and an application's vertex buffer. Their bindings
-// are `Exchange` in src/gpu/kernels/layouts.rs.
+// Shared by the kernels that copy positions between this library's buffer and an application's vertex buffer. Their
+// bindings are `Exchange` in src/gpu/kernels/layouts.rs.
 
 fn runtime_zero() -> u32 {
     return exchange.zero;
 }
 
-// A position in the application's units, rounded to single precision.
+// Returns a position in the application's coordinates, rounded to single precision.
 fn exported(p: vec4<f32>) -> vec2<f32> {
     let high = p.xy * exchange.inverse_scale;
     let low = p.zw * exchange.inverse_scale;

@@ -3,7 +3,7 @@
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
-// The sum of the base metric at the given evaluation.
+// Returns the base metric's sum of q² - ideal² at an evaluation, as a pair of floats.
 fn base_sum(evaluation: u32) -> vec2<f32> {
     return control.history[(evaluation % HISTORY) * SLOTS + params.base];
 }
@@ -12,7 +12,8 @@ fn gain(earlier: u32, later: u32) -> f32 {
     return pair_difference(base_sum(earlier), base_sum(later));
 }
 
-// Estimates what is still to be gained if gains decay geometrically, from the gains of two successive windows.
+// Estimates the remaining gain from the gains of two successive windows, for gains that decay geometrically. 3e38 if
+// gains do not decay.
 fn remaining(last: u32, window: u32) -> f32 {
     let before = gain(last - 2u * window, last - window);
     let now = gain(last - window, last);
@@ -48,8 +49,8 @@ fn judge(last: u32) -> u32 {
     return 0u;
 }
 
-// Combines the values of two parts of the triangles. Most slots take the sum. The last one, which holds the worst
-// triangle, takes the larger value, and of equal values that of the triangle with the lower number.
+// Combines a tracked value over two sets of triangles. All values except the last are added. The last value is the
+// worst triangle's: the larger value wins and, among equal values, the lower triangle number.
 fn joined(tracked: u32, a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     if tracked == TRACKED {
         let is_first = bitcast<u32>(a.y) < bitcast<u32>(b.y);
@@ -65,7 +66,7 @@ fn finish(@builtin(local_invocation_index) local: u32) {
     let evaluation = control.evaluated;
     let partials = params.partials;
     for (var i = 0u; i <= TRACKED; i++) {
-        // The worst value starts below that of any triangle.
+        // The worst value starts at -1, below imr² - 1 of any triangle.
         var sum = select(vec2(0.0), vec2(-1.0, 0.0), i == TRACKED);
         for (var k = local; k < partials; k += FINISH_WORKGROUP) {
             sum = joined(i, sum, partial_sums[i * partials + k]);

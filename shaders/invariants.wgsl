@@ -2,10 +2,10 @@
 
 const TARGET_W: f32 = 0.57735026919; // 1/√3
 
-// The same invariants as the Rust struct Invariants (src/metric/corner.rs), and the area minus the mean area. Both
-// areas are doubled. The excess is √3/6 times the sum of the squared lengths, minus the doubled area; it is computed as
-// a sum of squares. A mean area rounded to single precision would give all triangles the same error, so area - mean
-// uses the pair of floats.
+// The invariants of the Rust struct Invariants (src/metric/corner.rs), and the area minus the mean area. All areas are
+// doubled. The excess, √3/6 times the sum of the squared lengths minus the doubled area, is computed as a sum of
+// squares. A mean area rounded to single precision would give all triangles an equal error, so area - mean uses the
+// pair of floats.
 struct Invariants {
     excess: f32,
     area: f32,
@@ -13,9 +13,9 @@ struct Invariants {
     area_less_mean: f32,
 }
 
-// The value of a function of the invariants, and its partial derivatives by them, each named by its variables. The
-// derivatives are for invariants multiplied by `unit`, the inverse of an area: so they have no dimension, and nothing
-// overflows.
+// The value of a function of the invariants, and its partial derivatives, each named by its variables. The derivatives
+// are by invariants multiplied by `unit`, the inverse of an area, so that derivatives have no dimension and never
+// overflow.
 struct Slopes {
     unit: f32,
     value: f32,

@@ -1,4 +1,4 @@
-// Copies the free vertices' positions when they are the best so far by the base metric.
+// Copies the free vertices' positions if the base objective is the lowest so far.
 
 @compute @workgroup_size(WORKGROUP)
 fn keep_best(

@@ -1,17 +1,18 @@
-// Edges and triangles transformed by target maps, and derivatives through them.
+// Transforms edges and triangles by target maps, and derivatives back to the plane.
 
 fn mapped(map: vec3<f32>, e: vec2<f32>) -> vec2<f32> {
     return vec2(map.x * e.x + map.y * e.y, map.y * e.x + map.z * e.y);
 }
 
-// The shape of a vertex's target map: the map scaled to keep areas. The coarser levels use coordinates transformed by
-// it. In a layer of stretched triangles, neighbors are then as near across the layer as along it.
+// Returns the shape of a vertex's target map: the map scaled to keep areas. The coarser levels use coordinates
+// transformed by these shapes, in which neighbors across a layer of stretched triangles are as near as neighbors along
+// the layer.
 fn shape_of(v: u32) -> vec3<f32> {
     let map = target_of(v);
     return map * inverseSqrt(map.x * map.z - map.y * map.y);
 }
 
-// A triangle transformed by a target map, as metrics see it.
+// Returns a triangle transformed by a target map, the argument of metrics.
 fn shown(t: Corner, map: vec3<f32>) -> Corner {
     if MAPPED {
         return Corner(mapped(map, t.a), mapped(map, t.b), t.mean_area);

@@ -1,4 +1,4 @@
-// Holds vertices by a mask of the application, in addition to those that the host holds.
+// Holds vertices by a mask of the application, in addition to the vertices that the host holds.
 
 @compute @workgroup_size(WORKGROUP)
 fn hold_by_mask(

@@ -21,8 +21,8 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     return vec2(sum, 1.0);
 }
 
-// How many times as long as Newton's a step is tried first, where nearly flat triangles make up most of the patch's
-// objective E. `decrease` is gᵀH⁻¹g. See src/patch/search_rule.rs.
+// Returns the factor on the length of the first trial, above 1 where nearly flat triangles dominate the patch's
+// objective E. `decrease` is gᵀH⁻¹g, and `squares` is E. See src/patch/search_rule.rs.
 fn lengthening(decrease: f32, squares: f32) -> f32 {
     let share = decrease / squares;
     if part.longest <= 1.0 || squares <= LEAST_FLAT || !(share > FLAT_RATIO) {
@@ -31,7 +31,7 @@ fn lengthening(decrease: f32, squares: f32) -> f32 {
     return 1.0 / max(1.0 - FLAT_EXPONENT * share, 1.0 / part.longest);
 }
 
-// The Newton step with its line search, in the patch's unit; zero if none improves the patch.
+// Returns a Newton step after its line search, in the patch's unit; zero if no trial improves the patch.
 fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     var value = 0.0;
     var gradient = vec2(0.0);
@@ -53,8 +53,8 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
         a = b;
     }
     let inverse = inverse_of(p.own * p.map_unit);
-    // The floor of the eigenvalues is meant for nearly equilateral triangles, so it is applied in the coordinates of
-    // the vertex's target map.
+    // The eigenvalue floor is meant for nearly equilateral triangles, so the floor is applied in the coordinates of the
+    // vertex's target map.
     let sum = pulled_back(Derivatives(value, gradient, hessian), inverse);
     var down = descent(sum.gradient, sum.hessian);
     if MAPPED {

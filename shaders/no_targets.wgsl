@@ -1,4 +1,4 @@
-// Replaces targets.wgsl for a mesh without targets: metrics see its triangles as they are.
+// Replaces targets.wgsl for a mesh without targets, whose triangles metrics measure untransformed.
 
 const MAPPED: bool = false;
 

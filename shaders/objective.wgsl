@@ -1,13 +1,14 @@
 // Computes partial sums over the triangles: q² - ideal² for each tracked metric, and the number of inverted triangles.
-// Behind them comes the largest imr² - 1, with the triangle that has it. Each invocation strides over the triangles and
-// leaves one pair of floats for each of these values; finish.wgsl combines them. A dispatch for a further part of the
-// triangles continues the sums of the part before. There is no barrier, as barriers are slow on software adapters.
+// The last value is the largest imr² - 1, with the number of the triangle. Each invocation strides over the triangles
+// and writes a pair of floats for each value; finish.wgsl combines the pairs. If the triangles are bound in parts, each
+// dispatch continues the sums of the previous part. No barriers are used, as barriers are slow on software adapters.
 
-// The value of a triangle whose edges are not finite. A metric may not notice that, as maxima and minima ignore NaN.
+// Value of a triangle with an edge that is not finite. A metric may overlook such an edge, as maxima and minima ignore
+// NaN.
 const NOT_FINITE: f32 = 3.0e38;
 
-// The number of a triangle as the bits of a normal float. Drivers may change zeros, denormals, infinities and NaNs when
-// they copy floats.
+// Returns the number of a triangle as the bits of a normal float. Drivers may change zeros, denormals, infinities and
+// NaNs when they copy floats.
 fn as_float(triangle: u32) -> f32 {
     return bitcast<f32>(triangle + LEAST_NORMAL);
 }
@@ -26,7 +27,7 @@ fn objective(
     }
     let stride = groups.x * WORKGROUP;
     var sums: array<vec2<f32>, TRACKED>;
-    // The worst value starts below that of any triangle.
+    // The worst value starts at -1, below imr² - 1 of any triangle.
     var worst = vec2(-1.0, 0.0);
     if part.first != 0u {
         for (var i = 0u; i < TRACKED; i++) {

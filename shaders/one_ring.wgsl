@@ -17,7 +17,7 @@ fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
     return edge(p.at, position(ring[i])) * p.unit;
 }
 
-// A power of two that brings the length of an edge near one.
+// Returns the power of two that scales an edge to a length near one.
 fn unit_of(e: vec2<f32>) -> f32 {
     let exponent = bitcast<u32>(max(abs(e.x), abs(e.y))) & 0x7f800000u;
     return bitcast<f32>(0x7f000000u - clamp(exponent, 0x00800000u, 0x7e800000u));
@@ -43,7 +43,8 @@ fn patch_of(vertex: u32) -> Patch {
     return p;
 }
 
-// The target map of the triangle between neighbor i and the neighbor before it, scaled near one.
+// Returns the target map of the triangle between neighbor i and the previous neighbor: the mean of three maps, scaled
+// near one.
 fn map_around(p: Patch, i: u32) -> vec3<f32> {
     if !MAPPED {
         return p.own;
@@ -53,7 +54,7 @@ fn map_around(p: Patch, i: u32) -> vec3<f32> {
     return sum * (p.map_unit / 3.0);
 }
 
-// The least distance of the vertex from the line through a ring edge.
+// Returns the least distance from the vertex to the line through an edge of the ring.
 fn least_height(p: Patch) -> f32 {
     var least = 3.0e38;
     var a = ring_edge(p, p.end - 1u);

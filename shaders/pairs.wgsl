@@ -1,11 +1,13 @@
 // Arithmetic in pairs of floats, and the numbering of invocations. Needs `runtime_zero`.
 //
 // Compilers may treat floats as real numbers: they reorder sums, simplify (a + b) - a to b, and assume that there are
-// no infinities and NaNs. WGSL permits it, and Metal does it by default. A pair would then lose its low part. So every
-// sum that must be rounded just as it is written passes through `opaque`, and tests for NaN or infinity look at the
-// bits. tests/fast_math simulates such a compiler; check_arithmetic.wgsl checks the compiler of each adapter.
+// no infinities and NaNs. WGSL permits such compilers, and Metal's is one by default. A pair of floats would then lose
+// its low part. Every sum that must be rounded exactly as written therefore passes through `opaque`, and tests for NaN
+// or infinity look at the bits. tests/fast_math simulates such a compiler; check_arithmetic.wgsl checks the compiler of
+// each adapter.
 
-// The bits of x. The exclusive or with a zero that is only known at run time keeps a compiler from relating them to x.
+// Returns the bits of x. The exclusive or with a zero that is only known at run time keeps a compiler from relating the
+// bits to x.
 fn opaque_bits(x: f32) -> u32 {
     return bitcast<u32>(x) ^ runtime_zero();
 }
@@ -19,7 +21,8 @@ fn opaque2(v: vec2<f32>) -> vec2<f32> {
     return bitcast<vec2<f32>>(bitcast<vec2<u32>>(v) ^ vec2(runtime_zero()));
 }
 
-// Whether x is greater than zero and finite. False for NaN, where a compiler may turn !(x > 0) into x <= 0.
+// Returns whether x is greater than zero and finite. A plain comparison would fail for NaN, as a compiler may turn !(x
+// > 0) into x <= 0.
 fn is_positive(x: f32) -> bool {
     return opaque_bits(x) - 1u < 0x7f7fffffu;
 }
@@ -58,14 +61,14 @@ fn pair_less(a: vec2<f32>, b: vec2<f32>) -> bool {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-// The position moved by d. Its low part stays below half a unit in the last place of its high part.
+// Returns the position moved by d. The low parts stay below half a unit in the last place of the high parts.
 fn advanced(at: vec4<f32>, d: vec2<f32>) -> vec4<f32> {
     let x = pair_add(at.xz, vec2(d.x, 0.0));
     let y = pair_add(at.yw, vec2(d.y, 0.0));
     return vec4(x.x, y.x, x.y, y.y);
 }
 
-// The index of an invocation in a dispatch folded to two dimensions.
+// Returns the index of an invocation in a dispatch folded to two dimensions.
 fn invocation(id: vec3<u32>, groups: vec3<u32>) -> u32 {
     return id.x + id.y * groups.x * WORKGROUP;
 }

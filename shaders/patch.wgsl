@@ -17,11 +17,11 @@ struct Derivatives {
 
 // log2 of the exponent of EDGE's p-norm in this sweep.
 var<private> sharpness: u32;
-// One over the inverse mean ratio of the shape guard that a penalty keeps EDGE off, 0 for none.
+// Reciprocal of the inverse mean ratio toward which EDGE's penalty grows; 0 without a penalty.
 var<private> over_guard: f32;
 
-// The edge from one position to another. The differences of the high and of the low parts are opaque: in another order,
-// as in head.xy - (tail.xy + tail.zw) + head.zw, they would lose the low parts.
+// Returns the edge from one position to another. The differences of the high and of the low parts are opaque: a sum in
+// another order, such as head.xy - (tail.xy + tail.zw) + head.zw, would lose the low parts.
 fn edge(tail: vec4<f32>, head: vec4<f32>) -> vec2<f32> {
     return opaque2(head.xy - tail.xy) + opaque2(head.zw - tail.zw);
 }
@@ -39,7 +39,7 @@ fn squared_length_sum(t: Corner) -> f32 {
     return dot(t.a, t.a) + dot(t.b, t.b) + dot(c, c);
 }
 
-// The corner after its vertex has moved by d.
+// Returns the corner after its vertex has moved by d.
 fn displaced(t: Corner, d: vec2<f32>) -> Corner {
     return Corner(t.a - d, t.b - d, t.mean_area);
 }

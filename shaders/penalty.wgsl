@@ -1,7 +1,7 @@
-// The penalty in front of the shape guard, which is added to EDGE's p-norm with the same exponent k: PENALTY (ratio / guard)^k of the
-// inverse mean ratio, constant beyond the guard. The same as src/metric/smoothing.rs.
+// The penalty that keeps EDGE's p-norm off the shape guard: PENALTY (imr / guard)^k with the exponent k of the p-norm,
+// constant beyond the guard. The formulas are those of src/metric/smoothing.rs.
 
-// x is the shape m = excess / area, y the inverse mean ratio over that of the guard.
+// Returns in x the shape m = excess / area, in y the ratio imr / guard.
 fn penalized_shape(t: Corner) -> vec2<f32> {
     let i = invariants(t);
     let m = i.excess / i.area;
@@ -39,7 +39,7 @@ fn smoothed_derivatives(t: Corner) -> Derivatives {
     let value = penalty_at(shape.y);
     let first = value * per_shape * k;
     let second = first * per_shape * (k - 1.0);
-    // By excess and area, of which m is the ratio.
+    // The derivatives by excess and area, from those by m = excess / area.
     let penalty = expansion(t, Slopes(
         1.0 / doubled_area(t),
         value,

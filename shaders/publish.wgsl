@@ -20,7 +20,8 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
     }
     destination[publish_to.offset + slot] = word;
     if slot == 0u {
-        // If the mesh has changed since, the next sweeps begin a new run, and the stop of the old one means nothing.
+        // If the mesh has changed since the sweeps began, the next sweeps begin a new run, and the stop of the old run
+        // is void.
         let holds = publish_to.judged != 0u && sweeps.changes == changes[0] + changes[1];
         destination[publish_to.offset + SLOTS] = select(0u, sweeps.done, holds);
         let done = max(sweeps.evaluated, 1u) - 1u;

@@ -1,4 +1,4 @@
-// Saves the positions of a mesh if it is valid, and restores the saved ones if it is not.
+// Saves the positions of a mesh without inverted or flat triangles, and otherwise restores the saved positions.
 
 fn runtime_zero() -> u32 {
     return restore.zero;

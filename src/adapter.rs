@@ -1,9 +1,9 @@
 //! The description of an adapter.
 
-/// The name of an adapter, and how wgpu drives it.
+/// An adapter of the machine: its name, driver, backend and kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterSummary {
-    /// The name, for example of the graphics card. Browsers may keep it to themselves: "unnamed adapter" then.
+    /// The adapter's name, for example that of the graphics card; "unnamed adapter" if a browser withholds the name.
     pub name: String,
     /// Driver and version.
     pub driver: String,
@@ -14,7 +14,7 @@ pub struct AdapterSummary {
 }
 
 impl AdapterSummary {
-    /// Whether the driver computes on the CPU, as Mesa's lavapipe does.
+    /// Returns whether the driver computes on the CPU, as Mesa's lavapipe does.
     pub fn is_software(&self) -> bool {
         self.kind == "CPU"
     }

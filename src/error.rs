@@ -1,6 +1,6 @@
-//! Errors, one enum for each kind of operation.
+//! Errors of the library, an enum per kind of operation.
 
-/// A mesh cannot be smoothed as it is, or arguments do not fit it. Indices are zero-based, as in
+/// Error of an unsuitable mesh, or of arguments that do not match the mesh. Indices are zero-based, as in
 /// [`Mesh`](crate::Mesh).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -24,21 +24,21 @@ pub enum MeshError {
         /// The first vertex with such a coordinate.
         vertex: u32,
     },
-    /// A coordinate is so large, or the whole mesh so small, that products of lengths leave the range
-    /// of double precision and exact predicates would not be exact.
+    /// A coordinate is so large, or the whole mesh so small, that products of lengths leave the range of double
+    /// precision and exact predicates would not be exact.
     #[error("the coordinates are of size {size:e}, outside of 1e-100 to 1e100")]
     OutOfRange {
-        /// The largest absolute value of a coordinate, among the vertices that triangles use.
+        /// Largest absolute value of a coordinate, among the vertices that triangles use.
         size: f64,
     },
     /// A triangle, or a list of vertices to fix or to move, names a vertex that does not exist.
     #[error("vertex {vertex} does not exist: the mesh has {vertices}, counted from 0")]
     IndexOutOfRange {
-        /// The triangle, or `None` if it is a list of vertices that names the vertex.
+        /// The triangle that names the vertex, `None` if a list of vertices names it.
         triangle: Option<usize>,
         /// The vertex that does not exist.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices of the mesh.
         vertices: usize,
     },
     /// A triangle names one vertex twice.
@@ -46,24 +46,25 @@ pub enum MeshError {
     RepeatedVertex {
         /// The triangle.
         triangle: usize,
-        /// The vertex that it names twice.
+        /// The repeated vertex.
         vertex: u32,
     },
-    /// Three or more triangles share an edge, so this is not a 2D mesh.
+    /// Three or more triangles share an edge, so the mesh is not two-dimensional.
     #[error("the edge between vertices {} and {} belongs to {} triangles", edge[0], edge[1], triangles.len())]
     EdgeOfThree {
-        /// The edge's vertices.
+        /// The two vertices of the edge.
         edge: [u32; 2],
         /// All triangles at the edge, ascending.
         triangles: Vec<usize>,
     },
-    /// Some triangles are inverted or flat.
+    /// Triangles are inverted or flat.
     #[error("{}", listed(triangles))]
     Infeasible {
         /// All inverted or flat triangles, in ascending order.
         triangles: Vec<BadTriangle>,
     },
-    /// A part of the mesh has no boundary. It is a closed surface in space, and cannot be untangled in the plane.
+    /// An edge-connected part of the mesh has no boundary: a closed surface in space, which no placement of vertices in
+    /// the plane untangles.
     #[error(
         "the part of the mesh with triangle {triangle} has no boundary, so that it is a closed surface in space"
     )]
@@ -71,16 +72,18 @@ pub enum MeshError {
         /// The first triangle of the part.
         triangle: usize,
     },
-    /// The triangles around a free vertex overlap, though none is inverted: they wind more than once around it.
+    /// The triangles around a free vertex overlap although none is inverted: they wind more than once around the
+    /// vertex.
     #[error("the triangles around vertex {vertex} overlap: they wind {turns} times around it")]
     OverlappingStar {
-        /// The first such vertex.
+        /// The first vertex with overlapping triangles.
         vertex: u32,
-        /// Number of times that the triangles wind around it.
+        /// Number of turns that the triangles make around the vertex.
         turns: u32,
     },
-    /// The metric that judges the run cannot judge a triangle: its area is zero or below as computed in double precision, though
-    /// by exact predicates it is not inverted. It is too flat, or too small beside the others.
+    /// The metric that judges the run cannot judge a triangle. Its area is zero or negative as computed in double
+    /// precision, though by exact predicates the triangle is not inverted. Such a triangle is too flat, or too small
+    /// beside other triangles.
     #[error(
         "triangle {triangle} is too flat, or too small beside the others, for double precision: \
          {metric} cannot judge it"
@@ -88,25 +91,25 @@ pub enum MeshError {
     BeyondPrecision {
         /// The worst triangle.
         triangle: usize,
-        /// The name of the metric that judges the run.
+        /// Name of the metric that judges the run.
         metric: &'static str,
     },
-    /// The target given for a vertex is not a valid one; see [`Targets`](crate::Targets).
+    /// The target of a vertex is invalid; see [`Targets`](crate::Targets).
     #[error("vertex {vertex} has no target: {problem}")]
     Target {
-        /// The first such vertex.
+        /// The first vertex with an invalid target.
         vertex: usize,
-        /// What is wrong there.
+        /// Description of the vertex's defect.
         problem: &'static str,
     },
-    /// A pole of the sphere is inside a triangle or on its edge, where longitudes have no direction; see
+    /// A pole of the sphere is inside a triangle or on an edge, where longitude has no direction; see
     /// [`Chart`](crate::interpolate::Chart).
     #[error("triangle {triangle} has a pole of the sphere inside of it or on an edge")]
     Pole {
-        /// The first such triangle.
+        /// The first triangle that contains a pole.
         triangle: usize,
     },
-    /// A list of positions does not have exactly one for each vertex of the mesh.
+    /// A list of positions does not have exactly one entry per vertex of the mesh.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {
         /// Number of vertices of the mesh.
@@ -114,25 +117,24 @@ pub enum MeshError {
         /// Number of points that were given.
         given: usize,
     },
-    /// A list of data does not have as many numbers as the vertices of the mesh need.
+    /// The length of a data list is not the number of vertices times the values per vertex.
     #[error("{given} numbers are given where the vertices of the mesh need {expected}")]
     ValueCount {
-        /// How many numbers are needed: those of a vertex, times the vertices.
+        /// Number of values that are needed: the values per vertex, times the number of vertices.
         expected: usize,
-        /// How many were given.
+        /// Number of values that were given.
         given: usize,
     },
-    /// The bound on the inverse mean ratio that [`Topology::move_clamped`](crate::Topology::move_clamped) was given
-    /// is NaN.
+    /// The bound on the inverse mean ratio given to [`Topology::move_clamped`](crate::Topology::move_clamped) is NaN.
     #[error(
         "the bound on the inverse mean ratio is NaN: it must be a number, or infinite for no bound"
     )]
     BoundNotANumber,
-    /// No vertex is free: each is on the boundary, is listed in [`Mesh::fixed`](crate::Mesh::fixed), is used by no
-    /// triangle, or joins two fans of triangles.
+    /// No vertex is free. Every vertex is on the boundary, is listed in [`Mesh::fixed`](crate::Mesh::fixed), is used by
+    /// no triangle, or joins two fans of triangles.
     #[error("none of the {vertices} vertices is free to move")]
     NothingFree {
-        /// Number of vertices.
+        /// Number of vertices of the mesh.
         vertices: usize,
     },
 }
@@ -140,22 +142,22 @@ pub enum MeshError {
 /// A triangle that is inverted or flat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BadTriangle {
-    /// The triangle's index in [`Mesh::triangles`](crate::Mesh::triangles).
+    /// Index of the triangle in [`Mesh::triangles`](crate::Mesh::triangles).
     pub triangle: usize,
-    /// The triangle's vertices, in the order that would be counter-clockwise if it were not inverted.
+    /// Vertices of the triangle, with the winding that is counter-clockwise once the triangle is no longer inverted.
     pub vertices: [u32; 3],
-    /// Whether the triangle's area is zero. If not, the triangle is inverted.
+    /// Whether the triangle's area is zero. If false, the triangle is inverted.
     pub flat: bool,
 }
 
 impl BadTriangle {
-    /// What is wrong with the triangle: `"inverted"` or `"flat"`.
+    /// Returns the defect of the triangle: `"inverted"` or `"flat"`.
     pub fn problem(&self) -> &'static str {
         if self.flat { "flat" } else { "inverted" }
     }
 }
 
-/// The message of [`MeshError::Infeasible`]: the number of bad triangles, and the first ten.
+/// Returns the message of [`MeshError::Infeasible`]: the number of bad triangles, and the first ten.
 fn listed(triangles: &[BadTriangle]) -> String {
     let one = |bad: &BadTriangle| format!("{} ({})", bad.triangle, bad.problem());
     let first: Vec<String> = triangles.iter().take(10).map(one).collect();
@@ -167,14 +169,14 @@ fn listed(triangles: &[BadTriangle]) -> String {
     format!("{} triangle{s} {are} inverted or flat: {}{more}", triangles.len(), first.join(", "))
 }
 
-/// A run failed, or could not start.
+/// Error of a run that failed or could not start.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SmoothError {
     /// The mesh cannot be smoothed.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// A number out of the range of an option, or two features that do not go together.
+    /// An option has a number outside its range, or two features of the run exclude each other.
     #[error(transparent)]
     Option(#[from] crate::options::OptionError),
     /// The checkpoint is from another run.
@@ -185,16 +187,16 @@ pub enum SmoothError {
     Gpu(#[from] crate::error::GpuError),
 }
 
-/// The GPU engine cannot start, or failed during a run.
+/// Error of the GPU engine: a device cannot be used, or failed during a run.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
     /// The machine has no adapter, or no adapter with the wanted name.
     #[error("no GPU adapter{}", lacking(wanted.as_deref(), available))]
     NoAdapter {
-        /// The name that was asked for.
+        /// The wanted name, `None` if any adapter would do.
         wanted: Option<String>,
-        /// The names of the available adapters, separated by commas.
+        /// Names of the available adapters, separated by commas.
         available: String,
     },
     /// The adapter refused to create a device.
@@ -202,26 +204,26 @@ pub enum GpuError {
     NoDevice {
         /// The adapter.
         adapter: String,
-        /// wgpu's message.
+        /// Message of wgpu.
         message: String,
     },
-    /// A driver crashed the process that tried it, or never answered; see
+    /// A driver crashed the process that tried to use the device, or never answered; see
     /// [`Backend::auto_tried`](crate::Backend::auto_tried).
     #[error("the driver of the GPU failed when it was tried: {0}")]
     Crashed(String),
-    /// A limit of the device is too low.
+    /// A limit of the device is lower than a run needs.
     #[error("{what} needs {needed}, but the device's {limit} is {available}")]
     Limit {
-        /// The resource that does not fit.
+        /// The resource that exceeds the limit.
         what: String,
-        /// The value of the limit that is needed.
+        /// Least value of the limit that would suffice.
         needed: u64,
-        /// The limit's name in wgpu.
+        /// Name of the limit in wgpu.
         limit: &'static str,
-        /// The value of the limit on this device.
+        /// Value of the limit on the device.
         available: u64,
     },
-    /// The mesh has more vertices or triangles than the kernels can number.
+    /// The vertex or triangle count of the mesh exceeds the index ranges of the kernels.
     #[error(
         "the mesh has {vertices} vertices and {triangles} triangles, but the GPU kernels number at most {most_vertices} and {most_triangles}; only the CPU engine takes them"
     )]
@@ -230,28 +232,28 @@ pub enum GpuError {
         vertices: usize,
         /// Number of triangles.
         triangles: usize,
-        /// Largest number of vertices for the kernels.
+        /// Largest vertex count that fits the index ranges of the kernels.
         most_vertices: usize,
-        /// Largest number of triangles for the kernels.
+        /// Largest triangle count that fits the index ranges of the kernels.
         most_triangles: usize,
     },
     /// The adapter's compiler reorders or drops operations that the kernels rely on, so results would be silently
-    /// wrong. Found by `Gpu::check_arithmetic`.
+    /// wrong. `Gpu::check_arithmetic` detects the failure.
     #[error(
         "the adapter {adapter} cannot be used: {operation}. Use another adapter or the CPU (--engine cpu)"
     )]
     Arithmetic {
         /// The adapter.
         adapter: String,
-        /// Which operation failed, and how.
+        /// The failed operation and its failure, in words.
         operation: &'static str,
     },
-    /// The device was created without a feature that is needed.
+    /// The device was created without a feature that a use of the device needs.
     #[error("{what} needs a device made with the feature {feature}")]
     Feature {
         /// The use that needs the feature.
         what: &'static str,
-        /// The feature's name in wgpu.
+        /// Name of the feature in wgpu.
         feature: &'static str,
     },
     /// The device is out of memory.
@@ -260,23 +262,23 @@ pub enum GpuError {
     /// A buffer of the application lacks the needed size, usage or layout, was destroyed, or belongs to another device.
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
-    /// The queue belongs to another device.
+    /// The queue and the device come from different calls of `request_device`.
     #[error("the queue is not that of the device: both must come from one call of request_device")]
     Queue,
-    /// The call would block the thread, which a page in a browser cannot do.
+    /// The call would block the thread, and browsers forbid blocking calls.
     #[error(
         "a browser cannot wait in a blocking call: await a run, or use the call of this name that ends in _async"
     )]
     WouldBlock,
-    /// wgpu refused a call: a bug in this library, or a device created with limits other than those required.
+    /// wgpu refused a call. Cause: a bug in this library, or a device created with limits below the required limits.
     #[error("the device refused: {0}")]
     Refused(String),
-    /// A sweep made the objective infinite or NaN, which no sweep should.
+    /// A sweep made the objective infinite or NaN, which indicates a bug in this library or in the driver.
     #[error(
         "sweep {sweep} made the objective infinite or NaN: a mistake of this program or of the driver of the GPU"
     )]
     NotFinite {
-        /// The sweep.
+        /// Number of the sweep, from 1.
         sweep: u32,
     },
     /// The device was lost or destroyed, and the run with it.
@@ -284,7 +286,7 @@ pub enum GpuError {
     Lost(String),
 }
 
-/// The end of the message of [`GpuError::NoAdapter`].
+/// Returns the end of the message of [`GpuError::NoAdapter`].
 fn lacking(wanted: Option<&str>, available: &str) -> String {
     match wanted {
         None => " was found".into(),

@@ -1,4 +1,4 @@
-//! Functions for benchmarks, experiments and this library's own tests. They change without notice.
+//! Functions for benchmarks, experiments and this library's own tests, which change without notice.
 
 #[cfg(feature = "gpu")]
 mod device;
@@ -22,8 +22,8 @@ pub fn run_on_cpu<'a>(problem: &'a Problem, positions: &[DVec2], plan: Plan) -> 
     StepwiseRun::new(CpuEngine::new(problem, positions.to_vec(), &plan), plan)
 }
 
-/// Returns the energy that untangling lowers, for a triangle spanned by `edges` from a corner, which should have the
-/// area `target`: its value, gradient (x, y) and Hessian (xx, xy, yy) by the position of the corner.
+/// Returns the energy that untangling lowers, for a triangle of desired area `target` spanned by two `edges` from a
+/// corner: the value, the gradient (x, y) and the Hessian (xx, xy, yy) by the position of the corner.
 pub fn untangling_energy(edges: [[f64; 2]; 2], target: f64, epsilon: f64) -> [f64; 6] {
     let corner = Corner { edges, inverse_target: 1.0 / target };
     let Dual { value, gradient: [x, y], hessian: [xx, xy, yy] } = corner.expansion(Own, epsilon);

@@ -28,12 +28,13 @@
 //!
 //! A `Gpu` is opened once and serves every mesh. A [`Smoother`] is one prepared mesh, and serves any number of runs
 //! while the triangles stay the same. A run is one call of [`Smoother::run`] with [`Options`], and returns an
-//! [`Outcome`]. An [`Interpolation`](interpolate::Interpolation) takes data of vertices to their new positions. Vertices listed in [`Mesh::fixed`] do
-//! not move; [`select`] helps to list them. [`Measured`](measure::Measured) evaluates triangles by each [`Measure`](measure::Measure) of the field, and
-//! [`Quality`] compares a mesh before and after smoothing. The crate `mesh-io` reads and writes mesh files.
+//! [`Outcome`]. An [`Interpolation`](interpolate::Interpolation) evaluates vertex data at the new positions. Vertices
+//! listed in [`Mesh::fixed`] do not move; [`select`] helps to list them. [`Measured`](measure::Measured) evaluates
+//! triangles by each [`Measure`](measure::Measure) of the field, and [`Quality`] compares a mesh before and after
+//! smoothing. The crate `mesh-io` reads and writes mesh files.
 //!
 //! The feature `gpu`, which is on by default, adds the GPU engine: `Gpu`, all else that computes on a device, and the
-//! dependency wgpu. Without the feature, all runs are on the CPU.
+//! dependency wgpu. Without the feature, every run uses the CPU engine.
 //!
 #![cfg_attr(feature = "gpu", doc = include_str!("gpu/application.md"))]
 //!
@@ -42,9 +43,9 @@
 //! Triangles only; list vertices of other elements in [`Mesh::fixed`]. Vertices and triangle corners are
 //! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles.
 //!
-//! On a GPU, buffers that are larger than a device can bind at once are bound part by part, which changes no bit of the
-//! result. But every kernel needs all positions, in two bindings at most: a device that binds 128 MiB at once takes 16
-//! million vertices. `Gpu::check_size` checks this without allocating.
+//! On a GPU, buffers that exceed the largest binding of a device are bound part by part, which changes no bit of the
+//! result. But every kernel needs all positions, in two bindings at most: a device with a largest binding of 128 MiB
+//! takes 16 million vertices. `Gpu::check_size` checks the size of a mesh without allocating.
 
 mod adapter;
 mod chart;

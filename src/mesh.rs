@@ -2,20 +2,20 @@
 
 /// A 2D triangle mesh: double-precision positions and vertex triples, in the order of their file or application.
 ///
-/// Nothing about it is checked here: triangles may have either winding, and vertices may be unused.
-/// [`Topology`](crate::Topology) checks what smoothing needs.
+/// The struct checks nothing: triangles may have either winding, and vertices may be unused.
+/// [`Topology`](crate::Topology) checks the properties that smoothing needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Position of each vertex, in any unit.
     pub points: Vec<[f64; 2]>,
     /// Vertex indices of each triangle, zero-based, in either winding.
     pub triangles: Vec<[u32; 3]>,
-    /// Interior vertices that must not move: those on constraint lines, those of elements that are not triangles, and
-    /// those between regions. In any order, repeats allowed. Boundary vertices never move and need not be listed.
+    /// Interior vertices that must not move: vertices on constraint lines, between regions, or of elements that are not
+    /// triangles. Any order, repeats allowed. Boundary vertices never move and need not be listed.
     pub fixed: Vec<u32>,
 }
 
-/// The size of a mesh, for [`Backend::auto`](crate::Backend::auto), `Gpu::required_limits` and `Gpu::check_size`.
+/// Size of a mesh, for [`Backend::auto`](crate::Backend::auto), `Gpu::required_limits` and `Gpu::check_size`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshSize {
     /// Number of vertices.

@@ -1,4 +1,4 @@
-//! The outcome of a run.
+//! The outcome of a run: new positions, and a report.
 
 use std::time::Duration;
 
@@ -19,8 +19,8 @@ pub struct Outcome {
     pub stop: Stop,
     /// Number of sweeps done.
     pub sweeps: u32,
-    /// Number of first sweeps in which the metrics of the scheme took turns. Later sweeps used the base metric alone, as
-    /// corrections need.
+    /// Number of sweeps, from the first on, in which the scheme's metrics alternated. Later sweeps used only the base
+    /// metric, which corrections require.
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
@@ -34,18 +34,18 @@ pub struct Outcome {
     pub best_sweep: u32,
     /// Objectives: entry 0 before the first sweep, entry k after sweep k.
     pub history: Vec<Objectives>,
-    /// The gain that further sweeps are estimated to bring, as a share of f (of 1e-6 if f is smaller). The estimate
-    /// extrapolates the decay of f in the last sweeps; the distance of f to its ideal bounds the estimate. `None` if the
-    /// sweeps are too few or do not decay. After a run by EDGE with corrections, the estimate includes the distance between
-    /// the minima of f and of EDGE's p-norm.
+    /// Estimated gain of further sweeps, as a share of f (of 1e-6 if f is smaller). The estimate extrapolates the decay
+    /// of f in the last sweeps, but never beyond the ideal of f. After a run by EDGE with corrections, the estimate
+    /// includes the distance between the minima of f and of EDGE's p-norm. `None` after too few sweeps, or if gains per
+    /// sweep do not decay.
     pub remaining: Option<f64>,
-    /// Number of vertices that a guard kept from moving further at the end of a run that has converged or has done
-    /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. If this is above 0, a run that has converged without
-    /// [`Guard::Worst`](crate::Guard::Worst) reports [`Stop::HeldBack`].
+    /// Number of vertices that a guard kept from moving further at the end of a run. Computed only if the run has
+    /// converged or has done [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. If the number is above 0, a
+    /// run that has converged without [`Guard::Worst`](crate::Guard::Worst) reports [`Stop::HeldBack`].
     pub held_back: usize,
-    /// The share of the gain in f that was lost by rounding positions to [`Options::stored`](crate::Options::stored), and
-    /// by setting back vertices whose rounding inverted a triangle. Near 1 for a mesh whose elements are as small as the
-    /// last digit of its coordinates.
+    /// Share of the gain in f that was lost by rounding positions to [`Options::stored`](crate::Options::stored), and
+    /// by setting back vertices whose rounding inverted a triangle. Near 1 for a mesh whose elements are hardly larger
+    /// than the last digit of its coordinates.
     pub lost: f64,
     /// The way toward the goal; `None` for a run without a goal.
     pub goal: Option<GoalOutcome>,
@@ -107,16 +107,16 @@ pub struct DeviceFault {
     pub error: GpuError,
 }
 
-/// How far a run went toward its [`Goal`](crate::Goal).
+/// Progress of a run toward its [`Goal`](crate::Goal).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalOutcome {
     /// The wanted share, [`Goal::fraction`](crate::Goal::fraction).
     pub fraction: f64,
     /// The desired objective.
     pub desired: f64,
-    /// The origin of the desired objective: "given", or a description of the search runs.
+    /// Origin of the desired objective: "given", or a description of the search runs.
     pub origin: String,
-    /// The share of the way from the initial to the desired objective that [`Outcome::points`] reach; 1 if both objectives
-    /// are equal.
+    /// Share of the difference between the initial and the desired objective that [`Outcome::points`] have gained; 1 if
+    /// both objectives are equal.
     pub best_fraction: f64,
 }

@@ -1,9 +1,9 @@
-//! The precision in which coordinates are stored.
+//! The precision of stored coordinates.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// The precision in which the coordinates of a mesh are stored.
+/// Precision in which the application or file stores the coordinates of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// Single precision: about seven digits, as in files of 32-bit floats.
@@ -18,19 +18,19 @@ pub enum Precision {
 /// A rule that rounds coordinates to the numbers that an application can store.
 #[derive(Clone, Copy)]
 pub struct Rounding {
-    /// The name of the rule. Two rules with the same name are the same rule, and a checkpoint belongs to runs by the rule of
-    /// its name.
+    /// Name of the rule. Rules of equal name count as equal, and a checkpoint identifies the rule of its run by this
+    /// name.
     pub name: &'static str,
-    /// Returns the number that is read back after a number is stored. Rounding twice must give the same number as
-    /// rounding once.
+    /// Returns the stored value of a number, as read back by a reader. Must be idempotent: a rounded number rounds to
+    /// itself.
     pub round: fn(f64) -> f64,
-    /// Returns a bound on the error of `round` for numbers of at most this size. The smallest and the largest numbers may
-    /// have a larger error.
+    /// Returns a bound on the error of `round` for numbers up to the given absolute value. The smallest and the largest
+    /// numbers of the format may have a larger error.
     pub error: fn(f64) -> f64,
 }
 
 impl Precision {
-    /// Returns the number that is read back after this number is stored.
+    /// Returns the stored value of `number`, as read back by a reader.
     pub fn rounded(self, number: f64) -> f64 {
         match self {
             Precision::Single => f64::from(number as f32),
@@ -39,7 +39,7 @@ impl Precision {
         }
     }
 
-    /// The name of the precision in checkpoints.
+    /// Returns the name of the precision in checkpoints.
     pub fn name(self) -> &'static str {
         match self {
             Precision::Single => "single",
@@ -48,8 +48,8 @@ impl Precision {
         }
     }
 
-    /// Returns a bound on the error of rounding numbers of at most this size, except for the smallest and the largest numbers
-    /// of the precision.
+    /// Returns a bound on the rounding error of numbers up to the absolute value `size`. The bound does not hold for
+    /// the smallest and the largest numbers of the precision.
     pub(crate) fn error(self, size: f64) -> f64 {
         match self {
             Precision::Single => f64::from(f32::EPSILON) * size,

@@ -9,7 +9,7 @@ use crate::topology::predicates;
 
 /// Quality statistics of a mesh, in double precision. Exact predicates decide which triangles are inverted or flat.
 ///
-/// A triangle with a coordinate that is not finite counts as inverted.
+/// A triangle with an infinite or NaN coordinate counts as inverted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     f: [f64; Metric::ALL.len()],
@@ -24,18 +24,18 @@ pub struct Quality {
     /// Largest inverse mean ratio among the triangles with a free vertex, which smoothing can improve; 0 if there is no
     /// free vertex.
     pub worst_movable_imr: f64,
-    /// Number of triangles that are inverted or flat.
+    /// Number of inverted or flat triangles.
     pub inverted: usize,
 }
 
-/// Sums and extremes over some triangles.
+/// Sums and extremes over a set of triangles.
 #[derive(Clone)]
 struct Tally {
     sums: [f64; Metric::ALL.len()],
-    /// Least and largest cotangent of an angle. A cotangent falls as its angle grows, and is computed without an arc
-    /// function.
+    /// Least and largest cotangent of an angle. A cotangent decreases as its angle grows, and its computation needs no
+    /// arc function.
     cotangents: [f64; 2],
-    /// Largest inverse mean ratio, and its triangle.
+    /// Largest inverse mean ratio, with the index of its triangle.
     worst: (f64, usize),
     worst_movable: f64,
     inverted: usize,
@@ -66,20 +66,20 @@ impl Tally {
 }
 
 impl Quality {
-    /// Measures the triangles of `topology` with their vertices at `points`, one point for each vertex of the mesh, in
-    /// any unit.
+    /// Measures the triangles of `topology` with vertices at `points`, one plane point per vertex of the mesh, in any
+    /// unit.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn of(points: &[[f64; 2]], topology: &Topology<'_>) -> Result<Self, MeshError> {
         Self::on(Surface::Plane, points, topology)
     }
 
-    /// Measures the triangles of `topology` with their vertices at `points`, which are coordinates on `surface`.
-    /// Lengths and angles are those on the surface at the middle of each triangle.
+    /// Measures the triangles of `topology` with vertices at `points`, given as coordinates on `surface`. Lengths and
+    /// angles are measured on the surface, by its metric at the center of each triangle.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn on(
         surface: Surface,
         points: &[[f64; 2]],
@@ -87,7 +87,7 @@ impl Quality {
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         let triangles = topology.triangles();
-        // Absolute areas, as signed ones may cancel if large triangles are inverted.
+        // Areas are absolute, as signed areas may cancel if large triangles are inverted.
         let area = |t: &[u32; 3]| {
             let [x, y] = surface.lengths_in(points, t);
             0.5 * predicates::orientation(points, t).abs() * x * y
@@ -127,7 +127,7 @@ impl Quality {
     }
 }
 
-/// The tally of a single triangle.
+/// Returns the tally of a single triangle.
 fn one(
     points: &[[f64; 2]],
     corners: &[u32; 3],
@@ -140,7 +140,7 @@ fn one(
     let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
     let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
     let corner = Corner { a, b, mean_area: mean_area / unit / unit };
-    // The exact predicate decides, not the rounded area. So a ratio is infinite only if the triangle is inverted or
+    // The exact predicate decides, not the rounded area, so a ratio is infinite only if the triangle is inverted or
     // flat.
     let mut sums = Metric::every_excess(&corner);
     for (square, metric) in sums.iter_mut().zip(Metric::ALL) {
@@ -168,7 +168,7 @@ fn one(
     }
 }
 
-/// The edges of a triangle, divided by `unit` so that no product of them overflows and the longest does not vanish.
+/// Edges of a triangle, divided by `unit` so that no product of edges overflows and the longest edge does not vanish.
 struct Edges {
     /// From the first corner to the second.
     a: [f64; 2],
@@ -181,8 +181,8 @@ struct Edges {
 }
 
 impl Edges {
-    /// Computes the edges of a triangle whose exact orientation is given. `lengths` are those of a unit of each
-    /// coordinate.
+    /// Computes the edges of a triangle whose exact orientation is given. `lengths` are the lengths on the surface of a
+    /// unit of each coordinate.
     fn of(points: &[[f64; 2]], corners: &[u32; 3], lengths: [f64; 2], orientation: f64) -> Self {
         const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
         let [p, q, r] = corners.map(|v| points[v as usize]);
@@ -193,8 +193,8 @@ impl Edges {
         let edges = [to(p, q), to(p, r), to(q, r)];
         let size = edges.as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
         let unit = f64::from_bits(size.to_bits() & EXPONENT);
-        // The unit is a power of two, so multiplying by its inverse rounds nothing. Divisions take several times as
-        // long.
+        // The unit is a power of two, so multiplication by its inverse rounds nothing. Divisions would take several
+        // times as long.
         let inverse = 1.0 / unit;
         let [a, b, c] = edges.map(|edge| edge.map(|x| x * inverse));
         let exact = orientation * inverse * inverse;
@@ -202,8 +202,8 @@ impl Edges {
         if (exact > 0.0) == (rounded > 0.0) {
             return Self { a, b, c, unit };
         }
-        // Rounding has changed the sign of the area. With axes along and across the first edge, that sign is the sign
-        // of a single coordinate, which is set to the exact one.
+        // Rounding has changed the sign of the area. With axes along and across the first edge, a single coordinate
+        // determines the sign, and is set from the exact area.
         let length = a[0].hypot(a[1]);
         let turned = |edge: [f64; 2]| [(a[0] * edge[0] + a[1] * edge[1]) / length, exact / length];
         Self { a: [length, 0.0], b: turned(b), c: turned(c), unit }

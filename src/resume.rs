@@ -1,4 +1,4 @@
-//! Checks that a checkpoint belongs to the run that is to continue from it.
+//! Check that a checkpoint belongs to the run that continues from it.
 
 use glam::DVec2;
 
@@ -8,8 +8,8 @@ use crate::mesh::Mesh;
 use crate::options::Options;
 use crate::run::{About, Checkpoint, PeriodState};
 
-/// Describes a run on this mesh, with the target maps of its vertices, as its checkpoints do. `more` are other data that
-/// the run depends on.
+/// Returns the description of a run that its checkpoints carry: a hash of the mesh, of the target maps of its vertices
+/// and of `more` data that the run depends on, and the options as lines of text.
 pub(crate) fn about(
     mesh: &Mesh,
     targets: Option<&[[f32; 3]]>,
@@ -19,7 +19,8 @@ pub(crate) fn about(
     About { mesh: hash(mesh, targets, more), options: options.lines(), goal: None, opened: None }
 }
 
-/// Checks that a checkpoint is from a run with the same options on the same mesh, whose layout is `problem`.
+/// Checks that a checkpoint comes from a run with equal options on the same mesh, whose layout is `problem`. Fails with
+/// [`SmoothError::Checkpoint`].
 pub(crate) fn check(
     own: &About,
     checkpoint: &Checkpoint,
@@ -52,14 +53,14 @@ pub(crate) fn check(
     }
 }
 
-/// The error for a checkpoint from another mesh.
+/// Returns the error for a checkpoint of another mesh.
 pub(crate) fn foreign() -> SmoothError {
     SmoothError::Checkpoint(
         "it is of another mesh, or other vertices were held, other curves or other targets set: continue with the mesh that the run began with".to_owned(),
     )
 }
 
-/// A hash of all data of a mesh that a run depends on: FNV-1a over words of 64 bits.
+/// Returns the hash of all data of a mesh that a run depends on: FNV-1a over words of 64 bits.
 fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
     let counts = [mesh.points.len(), mesh.triangles.len(), mesh.fixed.len()];
     let points = mesh.points.as_flattened().iter().map(|x| x.to_bits());
@@ -81,7 +82,7 @@ mod tests {
     use crate::run::{CheckpointPolicy, Stop};
     use crate::{Backend, GpuError, Outcome, Quality, Slide, Smoother, topology};
 
-    /// A policy that takes the first checkpoint, and continues on the CPU if asked to.
+    /// A policy that takes the first checkpoint, and continues on the CPU if asked.
     #[derive(Default)]
     struct First {
         checkpoint: Option<Checkpoint>,
@@ -104,7 +105,7 @@ mod tests {
         }
     }
 
-    /// A lattice of squares cut in two, with its inner vertices moved.
+    /// Returns a lattice of squares cut in two, with its inner vertices moved.
     fn lattice(n: u32) -> Mesh {
         let mut points = Vec::new();
         for (row, column) in (0..=n).flat_map(|row| (0..=n).map(move |column| (row, column))) {
@@ -121,7 +122,7 @@ mod tests {
         Mesh { points, triangles: squares.flat_map(of_square).collect(), fixed: Vec::new() }
     }
 
-    /// The CPU, and the GPU if its engine is compiled.
+    /// Returns the CPU backend and, with the feature `gpu`, the default device.
     fn backends() -> Vec<Backend> {
         Vec::from([
             Backend::Cpu,
@@ -130,8 +131,8 @@ mod tests {
         ])
     }
 
-    /// A position that overflows comes in with a checkpoint, as if memory had failed. The sweep that reveals it is
-    /// undone, and the mesh that is returned is no worse than before the run.
+    /// The checkpoint contains a position that overflows, as if memory had failed. The run undoes the sweep that
+    /// reveals the error, and the returned mesh is no worse than before the run.
     #[test]
     fn a_sweep_that_makes_a_number_that_is_not_finite_is_undone() {
         let mesh = lattice(12);
@@ -172,8 +173,7 @@ mod tests {
         }
     }
 
-    /// Bytes that are no valid checkpoint but have a correct checksum: they are refused, or the run ends with a sound
-    /// mesh.
+    /// Bytes with a correct checksum that are no valid checkpoint are refused, or the run ends with a sound mesh.
     #[test]
     fn a_hostile_checkpoint_does_no_harm() {
         let mesh = lattice(6);
@@ -211,7 +211,7 @@ mod tests {
                         1e300_f64.to_bits(),
                         1 << 40,
                     ][random(8)];
-                    // Half of the changes are in the bytes before the long lists.
+                    // Half of the changes hit the bytes before the long lists.
                     let most = if random(2) == 0 { hostile.len() } else { hostile.len().min(3000) };
                     let at = random(most - 8);
                     hostile[at..at + 8].copy_from_slice(&word.to_le_bytes());
@@ -243,7 +243,8 @@ mod tests {
         assert!(refused > 50 && went_on > 50, "{refused} refused, {went_on} went on");
     }
 
-    /// The sweeps on the CPU were once counted from a sweep that the checkpoint does not have.
+    /// If the device's last sweep came after the period began, sweeps of the CPU would count from a sweep that the
+    /// checkpoint lacks.
     #[test]
     fn a_checkpoint_whose_cpu_took_over_later_than_its_period_began_is_refused() {
         let mesh = lattice(6);

@@ -1,4 +1,4 @@
-//! Selects vertices and triangles by position and quality, to choose which vertices move or are held.
+//! Selection of vertices and triangles by position and quality, to choose which vertices move or are held.
 //!
 //! ```
 //! use gpu_smooth::{Mesh, Topology, select};
@@ -20,16 +20,16 @@ use crate::metric::Corner;
 use crate::topology::Topology;
 
 /// Returns the triangles with an inverse mean ratio above `limit`, ascending. The inverse mean ratio is 1 for an
-/// equilateral triangle, and infinite for one that is flat, inverted, or not at finite `points`.
+/// equilateral triangle, and infinite for a triangle that is flat or inverted or has a coordinate that is not finite.
 ///
-/// A triangle with a missing point counts as infinitely bad.
+/// The ratio is also infinite if `points` lacks a vertex of the triangle.
 pub fn triangles_above(points: &[[f64; 2]], topology: &Topology<'_>, limit: f64) -> Vec<u32> {
     let is_above = |corners: &[u32; 3]| inverse_mean_ratio(points, corners) > limit;
     let triangles = (0..).zip(topology.triangles());
     triangles.filter(|(_, corners)| is_above(corners)).map(|(triangle, _)| triangle).collect()
 }
 
-/// Returns the largest inverse mean ratio of a triangle.
+/// Returns the largest inverse mean ratio of a triangle, 1 at best.
 pub fn worst(points: &[[f64; 2]], topology: &Topology<'_>) -> f64 {
     let ratios = topology.triangles().iter().map(|corners| inverse_mean_ratio(points, corners));
     ratios.fold(1.0, f64::max)
@@ -45,7 +45,7 @@ fn inverse_mean_ratio(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
 }
 
 /// Returns the vertices of the given triangles and of `rings` rings of triangles around them, ascending. Indices of
-/// triangles that do not exist are ignored.
+/// nonexistent triangles are ignored.
 pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> Vec<u32> {
     let all = topology.triangles();
     let mut found = vec![false; topology.free().len()];
@@ -75,7 +75,7 @@ pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> 
     indices(&found)
 }
 
-/// Returns the vertices whose triangles are all among the given ones, ascending. Vertices that no triangle uses are not
+/// Returns the vertices whose triangles are all in `triangles`, ascending. Vertices that no triangle uses are not
 /// included.
 pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
     let all = topology.triangles();
@@ -95,7 +95,7 @@ pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
     indices(&inside)
 }
 
-/// Returns the vertices at points inside or on the sides of the box spanned by two opposite corners, ascending.
+/// Returns the vertices inside or on the sides of the axis-parallel box spanned by two opposite corners, ascending.
 pub fn vertices_in_box(points: &[[f64; 2]], corners: [[f64; 2]; 2]) -> Vec<u32> {
     let [a, b] = corners;
     let is_within = |axis: usize, x: f64| {
@@ -107,7 +107,7 @@ pub fn vertices_in_box(points: &[[f64; 2]], corners: [[f64; 2]; 2]) -> Vec<u32> 
     points.filter(|(_, point)| is_inside(point)).map(|(vertex, _)| vertex).collect()
 }
 
-/// Returns the indices at which the flags are set.
+/// Returns the indices of the flags that are set, ascending.
 fn indices(flags: &[bool]) -> Vec<u32> {
     (0..).zip(flags).filter(|(_, flag)| **flag).map(|(index, _)| index).collect()
 }
@@ -117,8 +117,8 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
 
-    /// A strip of squares, each cut in two: vertices 0 to 5 are below, 6 to 11 above them, and no triangle uses the
-    /// last one.
+    /// Returns a strip of squares, each cut in two: vertices 0 to 5 are below, 6 to 11 above, and no triangle uses the
+    /// last vertex.
     fn strip() -> Mesh {
         let point = |i: u32| [f64::from(i % 6), f64::from(i / 6)];
         let square = |i: u32| [[i, i + 1, i + 7], [i, i + 7, i + 6]];
@@ -169,7 +169,7 @@ mod tests {
         // Right isosceles triangles have 2/√3 = 1.1547; one vertex is moved far along the strip.
         mesh.points[2][0] = 2.9;
         let topology = Topology::new(&mesh).unwrap();
-        // This brings two of its triangles near to equilateral ones.
+        // The move makes two triangles of this vertex nearly equilateral.
         assert_eq!(triangles_above(&mesh.points, &topology, 1.15), [0, 1, 3, 4, 6, 7, 8, 9]);
         assert_eq!(triangles_above(&mesh.points, &topology, 1.2), [4]);
         assert_eq!(triangles_above(&mesh.points, &topology, 6.0), []);

@@ -1,5 +1,5 @@
-// For the kernels that move vertices toward an application's targets. Each vertex goes the same share of the way to its
-// target. The bindings are `Move` in src/gpu/kernels/layouts.rs.
+// Shared by the kernels that move vertices toward an application's targets. Each vertex goes an equal share of its way.
+// The bindings are `Move` in src/gpu/kernels/layouts.rs.
 
 fn runtime_zero() -> u32 {
     return movement.zero;
@@ -9,7 +9,7 @@ fn normalized_target(x: f32, center: vec2<f32>) -> vec2<f32> {
     return pair_add(vec2(x, 0.0), -center) * movement.scale;
 }
 
-// Returns the end of a way. Where the target is not finite, the vertex stays where it is.
+// Returns the end of a way: the target or, if the target is not finite, the present position.
 fn target_of(way: u32, from_: vec4<f32>) -> vec4<f32> {
     let at = movement.offset + ways[way].y * movement.stride;
     let x = normalized_target(targets[at], movement.center.xz);

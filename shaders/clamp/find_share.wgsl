@@ -1,12 +1,13 @@
-// Finds the largest share of their ways that vertices can go before a triangle inverts or gets too flat. As
-// Topology::move_clamped does on the host (src/topology/clamp.rs), it solves a quadratic for each triangle, and then
-// checks the triangles at their new positions. Runs in one workgroup.
+// Finds the largest share of their ways that vertices can go before a triangle inverts or gets too flat. Like
+// Topology::move_clamped on the host (src/topology/clamp.rs), solves a quadratic equation for each triangle, and then
+// checks the triangles at the new positions. Runs in one workgroup.
 
 // An inverse mean ratio in single precision has a relative error of up to this times the ratio.
 const ROUNDING: f32 = 4.76837158203125e-7; // 2^-21
-// A triangle with a larger inverse mean ratio counts as flat: its area is not known to be positive.
+// Triangles with a larger inverse mean ratio count as flat, as rounding leaves the sign of the area unknown.
 const FLATTEST: f32 = 5.0e5;
-// A share that is too long is first shortened by SHORTEN_FIRST, and then each time by SHORTEN_MORE times as much.
+// An excessive share is first shortened by SHORTEN_FIRST, relative to the share; each further shortening is
+// SHORTEN_MORE times larger.
 const SHORTEN_FIRST: f32 = 9.5367431640625e-7; // 2^-20
 const SHORTEN_MORE: f32 = 16.0;
 
@@ -29,7 +30,8 @@ fn corners_of(t: u32) -> Corners {
     );
 }
 
-// The inverse mean ratio of the triangle that edges a and b span; 0 if it is inverted, flat or not finite.
+// Returns the inverse mean ratio of the triangle spanned by edges a and b; 0 for an inverted, flat or infinite
+// triangle.
 fn imr(a: vec2<f32>, b: vec2<f32>) -> f32 {
     let t = Corner(a, b, vec2(0.0));
     let area = doubled_area(t);
@@ -40,7 +42,7 @@ fn imr(a: vec2<f32>, b: vec2<f32>) -> f32 {
     return select(0.0, ratio, is_positive(ratio) && ratio <= FLATTEST);
 }
 
-// The largest inverse mean ratio that a triangle may get by the movement, given its present one.
+// Returns the largest inverse mean ratio that the movement may give a triangle, from its present ratio.
 fn limit_of(now: f32) -> f32 {
     return max(movement.worst_imr, now * (1.0 + now * ROUNDING));
 }
@@ -61,13 +63,13 @@ fn going(t: u32, corner: u32, from_: vec4<f32>, by: f32) -> vec4<f32> {
     return gone(way, from_, by);
 }
 
-// The least positive root t of constant + slope t + bend t² = 0; 2 if there is none.
+// Returns the least positive root t of constant + slope t + bend t² = 0; 2 without a positive root.
 fn least_root(constant: f32, slope: f32, bend: f32) -> f32 {
     let discriminant = slope * slope - 4.0 * bend * constant;
     if discriminant < 0.0 {
         return 2.0;
     }
-    // Both roots by the formula that does not cancel.
+    // Both roots, by the formula without cancellation.
     let half = -0.5 * (slope + select(-1.0, 1.0, slope >= 0.0) * sqrt(discriminant));
     let first = half / bend;
     let second = constant / half;
@@ -77,8 +79,9 @@ fn least_root(constant: f32, slope: f32, bend: f32) -> f32 {
     );
 }
 
-// The share at which a triangle's inverse mean ratio reaches its limit. The ratio is L / (2√3 D), with L the sum of the
-// squared lengths and D the doubled area, so the share is the least root of the quadratic D - L / (2√3 limit).
+// Returns the share at which a triangle's inverse mean ratio reaches its limit; 1 for triangles that are inverted or
+// flat beforehand. The ratio is L / (2√3 D), with L the sum of the squared lengths and D the doubled area, so the share
+// is the least root of the quadratic D - L / (2√3 limit).
 fn gives_way(t: u32) -> f32 {
     let c = corners_of(t);
     let now = imr(edge(c.p, c.q), edge(c.p, c.r));
@@ -107,7 +110,7 @@ fn gives_way(t: u32) -> f32 {
     );
 }
 
-// Whether a triangle keeps to its limit after its vertices have gone a share of their ways.
+// Returns whether a triangle respects its limit after its vertices have gone a share of their ways.
 fn holds(t: u32, by: f32) -> bool {
     let c = corners_of(t);
     let now = imr(edge(c.p, c.q), edge(c.p, c.r));
@@ -135,7 +138,8 @@ fn find_share(@builtin(local_invocation_index) local: u32) {
         share = select(found * (1.0 - SHORTEN_FIRST), 1.0, found >= 1.0);
         goes_on = 1u;
     }
-    // The share and the positions are rounded, so a triangle may exceed its limit: lowers the share until none does.
+    // The share and the positions are rounded, so a triangle may exceed its limit: lowers the share until no triangle
+    // exceeds its limit.
     for (var shorten = SHORTEN_FIRST; shorten < 1.0; shorten *= SHORTEN_MORE) {
         // These loads are barriers as well.
         if workgroupUniformLoad(&goes_on) == 0u {

@@ -1,4 +1,4 @@
-// Moves vertices by the share of their ways that find_share.wgsl has found.
+// Moves vertices toward their targets by the share that find_share.wgsl has found.
 
 @compute @workgroup_size(WORKGROUP)
 fn move_vertices(

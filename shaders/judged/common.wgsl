@@ -1,5 +1,5 @@
-// For the kernels that let an application's encoded sweeps end by the stop rule. Their bindings are `Reopen` in
+// Shared by the kernels that let an application's encoded sweeps end by the stop rule. Their bindings are `Reopen` in
 // src/gpu/kernels/layouts.rs.
 
-// The value of `done` that makes a run in progress skip the next evaluation, which only runs that begin need.
+// Value of `done` by which a run in progress skips the next evaluation, needed only at the start of a run.
 const PASSED: u32 = 0xffffffffu;

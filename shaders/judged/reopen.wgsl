@@ -1,5 +1,5 @@
-// Restarts the stop rule if the mesh was changed. The next evaluation is then that of the mesh before the first sweep.
-// A run in progress skips this evaluation.
+// Restarts the stop rule if the mesh or its pins have changed. The next evaluation then precedes the first sweep. A run
+// in progress skips the evaluation, as the present state was evaluated after the last sweep.
 
 @compute @workgroup_size(1)
 fn reopen() {

@@ -1,5 +1,5 @@
-// The step length along the correction: as given by the host, or, where that is 0, as found by the line search on the
-// device.
+// Returns the step length along the correction: the host's length or, if the host has given 0, the length that the line
+// search on the device has found.
 fn length_along() -> f32 {
     if op.length != 0.0 {
         return op.length;
@@ -7,8 +7,8 @@ fn length_along() -> f32 {
     return vectors[LENGTHS].x;
 }
 
-// The displacement of a free vertex. The correction is in the coordinates of the shape of the vertex's target map, and
-// is mapped back.
+// Returns the displacement of a free vertex. The correction is in the coordinates of the shape of the vertex's target
+// map, and is mapped back.
 fn move_of(v: u32) -> vec2<f32> {
     var d = direction[v];
     if MAPPED {

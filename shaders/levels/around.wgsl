@@ -1,5 +1,5 @@
-// The square root of the stiffness at a vertex. The stiffness is the mean absolute eigenvalue of the Hessian of the sum
-// of q² with respect to the vertex, divided by the number of its neighbors.
+// Returns the square root of the stiffness at a vertex. The stiffness is the mean absolute eigenvalue of the Hessian of
+// the sum of q² with respect to the vertex, divided by the number of its neighbors.
 fn root_of_stiffness(p: Patch, hessian: vec3<f32>) -> f32 {
     let mean = 0.5 * (hessian.x + hessian.z);
     let half = 0.5 * (hessian.x - hessian.z);
@@ -8,7 +8,8 @@ fn root_of_stiffness(p: Patch, hessian: vec3<f32>) -> f32 {
     return sqrt(max(abs(mean), radius) / f32(p.end - p.start)) * p.unit;
 }
 
-// The sum of the metric's derivatives over the triangles of a patch, in the patch's unit.
+// Returns the sums of the metric's gradients and Hessians over the triangles of a patch, in the patch's unit. The value
+// stays 0.
 
 fn derivatives_around(p: Patch) -> Derivatives {
     var sum = Derivatives(0.0, vec2(0.0), vec3(0.0));

@@ -1,6 +1,6 @@
-// For kernels on a coarse level; their bindings are `Coarse` in src/gpu/kernels/layouts.rs.
+// Shared by the kernels on a coarse level, whose bindings are `Coarse` in src/gpu/kernels/layouts.rs.
 
-// The product of a row of the matrix with x.
+// Returns the product of a row of the matrix with x.
 fn row_times_x(row: u32) -> vec2<f32> {
     var sum = vec2(0.0);
     let end = structure[op.starts + row + 1u];

@@ -1,5 +1,6 @@
-// Computes the correction without the free vertices of triangles that it would break. The result goes to `vectors`, because
-// invocations for neighbors still read the old correction; leave_out_broken.wgsl then copies it.
+// Computes the correction with zeros at the free vertices of triangles that the correction would break. The result goes
+// to `vectors`, because invocations for neighbors still read the old correction; leave_out_broken.wgsl copies the
+// result.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_broken(

@@ -1,6 +1,6 @@
 // Computes the gradient of the sum of q² by each free vertex, in the coordinates of the shape of the vertex's target
-// map. It is zero at held vertices. Where the levels are to be fitted, the square root of the stiffness is computed
-// too.
+// map. The gradient is zero at held vertices. If each correction fits the levels, the square root of the stiffness is
+// computed too.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_gradient(

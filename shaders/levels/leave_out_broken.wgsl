@@ -1,5 +1,4 @@
-// Replaces the correction by that of find_broken.wgsl, and sets the gradient to zero at the vertices which that has
-// left out.
+// Replaces the correction by the result of find_broken.wgsl, and sets the gradient to zero at the excluded vertices.
 
 @compute @workgroup_size(WORKGROUP)
 fn leave_out_broken(

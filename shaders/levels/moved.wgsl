@@ -1,6 +1,6 @@
 // Triangles after their vertices have moved along the correction by the step length.
 
-// The displacement of a vertex, zero if it is not free.
+// Returns the displacement of a vertex, zero for vertices that are not free.
 fn displacement(v: u32) -> vec2<f32> {
     if v >= op.free {
         return vec2(0.0);
@@ -8,13 +8,14 @@ fn displacement(v: u32) -> vec2<f32> {
     return move_of(v);
 }
 
-// An edge after both its vertices have moved. The displacements may be much longer than the edge, so their difference
-// is taken first.
+// Returns an edge after its two vertices have moved. Displacements may be much longer than the edge, so the
+// displacements are subtracted first.
 fn moved_edge(e: vec2<f32>, tail_displacement: vec2<f32>, head_displacement: vec2<f32>) -> vec2<f32> {
     return e + opaque2(head_displacement - tail_displacement);
 }
 
-// Whether the moved triangle is inverted, flat or not finite, or breaks the shape guard and is worse than before.
+// Returns whether the moved triangle is inverted, flat or not finite, or breaks the shape guard and is worse than
+// before.
 fn is_broken(here: Corner, there: Corner) -> bool {
     if !is_positive(doubled_area(there)) {
         return true;

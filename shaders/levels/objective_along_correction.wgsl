@@ -1,8 +1,8 @@
-// Evaluates a trial step along the correction by four sums over the mesh: the objective before the step, the objective
-// after it, the number of triangles that are broken before or after it, and the slope of the objective along the
-// correction. For EDGE the objective is its p-norm. Each invocation leaves its partial sums as pairs of floats, which
-// sum_along_correction.wgsl adds up. A dispatch for a further part of the triangles continues the sums of the part
-// before.
+// Evaluates a trial step along the correction by four sums over the mesh: the objective before and after the step, the
+// count of triangles inverted before or broken after the step, and the objective's slope along the correction. For
+// EDGE, the objective is the p-norm. Each invocation writes its partial sums as pairs of floats, which
+// sum_along_correction.wgsl adds up. If the triangles are bound in parts, each dispatch continues the sums of the
+// previous part.
 
 @compute @workgroup_size(WORKGROUP)
 fn objective_along_correction(

@@ -1,4 +1,4 @@
-// Restricts the negative gradient to the first coarse level: sums it over the members of each aggregate.
+// Restricts the negative gradient to the first coarse level: the sum over the members of each aggregate.
 
 @compute @workgroup_size(WORKGROUP)
 fn restrict_gradient(

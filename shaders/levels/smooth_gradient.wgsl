@@ -1,5 +1,5 @@
 // Applies the transpose of the prolongation's smoothing to the gradient, for restrict.wgsl. The result goes to
-// `direction`, which is not in use yet.
+// `direction`, before this vector holds the correction.
 
 fn carried(k: u32) -> vec2<f32> {
     return gradient[k] * (fit(k) * values[op.diagonal + k] * root(k));

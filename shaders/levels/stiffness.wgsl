@@ -1,5 +1,5 @@
-// Computes the square root of the stiffness at each free vertex, in the coordinates of the shape of its target map. The
-// result goes to both components of `gradient`.
+// Computes the square root of the stiffness at each free vertex, in the coordinates of the shape of its target map.
+// Both components of `gradient` receive the root.
 
 @compute @workgroup_size(WORKGROUP)
 fn find_stiffness(

@@ -1,4 +1,4 @@
-// Adds up the partial sums of objective_along_correction.wgsl to its four sums. Runs in one workgroup.
+// Adds up the partial sums of objective_along_correction.wgsl to four totals. Runs in one workgroup.
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 

@@ -8,9 +8,9 @@ fn root(v: u32) -> f32 {
     return values[op.roots + v];
 }
 
-// The factor that fits the levels to a vertex whose stiffness has changed. The matrix of the free vertices is R M R,
-// with R the diagonal matrix of the roots, so its inverse is fitted to other roots by a factor on either side. 1 where
-// the levels need no fit.
+// Returns the factor that fits the levels to the present stiffness at a vertex; 1 if the levels are not fitted, or if
+// the present root vanishes. The matrix of the free vertices is R M R, with R the diagonal matrix of the roots, so a
+// factor on either side fits the inverse to other roots.
 fn fit(v: u32) -> f32 {
     if op.present_roots == NONE {
         return 1.0;

@@ -1,4 +1,4 @@
-// Begins the line search of a correction, or skips it if the sweeps have ended by the stop rule.
+// Begins the line search of a correction, or skips the correction if the sweeps have ended by the stop rule.
 
 @compute @workgroup_size(1)
 fn begin_search() {

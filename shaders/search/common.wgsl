@@ -1,5 +1,5 @@
-// For the line search along a correction that an application encodes: a fixed number of trials, judged on the device.
-// The bindings are `Search` in src/gpu/kernels/layouts.rs.
+// Shared by the kernels of the line search along an application's encoded correction: a fixed number of trials, judged
+// on the device. The bindings are `Search` in src/gpu/kernels/layouts.rs.
 
-// The length from which the search for the first correction starts.
+// First trial length along the first correction.
 const USUAL_LENGTH: f32 = 1.0;

@@ -1,9 +1,10 @@
 // Judges a trial and chooses the next length, by the rules of Search in src/run/multilevel/search.rs. After the last
-// trial, or once a length is good enough, the best length is left for the movement: 0 if none lowers the objective
-// without breaking a triangle.
+// trial, or once a length is good enough, the movement gets the best length: 0 if no trial lowers the objective without
+// breaking a triangle.
 
-// Ends the search with the given length, and sets the length that the next search starts from. That is the length
-// taken; a longer one if it was short, as the obstacle may be gone; and a shorter one if none was taken.
+// Ends the search with the length of the movement, and sets the first trial length of the next search: the length
+// taken. After a short movement, the next search starts longer, as the obstacle may be gone. Without a movement, the
+// next search starts at half of the last trial.
 fn settle_on(length: f32, last_tried: f32) {
     var first = length;
     if length == 0.0 {

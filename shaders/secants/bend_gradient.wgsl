@@ -1,5 +1,5 @@
-// Replaces the gradient by the vector that the levels are applied to: the gradient minus what the secant pairs account
-// for.
+// Replaces the gradient by the vector to which the levels are applied: the gradient minus the part that the secant
+// pairs account for.
 
 @compute @workgroup_size(WORKGROUP)
 fn bend_gradient(

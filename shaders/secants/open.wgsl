@@ -1,5 +1,5 @@
 // If there are secant pairs, completes the correction by them and restores the gradient. Then opens the next pair in
-// the slot of the older one.
+// the slot of the older pair.
 
 @compute @workgroup_size(WORKGROUP)
 fn open_secant(

@@ -21,7 +21,7 @@ fn total(local: u32, i: u32) -> f32 {
     return whole;
 }
 
-// A product divided by a curvature, or 0 if the pair is not used.
+// Returns a product divided by a curvature, or 0 if the pair is not used.
 fn share(product: f32, curvature: f32) -> f32 {
     return select(0.0, product / curvature, curvature > 0.0);
 }
@@ -30,7 +30,7 @@ fn share(product: f32, curvature: f32) -> f32 {
 fn find_before(along: vec2<f32>, curvature: f32, across: f32) {
     let slope_before = along.x - curvature;
     let counts = is_positive(curvature - LEAST_CURVATURE * abs(slope_before));
-    // The newer pair of the last correction is the older one now.
+    // The newer pair of the last correction is the older pair now.
     let older_curvature = select(0.0, sums[CURVATURES].x, op.pairs > 1u);
     let curvatures = vec2(select(0.0, curvature, counts), older_curvature);
     let newer = share(along.x, curvatures.x);
@@ -55,7 +55,7 @@ fn find_after(products: vec2<f32>) {
 fn sum_secants(@builtin(local_invocation_index) local: u32) {
     let newer = total(local, 0u);
     let second = total(local, 1u);
-    // After the levels there are two sums only, and the next two totals are not used.
+    // After the levels only two sums are computed, and the next two totals are not used.
     let older = total(local, 2u);
     let across = total(local, 3u);
     if local == 0u {

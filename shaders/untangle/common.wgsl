@@ -1,18 +1,18 @@
-// For the sweeps that untangle a mesh. The energies are those of src/untangle/energy.rs, and the bindings are `Untangle` in
-// src/gpu/kernels/layouts.rs.
+// Shared by the kernels of untangling sweeps. The energies are those of src/untangle/energy.rs, and the bindings are
+// `Untangle` in src/gpu/kernels/layouts.rs.
 
-// The number of invocations of a dispatch. Each visits several vertices or triangles: software drivers start every
-// invocation, whether or not there is anything to do for it.
+// Returns the number of invocations of a dispatch. Each invocation visits several vertices or triangles, as software
+// drivers start every invocation even without work.
 fn invocations(groups: vec3<u32>) -> u32 {
     return groups.x * groups.y * WORKGROUP;
 }
 
-// The index in the bound part of `ring` for an entry of `ring_start`.
+// Returns the index in the bound part of `ring` for an offset from `ring_start`.
 fn ring_place(start: u32) -> u32 {
     return (start & ~HELD) - part.ring_base;
 }
 
-// The area that a triangle should have after its target map is applied.
+// Returns the desired area of a triangle after the transformation by its target map.
 fn wanted_area(corners: vec3<u32>, map: vec3<f32>) -> f32 {
     let sum = vertices[corners.x].area + vertices[corners.y].area + vertices[corners.z].area;
     if MAPPED {

@@ -9,7 +9,7 @@ struct Regularized {
     root: f32,
 }
 
-// Computes χ and √(ε² + d²) without cancellation, and so that no square underflows or overflows.
+// Computes χ and √(ε² + d²) without cancellation, and without underflow or overflow of squares.
 fn regularized(epsilon: f32, d: f32) -> Regularized {
     let unit = max(epsilon, abs(d));
     let e = epsilon / unit;
@@ -25,8 +25,8 @@ fn energy(t: Corner, epsilon: f32) -> f32 {
     return PER_DOUBLED_AREA * squared_length_sum(t) / regularized(epsilon, doubled_area(t)).chi;
 }
 
-// The energy and its derivatives by the vertex that the edges start from. With r = √(ε² + d²), the derivatives of 1/χ
-// by d are -1 / (χ r) and 2 / r³.
+// Returns the energy and its derivatives by the vertex where the edges start. With r = √(ε² + d²), the derivatives of
+// 1/χ by d are -1 / (χ r) and 2 / r³.
 fn energy_derivatives(t: Corner, epsilon: f32) -> Derivatives {
     let r = regularized(epsilon, doubled_area(t));
     let inverse = 1.0 / r.chi;
@@ -34,7 +34,7 @@ fn energy_derivatives(t: Corner, epsilon: f32) -> Derivatives {
     let s = PER_DOUBLED_AREA * squared_length_sum(t);
     let ds = (-2.0 * PER_DOUBLED_AREA) * (t.a + t.b);
     let ss = 4.0 * PER_DOUBLED_AREA * inverse;
-    // Divided by the root, as areas may be far from one.
+    // Division by the root keeps slopes in range for tiny and huge areas.
     let dd = vec2(t.a.y - t.b.y, t.b.x - t.a.x) * per_root;
     let mixed = -inverse * ds;
     let second = 2.0 * s * per_root;

@@ -1,13 +1,15 @@
-// Counts the triangles that are inverted or flat, finds the most inverted one, and marks the vertices of all of them.
+// Counts inverted and flat triangles, finds the most inverted triangle, and marks the vertices of every counted
+// triangle.
 
-// Larger depths are cut to this one.
+// Upper limit of the depth of an inverted triangle.
 const MOST_DEPTH: f32 = 1.0e30;
 
 fn may_move(vertex: u32) -> bool {
     return vertex < part.free && (ring_start[vertex] & HELD) == 0u;
 }
 
-// How negative an area is: 0 for a flat triangle, MOST_DEPTH at most, and for an area that is not finite.
+// Returns the depth of a triangle, its area without the minus sign: 0 for a flat triangle, MOST_DEPTH at most and for
+// areas that are not finite.
 fn depth_of(area: f32) -> f32 {
     if is_positive(-area) {
         return min(-area, MOST_DEPTH);
@@ -21,7 +23,7 @@ fn look_at(t: u32) {
     let a = edge(p, position(corners.y));
     let b = edge(p, position(corners.z));
     let map = map_of(corners);
-    // Judged by the same area as in objective.wgsl.
+    // The area is computed as in objective.wgsl, so that both kernels count equal triangles.
     let area = doubled_area(shown(Corner(a, b, vec2(0.0)), map));
     if is_positive(area) {
         return;

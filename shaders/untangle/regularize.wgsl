@@ -1,5 +1,5 @@
-// Begins a sweep if triangles are inverted: computes the ε of the energy from the most inverted one, as in
-// src/run/regularization.rs. If none is inverted, sets `valid`, so that the kernels encoded behind do nothing.
+// Begins a sweep if triangles are inverted: computes the ε of the energy from the most inverted triangle, as in
+// src/run/regularization.rs. If no triangle is inverted, sets `valid`, so that later kernels of the call do nothing.
 
 @compute @workgroup_size(1)
 fn regularize() {
@@ -10,7 +10,7 @@ fn regularize() {
     let depth = bitcast<f32>(atomicExchange(&tangle.depth, 0u));
     tangle.valid = select(0u, 1u, inverted == 0u);
     if inverted == 0u {
-        // Vertices that moved in this tangle do not count as reached in the next one.
+        // Vertices marked in this tangle do not count as marked in the next tangle.
         if tangle.sweep != tangle.since {
             tangle.sweep += 1u;
             tangle.since = tangle.sweep;

@@ -1,11 +1,11 @@
-// Moves the free vertices of a color by a Newton step that lowers the energy of their patch. Only vertices around
-// inverted triangles move. Where that is not enough, each sweep adds the vertices one edge farther off.
+// Moves the free vertices of a color by a Newton step that lowers the energy of their patch. At first only vertices of
+// inverted triangles move, and each further sweep adds the vertices one edge farther off.
 
-// The first trial length of a step. The energy has no barrier that a long step could cross; 1 was measured to take
-// twice as many sweeps.
+// First trial length, as a multiple of Newton's step. A long step cannot cross a barrier, as the energy has none. A
+// first length of 1 was measured to take twice as many sweeps.
 const OVER_RELAXATION: f32 = 1.7;
 
-// Returns whether the vertex is among those that move, and marks it if so.
+// Returns whether the vertex moves in this sweep. Marks a vertex with a neighbor that moved before.
 fn joins_in(vertex: u32, first: u32, end: u32) -> bool {
     let own = atomicLoad(&vertices[vertex].reached);
     if own >= tangle.since && own <= tangle.sweep {
@@ -21,7 +21,7 @@ fn joins_in(vertex: u32, first: u32, end: u32) -> bool {
     return false;
 }
 
-// The patch, scaled by its longest edge, as other edges may have zero length.
+// Returns the patch of a vertex, scaled by the longest edge, as other edges may have zero length.
 fn tangled_patch_of(vertex: u32) -> Patch {
     var p = patch_of(vertex);
     var longest = vec2(0.0);
@@ -32,8 +32,9 @@ fn tangled_patch_of(vertex: u32) -> Patch {
     return p;
 }
 
-// The longest allowed step along an axis: twice the larger of the shortest edge and the desired edge length. So a
-// vertex that is far off comes back at once, and its neighbors do not follow it there.
+// Returns the longest allowed step along an axis: twice the larger of the shortest edge and the desired edge length. A
+// distant vertex has only long edges and returns at once. Neighbors of a distant vertex have short edges too, and
+// cannot follow.
 fn reach(p: Patch, vertex: u32) -> f32 {
     var shortest = 3.0e38;
     for (var i = p.start; i < p.end; i++) {
@@ -43,12 +44,12 @@ fn reach(p: Patch, vertex: u32) -> f32 {
     return 2.0 * max(shortest, sqrt(vertices[vertex].area) * p.unit);
 }
 
-// A triangle of the patch with the vertex moved by d, transformed by its target map.
+// Returns a triangle of the patch with the vertex moved by d, transformed by the triangle's target map.
 fn triangle_at(p: Patch, before: u32, i: u32, d: vec2<f32>, map: vec3<f32>) -> Corner {
     return shown(Corner(ring_edge(p, before) - d, ring_edge(p, i) - d, vec2(0.0)), map);
 }
 
-// ε in the unit of the triangle's doubled area. It is at least 1e-30, so that nothing is divided by zero.
+// Returns ε in the unit of the triangle's doubled area, at least 1e-30 so that nothing is divided by zero.
 fn epsilon_of(p: Patch, corners: vec3<u32>, map: vec3<f32>) -> f32 {
     let wanted = 2.0 * wanted_area(corners, map);
     return max((tangle.epsilon * p.unit) * (wanted * p.unit), 1.0e-30);
@@ -66,7 +67,7 @@ fn energy_of_patch(p: Patch, vertex: u32, d: vec2<f32>) -> f32 {
     return sum;
 }
 
-// The Newton step with its line search, in the patch's unit; zero if none lowers the energy.
+// Returns a Newton step after its line search, in the patch's unit; zero if no trial lowers the energy.
 fn untangling_step(p: Patch, vertex: u32) -> vec2<f32> {
     var sum = Derivatives(0.0, vec2(0.0), vec3(0.0));
     var before = p.end - 1u;

@@ -1,5 +1,5 @@
-//! Charts of meshes in longitude and latitude: longitudes are continued across the line where they jump by a full turn,
-//! and triangles at a pole get corners of their own.
+//! Charts of meshes in longitude and latitude. Longitudes are continued across the line where they jump by a full turn,
+//! and triangles at a pole get separate copies of the pole vertex.
 
 mod turns;
 
@@ -10,14 +10,14 @@ use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::precision::Precision;
 
-/// A mesh in longitude and latitude, in degrees, with longitudes continued across the line where they jump by a full
-/// turn: at 180, or at 0 where they go up to 360. Triangles across that line then get the shape in coordinates that
-/// triangles elsewhere have.
+/// A mesh in longitude and latitude, in degrees, whose longitudes continue across the line where they jump by a full
+/// turn. The jump is at 180, or at 0 if longitudes run from 0 to 360. In the chart, triangles across the line have the
+/// same shape in coordinates as triangles elsewhere.
 ///
-/// A part of the mesh that closes around the globe is cut along that line, and around a pole at which triangles meet. A
-/// vertex on a cut has copies, which come after all other vertices of the chart's mesh; the vertex itself keeps its
-/// number. Cuts are part of the boundary of the chart's mesh, so vertices on them do not move. Triangles keep their
-/// numbers.
+/// If a part of the mesh closes around the globe, the chart cuts the part along that line. A pole at which triangles
+/// meet is cut too. A vertex on a cut has copies, which come after all other vertices of the chart's mesh; the vertex
+/// itself keeps its index. Cuts are part of the boundary of the chart's mesh, so vertices on cuts do not move.
+/// Triangles keep their indices.
 ///
 /// ```
 /// use gpu_smooth::{interpolate::Chart, Mesh, precision::Precision};
@@ -36,25 +36,25 @@ use crate::precision::Precision;
 #[derive(Clone, Debug)]
 pub struct Chart {
     mesh: Mesh,
-    /// The mesh as it was given.
+    /// The mesh whose chart this is, with longitudes as stored.
     given: Mesh,
     stored: Precision,
-    /// The vertex of the given mesh that each copy stands for.
+    /// Original vertex of each copy, in the order of the copies.
     owners: Vec<u32>,
-    /// The vertices on cuts of the chart, copies included, which do not move. Ascending.
+    /// Ascending indices of the vertices on cuts of the chart, copies included. They do not move.
     held: Vec<u32>,
     across: usize,
     polar: usize,
 }
 
 impl Chart {
-    /// Makes the chart of a mesh whose coordinates are stored with the given precision. Returns `None` if the mesh
-    /// needs no chart, as no triangle is across the line or at a pole, and for a mesh with vertices that do not exist
-    /// or coordinates that are not finite.
+    /// Makes the chart of a mesh whose coordinates are stored with the given precision. Returns `None` if no triangle
+    /// is across the line or at a pole, so that the mesh needs no chart. Also returns `None` if a triangle has a vertex
+    /// that does not exist or has a coordinate that is infinite or NaN.
     ///
     /// # Errors
     /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if a pole is inside a
-    /// triangle or on its edge.
+    /// triangle or on an edge.
     pub fn new(mesh: &Mesh, stored: Precision) -> Result<Option<Self>, MeshError> {
         let Mesh { points, triangles, .. } = mesh;
         let has_point = |&v: &u32| points.get(v as usize).is_some_and(|[x, y]| (x + y).is_finite());
@@ -83,7 +83,7 @@ impl Chart {
         [across, polar]: [usize; 2],
     ) -> Self {
         let mut mesh = given.clone();
-        // A vertex itself takes the number of turns nearest to 0; for others it gets copies.
+        // The vertex itself takes the number of turns nearest to 0; each other number of turns gets a copy.
         let mut own: Vec<Option<i32>> = vec![None; given.points.len()];
         for &(v, turns) in corners.as_flattened() {
             let (Some(turns), own) = (turns, &mut own[v as usize]) else { continue };
@@ -131,39 +131,39 @@ impl Chart {
         Self { mesh, given: given.clone(), stored, owners, held, across, polar }
     }
 
-    /// The mesh with its longitudes continued: the given vertices, and behind them the copies.
+    /// Returns the mesh with continued longitudes: first the given vertices, then the copies.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// The mesh as it was given.
+    /// Returns the given mesh, with longitudes as stored.
     pub fn original(&self) -> &Mesh {
         &self.given
     }
 
-    /// The vertices of the chart's mesh that do not move because they are on a cut, copies included. Ascending.
+    /// Returns the vertices of the chart's mesh that do not move because they are on a cut, copies included, ascending.
     pub fn held(&self) -> &[u32] {
         &self.held
     }
 
-    /// The vertex of the given mesh that each copy stands for, in the order of the copies.
+    /// Returns for each copy, in order, the vertex of the given mesh that was copied.
     pub fn owners(&self) -> &[u32] {
         &self.owners
     }
 
-    /// Number of triangles that reach across the line where longitudes jump by a full turn.
+    /// Returns the number of triangles that reach across the line where longitudes jump by a full turn.
     pub fn across(&self) -> usize {
         self.across
     }
 
-    /// Number of triangles with a corner at a pole.
+    /// Returns the number of triangles with exactly one corner at a pole.
     pub fn polar(&self) -> usize {
         self.polar
     }
 
-    /// Returns the points of the chart's mesh for new points of the given mesh, in degrees. Each is continued by the
-    /// number of turns that brings it nearest to the chart's point for this vertex. Missing points are as in the chart,
-    /// and points beyond the number of vertices are ignored.
+    /// Returns the points of the chart's mesh for new points of the given mesh, in degrees. Each longitude is shifted
+    /// by the whole turns that bring it nearest to the chart's point of the vertex. If `given` has fewer points than
+    /// the mesh has vertices, the remaining vertices keep their points in the chart; excess points are ignored.
     pub fn continued(&self, given: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let mut points = self.mesh.points.clone();
         let count = self.given.points.len();
@@ -175,7 +175,7 @@ impl Chart {
         }
         let (points_of_vertices, copies) = points.split_at_mut(count);
         for (copy, &owner) in copies.iter_mut().zip(&self.owners) {
-            // The copies of a vertex that was moved go with it.
+            // The copies of a moved vertex move with the vertex.
             if !same(owner as usize) && !is_pole(&self.given.points, owner) {
                 let [x, y] = points_of_vertices[owner as usize];
                 let turns = ((copy[0] - x) / TURN).round();
@@ -185,21 +185,21 @@ impl Chart {
         points
     }
 
-    /// The chart with the given mesh moved to other positions; see [`continued`](Self::continued).
+    /// Returns the chart for new positions of the given mesh; see [`continued`](Self::continued).
     pub fn moved(&self, given: &Mesh) -> Self {
         let mesh = Mesh { points: self.continued(&given.points), ..self.mesh.clone() };
         Self { mesh, given: given.clone(), ..self.clone() }
     }
 
     /// Extends data of the given mesh's vertices, `each` numbers per vertex, to the vertices of the chart's mesh. A
-    /// copy gets the data of its vertex.
+    /// copy gets the data of the copied vertex.
     pub fn extended(&self, values: &[f64], each: usize) -> Vec<f64> {
         let of = |&v: &u32| values.iter().skip(v as usize * each).take(each).copied();
         values.iter().copied().chain(self.owners.iter().flat_map(of)).collect()
     }
 
-    /// Returns the points of the given mesh, in degrees, for points of the chart's mesh. Longitudes are brought back to
-    /// the range of the given mesh. Points that have not moved keep their bits.
+    /// Returns the points of the given mesh, in degrees, for points of the chart's mesh. Longitudes return to the range
+    /// of the given mesh. Points that have not moved keep their bits.
     pub fn given(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let range = self.range();
         let back = |((now, was), given): ((&[f64; 2], &[f64; 2]), &[f64; 2])| {
@@ -213,13 +213,14 @@ impl Chart {
         pairs.map(back).collect()
     }
 
-    /// Returns a longitude of the chart, in degrees, in the range of the given mesh: from -180 to 180, or from 0 to 360.
-    /// It stays as it is if the given mesh keeps to neither.
+    /// Returns a longitude of the chart, in degrees, in the range of the given mesh: from -180 to 180, or from 0 to
+    /// 360. If the given mesh exceeds both ranges, the longitude is returned unchanged.
     pub fn given_longitude(&self, longitude: f64) -> f64 {
         brought_back(longitude, self.range())
     }
 
-    /// Returns the usual range of longitudes that those of the given mesh are in, if they are.
+    /// Returns the range that contains all longitudes of the given mesh: [-180, 180] or else [0, 360], `None` if
+    /// neither does.
     fn range(&self) -> Option<[f64; 2]> {
         let all = || self.given.points.iter().map(|point| point[0]);
         let ranges = [[-180.0, 180.0], [0.0, TURN]];
@@ -227,7 +228,7 @@ impl Chart {
     }
 }
 
-/// Brings a longitude that is less than a turn outside of a range back into it.
+/// Returns a longitude that is less than a turn outside of `range`, shifted by a turn into the range.
 fn brought_back(x: f64, range: Option<[f64; 2]>) -> f64 {
     match range {
         Some([_, high]) if x > high => x - TURN,
@@ -245,8 +246,8 @@ mod tests {
     use super::*;
     use crate::topology::Topology;
 
-    /// A grid of cells of 20 by 10 degrees, from a given longitude and latitude on. `written` turns each longitude into
-    /// the one that the mesh stores.
+    /// Returns a grid of cells of 20 by 10 degrees whose southwest corner is given. `written` turns each longitude into
+    /// the longitude that the mesh stores.
     fn grid(
         [columns, rows]: [u32; 2],
         [west, south]: [f64; 2],
@@ -296,7 +297,7 @@ mod tests {
             assert_eq!((chart.across(), chart.polar()), (6, 0));
             assert_eq!(chart.given(&chart.mesh().points), mesh.points);
             assert_eq!(chart.continued(&mesh.points), chart.mesh().points);
-            // Vertices that moved across the line and back are written within the file's range.
+            // Vertices that moved across the line and back are written with longitudes in the range of the file.
             for by in [-25.0, 25.0] {
                 let mut moved = chart.mesh().points.clone();
                 moved.iter_mut().for_each(|point| point[0] += by);
@@ -314,7 +315,7 @@ mod tests {
         let mesh = grid([18, 3], [-170.0, -20.0], within_half);
         let chart = Chart::new(&mesh, Precision::Double).unwrap().unwrap();
         assert_sound(&chart);
-        // A column of four vertices, and their copies.
+        // A column of four vertices is cut, and each vertex has a copy.
         assert_eq!((chart.owners().len(), chart.held().len()), (4, 8));
         assert_eq!((chart.across(), chart.polar()), (6, 0));
         let topology = Topology::new(chart.mesh()).unwrap();
@@ -353,7 +354,7 @@ mod tests {
             Err(MeshError::Target { vertex: 1, .. })
         ));
         assert_eq!(of([[0.0, 80.0], [10.0, 80.0], [5.0, 85.0]]), Ok(false));
-        // Other faults of a mesh are reported elsewhere.
+        // Other defects of a mesh are reported by other checks.
         assert_eq!(of([[0.0, f64::NAN], [10.0, 80.0], [-175.0, 85.0]]), Ok(false));
     }
 }

@@ -9,20 +9,21 @@ use crate::options::Options;
 use crate::smoother::Backend;
 
 impl Backend {
-    /// Returns the backend on which a run is estimated to end soonest, and why. The estimate includes the start of the
-    /// GPU's driver.
+    /// Returns the backend on which a run is estimated to end soonest, and the reason. The estimate includes the start
+    /// of the GPU's driver.
     ///
-    /// If the mesh is too small for any GPU to be faster, no driver is started. A software adapter is never chosen;
-    /// `Gpu::open` opens one. The estimate assumes slow GPUs, as none has been measured yet: `gpu-smooth bench`
-    /// measures which backend is fastest. Without the feature `gpu` the CPU is chosen.
+    /// Meshes that are too small for any GPU to be faster start no driver. A software adapter is never chosen;
+    /// `Gpu::open` opens one. The estimate assumes slow GPUs, as no graphics card has been measured yet:
+    /// `gpu-smooth bench` measures which backend is fastest. Without the feature `gpu`, the CPU is chosen.
     pub fn auto(size: MeshSize, options: &Options) -> (Self, Reason) {
         Self::auto_tried(size, options, || Ok(()))
     }
 
-    /// Chooses like [`auto`](Self::auto), but has the drivers tried first, as a driver that crashes would end this
-    /// process. `try_drivers` may start them in a separate process and watch it, as the `gpu-smooth` command does. If
-    /// it returns an error, such as [`GpuError::Crashed`], the CPU is chosen. It is not called if no driver would be
-    /// started.
+    /// Chooses like [`auto`](Self::auto), but calls `try_drivers` before a driver is started in this process, as a
+    /// driver that crashes would end the process. `try_drivers` may start the drivers in a separate process and watch
+    /// that process, as the `gpu-smooth` command does. If `try_drivers` returns an error, such as
+    /// [`GpuError::Crashed`], the CPU is chosen. `try_drivers` is not called for meshes that are too small for any GPU
+    /// to be faster.
     pub fn auto_tried(
         size: MeshSize,
         options: &Options,
@@ -32,7 +33,7 @@ impl Backend {
     }
 }
 
-/// Returns the CPU, as there is no other engine.
+/// Returns the CPU, the only engine of a build without the feature `gpu`.
 #[cfg(not(feature = "gpu"))]
 fn choose(_: MeshSize, _: &Options, _: impl FnOnce() -> Result<(), GpuError>) -> (Backend, Reason) {
     (Backend::Cpu, Reason::OnlyCpu)

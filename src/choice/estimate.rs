@@ -1,4 +1,4 @@
-//! Estimates of the duration of a run on the CPU and on a GPU, and the choice by them.
+//! Estimates the duration of a run on the CPU and on a GPU, and chooses the faster backend.
 
 use crate::adapter::AdapterSummary;
 use crate::choice::reason::Reason;
@@ -10,7 +10,7 @@ use crate::smoother::Backend;
 
 /// Vertex updates per second and core of the CPU engine, measured with imr on two cores (`docs/performance.md`).
 const CPU_UPDATES_PER_CORE: f64 = 16e6;
-/// Seconds that a GPU's driver, device and kernels take to start. A cautious assumption, as no graphics card has been
+/// Time to start a GPU's driver, device and kernels, in seconds. A cautious assumption, as no graphics card has been
 /// measured yet; Mesa's software driver takes 0.06 to 0.25.
 const GPU_START: f64 = 0.3;
 /// Vertex updates per second of a discrete GPU. A cautious assumption, not measured.
@@ -18,13 +18,13 @@ const DISCRETE_UPDATES: f64 = 1e9;
 /// Vertex updates per second of a GPU that shares the CPU's memory, or of an unknown kind. A cautious assumption, not
 /// measured.
 const INTEGRATED_UPDATES: f64 = 150e6;
-/// The work of a run with corrections from coarser levels, in sweeps: about 12 sweeps, and 5 corrections that take as
-/// long as 1.5 sweeps each.
+/// The work of a run with corrections from coarser levels, in sweeps: about 12 sweeps, and 5 corrections of 1.5 sweeps
+/// each.
 const CORRECTED_SWEEPS: f64 = 20.0;
-/// Sweeps of a run without corrections: those that over-relaxed imr takes to come within 1e-6 of its limit.
+/// Sweeps of a run without corrections: over-relaxed imr takes this many to come within 1e-6 of its limit.
 const PLAIN_SWEEPS: f64 = 130.0;
 
-/// Returns the backend on which a run is estimated to end soonest, and why; see [`Backend::auto_tried`].
+/// Returns the backend on which a run is estimated to end soonest, and the reason; see [`Backend::auto_tried`].
 pub(super) fn choose(
     size: MeshSize,
     options: &Options,
@@ -59,11 +59,11 @@ pub(super) fn choose(
     }
 }
 
-/// The kind of adapter that is assumed to be fastest.
+/// The adapter kind with the highest assumed speed. Meshes too small for this kind start no driver.
 const FASTEST: &str = "discrete GPU";
 
-/// Vertex updates per second of an adapter of this kind, as [`AdapterSummary`] names it. `None` for a
-/// software adapter, as the CPU engine is always faster.
+/// Returns the vertex updates per second of an adapter of this kind ([`AdapterSummary::kind`]). `None` for a software
+/// adapter, as the CPU engine is always faster.
 fn gpu_updates(kind: &str) -> Option<f64> {
     match kind {
         "discrete GPU" => Some(DISCRETE_UPDATES),
@@ -72,7 +72,7 @@ fn gpu_updates(kind: &str) -> Option<f64> {
     }
 }
 
-/// The work that a run is likely to take, in sweeps, corrections included.
+/// Returns the work that a run is likely to take, in sweeps, corrections included.
 fn expected_sweeps(options: &Options) -> f64 {
     // With EDGE as its base, which is not smooth, a run with corrections takes as many sweeps as one without.
     let is_short = options.is_multilevel() && options.scheme.base().is_smooth();
@@ -80,8 +80,8 @@ fn expected_sweeps(options: &Options) -> f64 {
     usual.min(options.max_sweeps.into())
 }
 
-/// The least number of vertices, rounded up to two digits, for which an adapter of this kind finishes before the CPU.
-/// `None` if it never does.
+/// Returns the mesh size in vertices, rounded up to two digits, from which an adapter of this kind finishes before the
+/// CPU. `None` if the CPU always finishes first.
 fn pays_from(kind: &str, cores: usize, sweeps: f64) -> Option<usize> {
     let cpu_updates = CPU_UPDATES_PER_CORE * cores as f64;
     let saved = sweeps * (1.0 / cpu_updates - 1.0 / gpu_updates(kind)?);

@@ -1,11 +1,11 @@
-//! Why a backend was chosen.
+//! Reasons for the choice of a backend.
 
 use std::fmt;
 
 use crate::adapter::AdapterSummary;
 use crate::error::GpuError;
 
-/// Why [`Backend::auto`](crate::Backend::auto) chose its backend. Displays as an English phrase.
+/// The reason for which [`Backend::auto`](crate::Backend::auto) chose a backend. Displays as an English phrase.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Reason {
@@ -13,18 +13,18 @@ pub enum Reason {
     OnlyCpu,
     /// The CPU is estimated to finish before a GPU.
     CpuIsFaster {
-        /// The GPU that was found. `None` if none was looked for because none could be faster.
+        /// The GPU that was found. `None` if no driver was started, as the mesh is too small for any GPU to be faster.
         adapter: Option<AdapterSummary>,
-        /// The number of vertices from which the GPU is estimated to be faster. `None` if it never is.
+        /// Mesh size, in vertices, from which the GPU is estimated to be faster; `None` if the CPU always is.
         pays_from: Option<usize>,
     },
-    /// The only adapter is a driver that computes on the CPU. The CPU engine is faster.
+    /// Every adapter is a software driver, and the CPU engine is faster than these.
     OnlySoftware(AdapterSummary),
-    /// There is no GPU, or it cannot do the run.
+    /// No GPU was found, its driver failed, or the mesh does not fit the GPU.
     GpuFails(GpuError),
     /// The GPU is estimated to finish before the CPU.
     GpuIsFaster {
-        /// The number of vertices from which the GPU is estimated to be faster.
+        /// Mesh size, in vertices, from which the GPU is estimated to be faster.
         pays_from: usize,
     },
 }
@@ -54,7 +54,7 @@ impl fmt::Display for Reason {
     }
 }
 
-/// Writes a number with commas between groups of three digits.
+/// Returns a number in decimal, with commas between groups of three digits.
 fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();

@@ -7,7 +7,7 @@ use crate::patch::lanes::{Lanes, Points};
 use crate::patch::{Corners, Rings};
 use crate::run::line_search;
 
-/// Returns the objectives of four patches with their derivatives, by forward differences.
+/// Returns the objectives of four patches with their gradients and Hessians, by forward differences.
 #[inline(always)]
 pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
     rings: &Rings<'_, S, MAPPED>,
@@ -25,7 +25,7 @@ pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
     sum
 }
 
-/// The least distance of each vertex from a line through an edge of its one-ring.
+/// Returns the least distance of each vertex from a line through an outer edge of its patch.
 #[inline(always)]
 fn least_height<S: Simd, const MAPPED: bool>(
     rings: &Rings<'_, S, MAPPED>,
@@ -40,7 +40,7 @@ fn least_height<S: Simd, const MAPPED: bool>(
     least
 }
 
-/// Value, gradient and Hessian of the model by forward differences of width `h`.
+/// Returns value, gradient and Hessian of the model of a triangle, by forward differences of width `h`.
 #[inline(always)]
 fn differences<S: Simd>(
     formulas: impl Formulas,
@@ -57,7 +57,7 @@ fn differences<S: Simd>(
         let b = [corner.b[0] - x, corner.b[1] - y];
         values[k] = formulas.model(&Corner { a, b, ..*corner }, smoothing);
     }
-    // Gradients at the vertex and one step along x and y, each by forward differences.
+    // Gradients at the vertex, and at points one step along x and along y, each by forward differences.
     let [here_x, here_y] = [(values[1] - values[0]) / h, (values[2] - values[0]) / h];
     let [right_x, right_y] = [(values[5] - values[4]) / h, (values[6] - values[4]) / h];
     let [up_x, up_y] = [(values[9] - values[8]) / h, (values[10] - values[8]) / h];

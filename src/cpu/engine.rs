@@ -1,6 +1,6 @@
-//! The engine on the CPU, in double precision. Also the reference for tests.
+//! The CPU engine, in double precision. Tests compare the GPU engine with it.
 //!
-//! It uses the same colors, steps and stop rule as the GPU engine.
+//! Colors, steps and the stop rule are those of the GPU engine.
 
 use std::borrow::Cow;
 
@@ -16,34 +16,34 @@ use crate::parallel::{collect, for_each_chunk};
 use crate::run::multilevel::Hierarchy;
 use crate::run::{CPU, Engine, EngineState, History, LEFT_OUT, Objectives, Plan, Proposal, Step};
 
-/// Number of vertices of one task.
+/// Number of vertices that one task handles.
 const CHUNK: usize = 1 << 12;
 
-/// The state of a run on the CPU.
+/// State of a run on the CPU.
 pub(crate) struct CpuEngine {
     problem: Problem,
     base: Metric,
     tracked: Vec<Metric>,
-    /// The step of the base metric. Corrections use its shape guard, and its exponent, which is that of the last
-    /// correction.
+    /// The step of the base metric. Corrections use its shape guard, and its exponent and penalty, which
+    /// [`Engine::propose`] updates for each correction.
     step: Step,
     positions: Vec<DVec2>,
-    /// The positions of the best state, and the objective there; `None` if every sweep improves the mesh, so that the last state is
-    /// the best.
+    /// Positions and objective of the best state so far. `None` if every sweep of the plan lowers f, so that the last
+    /// state is the best.
     best: Option<(Vec<DVec2>, f64)>,
-    /// Which free vertices are held; empty if none is.
+    /// Whether each free vertex is held; empty if no vertex is held.
     held: Vec<bool>,
     /// Scratch memory for sweeps.
     moved: Vec<DVec2>,
     hierarchy: Option<Hierarchy>,
     gradient: Vec<Vec2>,
-    /// The last correction, at each free vertex.
+    /// The last correction: a displacement of each free vertex at step length 1.
     direction: Vec<Vec2>,
     secants: Option<Secants>,
 }
 
 impl CpuEngine {
-    /// Starts at `positions`, which are normalized and in the problem's order.
+    /// Makes an engine for a run that starts at normalized `positions`, in the order of the problem.
     pub(crate) fn new(problem: &Problem, positions: Vec<DVec2>, plan: &Plan) -> Self {
         let best = (!plan.is_monotone()).then(|| (positions.clone(), f64::INFINITY));
         Self {
@@ -67,7 +67,7 @@ impl CpuEngine {
         sweep::sweep(problem, positions, held, moved, step);
     }
 
-    /// Evaluates the objectives, and keeps the positions if they are the best so far.
+    /// Evaluates the tracked objectives. Copies the positions if the objective of the base metric is the lowest so far.
     fn objectives_now(&mut self) -> Objectives {
         let mut values = Objectives::untracked();
         for &metric in &self.tracked {
@@ -84,7 +84,8 @@ impl CpuEngine {
         values
     }
 
-    /// Tries the correction with the given step length.
+    /// Evaluates the objective at step length 0, its slope along the correction, and, if the slope is negative, the
+    /// objective at `length`.
     fn proposal(&self, length: f64) -> Proposal {
         let Self { base, step, problem, positions, gradient, direction, .. } = self;
         let slope = dot(gradient, direction) / problem.triangles().len() as f64;
@@ -93,8 +94,8 @@ impl CpuEngine {
         Proposal { here, slope, there }
     }
 
-    /// Sets the correction and the gradient to zero at the vertices of triangles that the correction would invert or
-    /// make break the shape guard.
+    /// Zeroes the correction and the gradient at the vertices of triangles that a move by `length` times the correction
+    /// would invert, or push over the shape guard.
     fn leave_out_broken(&mut self, length: f64) {
         let Self { problem, positions, gradient, direction, .. } = self;
         let along = Along { positions, direction, length };
@@ -106,7 +107,7 @@ impl CpuEngine {
         }
     }
 
-    /// Returns the mean excess after the correction with the given step length; see [`Engine::excess_along`].
+    /// Returns the mean excess after a move by `length` times the correction; see [`Engine::excess_along`].
     fn try_length(&self, length: f64) -> Option<f64> {
         let Self { positions, direction, .. } = self;
         let along = Along { positions, direction, length };
@@ -114,7 +115,8 @@ impl CpuEngine {
     }
 }
 
-/// Computes the correction by the coarser levels from the gradient at the free vertices, which must be zero at `held` ones.
+/// Computes the correction by the coarser levels from the gradient at the free vertices. The gradient must be zero at
+/// `held` vertices; the correction is zero there too.
 fn correction(
     hierarchy: Option<&Hierarchy>,
     problem: &Problem,
@@ -133,15 +135,15 @@ fn correction(
     correction
 }
 
-/// Sets vectors at the free vertices to zero where vertices are held.
+/// Zeroes the vectors of free vertices that are held.
 fn set_to_zero(vectors: &mut [Vec2], held: &[bool]) {
     for (vector, _) in vectors.iter_mut().zip(held).filter(|(_, held)| **held) {
         *vector = Vec2::ZERO;
     }
 }
 
-/// Returns vectors at the free vertices multiplied by the inverse shapes of their target maps. The coarser levels use
-/// these coordinates: in a layer of stretched triangles, neighbors are then as near across the layer as along it.
+/// Returns vectors at the free vertices, transformed by the inverse shapes of the target maps. The coarser levels work
+/// in these coordinates: in a layer of stretched triangles, neighbors are then as near across the layer as along it.
 fn as_shown(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
     let targets = problem.targets().unwrap_or_default();
     collect(vectors.len(), |v| {
@@ -226,7 +228,7 @@ impl Engine for CpuEngine {
         let Self { base, problem, positions, held, gradient, secants, .. } = self;
         sweep::gradient(*base, problem, positions, step.smoothing(), gradient);
         set_to_zero(gradient, held);
-        // The correction allocates a new direction. The last one is freed before.
+        // The new direction is allocated while the correction is computed, so the previous one is freed first.
         self.direction = Vec::new();
         let levels = |vector: &[Vec2]| correction(self.hierarchy.as_ref(), problem, held, vector);
         self.direction = if accelerated {

@@ -9,7 +9,7 @@ use crate::patch::lanes::{Lanes, Mask, Points};
 use crate::patch::{Direction, MetricObjective, Objective, Rings, SearchRule, newton_step};
 use crate::run::{Step, line_search};
 
-/// Visits four vertices at `at`. Returns their new positions.
+/// Visits four vertices at `at`, and returns their new positions.
 #[inline(always)]
 pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     formulas: impl Formulas,
@@ -47,7 +47,7 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     at
 }
 
-/// Returns the lanes whose step was so short that the visit ends.
+/// Returns the lanes whose step was so short that the visit ends; see [`line_search::SETTLED`].
 #[inline(always)]
 fn settled<S: Simd, const MAPPED: bool>(
     rings: &Rings<S, MAPPED>,
@@ -59,7 +59,7 @@ fn settled<S: Simd, const MAPPED: bool>(
     (x * x + y * y).simd_lt(rings.squared_edge(from) * least)
 }
 
-/// The objective of a sweep, differentiated by formulas or by differences.
+/// The objective of a sweep, differentiated by formulas or by finite differences.
 struct SweepObjective<'a, P, F> {
     metric: MetricObjective<'a, P, F>,
     derivatives: Derivatives,

@@ -1,4 +1,4 @@
-//! The objective over all triangles.
+//! The objective over all triangles, on the CPU.
 
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
@@ -10,16 +10,16 @@ use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, target_maps, with_
 use crate::patch::{is_kept, is_no_worse, is_positive, is_within};
 use crate::run::Step;
 
-/// Number of triangles of one task.
+/// Number of triangles that one task evaluates.
 const CHUNK: usize = 1024;
 
-/// The mean of q² - ideal² over all triangles, summed in an order that does not depend on the
-/// number of threads.
+/// Returns the mean of q² - ideal² over all triangles, summed in an order that does not depend on the number of
+/// threads.
 pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
     mean(metric, None, problem, positions)
 }
 
-/// The mean over all triangles of what a step minimizes: q² - ideal², or its smooth model.
+/// Returns the mean over all triangles of the function that a step minimizes: q² - ideal², or its smooth model.
 pub(crate) fn mean_model(
     metric: Metric,
     smoothing: Smoothing,
@@ -29,7 +29,7 @@ pub(crate) fn mean_model(
     mean(metric, Some(smoothing).filter(|_| !metric.is_smooth()), problem, positions)
 }
 
-/// The mean of q² - ideal², or of the model that this smoothing makes of it.
+/// Returns the mean of q² - ideal² over all triangles, or of its smooth model if `smoothing` is given.
 fn mean(
     metric: Metric,
     smoothing: Option<Smoothing>,
@@ -48,14 +48,14 @@ fn mean(
 /// Positions with the free vertices moved by `length` times `direction`.
 pub(crate) struct Along<'a> {
     pub(crate) positions: &'a [DVec2],
-    /// The direction of each free vertex.
+    /// Displacement of each free vertex at length 1.
     pub(crate) direction: &'a [Vec2],
     pub(crate) length: f64,
 }
 
-/// The mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model. `None` if the
-/// move inverts or flattens a triangle, or if it makes an inverse mean ratio both worse than before and larger than the
-/// step's shape guard.
+/// Returns the mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model.
+/// `None` if the move breaks a triangle: inverts or flattens it, or makes its inverse mean ratio both worse than before
+/// and larger than the shape guard of the step.
 pub(crate) fn mean_excess_along(step: &Step, problem: &Problem, along: &Along<'_>) -> Option<f64> {
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem, step.metric, simd, formulas, MAPPED => {
@@ -67,8 +67,8 @@ pub(crate) fn mean_excess_along(step: &Step, problem: &Problem, along: &Along<'_
     sum.map(|sum| sum / problem.triangles().len() as f64)
 }
 
-/// Returns for each free vertex whether a triangle around it is broken by the move: inverted, flattened, or given an
-/// inverse mean ratio that is both worse than before and larger than `guard`.
+/// Returns for each free vertex whether the move breaks a triangle around it: inverts or flattens it, or makes its
+/// inverse mean ratio both worse than before and larger than `guard`.
 pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
     collect(along.direction.len(), |v| {
         let ring = problem.ring_of(v as u32);
@@ -81,8 +81,8 @@ pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bo
     })
 }
 
-/// The sum of q² - ideal² over some triangles at moved positions. `None` if the move breaks one of them, as defined at
-/// [`mean_excess_along`].
+/// Returns the sum of q² - ideal², or of its smooth model, over `triangles` at moved positions. `None` if the move
+/// breaks a triangle, as defined at [`mean_excess_along`].
 #[inline(always)]
 fn excess_along<S: Simd, const MAPPED: bool>(
     simd: S,
@@ -106,7 +106,7 @@ fn excess_along<S: Simd, const MAPPED: bool>(
         borne &= is_positive(&now);
         if guard.is_finite() {
             let mut kept = is_within(formulas, &now, sum.constant(guard));
-            // Few moves break the guard, so the triangles before the move are evaluated only then.
+            // Few moves exceed the guard, so triangles before the move are evaluated only after an excess.
             if !kept.all_true() {
                 kept |= is_no_worse(formulas, &corner([p, q, r], problem, &map), &now);
             }
@@ -124,7 +124,7 @@ fn excess_along<S: Simd, const MAPPED: bool>(
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
 }
 
-/// The target maps of four triangles.
+/// Returns the target maps of four triangles, one in each lane.
 #[inline(always)]
 fn map_of<S: Simd>(
     simd: S,
@@ -138,7 +138,7 @@ fn map_of<S: Simd>(
     ])
 }
 
-/// Four triangles transformed by their target maps.
+/// Returns four triangles, one in each lane, transformed by their target maps.
 #[inline(always)]
 fn corner<S: Simd>(
     [p, q, r]: [Points<S>; 3],
@@ -154,7 +154,7 @@ fn corner<S: Simd>(
 }
 
 impl Along<'_> {
-    /// The positions of some vertices, before and after the move.
+    /// Returns the positions of four vertices, before and after the move.
     #[inline(always)]
     fn points<S: Simd>(&self, simd: S, vertices: [u32; LANES]) -> (Points<S>, Points<S>) {
         let [x, y] = points(simd, self.positions, vertices);
@@ -165,7 +165,7 @@ impl Along<'_> {
         ([x, y], [x + dx * self.length, y + dy * self.length])
     }
 
-    /// Whether the move keeps a triangle, as [`is_kept`] says. Compiled once for all metrics.
+    /// Returns whether the move keeps a triangle acceptable; see [`is_kept`]. Compiled once for all metrics.
     #[inline(never)]
     fn keeps(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
         let position = |v: u32| self.positions[v as usize];
@@ -173,14 +173,14 @@ impl Along<'_> {
         is_kept(&problem.corner(triangle, position), &now, guard)
     }
 
-    /// The direction of a vertex; zero if it is fixed.
+    /// Returns the displacement of a vertex at length 1; zero for a fixed vertex.
     #[inline(always)]
     fn step(&self, vertex: u32) -> DVec2 {
         self.direction.get(vertex as usize).map_or(DVec2::ZERO, |step| step.as_dvec2())
     }
 }
 
-/// The sum over some triangles of q² - ideal², or of the model that this smoothing makes of it.
+/// Returns the sum of q² - ideal² over `triangles`, or of its smooth model if `smoothing` is given.
 #[inline(always)]
 fn excess<S: Simd, const MAPPED: bool>(
     simd: S,
@@ -190,7 +190,8 @@ fn excess<S: Simd, const MAPPED: bool>(
     positions: &[DVec2],
     triangles: &[[u32; 3]],
 ) -> f64 {
-    // Known as this is compiled for a smooth metric, which is its own model.
+    // A smooth metric is its own model. The test is decided at compile time, as this function is compiled for each
+    // metric.
     let smoothing = smoothing.filter(|_| !formulas.metric().is_smooth());
     let (fours, rest) = triangles.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
@@ -227,7 +228,7 @@ mod tests {
 
     #[test]
     fn the_objective_along_a_direction_is_that_of_the_moved_mesh() {
-        // Six triangles around a vertex: four in the lanes, and two one by one.
+        // Six triangles around a vertex: four fill the lanes, and two are evaluated one by one.
         let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
         let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [x, y]).collect();
         points.push([0.1, 0.2]);
@@ -245,7 +246,7 @@ mod tests {
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
             let there = mean_model(metric, step.smoothing(), &problem, &moved);
             assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
-            // Moves the vertex out of the hexagon through each of its sides, then along a direction that is NaN.
+            // Moves the vertex out of the hexagon through each side, then along a direction that is NaN.
             for k in 0..6 {
                 let (y, x) = ((f64::from(k) + 0.5) * std::f64::consts::FRAC_PI_3).sin_cos();
                 assert_eq!(along(DVec2::new(x, y).as_vec2(), 10.0), None, "{k}");

@@ -6,19 +6,19 @@ use crate::parallel::{for_each_chunk, map_parts};
 use crate::run::EngineState;
 use crate::run::secant::Products;
 
-/// Number of vertices of one task.
+/// Number of vertices that one task handles.
 const CHUNK: usize = 1 << 12;
 
-/// The names under which a saved state of the engine holds the vectors of the pairs.
+/// Names of the vectors of the pairs in a saved state of the engine.
 const VECTORS: [&str; 5] = ["step", "older step", "change", "older change", "start, low"];
 const PRODUCTS: &str = "products of secants";
 const IS_OPEN: &str = "secant is open";
 
-/// Two secant pairs at the free vertices, the newer one first, in single precision.
+/// Two secant pairs at the free vertices, the newer pair first, in single precision.
 ///
-/// From one correction to the next, a pair is open: its step holds the high parts of the positions, and its change
-/// minus the gradient. So two pairs and the low parts of the positions, 40 bytes for each free vertex, are all that is
-/// stored.
+/// From one correction to the next, the newer pair is open: `steps[0]` holds the high parts of the positions, and
+/// `changes[0]` minus the gradient. Two pairs and the low parts of the positions, 40 bytes per free vertex, are
+/// therefore all that is stored.
 #[derive(Default)]
 pub(crate) struct Secants {
     steps: [Vec<Vec2>; 2],
@@ -29,8 +29,8 @@ pub(crate) struct Secants {
 }
 
 impl Secants {
-    /// Returns the direction for a gradient. `levels` gives the correction -M⁻¹ v of the coarser levels for any vector
-    /// v. Closes the open pair, and opens the next one.
+    /// Returns the search direction for a gradient, and opens the next pair. An open pair is closed first. `levels`
+    /// returns the correction -M⁻¹ v of the coarser levels for any vector v.
     pub(crate) fn direction(
         &mut self,
         positions: &[DVec2],
@@ -50,7 +50,7 @@ impl Secants {
             });
             let mut direction = levels(&bent);
             drop(bent);
-            // `levels` returns minus M⁻¹ v, hence the minus sign.
+            // `levels` returns -M⁻¹ v, hence the minus sign.
             let corrected = self.changes.each_ref().map(|change| -dot(change, &direction));
             let [newer, older] = self.products.after(before, corrected).map(|factor| factor as f32);
             let [new, old] = &self.steps;
@@ -79,11 +79,11 @@ impl Secants {
         state.add(IS_OPEN, &[u8::from(*is_open)]);
     }
 
-    /// Returns the pairs of a saved state, if it holds pairs for this number of free vertices.
+    /// Returns the pairs of a saved state, `None` unless the state has pairs for `free` free vertices.
     pub(crate) fn saved_in(state: &EngineState, free: usize) -> Option<Self> {
         let vectors = |i: usize| {
             let name = VECTORS[i];
-            // A pair that has not existed yet is empty.
+            // A pair that did not exist yet was saved as an empty vector.
             let found = state.own::<[f32; 2]>(name, free).or_else(|| state.own(name, 0))?;
             Some(found.into_iter().map(Vec2::from_array).collect::<Vec<_>>())
         };
@@ -118,7 +118,7 @@ impl Secants {
             }
             sums
         });
-        // Summed in order, so that the result does not depend on the number of threads.
+        // Sums are added in order, so that the result does not depend on the number of threads.
         let [sg, sy, older_g, older_y] =
             sums.iter().fold([0.0; 4], |total, sums| std::array::from_fn(|i| total[i] + sums[i]));
         *products = Products::new([sg, older_g], [sy, products.curvature[0]], older_y);
@@ -148,13 +148,13 @@ impl Secants {
     }
 }
 
-/// The value of a pair at a vertex, or zero if the pair does not exist yet.
+/// Returns the vector of a pair at a vertex, zero if the pair does not exist yet.
 #[inline(always)]
 fn at(values: &[Vec2], v: usize) -> Vec2 {
     values.get(v).copied().unwrap_or_default()
 }
 
-/// The inner product, summed in an order that does not depend on the number of threads. 0 if `a` is empty.
+/// Returns the inner product, summed in an order that does not depend on the number of threads. 0 if `a` is empty.
 pub(crate) fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
     let of_part = |_, (a, b): (&[Vec2], &[Vec2])| -> f64 {
         a.iter().zip(b).map(|(a, b)| a.as_dvec2().dot(b.as_dvec2())).sum()
@@ -166,8 +166,9 @@ pub(crate) fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// On a quadratic function with a diagonal Hessian, and with the identity in place of the levels, directions with
-    /// pairs converge, where steps along the gradient alone would diverge.
+    /// Minimizes a quadratic function with a diagonal Hessian of condition number 100, with 0.5 times the identity for
+    /// M⁻¹. Pairs lower f by ten orders of magnitude in 40 corrections; steps along the gradient alone converge far
+    /// more slowly.
     #[test]
     fn a_quadratic_is_minimized() {
         let stiffness = |v: usize| [0.1, 0.5, 2.0, 10.0][v % 4];
@@ -185,7 +186,7 @@ mod tests {
                 secants.direction(&positions, &gradient, |v| v.iter().map(|v| *v * -0.5).collect());
             let slope = dot(&direction, &gradient);
             assert!(slope <= 0.0, "{slope}");
-            // The exact minimum along the direction.
+            // The line search along the direction is exact.
             let bend: f64 = direction
                 .iter()
                 .enumerate()

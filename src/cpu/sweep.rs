@@ -1,4 +1,4 @@
-//! Loops over all free vertices: sweeps, and the gradient.
+//! Loops over all free vertices: sweeps, gradients and stiffness.
 
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
@@ -12,15 +12,17 @@ use crate::patch::lanes::{LANES, Lanes, points, with_lanes};
 use crate::patch::{MetricObjective, Objective, Rings, Scratch};
 use crate::run::Step;
 
-/// Number of vertices of one task.
+/// Number of vertices that one task visits.
 const CHUNK: usize = Problem::BLOCK;
 
-/// Number of positions that one task copies. Fewer are not worth a second thread.
+/// Number of positions that one task copies. Fewer positions do not repay a second thread.
 const COPY: usize = 1 << 14;
 
-/// The result of a visit at a vertex: its new position, or a quantity computed from the derivatives there.
+/// The value that a visit writes for a vertex. [`DVec2`] is the new position; [`Vec2`] is the gradient, or the root of
+/// the stiffness in both components.
 trait Found: Send {
-    /// Whether the visit takes Newton steps. A constant, so that each type compiles only the code that it needs.
+    /// Whether the visit takes Newton steps. The type decides at compile time, so that loops over derivatives contain
+    /// no code of Newton steps.
     const STEPS: bool;
     fn new(found: [f64; 2]) -> Self;
 }
@@ -41,16 +43,16 @@ impl Found for Vec2 {
     }
 }
 
-/// The quantity that a visit without Newton steps computes at a vertex, from the derivatives of Σ q² there.
+/// The quantity that a visit without Newton steps computes, from the derivatives of Σ q² over the patch of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sought {
     Gradient,
-    /// The square root of the stiffness, see [`stiffness_roots`], in both components.
+    /// The square root of the stiffness, in both components; see [`stiffness_roots`].
     StiffnessRoot,
 }
 
-/// Visits every free vertex once, color by color. Vertices stay if `held`, which is empty for none, has true for them.
-/// `moved` is scratch memory.
+/// Visits every free vertex once, color by color. Vertices for which `held` is true stay; an empty `held` holds no
+/// vertex. `moved` is scratch memory.
 pub(crate) fn sweep(
     problem: &Problem,
     positions: &mut [DVec2],
@@ -61,7 +63,8 @@ pub(crate) fn sweep(
     for color in problem.colors() {
         let first = color.start as usize;
         moved.resize(color.len(), DVec2::ZERO);
-        // Vertices of one color are not neighbors, so none reads the position of another.
+        // Vertices of equal color are not neighbors, so no visit reads a position that another visit of the color
+        // changes.
         visit(problem, positions, first, step, Sought::Gradient, moved);
         let held = held.get(first..first + color.len()).unwrap_or_default();
         for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
@@ -79,7 +82,7 @@ pub(crate) fn sweep(
     }
 }
 
-/// Writes the gradient of Σ q² at each free vertex to `found`. Single precision is enough for a direction.
+/// Writes the gradient of Σ q² at each free vertex to `found`. Single precision suffices for a search direction.
 pub(crate) fn gradient(
     metric: Metric,
     problem: &Problem,
@@ -91,8 +94,8 @@ pub(crate) fn gradient(
 }
 
 /// Returns the square root of the stiffness at each free vertex. The stiffness is the mean absolute eigenvalue of the
-/// Hessian of Σ q² with respect to the vertex, in the coordinates of the shape of its target map, divided by the number
-/// of its neighbors.
+/// Hessian of Σ q² with respect to the vertex, divided by the number of its neighbors. The Hessian is taken in
+/// coordinates transformed by the shape of the target map at the vertex.
 pub(crate) fn stiffness_roots(
     metric: Metric,
     problem: &Problem,
@@ -123,18 +126,19 @@ fn find(
         shape_guard: f64::INFINITY,
         longest: 1.0,
     };
-    // Color by color, as within a color vertices with the same number of neighbors are together.
+    // The loop goes color by color, as within a color, vertices of equal degree are consecutive.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
         visit(problem, positions, color.start as usize, &step, sought, found);
     }
 }
 
-/// A vertex counts as held back if the shape guard shortens its step by more than this share of an edge.
+/// A vertex counts as held back if the shape guard changes its new position by more than this share of the length of an
+/// edge.
 const HELD_BACK: f64 = 1e-3;
 
-/// Returns the number of free vertices that the shape guard of `step` holds back. Those that are `held` otherwise do not
-/// count.
+/// Returns the number of free vertices that the shape guard of `step` holds back. Vertices whose `held` is true are not
+/// counted.
 pub(crate) fn held_back(
     problem: &Problem,
     positions: &[DVec2],
@@ -160,7 +164,7 @@ pub(crate) fn held_back(
     count
 }
 
-/// Visits the vertices from `first` on, in parallel, and writes the results to `found`.
+/// Visits the vertices from `first` on, in parallel, and writes a result for each to `found`.
 fn visit<T: Found>(
     problem: &Problem,
     positions: &[DVec2],
@@ -200,7 +204,7 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
         while count < most && problem.ring_of(v + count).len() == degree {
             count += 1;
         }
-        // Lanes without a vertex of their own visit the last vertex again.
+        // Lanes without a vertex of their own repeat the last vertex.
         let last = v + count - 1;
         let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
         let rings = Rings::<S, MAPPED>::gather(simd, problem, positions, vertices, &mut scratch);
@@ -231,12 +235,12 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
     }
 }
 
-/// The square root of the stiffness; see [`stiffness_roots`].
+/// Returns the square root of the stiffness, from the derivatives of Σ q²; see [`stiffness_roots`].
 #[inline(always)]
 fn stiffness_root<S: Simd>(sum: &Dual<Lanes<S>>, degree: usize) -> Lanes<S> {
     let [xx, xy, yy] = sum.hessian;
     let (mean, half) = ((xx + yy) * 0.5, (xx - yy) * 0.5);
     let radius = Real::sqrt(half * half + xy * xy);
-    // The eigenvalues are mean ± radius: this is the mean of their absolute values.
+    // The eigenvalues are mean ± radius, so the mean of their absolute values is max(|mean|, radius).
     Real::sqrt(Real::max(mean.abs(), radius) * (1.0 / degree as f64))
 }

@@ -6,11 +6,12 @@ use crate::layout::Problem;
 use crate::parallel::for_each_chunk;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
 
-/// Number of rows of one task. Levels with fewer rows are left to one thread, as handing tasks to others would take longer.
+/// Number of rows that one task computes. Levels with fewer rows are left to a single thread, as distributing their
+/// rows would take longer than computing them.
 const GRAIN: usize = 4096;
 
 /// Returns the correction -P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices. P is the prolongation from the
-/// aggregates of the free vertices, M⁻¹ one V-cycle over the coarse levels. The correction is a direction of descent.
+/// aggregates of the free vertices, M⁻¹ a V-cycle over the coarse levels. The correction is a direction of descent.
 pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
     let start = problem.ring_start();
@@ -19,7 +20,7 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
         ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
     let root = hierarchy.roots();
-    // `values` are already multiplied by the square roots of the stiffness of their vertices.
+    // `values` are already multiplied by the stiffness roots of their vertices.
     let around = |v: usize, values: &[Vec2]| -> Vec2 {
         root[v] * ring(v).fold(Vec2::ZERO, |sum, k| sum + values[k])
     };
@@ -75,7 +76,7 @@ fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
     rows(right.len(), |i| right[i] - times(&level.operator, i, x))
 }
 
-/// Takes two steps of the Chebyshev iteration, starting from `x` or from zero.
+/// Takes two steps of the Chebyshev iteration, starting from `x`, or from zero if `x` is `None`.
 fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
     let [first, again, now] = CHEBYSHEV;
     let add = |x: &mut [Vec2], d: &[Vec2]| {
@@ -129,7 +130,7 @@ mod tests {
     use crate::metric::{Metric, Smoothing};
     use glam::DVec2;
 
-    /// A square of right triangles, of two sizes, large enough for three coarse levels.
+    /// Returns a square of right triangles of two sizes, large enough for three coarse levels.
     fn square() -> Problem {
         let side = 81u32;
         let at = |i: u32| f64::from(i) * if i < 40 { 1.0 } else { 1.5 };
@@ -147,7 +148,7 @@ mod tests {
         )
     }
 
-    /// A hierarchy built for the mesh with stretched positions, then fitted to its own.
+    /// Returns a hierarchy built for the mesh with stretched positions, then fitted to the positions of the mesh.
     fn fitted(problem: &Problem) -> Hierarchy {
         let positions = problem.positions();
         let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -157,7 +158,7 @@ mod tests {
         Hierarchy::new(problem, roots(&stretched)).fitted_to(problem, roots(positions))
     }
 
-    /// Pseudorandom vectors.
+    /// Returns pseudorandom vectors.
     fn noise(count: usize, seed: f64) -> Vec<Vec2> {
         let at =
             |k: usize| DVec2::new((k as f64 * seed).sin(), (k as f64 * seed * 1.7).cos()).as_vec2();
@@ -196,10 +197,10 @@ mod tests {
 
     #[test]
     fn smooth_errors_are_corrected_nearly_whole() {
-        // A wave over the whole square. Sweeps alone would take thousands to remove it.
+        // The error is a wave over the whole square. Sweeps alone would take thousands to remove the wave.
         let problem = square();
         assert_corrects_a_wave(&problem, &hierarchy(&problem), 0.1);
-        // Stretching has changed shapes as well as sizes; factors at the vertices fit shapes less well.
+        // Stretching has changed shapes as well as sizes, and factors at the vertices fit shapes less well.
         assert_corrects_a_wave(&problem, &fitted(&problem), 0.15);
     }
 
@@ -220,7 +221,7 @@ mod tests {
         let free = problem.free_count();
         let gradient: Vec<Vec2> = (0..free).map(|v| laplacian(v).as_vec2()).collect();
         let step = correction(hierarchy, problem, &gradient);
-        // The step length at which least of the wave is left.
+        // Step length that leaves least of the wave.
         let squared: f64 = step.iter().map(|s| f64::from(s.length_squared())).sum();
         let along: f64 = wave.iter().zip(&step).map(|(w, s)| w.dot(s.as_dvec2())).sum();
         let length = -along / squared;
@@ -231,7 +232,8 @@ mod tests {
         assert!(share < most, "{share} of the wave is left");
     }
 
-    /// A line of held vertices from side to side parts the square. Nothing of one part reaches the other one.
+    /// A line of held vertices from side to side divides the square. A gradient on the left yields no correction on the
+    /// right.
     #[test]
     fn corrections_do_not_reach_across_held_vertices() {
         let problem = square();

@@ -1,10 +1,11 @@
 //! The wgpu engine, for any adapter, software ones included, and for an application's own device.
 //!
-//! A [`Gpu`] is a device with its pipelines and serves many meshes. A [`DeviceMesh`] is a mesh that stays on the
-//! device. [`Sweeps`] bind a scheme to that mesh; [`BoundVertices`] and [`BoundObjective`] bind the application's
-//! buffers. Their constructors make all resources and return all errors; in a frame they only encode into the
-//! application's own command encoder, or into one whose kernels are timed, see [`Timestamps`]. The calls of
-//! [`Smoother`](crate::Smoother) make all of this themselves. The kernels are core WebGPU, see [`Kernel`].
+//! A [`Gpu`] is a device with compiled pipelines, and serves many meshes. A [`DeviceMesh`] is a mesh that stays on the
+//! device. [`Sweeps`] bind a scheme to such a mesh; [`BoundVertices`] and [`BoundObjective`] bind the application's
+//! buffers. The constructors of these types create all resources and return all errors. In a frame, their methods only
+//! encode into the application's command encoder, or into an encoder whose kernels are timed ([`Timestamps`]). Runs of
+//! [`Smoother`](crate::Smoother) create their buffers and pipelines themselves. The kernels are core WebGPU, see
+//! [`Kernel`].
 
 mod device;
 mod embed;

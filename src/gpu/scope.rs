@@ -1,13 +1,12 @@
-//! Runs calls of wgpu and turns their failures into errors: those reported to error scopes, and those on which wgpu
-//! panics.
+//! Runs calls of wgpu and turns failures into errors, whether wgpu reports them to an error scope or panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::error::GpuError;
 
-/// Runs wgpu calls that may panic. wgpu panics where a driver reports a failure for which it has no error: a device
-/// that is lost while it is waited for, or memory that runs out during wgpu's own encoding. The work of the calls is
-/// dropped, so nothing half done remains. The error is wgpu's message on one line.
+/// Runs wgpu calls that may panic. wgpu panics if a driver reports a failure for which wgpu has no error: a device lost
+/// during a wait, or memory that runs out while wgpu encodes. The work of the calls is dropped, so nothing half done
+/// remains. The error is wgpu's message on one line.
 pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(calls)).map_err(|payload| {
         let text = match (payload.downcast_ref::<String>(), payload.downcast_ref::<&str>()) {
@@ -21,7 +20,7 @@ pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// Polls a device.
+/// Polls a device. Returns [`GpuError::Lost`] if wgpu panics or the poll fails.
 pub(crate) fn poll(
     device: &wgpu::Device,
     what: wgpu::PollType,
@@ -30,14 +29,15 @@ pub(crate) fn poll(
     polled.map_err(|error| GpuError::Lost(error.to_string()))
 }
 
-/// Runs wgpu calls. A browser reports their errors later, and a page cannot wait for that. So errors go to the device's
-/// handler of uncaptured errors.
+/// Runs wgpu calls without error scopes. A browser reports errors later, and a page cannot wait for the report. The
+/// errors of these calls therefore go to the device's handler of uncaptured errors.
 #[cfg(target_arch = "wasm32")]
 pub(crate) fn scoped<T>(_: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     Ok(calls())
 }
 
-/// Runs wgpu calls, and turns whatever wgpu reports into an error.
+/// Runs wgpu calls in error scopes. Returns [`GpuError::OutOfMemory`], [`GpuError::Lost`] if the device is lost or wgpu
+/// panics, and [`GpuError::Refused`] for any other error that wgpu reports.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -72,8 +72,8 @@ pub(crate) fn scoped_to_buffer<T>(
     })
 }
 
-/// Whether the device is lost, found by a trial: on a lost device a new buffer cannot be mapped, and the error scopes
-/// report nothing.
+/// Returns whether the device is lost, by trying to create a mapped buffer. On a lost device the buffer cannot be
+/// mapped, and no lack of memory is reported.
 #[cfg(not(target_arch = "wasm32"))]
 fn is_lost(device: &wgpu::Device) -> bool {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);

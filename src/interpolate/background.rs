@@ -1,4 +1,4 @@
-//! Values of one mesh at any points.
+//! Interpolation of vertex data of one mesh at arbitrary points.
 
 use super::interpolation::linear;
 use super::locate::{Found, Locator};
@@ -7,10 +7,10 @@ use crate::mesh::Mesh;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
 
-/// The most vertices nearby from which a walk to a point is tried.
+/// Largest number of nearby vertices from which a walk to a point is tried.
 const TRIED: usize = 9;
 
-/// A mesh in which any points can be found, such as one that carries the sizes wanted on another mesh.
+/// A mesh in which arbitrary points are located, such as a mesh that carries the sizes wanted on another mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Background {
     topology: Topology<'static>,
@@ -18,22 +18,22 @@ pub(crate) struct Background {
     seeds: Seeds,
 }
 
-/// A point, given by the triangle of a background that holds it, or by the nearest triangle.
+/// A located point: the triangle of a background that contains the point, or the nearest point of a triangle.
 pub(crate) struct Spot {
     found: Found,
-    /// The distance of the point from the mesh, 0 inside it.
+    /// Distance of the point from the mesh, 0 inside.
     pub(crate) outside: f64,
 }
 
 impl Background {
-    /// Returns all data as words, for the fingerprint of a run.
+    /// Returns points and triangles as words, for the fingerprint of a run.
     pub(crate) fn words(&self) -> Vec<u64> {
         let points = self.points.as_flattened().iter().map(|x| x.to_bits());
         let triangles = self.topology.triangles().as_flattened().iter().map(|&v| u64::from(v));
         points.chain(triangles).collect()
     }
 
-    /// Makes a background of a mesh.
+    /// Makes a background; copies the mesh.
     ///
     /// # Errors
     /// [`MeshError::Infeasible`] if triangles are inverted or flat, or an error of [`Topology::new`].
@@ -47,10 +47,11 @@ impl Background {
         Ok(Self { topology, points: mesh.points.clone(), seeds })
     }
 
-    /// Finds points, on all cores.
+    /// Locates points, on all cores. Returns a spot per point, in the order of `places`.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] for a point that is not finite.
+    /// [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the index of the
+    /// point in `places`.
     pub(crate) fn find(&self, places: &[[f64; 2]]) -> Result<Vec<Spot>, MeshError> {
         if let Some(vertex) = places.iter().position(|place| !place.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
@@ -71,8 +72,8 @@ impl Background {
         Ok(found.into_iter().flatten().collect())
     }
 
-    /// Returns the triangle that holds a point, found by a walk from a vertex nearby. If the boundary is in the way of
-    /// all walks, searches all triangles for the nearest.
+    /// Locates a point by walks from nearby vertices. If the boundary blocks every walk, searches all triangles for the
+    /// nearest.
     fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<Found> {
         let starts = self.seeds.around(place).filter_map(|v| self.topology.star(v).first());
         if let Some(triangle) = starts.take(TRIED).find_map(|&t| locator.walk(t, place)) {
@@ -80,7 +81,7 @@ impl Background {
         }
         let mut best: Option<(f64, u32, [f64; 2])> = None;
         for (triangle, t) in (0..).zip(self.topology.triangles()) {
-            // Most triangles can be skipped, as their bounding box is farther off.
+            // Most triangles are skipped, as their bounding box is farther away than the best triangle.
             let corners = t.map(|v| self.points[v as usize]);
             let apart = [0, 1].map(|axis| {
                 let [a, b, c] = corners.map(|corner| corner[axis]);
@@ -103,7 +104,7 @@ impl Background {
         best.map(|(_, triangle, nearest)| locator.within(triangle, nearest))
     }
 
-    /// Interpolates values of the background's vertices at a point.
+    /// Returns the value at a spot, interpolated from the values `of` the background's vertices.
     pub(crate) fn value(&self, spot: &Spot, of: impl Fn(u32) -> f64) -> f64 {
         linear(spot.found.corners.map(of), spot.found.weights)
     }
@@ -119,7 +120,7 @@ impl Background {
     }
 }
 
-/// A grid of cells with one vertex each, to find a vertex near any point.
+/// A grid of cells with a vertex each, to find a vertex near any point.
 #[derive(Clone, Debug)]
 struct Seeds {
     low: [f64; 2],
@@ -140,7 +141,7 @@ impl Seeds {
             }
         }
         let size = [high[0] - low[0], high[1] - low[1]];
-        // About as many cells as vertices, with cells as high as they are wide.
+        // Cells are about as many as vertices, and about as high as wide.
         let wanted = (triangles.len() as f64 / 2.0).max(1.0);
         let share = |a: f64, b: f64| (wanted * a / b).sqrt().clamp(1.0, wanted);
         let counts = [share(size[0], size[1]), share(size[1], size[0])].map(|n| n.ceil() as usize);
@@ -153,7 +154,7 @@ impl Seeds {
                 filled.push(cell);
             }
         }
-        // Empty cells take the vertex of a neighbor.
+        // Empty cells take the vertex of a neighbor, spreading outward from the filled cells.
         let mut next = 0;
         while let Some(&cell) = filled.get(next) {
             next += 1;
@@ -178,13 +179,13 @@ impl Seeds {
         let [column, row] = [0, 1].map(|axis| {
             let share = (place[axis] - self.low[axis]) / self.size[axis];
             let last = self.counts[axis] - 1;
-            // Points outside belong to the cell at the border.
+            // Points outside the grid belong to the nearest cell of its border.
             ((share * self.counts[axis] as f64) as usize).min(last)
         });
         row * self.counts[0] + column
     }
 
-    /// Returns the vertices of the point's cell and of the cells around it.
+    /// Returns the vertices of the point's cell and of the eight cells around it.
     fn around(&self, place: [f64; 2]) -> impl Iterator<Item = u32> + '_ {
         let cell = self.cell(place);
         let (column, row) = (cell % self.counts[0], cell / self.counts[0]);
@@ -201,7 +202,7 @@ impl Seeds {
 mod tests {
     use super::*;
 
-    /// A square ring: 6 by 6 cells without the four in the middle.
+    /// Returns a square ring: 6 by 6 cells without the four cells in the middle.
     fn ring() -> Mesh {
         let points = (0..49).map(|v| [f64::from(v % 7), f64::from(v / 7)]).collect();
         let is_hole = |c: u32, r: u32| (2..4).contains(&c) && (2..4).contains(&r);
@@ -231,7 +232,7 @@ mod tests {
                 assert!((value - wanted).abs() < 1e-12 && outside < 1e-12, "{place:?}: {value}");
             }
         }
-        // The nearest points of the ring, for points in the hole and outside the ring.
+        // Points in the hole and outside the ring, with the nearest points of the ring.
         for (place, [x, y], apart) in [
             ([2.5, 2.9], [2.0, 2.9], 0.5),
             ([-1.0, 3.3], [0.0, 3.3], 1.0),

@@ -1,16 +1,16 @@
-//! Interpolates the data of vertices that have moved.
+//! Interpolation of vertex data after vertices have moved.
 
 use super::locate::{Found, Locator};
 use crate::error::MeshError;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
 
-/// The positions of moved vertices within the old mesh, found once for any number of data.
+/// Moved vertices located in the old mesh, once for any number of data.
 ///
-/// Data of vertices, such as depths or a solution, no longer fit where vertices have moved. This takes them from the
-/// old mesh at the new positions, linearly in each triangle. A vertex that has not moved keeps its data to the bit.
-/// Data that are linear over the mesh stay so up to rounding. No value is above or below those of the triangle from
-/// which it is taken.
+/// Vertex data, such as depths or a solution, no longer fit where vertices have moved. An interpolation evaluates the
+/// data of the old mesh at the new positions, linearly in each triangle. A vertex that has not moved keeps the bits of
+/// its data. Data that are linear over the mesh remain linear up to rounding. Every interpolated value is bounded by
+/// the values at the three corners of its triangle.
 ///
 /// ```
 /// use gpu_smooth::{interpolate::Interpolation, Mesh, Topology};
@@ -31,22 +31,22 @@ use crate::topology::Topology;
 #[derive(Clone, Debug)]
 pub struct Interpolation {
     vertices: usize,
-    /// Each vertex that has moved, ascending, and where it is in the old mesh.
+    /// Each moved vertex, ascending, with its location in the old mesh.
     moved: Vec<(u32, Found)>,
 }
 
 impl Interpolation {
-    /// Finds the new positions of vertices in the old mesh, on all cores. The search starts from the vertex's own
-    /// triangles and crosses edges that triangles share, so that overlapping parts of a mesh are told apart. Exact
-    /// predicates find the triangle that holds a position. A position outside of the mesh counts as the nearest point
-    /// of the triangles that were searched, up to 20,000.
+    /// Locates the new positions of vertices in the old mesh, on all cores. The search starts from the triangles of the
+    /// vertex and crosses shared edges, so it tells overlapping parts of a mesh apart. Exact predicates decide which
+    /// triangle contains a position. A position outside of the mesh is replaced by the nearest point of the triangles
+    /// that were searched, up to 20,000.
     ///
-    /// `old` and `new` have one point for each vertex, in any unit.
+    /// `old` and `new` have one point per vertex, in any unit.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] for a new point
-    /// that is not finite, [`MeshError::Infeasible`] if the old mesh has inverted or flat triangles: several triangles
-    /// may then hold a position.
+    /// [`MeshError::PointCount`] if `old` or `new` does not have one entry per vertex, [`MeshError::NotFinite`] if a
+    /// new point has an infinite or NaN coordinate. [`MeshError::Infeasible`] if the old mesh has inverted or flat
+    /// triangles, as several triangles may then contain a position.
     pub fn new(
         topology: &Topology<'_>,
         old: &[[f64; 2]],
@@ -72,16 +72,16 @@ impl Interpolation {
         Ok(Interpolation { vertices: new.len(), moved: moved.concat() })
     }
 
-    /// Number of vertices that have moved.
+    /// Returns the number of moved vertices.
     pub fn moved(&self) -> usize {
         self.moved.len()
     }
 
-    /// Returns the data at the new positions. `values` has `components` numbers for each vertex, and so has the result.
-    /// A number that is not finite makes those computed from it NaN.
+    /// Returns the data at the new positions. `values` and the result have `components` numbers per vertex, vertex by
+    /// vertex. If a number is infinite or NaN, every value interpolated from it is NaN.
     ///
     /// # Errors
-    /// [`MeshError::ValueCount`] if `values` does not have `components` numbers for each vertex.
+    /// [`MeshError::ValueCount`] if `values` does not have `components` numbers per vertex.
     pub fn apply(&self, values: &[f64], components: usize) -> Result<Vec<f64>, MeshError> {
         let expected = self.vertices.saturating_mul(components);
         if values.len() != expected {
@@ -106,12 +106,12 @@ impl Interpolation {
     }
 }
 
-/// Interpolates linearly between three values. If they are equal, the result is the same to the bit.
+/// Interpolates linearly between three values. If all three are equal, the result has their bits.
 pub(super) fn linear([a, b, c]: [f64; 3], [to_b, to_c]: [f64; 2]) -> f64 {
     if ![a, b, c].iter().all(|value| value.is_finite()) {
         return f64::NAN;
     }
-    // Uses halves, as a difference of two large numbers may overflow.
+    // The differences are halved, as the difference of two large numbers may overflow.
     let value = a + 2.0 * (to_b * (0.5 * b - 0.5 * a) + to_c * (0.5 * c - 0.5 * a));
     value.clamp(a.min(b).min(c), a.max(b).max(c))
 }

@@ -1,4 +1,4 @@
-//! Finds the triangle of a mesh that holds a point, starting from a triangle nearby.
+//! Search for the triangle of a mesh that contains a point, starting from a nearby triangle.
 
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashSet};
@@ -6,18 +6,19 @@ use std::collections::{BinaryHeap, HashSet};
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// The most steps of a straight walk, before the search spreads instead. Vertices move by a few triangles.
+/// Largest number of steps of a straight walk; after more steps, the search spreads in all directions. Vertices move by
+/// a few triangles.
 const STEPS: usize = 200;
-/// The most triangles that a search visits before it takes the nearest of them.
+/// Largest number of triangles that a spreading search visits before it settles for the nearest.
 const SPREAD: usize = 20_000;
 
-/// A mesh in which points are located. None of its triangles is inverted or flat.
+/// A mesh in which points are located. No triangle may be inverted or flat.
 pub(super) struct Locator<'a> {
     pub(super) topology: &'a Topology<'a>,
     pub(super) points: &'a [[f64; 2]],
 }
 
-/// A point, given by a triangle of a mesh with corners a, b, c: a + (b - a) `weights[0]` + (c - a) `weights[1]`.
+/// A located point, in a triangle with corners a, b, c: a + (b - a) `weights[0]` + (c - a) `weights[1]`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     pub(super) corners: [u32; 3],
@@ -25,8 +26,8 @@ pub(super) struct Found {
 }
 
 impl Locator<'_> {
-    /// Locates a point. The search starts from a vertex and crosses edges that triangles share. For a point outside of
-    /// the mesh it returns the nearest point that it has met. `None` if the vertex has no triangle.
+    /// Locates a point. The search starts from the triangles of `vertex` and crosses shared edges. For a point outside
+    /// of the mesh, returns the nearest point of the visited triangles. `None` if the vertex has no triangle.
     pub(super) fn find(&self, vertex: u32, place: [f64; 2]) -> Option<Found> {
         let star = self.topology.star(vertex);
         let first = *star.first()?;
@@ -36,8 +37,8 @@ impl Locator<'_> {
         })
     }
 
-    /// Walks toward a point, each time across an edge that has the point on its other side. `None` if the boundary is
-    /// in the way or the walk is too long.
+    /// Walks toward a point across edges that separate the triangle from the point. Returns the triangle that contains
+    /// the point, `None` if the boundary blocks the walk or the walk exceeds [`STEPS`].
     pub(super) fn walk(&self, first: u32, place: [f64; 2]) -> Option<u32> {
         let mut triangle = first;
         for step in 0..STEPS {
@@ -45,7 +46,7 @@ impl Locator<'_> {
             let mut beyond = false;
             let mut next = None;
             for k in 0..3 {
-                // Each triangle starts with another edge, as otherwise the walk could go in circles.
+                // Each step starts with a different edge, as otherwise the walk could go in circles.
                 let edge = edge_of(corners, (k + step) % 3);
                 if self.is_beyond(edge, place) {
                     beyond = true;
@@ -63,7 +64,7 @@ impl Locator<'_> {
         None
     }
 
-    /// Searches in all directions, triangles near the point first.
+    /// Searches from the triangles of `star` in all directions, triangles near the point first.
     fn spread(&self, star: &[u32], place: [f64; 2]) -> Found {
         let candidate = |&triangle: &u32| {
             let (distance, nearest) = self.nearest(triangle, place);
@@ -94,7 +95,7 @@ impl Locator<'_> {
         }
     }
 
-    /// Returns the weights of a point in a triangle. A point that rounding has put outside is moved to the edge.
+    /// Returns the weights of a point in a triangle. If rounding has put the point outside, it is moved to the edge.
     pub(super) fn within(&self, triangle: u32, place: [f64; 2]) -> Found {
         let corners = self.corners(triangle);
         let [a, b, c] = corners.map(|vertex| self.points[vertex as usize]);
@@ -112,20 +113,20 @@ impl Locator<'_> {
         self.topology.triangles()[triangle as usize]
     }
 
-    /// Whether a point is on the right of an edge, which has its triangle on the left. Exact.
+    /// Returns whether a point is on the right of an edge, whose triangle is on the left, by exact predicates.
     fn is_beyond(&self, edge: [u32; 2], place: [f64; 2]) -> bool {
         let [from, to] = edge.map(|vertex| self.points[vertex as usize]);
         orientation(&[from, to, place], &[0, 1, 2]) < 0.0
     }
 
-    /// Returns the other triangle at an edge.
+    /// Returns the triangle on the other side of an edge of `triangle`, `None` on the boundary.
     fn across(&self, triangle: u32, [from, to]: [u32; 2]) -> Option<u32> {
         let [a, b] = [from, to].map(|vertex| self.topology.star(vertex));
         let (star, end) = if a.len() <= b.len() { (a, to) } else { (b, from) };
         star.iter().copied().find(|&t| t != triangle && self.corners(t).contains(&end))
     }
 
-    /// Returns the point of a triangle that is nearest to a given one, and before it the square of their distance.
+    /// Returns the point of a triangle nearest to `place`, preceded by the squared distance between the two points.
     pub(super) fn nearest(&self, triangle: u32, place: [f64; 2]) -> (f64, [f64; 2]) {
         let corners = self.corners(triangle);
         let edges = [0, 1, 2].map(|k| edge_of(corners, k));
@@ -147,12 +148,13 @@ impl Locator<'_> {
     }
 }
 
-/// The edge from corner `k` to the next one.
+/// Returns the edge from corner `k` to the next corner, cyclically.
 fn edge_of(corners: [u32; 3], k: usize) -> [u32; 2] {
     [corners[k], corners[(k + 1) % 3]]
 }
 
-/// A triangle to search. The order makes the nearest one the greatest, and among equals the one with the lowest index.
+/// A triangle to be searched. Candidates compare in reverse: the nearest is the greatest, and at equal distances the
+/// lowest index, as a binary heap pops its greatest element.
 struct Candidate {
     distance: f64,
     triangle: u32,

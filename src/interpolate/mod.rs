@@ -1,4 +1,4 @@
-//! Interpolates data of vertices from a mesh, linearly in its triangles, at other points.
+//! Interpolation of vertex data of a mesh, linear within its triangles, at other points.
 
 mod background;
 mod interpolation;

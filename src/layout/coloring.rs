@@ -1,4 +1,4 @@
-//! Graph coloring: free vertices of one color can move at the same time.
+//! Graph coloring: free vertices of equal color can move at the same time.
 
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
@@ -8,7 +8,7 @@ use crate::parallel::counting_sort::{atomics, plain};
 use crate::parallel::{collect, for_each_part, map_parts, map_ranges};
 use crate::topology::Topology;
 
-/// A coloring of the free vertices: no two of one color share a triangle, so the vertices of a color can be
+/// A coloring of the free vertices. No two vertices of equal color share a triangle, so all vertices of a color can be
 /// visited in parallel, with the same result as in any serial order.
 #[derive(Clone, Debug)]
 pub struct Coloring {
@@ -16,31 +16,32 @@ pub struct Coloring {
     count: u32,
 }
 
-/// Number of consecutive vertices along the curve that make a block. Numbers within a block fit 16 bits.
+/// Number of consecutive vertices along the curve that form a block. Indices within a block fit 16 bits.
 const BLOCK: usize = 1 << 15;
 
-/// Blocks are used only if at most one in this many vertices is between them, with neighbors in several blocks.
+/// Least ratio of all vertices to vertices with neighbors in several blocks. Below this ratio, vertices are colored
+/// serially instead of in blocks.
 const MOST_BETWEEN: usize = 4;
 
-/// The most colors that the smallest-last order needs on a planar graph.
+/// Largest number of colors that the smallest-last order needs on a planar graph.
 const PLANAR: u32 = 6;
 
 impl Coloring {
-    /// Colors the free vertices greedily in smallest-last order (Matula & Beck, J. ACM 30, 1983),
-    /// which takes at most 6 colors on a planar graph.
+    /// Colors the free vertices greedily in smallest-last order (Matula & Beck, J. ACM 30, 1983), which takes at most 6
+    /// colors on a planar graph.
     ///
-    /// Blocks of vertices with consecutive numbers in the mesh are colored in parallel, after the vertices that have
+    /// Blocks of vertices with consecutive indices in the mesh are colored in parallel, after the vertices that have
     /// neighbors in several blocks.
     pub fn new(topology: &Topology<'_>) -> Self {
         let numbering: Vec<u32> = (0..topology.free().len() as u32).collect();
         Self::in_blocks(topology, &numbering, BLOCK)
     }
 
-    /// Colors the free vertices as [`Self::new`] does, but in blocks along a curve that contains all of them. Faster if
-    /// most neighbors are near each other on the curve.
+    /// Colors the free vertices as [`Self::new`] does, but in blocks along a curve that contains every free vertex.
+    /// Faster than [`Self::new`] if most mesh neighbors are also close along the curve.
     pub(crate) fn along(topology: &Topology<'_>, curve: &[u32]) -> Self {
         match curve.len() {
-            // A single block does not need the curve, and `new` colors it by the numbering alone.
+            // A single block does not need the curve: [`Self::new`] colors the block by vertex indices alone.
             0..=BLOCK => Self::new(topology),
             _ => Self::in_blocks(topology, curve, BLOCK),
         }
@@ -58,17 +59,18 @@ impl Coloring {
         Self { colors: collect(of.len(), color), count }
     }
 
-    /// Number of colors.
+    /// Returns the number of colors.
     pub fn count(&self) -> u32 {
         self.count
     }
 
-    /// Color of each vertex of the mesh, [`UNCOLORED`] if the vertex is not free.
+    /// Returns the color of each vertex of the mesh, [`UNCOLORED`] if the vertex is not free.
     pub fn colors(&self) -> &[u32] {
         &self.colors
     }
 
-    /// Whether every free vertex has a color that differs from its neighbors' colors, and no other vertex has a color.
+    /// Returns whether every free vertex has a color that differs from its neighbors' colors, and no other vertex has a
+    /// color.
     pub fn is_proper(&self, topology: &Topology<'_>) -> bool {
         let differs = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.colors[v as usize]);
@@ -76,21 +78,21 @@ impl Coloring {
             !same(a, b) && !same(b, c) && !same(c, a)
         };
         let is_complete = |(&color, &free): (&u32, &bool)| free == (color < self.count);
-        // A coloring of another mesh may have another length.
+        // The coloring may be of another mesh, with another number of vertices.
         self.colors.len() == topology.free().len()
             && self.colors.iter().zip(topology.free()).all(is_complete)
             && topology.triangles().iter().all(differs)
     }
 }
 
-/// The place of a vertex that is not free, as it is not on the curve.
+/// Marker for vertices without a place: fixed and boundary vertices.
 const NOWHERE: u32 = u32::MAX;
 
-/// The free vertices, numbered by their places on a curve. A place is an index in `curve`.
+/// Places of the free vertices on a curve. A place is a 0-based index in `curve`.
 struct Places<'a> {
     topology: &'a Topology<'a>,
     curve: &'a [u32],
-    /// The place of each vertex on the curve.
+    /// Place of each free vertex on the curve, [`NOWHERE`] for all other vertices of the mesh.
     of: Vec<u32>,
 }
 
@@ -113,13 +115,14 @@ impl<'a> Places<'a> {
         self.topology.free()[self.curve[place as usize] as usize]
     }
 
-    /// Returns the places of the free neighbors of the free vertex at a place.
+    /// Returns the places of the free neighbors of the free vertex at `place`, counter-clockwise.
     fn neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
         let ring = self.topology.ring_of(self.curve[place as usize]);
         ring.map(|v| self.of[v as usize]).filter(|&place| place != NOWHERE)
     }
 
-    /// Returns the places of the free neighbors, in the order of the triangles' numbers.
+    /// Returns the places of the free neighbors, in ascending order of the triangles that follow them around the
+    /// vertex.
     fn sorted_neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
         let vertex = self.curve[place as usize];
         let mut ring: Vec<(u32, u32)> =
@@ -128,7 +131,8 @@ impl<'a> Places<'a> {
         ring.into_iter().map(|(_, v)| self.of[v as usize]).filter(|&place| place != NOWHERE)
     }
 
-    /// Colors the vertices between blocks, then the blocks. Returns the colors by place, and their number.
+    /// Colors the vertices between blocks, then the inner vertices of each block in parallel. Returns the colors,
+    /// indexed by place, and the color count.
     fn color(&self, block: usize) -> (Vec<u32>, u32) {
         let blocks = map_ranges(self.curve.len(), block, |places| {
             Block::new(self, places, &mut Degrees::default())
@@ -147,8 +151,8 @@ impl<'a> Places<'a> {
             block.graph.save_colors(&block.order, count, colors)
         });
         let count = count.max(counts.into_iter().max().unwrap_or(0));
-        // A vertex of a block may have more than five neighbors with a color, as those between blocks are colored
-        // first. So this may take more than six colors.
+        // Vertices between blocks are colored first, so a vertex of a block may have more than five colored neighbors,
+        // and the coloring may take more than six colors.
         if count <= PLANAR {
             return (colors, count);
         }
@@ -156,13 +160,14 @@ impl<'a> Places<'a> {
         if serial_count < count { (serial, serial_count) } else { (colors, count) }
     }
 
-    /// Colors all free vertices as one graph. Returns the colors by place, and their number.
+    /// Colors all free vertices as one graph. Returns the colors, indexed by place, and the color count.
     fn color_serially(&self) -> (Vec<u32>, u32) {
         let all: Vec<u32> = (0..self.curve.len() as u32).filter(|&p| self.is_free(p)).collect();
         self.color_alone(&all)
     }
 
-    /// Colors the vertices at some places as if there were no others. Returns the colors by place, and their number.
+    /// Colors the vertices at the given places and ignores all edges to other vertices. Returns the colors, indexed by
+    /// place ([`UNCOLORED`] where no vertex was given), and the color count.
     fn color_alone(&self, places: &[u32]) -> (Vec<u32>, u32) {
         let mut index = vec![0u32; self.curve.len()];
         for (i, &place) in (1u32..).zip(places) {
@@ -186,13 +191,13 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Consecutive vertices along a curve, numbered from 0.
+/// Consecutive vertices along a curve, indexed from 0 within the block.
 struct Block {
-    /// The neighbors of the inner vertices, those with all neighbors in the block.
+    /// Neighbors of the inner vertices, whose neighbors are all in the block.
     graph: Graph<u16>,
     /// The inner vertices, in the order of removal; see [`Graph::smallest_last_order`].
     order: Vec<u32>,
-    /// The other free vertices.
+    /// The other free vertices of the block, with a neighbor in another block.
     border: Vec<u32>,
 }
 
@@ -232,7 +237,7 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
 
-    /// A grid of squares, each cut by one of its diagonals, so that vertices have 4 to 8 neighbors.
+    /// Returns a grid of squares, each cut by a diagonal, so that vertices have 4 to 8 neighbors.
     fn squares(side: u32) -> Topology<'static> {
         let points = (0..(side + 1).pow(2)).map(|v| [v % (side + 1), v / (side + 1)]);
         let triangles = (0..side * side).flat_map(|square| {
@@ -248,7 +253,7 @@ mod tests {
         Topology::new(&mesh).unwrap().into_owned()
     }
 
-    /// The vertices of [`squares`] tile by tile.
+    /// Returns the vertices of [`squares`] tile by tile.
     fn tiles(side: u32, tile: u32) -> Vec<u32> {
         let mut curve: Vec<u32> = (0..(side + 1).pow(2)).collect();
         curve.sort_by_key(|&v| (v / (side + 1) / tile, v % (side + 1) / tile));
@@ -288,7 +293,7 @@ mod tests {
 
     #[test]
     fn a_mesh_that_is_not_planar_takes_more_than_six_colors() {
-        // The torus with seven vertices, each a neighbor of all others.
+        // The torus with seven vertices, each of them a neighbor of all others.
         let around = (0..7).flat_map(|i| [[i, i + 1, i + 3], [i, i + 3, i + 2]]);
         let triangles = around.map(|t| t.map(|v| v % 7)).collect();
         let points = (0..7).map(|i| [f64::from(i), f64::from(i * i)]).collect();

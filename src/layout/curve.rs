@@ -1,4 +1,4 @@
-//! Orders vertices along a space-filling curve: most vertices that are near each other are also near in this order.
+//! Orders vertices along a space-filling curve (Z-order): most mesh neighbors are also close along the curve.
 
 use glam::DVec2;
 use rayon::slice::ParallelSliceMut;
@@ -8,13 +8,13 @@ use crate::parallel::counting_sort::Groups;
 use crate::parallel::{for_each_part, map_ranges};
 use crate::topology::Topology;
 
-/// Average number of vertices in a cell of the first sorting.
+/// Average number of vertices in a cell of the first pass of sorting.
 const PER_CELL: usize = 8;
 
 /// Number of cells that one task sorts.
 const CELLS: usize = 1 << 8;
 
-/// A cell with this many vertices or more is sorted by several threads.
+/// Number of vertices from which the cell is sorted by several threads.
 const CROWD: usize = 1 << 14;
 
 /// Returns the vertices that some triangle uses, in the order of their positions along a Z-order curve.
@@ -25,7 +25,7 @@ pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
         let cell = (DVec2::from(mesh.points[v as usize]) - low) * scale;
         z_order(cell.x as u32, cell.y as u32)
     };
-    // Sorts first into cells of the plane, then within each cell.
+    // The first pass sorts vertices into cells of the plane, the second sorts the vertices of each cell.
     let bits = (mesh.points.len() / PER_CELL).max(2).ilog2().min(22);
     let unused = 1 << bits;
     let mut cells = Groups::new(mesh.points.len(), unused + 1, |v| {
@@ -45,7 +45,7 @@ pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
     vertices
 }
 
-/// Sorts vertices by key, and those of equal keys by number. `keyed` is scratch memory.
+/// Sorts vertices by key, and vertices of equal keys by index. `keyed` is scratch memory.
 fn sort(vertices: &mut [u32], key: impl Fn(u32) -> u64 + Sync, keyed: &mut Vec<(u64, u32)>) {
     keyed.clear();
     keyed.extend(vertices.iter().map(|&v| (key(v), v)));
@@ -58,7 +58,7 @@ fn sort(vertices: &mut [u32], key: impl Fn(u32) -> u64 + Sync, keyed: &mut Vec<(
     }
 }
 
-/// Returns the bounding box of the vertices that some triangle uses: its lower and upper corner.
+/// Returns the lower and the upper corner of the bounding box of all vertices that some triangle uses.
 pub(crate) fn bounds(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
@@ -70,7 +70,7 @@ pub(crate) fn bounds(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, DVec2) {
     map_ranges(mesh.points.len(), 1 << 14, of_range).into_iter().fold(none, both)
 }
 
-/// Position along the Z-order curve: the bits of x and y interleaved.
+/// Returns the position along the Z-order curve: the bits of x and y interleaved, x in the lowest bit.
 fn z_order(x: u32, y: u32) -> u64 {
     let spread = |bits: u32| {
         let mut b = u64::from(bits);
@@ -89,7 +89,8 @@ mod tests {
 
     #[test]
     fn all_vertices_in_use_stand_along_the_curve() {
-        // A third of the points is all over the plane, the others are in a corner. No triangle uses the last 300.
+        // A third of the points is spread over the plane, the others are crowded in a corner. No triangle uses the last
+        // 300.
         let mut points: Vec<[f64; 2]> = Vec::new();
         for k in 0..3000 {
             let [x, y] = [k * 7919 % 3001, k * 104_729 % 2999].map(f64::from);

@@ -1,4 +1,5 @@
-//! Makes the [`Problem`] of the engines from a mesh: free vertices are colored and renumbered, positions normalized.
+//! Preparation of a mesh as the [`Problem`] of the engines: colors and renumbers the free vertices, and normalizes
+//! positions.
 
 mod coloring;
 mod curve;

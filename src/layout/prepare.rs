@@ -1,4 +1,4 @@
-//! Prepares a mesh for the engines.
+//! Prepares a mesh for the engines: topology, coloring and layout.
 
 use crate::error::MeshError;
 use crate::layout::Coloring;
@@ -7,8 +7,8 @@ use crate::layout::curve::along_curve;
 use crate::mesh::Mesh;
 use crate::topology::Topology;
 
-/// Checks a mesh, colors it and lays it out, as [`Smoother::new`](crate::Smoother::new) does. For code that drives runs
-/// itself.
+/// Checks a mesh, colors its free vertices and lays it out, as [`Smoother::new`](crate::Smoother::new) does. For
+/// callers that drive the sweeps of a run themselves.
 ///
 /// # Errors
 /// [`MeshError`] if the mesh cannot be smoothed.
@@ -18,10 +18,10 @@ pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     Ok(laid_out(mesh, topology))
 }
 
-/// Does the same as [`prepare`], also for a mesh without a free vertex, of which vertices may slide.
+/// Prepares a mesh as [`prepare`] does, but accepts a mesh without free vertices, whose boundary vertices may slide.
 ///
 /// # Errors
-/// [`MeshError`] if the mesh cannot be smoothed for another reason.
+/// [`MeshError`] if the mesh cannot be smoothed; never [`MeshError::NothingFree`].
 pub(crate) fn prepare_to_slide(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     match topology.check_smoothable(&mesh.points) {

@@ -17,25 +17,26 @@ use crate::targets::Tensor;
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// Number of vertices or triangles of one task.
+/// Number of vertices or triangles that one task handles.
 const CHUNK: usize = 1 << 12;
-/// Number of vertices of one task when they are sorted by color. Larger than [`CHUNK`], as every task has a counter for
-/// each color.
+/// Number of vertices per task when vertices are sorted by color. Larger than [`CHUNK`], as every task has a counter
+/// for each color.
 const LONG: usize = 1 << 14;
 
-/// A mesh laid out for sweeping. Vertices are renumbered: first the free ones, color by color, then the fixed ones that
-/// some triangle uses. Within a color they are in blocks along a space-filling curve, and within a block they are
-/// ordered by the number of their neighbors.
+/// A mesh laid out for sweeping. Vertices are renumbered: first the free vertices, color by color, then the fixed
+/// vertices that some triangle uses. The vertices of a color are in blocks along a space-filling curve, and within a
+/// block they are ordered by the number of their neighbors.
 ///
 /// Positions are scaled by a power of two so that the mean area of the triangles is in [0.5, 2], and the center of a
-/// mesh far from the origin is subtracted. Neither rounds, so elements keep all digits that the mesh has, however small
-/// they are. Single precision then suffices for meshes of any size and position, and areas far below or above the mean
-/// neither underflow nor overflow.
+/// mesh far from the origin is subtracted. Neither operation rounds, so even the smallest elements keep all digits of
+/// their coordinates. Single precision then suffices for meshes of any size and position, and areas far below or above
+/// the mean neither underflow nor overflow.
+///
 /// A clone shares the layout and the target maps.
 #[derive(Clone, Debug)]
 pub struct Problem {
     layout: Arc<Layout>,
-    /// The target map of each vertex, if the mesh has targets. In single precision, so that both engines use the same
+    /// Target map of each vertex, `None` if the mesh has no targets. Single precision, so that both engines use equal
     /// values.
     targets: Option<Arc<[[f32; 3]]>>,
     /// Whether some target map is anisotropic. Coarse levels then work in coordinates transformed by the maps, in which
@@ -44,7 +45,7 @@ pub struct Problem {
     mean_area: f64,
 }
 
-/// The parts of a [`Problem`] that do not depend on targets.
+/// Layout of a [`Problem`]: positions, order and connectivity, independent of targets.
 #[derive(Debug)]
 struct Layout {
     positions: Vec<DVec2>,
@@ -58,8 +59,9 @@ struct Layout {
 }
 
 impl Problem {
-    /// Number of vertices in a block. Blocks are sorted by the number of neighbors, so that vertices visited at once
-    /// have the same number. In larger blocks that holds for more of them; smaller ones keep vertices closer together.
+    /// Number of vertices in a block. Blocks are sorted by degree, so that vertices visited at once have equally many
+    /// neighbors. Larger blocks let more vertices meet others of equal degree; smaller blocks keep vertices closer
+    /// together.
     pub(crate) const BLOCK: usize = 512;
 
     /// Lays out a mesh with its topology and coloring.
@@ -67,7 +69,8 @@ impl Problem {
         Self::along(mesh, topology, coloring, &along_curve(mesh, topology))
     }
 
-    /// Lays out a mesh as [`Self::new`] does, given the vertices that some triangle uses in the order of a curve.
+    /// Lays out a mesh as [`Self::new`] does. `curve` lists the vertices that some triangle uses, in the order of a
+    /// curve.
     pub(crate) fn along(
         mesh: &Mesh,
         topology: &Topology<'_>,
@@ -106,15 +109,15 @@ impl Problem {
         Self { layout: Arc::new(layout), targets: None, is_stretched: false, mean_area }
     }
 
-    /// Sets the target maps of all vertices of the mesh, in any unit. The maps are scaled by a common factor so that
-    /// the mean area of the triangles, after their maps are applied, is 1.
+    /// Sets the target maps of all vertices of the mesh, in any unit. A common factor scales the maps so that the mean
+    /// area of the triangles, after their maps are applied, is 1.
     pub(crate) fn set_targets(&mut self, maps: &[Tensor]) {
         let layout = Arc::clone(&self.layout);
         self.set_targets_at(maps, &layout.positions);
     }
 
-    /// Sets target maps as [`set_targets`](Self::set_targets) does, scaled for vertices at the given normalized
-    /// positions.
+    /// Sets target maps as [`set_targets`](Self::set_targets) does, but scales them for vertices at the given
+    /// normalized positions.
     pub(crate) fn set_targets_at(&mut self, maps: &[Tensor], positions: &[DVec2]) {
         let map = |v: u32| maps[v as usize].0;
         let area = |t: &[u32; 3]| {
@@ -134,7 +137,7 @@ impl Problem {
         self.mean_area = sum(&self.layout.triangles, shown) / self.layout.triangles.len() as f64;
     }
 
-    /// Copies the targets of another problem of the same mesh. `number` gives the number there of each vertex of the
+    /// Copies the targets of another problem of the same mesh. `number` has the index in `other` of each vertex of the
     /// mesh.
     #[cfg(feature = "gpu")]
     pub(crate) fn take_targets(&mut self, other: &Self, number: &[u32]) {
@@ -145,37 +148,38 @@ impl Problem {
         (self.is_stretched, self.mean_area) = (other.is_stretched, other.mean_area);
     }
 
-    /// Normalized position of each vertex.
+    /// Returns the normalized position of each vertex.
     pub fn positions(&self) -> &[DVec2] {
         &self.layout.positions
     }
 
-    /// The range of free vertices for each color.
+    /// Returns the range of free vertices of each color.
     pub fn colors(&self) -> &[Range<u32>] {
         &self.layout.colors
     }
 
-    /// Number of free vertices. They are the first vertices.
+    /// Returns the number of free vertices. Free vertices have the indices from 0 to this number, exclusive.
     pub fn free_count(&self) -> usize {
         self.layout.ring_start.len() - 1
     }
 
-    /// Whether one of these vertices, those of a triangle, is free.
+    /// Returns whether a triangle has a free vertex, given the three vertices of the triangle.
     pub(crate) fn can_move(&self, triangle: &[u32; 3]) -> bool {
         triangle.iter().any(|&v| (v as usize) < self.free_count())
     }
 
-    /// Where each free vertex's neighbors start in [`Self::ring`], and one past the last neighbor.
+    /// Returns the index in [`Self::ring`] of the first neighbor of each free vertex, and at the end the length of the
+    /// ring.
     pub fn ring_start(&self) -> &[u32] {
         &self.layout.ring_start
     }
 
-    /// The neighbors of all free vertices, vertex by vertex, in counter-clockwise order around each.
+    /// Returns the neighbors of all free vertices, vertex by vertex, counter-clockwise around each vertex.
     pub fn ring(&self) -> &[u32] {
         &self.layout.ring
     }
 
-    /// The neighbors of one free vertex, counter-clockwise.
+    /// Returns the neighbors of a free vertex, counter-clockwise.
     #[inline]
     pub(crate) fn ring_of(&self, vertex: u32) -> &[u32] {
         let vertex = vertex as usize;
@@ -183,23 +187,23 @@ impl Problem {
             [self.layout.ring_start[vertex] as usize..self.layout.ring_start[vertex + 1] as usize]
     }
 
-    /// All triangles, counter-clockwise.
+    /// Returns all triangles, counter-clockwise, sorted by their least vertices.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.layout.triangles
     }
 
-    /// The target map of each vertex, in the order of the positions, if the mesh has targets.
+    /// Returns the target map of each vertex, in the order of the positions, `None` if the mesh has no targets.
     #[inline(always)]
     pub(crate) fn targets(&self) -> Option<&[[f32; 3]]> {
         self.targets.as_deref()
     }
 
-    /// Whether targets are longer in one direction than in another.
+    /// Returns whether some target map is anisotropic.
     pub(crate) fn is_stretched(&self) -> bool {
         self.is_stretched
     }
 
-    /// A triangle as metrics see it: transformed by its target map, if the mesh has targets.
+    /// Returns a triangle in the form of the metrics, transformed by its target map if the mesh has targets.
     #[inline(always)]
     pub(crate) fn corner(&self, t: &[u32; 3], position: impl Fn(u32) -> DVec2) -> Corner<f64> {
         let [p, q, r] = t.map(position);
@@ -210,25 +214,25 @@ impl Problem {
         }
     }
 
-    /// Returns the target map of a triangle, if the mesh has targets.
+    /// Returns the target map of a triangle, the mean over its vertices, or `None` if the mesh has no targets.
     #[inline(always)]
     pub(crate) fn target_map(&self, t: &[u32; 3]) -> Option<TargetMap<f64>> {
         let maps = self.targets.as_ref()?;
         Some(TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))))
     }
 
-    /// Mean area of all triangles in normalized units, after target maps are applied if the mesh has any.
+    /// Returns the mean area of all triangles in normalized units, after target maps are applied if the mesh has any.
     pub fn mean_area(&self) -> f64 {
         self.mean_area
     }
 
-    /// The number of each vertex in the mesh.
+    /// Returns the index in the mesh of each vertex of the problem.
     pub fn vertices(&self) -> &[u32] {
         &self.layout.vertices
     }
 
-    /// Returns the number here of each of the mesh's vertices, of which there are `count`; `u32::MAX` for a vertex that no
-    /// triangle uses.
+    /// Returns the index in the problem of each vertex of the mesh, which has `count` vertices. `u32::MAX` stands for a
+    /// vertex that no triangle uses.
     pub(crate) fn numbers(&self, count: usize) -> Vec<u32> {
         let mut numbers = vec![u32::MAX; count];
         for (new, &v) in (0..).zip(self.vertices()) {
@@ -237,19 +241,20 @@ impl Problem {
         numbers
     }
 
-    /// The center and the scale of the normalization: normalized positions are (x - center) · scale, without rounding.
+    /// Returns the center and the scale of the normalization: normalized positions are (x - center) · scale, without
+    /// rounding.
     pub fn normalization(&self) -> (DVec2, f64) {
         (self.layout.center, self.layout.scale)
     }
 
-    /// Converts the normalized positions of all vertices, fixed ones included, to the mesh's units. Returns each with
-    /// the number that its vertex has in the mesh.
+    /// Converts the normalized positions of all vertices, fixed ones included, to the unit of the mesh. Returns each
+    /// position with the index that its vertex has in the mesh.
     pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
         let point = |&now: &DVec2| (self.layout.center + now / self.layout.scale).to_array();
         self.layout.vertices.iter().copied().zip(positions.iter().map(point))
     }
 
-    /// Returns the normalized positions of points given in the mesh's order and units. Reuses the memory of `room`.
+    /// Returns the normalized positions of points given in the order and unit of the mesh. Reuses the memory of `room`.
     pub(crate) fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
         room.resize(self.layout.vertices.len(), DVec2::ZERO);
         for_each_chunk(&mut room, CHUNK, |first, positions| {
@@ -261,8 +266,9 @@ impl Problem {
         room
     }
 
-    /// Returns the triangles whose inverse mean ratio, or its square, is not finite as computed in double precision from one
-    /// of their corners: they are so flat, or so small beside the others, that metrics with a barrier cannot judge them.
+    /// Returns the triangles for which the inverse mean ratio or its square overflows, computed in double precision
+    /// from any of the three corners. Metrics with a barrier cannot judge them: they are too flat, or too small beside
+    /// other triangles.
     pub(crate) fn beyond_precision(&self, positions: &[DVec2]) -> Vec<u32> {
         let position = |v: u32| positions[v as usize];
         let is_beyond = |&[p, q, r]: &[u32; 3]| {
@@ -278,7 +284,8 @@ impl Problem {
         found.concat()
     }
 
-    /// Returns the numbers in the mesh, in ascending order, of some of the triangles. `given` are the mesh's triangles.
+    /// Returns the indices in the mesh, in ascending order, of the listed triangles. `given` are all triangles of the
+    /// mesh.
     pub(crate) fn in_mesh(&self, triangles: &[u32], given: &[[u32; 3]]) -> Vec<usize> {
         if triangles.is_empty() {
             return Vec::new();
@@ -294,8 +301,8 @@ impl Problem {
         (0..given.len()).filter(|&t| sought.contains(&sorted(given[t]))).collect()
     }
 
-    /// Converts normalized positions to the mesh's order and units. A vertex that is fixed or has not moved keeps
-    /// exactly its position in the mesh.
+    /// Converts normalized positions to the order and unit of the mesh. Fixed vertices and vertices that have not moved
+    /// keep the bits of their positions in the mesh.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
         let mut points = mesh.points.clone();
         let free = self.layout.vertices[..self.free_count()].iter();
@@ -309,11 +316,12 @@ impl Problem {
 }
 
 /// Returns the center to subtract, the power of two that brings the mean area into [0.5, 2], and the mean area after
-/// scaling by it.
+/// scaling by this power.
 fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     let (low, high) = bounds(mesh, topology);
     let center = DVec2::new(exact_center(low.x, high.x), exact_center(low.y, high.y));
-    // Uses the original points, in units of the bounding box, in which the sum of areas cannot overflow.
+    // The areas are computed from the original points, in units of the bounding box, in which their sum cannot
+    // overflow.
     let extent = (high * 0.5 - low * 0.5).max_element();
     let relative = |t: &[u32; 3]| 0.5 * orientation(&mesh.points, t) / extent / extent;
     let mean = sum(topology.triangles(), relative) / topology.triangles().len() as f64;
@@ -322,23 +330,23 @@ fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     (center, scale, (length * scale).powi(2))
 }
 
-/// Returns a number that can be subtracted without rounding from all coordinates between `low` and `high`. That is
-/// their center if no coordinate is more than twice another (Sterbenz' lemma). Otherwise it is 0: subtracting the
-/// center would cost digits of small elements near the origin, and would gain little, as coordinates are then at most
-/// twice the extent.
+/// Returns a center that can be subtracted without rounding from all coordinates between `low` and `high`. If no
+/// coordinate exceeds twice another, the result is the center of the range (Sterbenz' lemma). Otherwise the result is
+/// 0: subtracting the center of the range would cost digits of small elements near the origin. The gain would be
+/// little, as coordinates are then at most twice the extent.
 fn exact_center(low: f64, high: f64) -> f64 {
     let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
     if low.signum() == high.signum() && most <= 2.0 * least { low * 0.5 + high * 0.5 } else { 0.0 }
 }
 
-/// The sum of `of` over triangles, in an order that does not depend on the number of threads.
+/// Returns the sum of `of` over triangles, added in an order that does not depend on the number of threads.
 fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
     let sums = map_parts(triangles.chunks(4096), |_, part| part.iter().map(&of).sum::<f64>());
     sums.iter().sum()
 }
 
-/// Returns the one-rings of the free `vertices`, by new numbers: where each starts, with one past the last, and all
-/// neighbors.
+/// Returns the one-rings of the free `vertices`, by new indices, in compressed rows: the start of each row with the
+/// total length at the end, and the neighbors of all rows.
 fn rings(
     topology: &Topology<'_>,
     vertices: &[u32],
@@ -349,8 +357,9 @@ fn rings(
     let mut start = collect(vertices.len() + 1, length);
     let end = running_sum(&mut start, |start| start);
     let ring = atomics(end as usize, 0);
-    // Goes along the curve: most triangles around a vertex are also around the vertices before it, and so are cached.
-    // No two tasks write the same entry; entries are atomic only because the rows of a task are scattered.
+    // Rows are filled along the curve: most triangles around a vertex are also around the vertices before it, so they
+    // are in the cache. No two tasks write the same entry; entries are atomic only because the rows of a task are
+    // scattered.
     for_each_part(curve.chunks(CHUNK), |_, chunk| {
         for &v in chunk.iter().filter(|&&v| topology.free()[v as usize]) {
             let row = &ring[start[number[v as usize] as usize] as usize..];
@@ -362,9 +371,9 @@ fn rings(
     (start, plain(ring))
 }
 
-/// Returns all triangles by the new numbers of their vertices, `vertices` in all, sorted by their least corner. So they
-/// follow the vertices along the curve, which keeps reads for the objective cached, and their order does not depend on
-/// that of the mesh.
+/// Returns all triangles by the new indices of their `vertices` vertices, sorted by their least corner. Triangles so
+/// follow the vertices along the curve, which keeps reads for the objective in the cache, and their order does not
+/// depend on that of the mesh.
 fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
     let given = topology.triangles();
     let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
@@ -377,8 +386,8 @@ fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u
         }
     });
     let mut all = collect(given.len(), |t| [0, 1, 2].map(|i| all[3 * t + i].load(Relaxed)));
-    // Cuts the list into chunks, in which triangles with the same least corner are then sorted. No chunk ends between
-    // such triangles.
+    // The list is cut into chunks whose triangles are then sorted. No chunk ends between two triangles with equal least
+    // corners.
     let mut rest = &mut all[..];
     let runs = std::iter::from_fn(|| {
         let mut end = rest.len().min(CHUNK);
@@ -400,7 +409,7 @@ fn order(
     curve: &[u32],
 ) -> (Vec<u32>, Vec<Range<u32>>) {
     let colors = coloring.count() as usize;
-    // Fixed vertices come last.
+    // Fixed vertices have no color and come last.
     let slot = |v: u32| match coloring.colors()[v as usize] {
         UNCOLORED => colors,
         color => color as usize,
@@ -410,7 +419,7 @@ fn order(
         curve[range].iter().for_each(|&v| counts[slot(v)] += 1);
         counts
     });
-    // Within a color, the vertices of each chunk follow those of the chunk before.
+    // Within a color, the vertices of each chunk follow the vertices of the previous chunk.
     let mut vertices = vec![0; curve.len()];
     let lengths = (0..=colors).flat_map(|color| counts.iter().map(move |counts| counts[color]));
     let mut targets: Vec<Vec<&mut [u32]>> = counts.iter().map(|_| Vec::new()).collect();

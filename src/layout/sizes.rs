@@ -1,20 +1,21 @@
-//! The areas that triangles should have while they are untangled, on either engine.
+//! Target areas of triangles for untangling, on either engine.
 //!
-//! Where the mesh is sound, its own sizes are kept. Elsewhere they are interpolated: first outward from there, neighbor by
-//! neighbor, then smoothed. A boundary vertex that is not among sound triangles has the size of its boundary edges.
+//! A vertex among sound triangles keeps the size that these triangles have. A boundary vertex without sound triangles
+//! takes the size from its boundary edges. All other sizes are interpolated: first outward from known sizes, neighbor
+//! by neighbor, then by averages over neighbors.
 
 use glam::DVec2;
 
 use crate::layout::Problem;
 
-/// A triangle is sound if its inverse mean ratio is below this. Only sound triangles give sizes.
+/// Inverse mean ratio below which a triangle is sound. Only sound triangles determine sizes.
 const SOUND: f64 = 10.0;
 
-/// Number of rounds in which interpolated sizes are averaged over neighbors.
+/// Number of rounds in which each interpolated size is averaged over the neighbors of its vertex.
 const ROUNDS: usize = 20;
 
-/// Returns the target area at each vertex. That of a triangle is the mean of those at its vertices. The sum over all
-/// triangles is the area that the boundary encloses.
+/// Returns the target area at each vertex, in normalized units. The target area of a triangle is the mean over its
+/// vertices. Target areas of all triangles add up to the area that the boundary encloses.
 pub(crate) fn target_areas(problem: &Problem, positions: &[DVec2]) -> Vec<f64> {
     let triangles = problem.triangles();
     let mut size = known(problem, positions);
@@ -37,10 +38,10 @@ pub(crate) fn target_areas(problem: &Problem, positions: &[DVec2]) -> Vec<f64> {
     areas
 }
 
-/// Returns the logarithm of the area of elements at each vertex where the mesh gives one.
+/// Returns the natural logarithm of the element area at each vertex for which the mesh determines an area, else `None`.
 fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
-    /// Logarithms of areas at a vertex, each as sum and number: those of sound triangles and those estimated from fixed
-    /// edges. Also whether any triangle is unsound.
+    /// Logarithms of areas at a vertex, each as sum and count: areas of sound triangles, and areas estimated from the
+    /// edges between fixed vertices. `is_unsound` is set if any triangle at the vertex is unsound.
     #[derive(Clone, Copy, Default)]
     struct Vertex {
         sound: (f64, u32),
@@ -61,7 +62,7 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
                 vertex.sound = (vertex.sound.0 + area.ln(), vertex.sound.1 + 1);
             }
         }
-        // Edges between vertices that do not move.
+        // An edge between two fixed vertices estimates the area of an equilateral triangle with this edge.
         for [k, l] in
             [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|edge| edge.map(|v| v as usize))
         {
@@ -74,8 +75,9 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
             }
         }
     }
-    // Where vertices are at random places, some have sound triangles alone by chance, mostly large ones. Most of their
-    // neighbors have not.
+    // Where vertices are at random places, some vertices have only sound triangles by chance, mostly large ones. Most
+    // neighbors of such a vertex have unsound triangles. So a size counts only if most neighbors have sound triangles
+    // alone.
     let mut company = vec![0i32; all.len()];
     for t in problem.triangles() {
         let of = |v: u32| if all[v as usize].is_unsound { -1 } else { 1 };
@@ -96,8 +98,8 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
     all.iter().enumerate().map(of).collect()
 }
 
-/// Gives every vertex without a size the mean of its neighbors that have one, layer by layer. Returns these vertices.
-/// If no vertex has a size, none gets one.
+/// Gives every vertex without a size the mean size of its neighbors, layer by layer outward from the known sizes.
+/// Returns the vertices that received a size; none if no size is known.
 fn spread(triangles: &[[u32; 3]], size: &mut [Option<f64>]) -> Vec<u32> {
     let mut found: Vec<u32> = Vec::new();
     let is_open =
@@ -133,7 +135,7 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::topology::Topology;
 
-    /// A square of `n` times `n` cells. `inside` moves the vertices inside, given their numbers and positions.
+    /// Returns a square of `n` times `n` cells. `inside` moves the inner vertices, given their indices and positions.
     fn square(n: u32, inside: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Mesh {
         let mut mesh = Mesh::default();
         for k in 0..(n + 1) * (n + 1) {
@@ -164,7 +166,7 @@ mod tests {
         let mut mesh = square(8, |_, at| at);
         mesh.points.iter_mut().for_each(|p| *p = p.map(|x| (0.5 * x).exp()));
         let of = targets(&mesh);
-        // Cells grow by the factor e over two cells, in both directions.
+        // Cells grow by the factor e over two cells, along both axes.
         let ratio = of[6 * 9 + 6] / of[2 * 9 + 2];
         assert!((ratio / 4f64.exp() - 1.0).abs() < 0.2, "{ratio}");
     }
@@ -173,7 +175,7 @@ mod tests {
     fn sizes_inside_a_collapsed_mesh_come_from_its_boundary() {
         for inside in [[4.0, 4.0], [100.0, -3.0]] {
             let of = targets(&square(8, |_, _| inside));
-            // The two triangles that cut off a corner are sound, and larger or smaller than others.
+            // The two triangles that cut off a corner are sound, and larger or smaller than the others.
             assert!(of.iter().all(|area| (0.2..2.0).contains(area)), "{of:?}");
             assert!(of.iter().filter(|area| (0.9..1.1).contains(*area)).count() > 70, "{of:?}");
         }
@@ -183,7 +185,7 @@ mod tests {
     fn triangles_that_are_sound_by_chance_tell_no_size() {
         let random = |k: usize, share: f64| 8.0 * (share * k as f64).fract();
         let of = targets(&square(8, |k, _| [random(k, 0.618_034), random(k, 0.414_214)]));
-        // A triangle that cuts a corner is sound whatever is inside.
+        // A triangle that cuts off a corner is sound wherever the inner vertices are.
         let others = of.iter().filter(|area| !(0.8..1.4).contains(*area)).count();
         assert!(others <= 1, "{of:?}");
     }

@@ -1,9 +1,9 @@
-//! Colors a graph greedily in smallest-last order (Matula and Beck 1983).
+//! Greedy coloring of a graph in smallest-last order (Matula & Beck, J. ACM 30, 1983).
 
-/// The color of a vertex that is not free.
+/// Color of a vertex that is not free.
 pub const UNCOLORED: u32 = u32::MAX;
 
-/// The neighbors of vertices, in compressed rows.
+/// Neighbors of each vertex, in compressed rows.
 pub(crate) struct Graph<I> {
     start: Vec<u32>,
     neighbors: Vec<I>,
@@ -16,13 +16,13 @@ impl<I: Copy + Into<u32>> Graph<I> {
         Self { start, neighbors: Vec::with_capacity(6 * vertices) }
     }
 
-    /// Adds a vertex with its neighbors.
+    /// Appends a vertex with its neighbors.
     pub(crate) fn push(&mut self, neighbors: impl Iterator<Item = I>) {
         self.neighbors.extend(neighbors);
         self.start.push(self.neighbors.len() as u32);
     }
 
-    /// Removes the last vertex's neighbors.
+    /// Removes all neighbors of the last vertex.
     pub(crate) fn clear_last(&mut self) {
         self.start.pop();
         self.neighbors.truncate(self.start.last().map_or(0, |&start| start as usize));
@@ -33,8 +33,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         &self.neighbors[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
     }
 
-    /// Removes vertices, each time one of least remaining degree, until none is left. Returns the order of removal, and
-    /// empties `degrees`.
+    /// Removes vertices until none is left, each time a vertex with the fewest remaining neighbors. Returns the order
+    /// of removal, and empties `degrees`.
     pub(crate) fn smallest_last_order(&self, degrees: &mut Degrees) -> Vec<u32> {
         let Degrees { of, buckets } = degrees;
         for (v, &degree) in of.iter().enumerate().rev().filter(|(_, degree)| **degree != STAYS) {
@@ -50,7 +50,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
                 least += 1;
                 continue;
             };
-            // A vertex is in one bucket for each degree it has had. Only the entry for its present degree counts.
+            // A vertex has an entry in the bucket of each degree that it ever had. Only the entry for the present
+            // degree is valid.
             if of[v as usize] as usize != least {
                 continue;
             }
@@ -80,8 +81,8 @@ impl<I: Copy + Into<u32>> Graph<I> {
         count
     }
 
-    /// Tries to eliminate colors above the first four, which few vertices have, by recoloring one vertex at a time.
-    /// Returns the number of colors.
+    /// Tries to eliminate colors 4 and above, which few vertices have, by recoloring one vertex at a time. Returns the
+    /// number of colors.
     pub(crate) fn save_colors(&self, order: &[u32], count: u32, colors: &mut [u32]) -> u32 {
         for color in (FOUR..count).rev() {
             for &v in order {
@@ -97,22 +98,22 @@ impl<I: Copy + Into<u32>> Graph<I> {
         self.row(v).iter().map(|&u| colors[u.into() as usize])
     }
 
-    /// The least color, other than `but`, that no neighbor of a vertex has.
+    /// Returns the least color other than `but` that no neighbor of `v` has.
     #[inline]
     fn least_color(&self, v: u32, but: u32, colors: &[u32]) -> u32 {
         let taken = self.colors_around(v, colors).chain([but]);
         let taken = taken.filter(|&c| c < 64).fold(0u64, |set, c| set | 1 << c);
         let mut color = (!taken).trailing_zeros();
-        // A planar graph takes at most 6 colors. A mesh that overlaps itself may take more, but 64 only if every vertex
-        // of a part of it has at least 64 neighbors.
+        // A planar graph takes at most 6 colors. A mesh that overlaps itself may take more, but reaches 64 only if
+        // every vertex of some subgraph has at least 64 neighbors.
         while color >= 64 && self.colors_around(v, colors).chain([but]).any(|c| c == color) {
             color += 1;
         }
         color
     }
 
-    /// Gives a vertex a lower color that a single neighbor has, if that neighbor can take another color below the
-    /// vertex's own.
+    /// Gives `v` a lower color that exactly one neighbor has, if this neighbor can take another color below the present
+    /// color of `v`.
     fn lower(&self, v: u32, colors: &mut [u32]) {
         let color = colors[v as usize];
         // Bit sets of the colors of neighbors, and of the colors that several neighbors have.
@@ -124,8 +125,9 @@ impl<I: Copy + Into<u32>> Graph<I> {
         for &u in self.row(v) {
             let u = u.into();
             let wanted = colors[u as usize];
-            // Vertices between blocks have no row in the graph and keep their colors. Neighbors with many neighbors
-            // keep theirs too: each of those might try to recolor them, which takes time proportional to their number.
+            // Vertices between blocks have no row in the graph and keep their colors. Neighbors of high degree keep
+            // their colors too: each of their neighbors might try to recolor them, at a cost proportional to their
+            // degree.
             if wanted < color.min(64)
                 && shared & 1 << wanted == 0
                 && (1..=MANY).contains(&self.row(u).len())
@@ -141,16 +143,16 @@ impl<I: Copy + Into<u32>> Graph<I> {
     }
 }
 
-/// Every planar graph can be colored with this many colors, though they may be hard to find.
+/// Number of colors that suffice for every planar graph, though such a coloring may be hard to find.
 const FOUR: u32 = 4;
 
-/// A vertex with more neighbors than this is not recolored.
+/// Largest degree of a vertex that [`Graph::save_colors`] recolors.
 const MANY: usize = 64;
 
-/// The degree of a vertex that is removed already, or is not to be removed.
+/// Marker that replaces the degree of removed vertices and of vertices to be kept.
 const STAYS: u32 = u32::MAX;
 
-/// Vertices by degree: the number of their neighbors that are not removed yet.
+/// Vertices sorted by degree, the number of neighbors that are not yet removed.
 #[derive(Default)]
 pub(crate) struct Degrees {
     of: Vec<u32>,
@@ -158,7 +160,7 @@ pub(crate) struct Degrees {
 }
 
 impl Degrees {
-    /// Adds a vertex with its degree, or `None` if the vertex is not to be removed.
+    /// Appends a vertex with its degree; `None` keeps the vertex out of the removal.
     pub(crate) fn put(&mut self, degree: Option<u32>) {
         self.of.push(degree.unwrap_or(STAYS));
     }

@@ -1,48 +1,49 @@
-//! How far vertices moved in a run, and how sizes of elements changed.
+//! Comparison of two states of a mesh: displacements of vertices, and changes of element sizes.
 
 use crate::error::MeshError;
 use crate::parallel::collect;
 use crate::precision::Precision;
 use crate::topology::Topology;
 
-/// What is different between two states of a mesh, at its free vertices and at those on lines that have slid.
+/// Difference between two states of a mesh, at its free vertices and at vertices that slid along lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// How far vertices moved, divided by the mean length of their edges before.
+    /// Displacement of vertices, divided by the mean length of their edges before.
     pub moved: Spread,
-    /// The factor by which the size of elements at a vertex changed, up or down: 1 or more. The size is the square root
-    /// of the geometric mean of the areas of the triangles there.
+    /// Factor by which the element size at a vertex grew or shrank, always 1 or more. The element size is the square
+    /// root of the geometric mean of the areas of the triangles at the vertex.
     pub size: Spread,
-    /// The least altitude of a triangle before and after, in the unit of the points. It bounds the time step of
+    /// Least triangle altitude before and after, in the unit of the points. The altitude bounds the time step of
     /// explicit solvers.
     pub least_altitude: [f64; 2],
 }
 
-/// How a number is spread over vertices; all zero if there are none.
+/// Distribution of a number over vertices. Without vertices, all fields are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// The median: half of the vertices have at most this.
+    /// Median over the vertices.
     pub median: f64,
-    /// The 95th percentile: nineteen of twenty vertices have at most this.
+    /// 95th percentile over the vertices.
     pub most_of_twenty: f64,
-    /// The largest.
+    /// Largest value of a vertex.
     pub most: f64,
 }
 
 /// Sums over the triangles around a vertex.
 #[derive(Clone, Copy, Default)]
 struct Around {
-    /// The sum of the logarithms of the areas; `lengths` is the sum of the lengths of edges at the vertex.
+    /// Sum of the natural logarithms of the areas. `lengths` sums the lengths of the edges at the vertex, once per
+    /// triangle.
     logarithms: f64,
     lengths: f64,
     triangles: u32,
 }
 
 impl Change {
-    /// Compares the mesh with its vertices at `before` and at `after`, one point for each vertex, in any unit.
+    /// Compares the mesh with its vertices at `before` and at `after`, both with one point per vertex in the same unit.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `before` or `after` does not have one entry per vertex.
     pub fn between(
         topology: &Topology<'_>,
         before: &[[f64; 2]],
@@ -53,11 +54,11 @@ impl Change {
         let (was, low_before) = around(topology, before);
         let (is, low_after) = around(topology, after);
         let is_free = |v: usize| topology.free()[v];
-        // A vertex that must stay is rounded where a result is stored in single precision.
+        // If a result is stored in single precision, even vertices that must stay get rounded coordinates.
         let is_rounded = |v: usize| before[v].map(|x| Precision::Single.rounded(x)) == after[v];
         let has_slid = |v: usize| before[v] != after[v] && !is_rounded(v) && was[v].triangles > 0;
         let seen: Vec<usize> = (0..before.len()).filter(|&v| is_free(v) || has_slid(v)).collect();
-        // Stars that were forgotten are found again here, not by the first of many threads.
+        // If stars have been dropped, this line computes them again before several threads need them.
         if !seen.iter().all(|&v| is_free(v)) {
             topology.star(0);
         }
@@ -79,15 +80,15 @@ impl Change {
     }
 }
 
-/// Returns the mean length of the edges at each vertex; NaN at vertices that no triangle uses.
+/// Returns the mean length of the edges at each vertex; NaN for vertices that no triangle uses.
 pub(crate) fn mean_edges(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<f64> {
     let (around, _) = around(topology, points);
     around.iter().enumerate().map(|(v, around)| mean_edge(topology, points, v, around)).collect()
 }
 
-/// The mean length of the edges at a vertex, each counted once.
+/// Returns the mean length of the edges at a vertex, each edge counted once.
 fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Around) -> f64 {
-    // Around a free vertex every edge is of two triangles. On the boundary two edges are of one.
+    // At a free vertex, every edge belongs to two triangles. At a boundary vertex, two edges belong to one triangle.
     if topology.free()[v] {
         return around.lengths / f64::from(2 * around.triangles);
     }
@@ -100,7 +101,7 @@ fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Ar
         let [a, b] = points[end as usize];
         (x - a).hypot(y - b)
     };
-    // The vertex is among them, at no distance.
+    // `ends` contains the vertex itself, which adds a length of zero.
     ends.iter().map(length).sum::<f64>() / (ends.len() as f64 - 1.0)
 }
 
@@ -138,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_vertex_moved_by_a_third_of_an_edge() {
-        // The middle vertex of a square with side 2 moves from the center by half of 1.
+        // The inner vertex of a square with side 2 moves from the center by half of 1.
         let points = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
         let mesh = Mesh { points, triangles, fixed: vec![] };
@@ -159,7 +160,8 @@ mod tests {
 
     #[test]
     fn a_vertex_that_slid_along_the_boundary_counts_with_each_edge_once() {
-        // The middle of the lower side has three edges, of 1, 1 and 2; the two along the side are of one triangle each.
+        // The middle vertex of the lower side has three edges, of lengths 1, 1 and 2; the two along the side belong to
+        // one triangle each.
         let points = vec![[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 2.0]];
         let mesh = Mesh { points, triangles: vec![[0, 1, 3], [1, 2, 3]], fixed: vec![] };
         let topology = Topology::new(&mesh).unwrap();
@@ -171,7 +173,7 @@ mod tests {
         assert_eq!(change.moved.median, change.moved.most, "those that must stay do not count");
         // Areas of 1 become 1.5 and 0.5.
         assert!((change.size.most - 0.75f64.powf(-0.25)).abs() < 1e-15, "{change:?}");
-        // A place that was only rounded is none to which a vertex has slid.
+        // A vertex whose position was only rounded has not slid.
         let third = |x: f64| vec![[-1.0, 0.0], [x, 0.0], [1.0, 0.0], [0.0, 2.0]];
         let rounded = third(f64::from((1.0 / 3.0) as f32));
         assert_eq!(

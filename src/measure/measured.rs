@@ -1,4 +1,4 @@
-//! A mesh at given positions, whose triangles can be measured.
+//! A mesh with vertices at given positions, for the measurement of its triangles.
 
 use std::sync::OnceLock;
 
@@ -12,8 +12,8 @@ use crate::topology::Topology;
 
 const CHUNK: usize = 1 << 12;
 
-/// A mesh with its vertices at given positions, whose triangles can be measured by each [`Measure`]. All threads share
-/// the work.
+/// A mesh with vertices at given positions, whose triangles can be measured by each [`Measure`]. All threads share the
+/// work.
 ///
 /// ```
 /// use gpu_smooth::{measure::{Measure, Measured}, Mesh, Topology};
@@ -38,20 +38,20 @@ pub struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    /// Takes the triangles of `topology` with their vertices at `points`, one point for each vertex of the mesh, in any
+    /// Borrows the triangles of `topology`, with vertices at `points`: one plane point per vertex of the mesh, in any
     /// unit.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn new(points: &'a [[f64; 2]], topology: &'a Topology<'a>) -> Result<Self, MeshError> {
         Self::on(Surface::Plane, points, topology)
     }
 
-    /// Takes the triangles of `topology` with their vertices at `points`, which are coordinates on `surface`, one for
-    /// each vertex of the mesh. Lengths and angles are those on the surface at the middle of each triangle.
+    /// Borrows the triangles of `topology`, with vertices at `points`: one pair of coordinates on `surface` per vertex
+    /// of the mesh. Lengths and angles are measured on the surface, by its metric at the center of each triangle.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn on(
         surface: Surface,
         points: &'a [[f64; 2]],
@@ -64,32 +64,32 @@ impl<'a> Measured<'a> {
         Ok(Self { points, topology, surface, mean_area, size_ratios: OnceLock::new() })
     }
 
-    /// The positions of the vertices.
+    /// Returns the positions of the vertices.
     pub fn points(&self) -> &[[f64; 2]] {
         self.points
     }
 
-    /// The triangles.
+    /// Returns the topology with the measured triangles.
     pub fn topology(&self) -> &Topology<'a> {
         self.topology
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn count(&self) -> usize {
         self.topology.triangles().len()
     }
 
-    /// Computes the data of all triangles that `measures` need, before any triangle is measured. This is not done when
-    /// the data are first needed: a thread waiting for them could be given the task of another thread that waits for
-    /// them.
+    /// Computes the size ratios of all triangles if `measures` need them, before any triangle is measured. Lazy
+    /// computation inside a parallel loop could deadlock: the scheduler could give a thread that waits for the ratios a
+    /// task that also waits.
     pub(crate) fn prepare(&self, measures: &[Measure]) {
         if measures.contains(&Measure::SizeRatio) && self.size_ratios.get().is_none() {
-            // If another caller was faster, its result is the same.
+            // If another caller has set the ratios first, they have equal values.
             let _ = self.size_ratios.set(size_ratios(self.surface, self.points, self.topology));
         }
     }
 
-    /// Returns a triangle for the measures that [`Self::prepare`] was called with.
+    /// Returns a triangle with all data that the measures given to [`Self::prepare`] need.
     #[inline]
     pub(crate) fn triangle(&self, index: usize) -> Triangle {
         let corners = &self.topology.triangles()[index];
@@ -99,7 +99,7 @@ impl<'a> Measured<'a> {
         Triangle::new(points, lengths, self.mean_area, size_ratio)
     }
 
-    /// Returns the value of a measure for triangle `index`; NaN if there is no such triangle.
+    /// Returns the value of a measure for the triangle `index`, NaN if the mesh has no triangle of this index.
     pub fn value(&self, measure: Measure, index: usize) -> f64 {
         self.prepare(&[measure]);
         if index < self.count() { measure.value(&self.triangle(index)) } else { f64::NAN }

@@ -1,4 +1,4 @@
-//! Quality measures: a table with a row for each, computed for the triangles of a mesh, with statistics over them.
+//! Quality measures of triangles: a table with a row per measure, values for a mesh, and statistics over its triangles.
 
 mod altitude;
 mod change;

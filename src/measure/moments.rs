@@ -1,19 +1,19 @@
-//! Extremes, mean and standard deviation of many values.
+//! Minimum, maximum, mean and standard deviation of many values.
 
-/// The number of some values, their mean, the sum of their squared distances from it, the least and the largest.
+/// Count, mean, sum of squared deviations, minimum and maximum of a sequence of values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moments {
     pub(crate) count: usize,
     pub(crate) mean: f64,
-    /// Sum of the squared distances from the mean.
+    /// Sum of the squared deviations from the mean.
     squares: f64,
-    /// The least value, and the number of the chunk that has it first.
+    /// Minimum, with the index of the first chunk where the minimum occurs.
     pub(crate) least: (f64, usize),
-    /// The largest value, and the number of the chunk that has it first.
+    /// Maximum, with the index of the first chunk where the maximum occurs.
     pub(crate) most: (f64, usize),
 }
 
-/// Adds up in four lanes, which do not depend on each other.
+/// Folds values by `f` in four independent lanes: lane i takes the values i, i + 4, i + 8, and so on.
 #[inline]
 fn four_lanes(values: &[f64], start: f64, f: impl Fn(f64, f64) -> f64) -> [f64; 4] {
     let mut lanes = [start; 4];
@@ -36,7 +36,7 @@ impl Moments {
         most: (f64::NEG_INFINITY, 0),
     };
 
-    /// Returns the moments of the values of a chunk.
+    /// Returns the moments of the values of a chunk, [`Self::NONE`] if there are none.
     pub(crate) fn of(values: &[f64], chunk: usize) -> Self {
         if values.is_empty() {
             return Self::NONE;
@@ -58,7 +58,7 @@ impl Moments {
         }
     }
 
-    /// Returns the moments of these values together with others, which come after them (Chan, Golub & LeVeque, Am.
+    /// Returns the moments of these values joined with `other`, whose chunks come later (Chan, Golub & LeVeque, Am.
     /// Stat. 37, 1983).
     pub(crate) fn and(self, other: &Self) -> Self {
         if self.count == 0 || other.count == 0 {
@@ -83,7 +83,7 @@ impl Moments {
         }
     }
 
-    /// The standard deviation of these values, not an estimate of a larger population's.
+    /// Returns the standard deviation of the values themselves, not the estimate for a larger population.
     pub(crate) fn deviation(&self) -> f64 {
         match (self.squares / self.count as f64).sqrt() {
             deviation if deviation.is_nan() => f64::INFINITY,
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn moments_of_parts_add_up_to_those_of_the_whole() {
-        // These values are far from zero, where a difference of two sums would lose all digits.
+        // The values are far from zero, where a difference of two sums would lose all digits.
         let values: Vec<f64> = (0..1000).map(|i| 1e9 + f64::from(i * i % 37)).collect();
         let whole = Moments::of(&values, 0);
         let parts = values.chunks(130).enumerate();

@@ -1,31 +1,31 @@
-//! Finds the value of a given rank among many, in one pass that stores few of them.
+//! Quantiles of many values, in one pass that stores only a few values.
 //!
-//! A sample gives a bracket: two values between which the wanted one probably is. The pass counts the values below the
-//! bracket and stores those inside. Values are rounded to single precision, so that values which differ only by
-//! rounding are equal.
+//! A sample determines a bracket: two values that probably enclose the value of the rank. The pass counts the values
+//! below the bracket and stores the values inside. Values are rounded to single precision, so that values equal up to
+//! rounding have equal keys.
 
 /// Number of values in a sample.
 pub(crate) const SAMPLE: usize = 1 << 13;
 
-/// Returns an integer that orders like the value, rounded to single precision.
+/// Returns an integer whose order is the order of values, rounded to single precision.
 #[inline]
 pub(crate) fn key(value: f64) -> u32 {
     let bits = (value as f32).to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
-/// Returns the value of a key, the inverse of [`key`].
+/// Returns the value of a key; inverse of [`key`].
 pub(crate) fn value(key: u32) -> f64 {
     let bits = if key >> 31 == 1 { key & !(1 << 31) } else { !key };
     f64::from(f32::from_bits(bits))
 }
 
-/// Returns the rank, counted from zero, of the least value that the given share of all values does not exceed.
+/// Returns the 0-based rank of a quantile: the least value that at least `share` of all `count` values do not exceed.
 pub(crate) fn rank(share: f64, count: usize) -> usize {
     ((share * count as f64).ceil() as usize).clamp(1, count.max(1)) - 1
 }
 
-/// A bracket between two keys, and the keys counted below, at and inside it.
+/// A bracket between two keys, with the counts of keys below it and at its ends, and the keys inside.
 #[derive(Clone)]
 pub(crate) struct Bracket {
     low: u32,
@@ -33,13 +33,13 @@ pub(crate) struct Bracket {
     below: usize,
     at_low: usize,
     at_high: usize,
-    /// The keys inside, without those equal to `low` or `high`.
+    /// Keys strictly between `low` and `high`, in any order.
     inside: Vec<u32>,
 }
 
 impl Bracket {
-    /// Makes the bracket for the value that the given share of all does not exceed, from the sorted keys of a sample.
-    /// It reaches six standard deviations to either side, and so misses the value once in a billion times.
+    /// Makes the bracket for the quantile `share` of all values from the sorted keys of a sample. The bracket extends
+    /// six standard deviations to either side, and so misses the quantile about once in a billion times.
     pub(crate) fn new(sample: &[u32], share: f64) -> Self {
         let last = sample.len().saturating_sub(1);
         let middle = share * sample.len() as f64;
@@ -53,7 +53,7 @@ impl Bracket {
         let Self { low, high, .. } = *self;
         self.below += keys.iter().map(|&key| u32::from(key < low)).sum::<u32>() as usize;
         for &key in keys {
-            // Most keys are outside, so they take a single comparison.
+            // Most keys are outside the bracket, and one comparison rules them out.
             if key.wrapping_sub(low) <= high - low {
                 match key {
                     key if key == low => self.at_low += 1,
@@ -64,7 +64,7 @@ impl Bracket {
         }
     }
 
-    /// Adds the counts and keys of another bracket with the same bounds.
+    /// Adds the counts and keys of another bracket with equal bounds.
     pub(crate) fn add(&mut self, other: &Self) {
         self.below += other.below;
         self.at_low += other.at_low;
@@ -72,7 +72,7 @@ impl Bracket {
         self.inside.extend_from_slice(&other.inside);
     }
 
-    /// Returns the key of a rank, or `None` if it is outside the bracket.
+    /// Returns the key of a rank, `None` if the rank is outside the bracket.
     pub(crate) fn find(&mut self, rank: usize) -> Option<u32> {
         let rank = rank.checked_sub(self.below)?;
         let Some(rank) = rank.checked_sub(self.at_low) else { return Some(self.low) };
@@ -118,7 +118,7 @@ mod tests {
             assert!(sum.inside.len() < keys.len() / 2);
             let rank = rank(share, keys.len());
             assert_eq!(sum.find(rank), Some(sorted[rank]), "{share}");
-            // Ranks for which the sample gave a wrong bracket.
+            // For the first and the last rank, the sample gives a wrong bracket.
             assert!([0, keys.len() - 1].iter().any(|&rank| sum.find(rank).is_none()));
         }
     }

@@ -1,4 +1,4 @@
-//! Finds triangles by the values of a measure: how many there are, and the worst.
+//! Counts triangles by the values of a measure, and selects the worst triangles.
 
 use std::cmp::Ordering;
 
@@ -9,9 +9,9 @@ use crate::parallel::map_ranges;
 const CHUNK: usize = 1 << 12;
 
 impl Measured<'_> {
-    /// Counts the triangles with their value in each of the intervals between `edges`, which ascend. An interval
-    /// includes its lower edge; only the last one includes its upper edge. Values outside all intervals are not
-    /// counted.
+    /// Returns the number of triangles with a value in each interval between consecutive `edges`, which must ascend. An
+    /// interval includes its lower edge; only the last interval includes its upper edge. Values outside all intervals
+    /// are not counted.
     pub fn histogram(&self, measure: Measure, edges: &[f64]) -> Vec<usize> {
         let Some(bins) = edges.len().checked_sub(1) else { return Vec::new() };
         self.prepare(&[measure]);
@@ -32,8 +32,8 @@ impl Measured<'_> {
         sum
     }
 
-    /// Returns the `most` worst triangles by a measure with their values, the worst first. Of equally bad triangles,
-    /// those first in the mesh come first.
+    /// Returns the `most` worst triangles by a measure as pairs of index and value, worst first. Equally bad triangles
+    /// are in ascending order of indices.
     pub fn worst(&self, measure: Measure, most: usize) -> Vec<(usize, f64)> {
         self.prepare(&[measure]);
         let order = |a: &(usize, f64), b: &(usize, f64)| match measure.is_worse(a.1, b.1) {
@@ -51,8 +51,8 @@ impl Measured<'_> {
         let parts = map_ranges(self.count(), CHUNK, |range| {
             keep(range.map(|t| (t, measure.value(&self.triangle(t)))).collect())
         });
-        // Combined part by part, so that at most twice the wanted number of triangles, and one part, are held in
-        // memory.
+        // Parts are joined one by one, so that the list never holds more than twice the wanted number of triangles and
+        // one part.
         let mut worst = Vec::new();
         for part in parts {
             worst.extend(part);
@@ -65,7 +65,7 @@ impl Measured<'_> {
         worst
     }
 
-    /// Counts the triangles with a value for which `test` holds, and returns the first of them too.
+    /// Returns the number of triangles whose value satisfies `test`, and the index of the first such triangle.
     pub fn count_where(
         &self,
         measure: Measure,

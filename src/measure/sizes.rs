@@ -5,7 +5,7 @@ use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// Returns the areas of triangles on a surface, doubled and without their signs.
+/// Returns the areas of triangles on a surface, doubled and without sign.
 pub(crate) fn doubled_areas(
     surface: Surface,
     points: &[[f64; 2]],
@@ -18,8 +18,8 @@ pub(crate) fn doubled_areas(
     })
 }
 
-/// Returns for each triangle the largest ratio of its area to that of a triangle across one of its edges, or the
-/// inverse ratio if that is larger. 1 if it has no neighbor, infinite if it or a neighbor is flat.
+/// Returns for each triangle the largest ratio of areas between the triangle and a neighbor across an edge, larger over
+/// smaller. 1 if the triangle has no neighbor, infinite if the triangle or a neighbor is flat.
 pub(crate) fn size_ratios(
     surface: Surface,
     points: &[[f64; 2]],
@@ -27,7 +27,7 @@ pub(crate) fn size_ratios(
 ) -> Vec<f64> {
     let areas = doubled_areas(surface, points, topology);
     let triangles = topology.triangles();
-    // Finds dropped stars again here, before many threads need them.
+    // If stars have been dropped, this line computes them again before several threads need them.
     topology.star(0);
     collect(triangles.len(), |t| {
         let mut most = 1.0;
@@ -36,7 +36,7 @@ pub(crate) fn size_ratios(
             for_each_across(topology, t, edge, |other| {
                 let (own, other) = (areas[t], areas[other]);
                 let ratio = own.max(other) / own.min(other);
-                // 0 / 0 and ratios of infinite areas are NaN.
+                // The ratio is NaN if both areas are zero or both are infinite.
                 most = if ratio.is_nan() { f64::INFINITY } else { ratio.max(most) };
             });
         }
@@ -44,10 +44,10 @@ pub(crate) fn size_ratios(
     })
 }
 
-/// Calls `visit` with the triangle across an edge of triangle `t`, which starts and ends at the given vertices.
+/// Calls `visit` with the triangle across the edge from `start` to `end` of triangle `t`; not at all on the boundary.
 ///
-/// It searches around the vertex that has fewer triangles. For all edges of a mesh this takes linear time, however many
-/// triangles some vertices have.
+/// Searches the star of the vertex that has fewer triangles. For all edges of a mesh this takes linear time, however
+/// many triangles some vertices have.
 #[inline]
 fn for_each_across(
     topology: &Topology<'_>,
@@ -59,8 +59,8 @@ fn for_each_across(
     let from_start = at_start.len() <= at_end.len();
     let (vertex, star) = if from_start { (start, at_start) } else { (end, at_end) };
     if topology.free()[vertex as usize] {
-        // The star is counter-clockwise around the vertex: the triangle before this one is across the edge that starts
-        // there.
+        // The star is counter-clockwise around the vertex: across an edge that starts at the vertex is the previous
+        // triangle, across an edge that ends there the next one.
         if let Some(at) = star.iter().position(|&other| other as usize == t) {
             let step = if from_start { star.len() - 1 } else { 1 };
             visit(star[(at + step) % star.len()] as usize);

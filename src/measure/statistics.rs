@@ -1,4 +1,4 @@
-//! Statistics of measures over triangles.
+//! Statistics of measures over the triangles of a mesh.
 
 use std::ops::Range;
 
@@ -9,43 +9,43 @@ use crate::measure::table::{Better, Measure};
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_parts;
 
-/// The shares of the triangles for which [`Statistics::quantiles`] are given.
+/// Shares of the triangles, from 0 to 1, for which [`Statistics::quantiles`] are given.
 pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// Number of triangles that are measured at once. Their values fit a processor's cache.
 const CHUNK: usize = 1024;
 
-/// Number of chunks in a part, which one thread measures.
+/// Chunks per part; a thread measures one part at a time.
 const PART: usize = 64;
 
-/// Statistics of a measure over triangles.
+/// Statistics of a measure over the triangles of a mesh or of a region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
     /// The measure.
     pub measure: Measure,
-    /// Number of triangles. If it is 0, the other fields have no meaning.
+    /// Number of triangles. Without triangles (0), all other fields are meaningless.
     pub count: usize,
-    /// The least value.
+    /// Least value.
     pub min: f64,
-    /// The mean; infinite if any value is.
+    /// Mean; infinite if any value is infinite.
     pub mean: f64,
-    /// The largest value.
+    /// Largest value.
     pub max: f64,
-    /// The standard deviation of the values (divided by their number); infinite if any value is.
+    /// Standard deviation of the values themselves (divisor n); infinite if any value is infinite.
     pub deviation: f64,
-    /// For each share of [`QUANTILES`], the least value that this share of the triangles does not exceed. It is the
-    /// value of a triangle, not interpolated, with the seven digits of single precision.
+    /// For each share of [`QUANTILES`], the least value that this share of the triangles does not exceed. The quantile
+    /// is the value of a triangle, not interpolated, rounded to single precision.
     pub quantiles: [f64; 3],
-    /// Index of the worst triangle, the first if there are several.
+    /// Index of the worst triangle, the first if several are equally bad.
     pub worst: usize,
 }
 
-/// The triangles that are measured.
+/// The triangles over which statistics are taken.
 #[derive(Clone, Copy)]
 enum Selection<'s> {
-    /// All triangles, of which there are this many.
+    /// All triangles of the mesh; the field is their number.
     All(usize),
-    /// The triangles with these indices.
+    /// Triangles with the listed indices.
     Of(&'s [u32]),
 }
 
@@ -66,7 +66,7 @@ impl Selection<'_> {
     }
 }
 
-/// The results for one measure.
+/// Partial result for one measure.
 #[derive(Clone)]
 struct Tally {
     moments: Moments,
@@ -74,18 +74,18 @@ struct Tally {
 }
 
 impl Measured<'_> {
-    /// Computes statistics of some measures over all triangles, in the order of `measures`.
+    /// Computes statistics of several measures over all triangles, in the order of `measures`.
     ///
-    /// No list of values is stored: the memory beside the mesh is 8 bytes per triangle for `size-ratio` and some
+    /// Values are not stored: beside the mesh, the computation needs 8 bytes per triangle for `size-ratio`, and some
     /// megabytes.
     pub fn statistics(&self, measures: &[Measure]) -> Vec<Statistics> {
         self.prepare(measures);
         self.statistics_of(measures, Selection::All(self.count()))
     }
 
-    /// Computes statistics of some measures over the triangles of each region: a list for each region below `count`,
-    /// each in the order of `measures`. `regions` has the region of each triangle. Triangles of other regions, and
-    /// triangles beyond the end of `regions`, are left out.
+    /// Computes statistics of several measures over the triangles of each region. `regions` has the region of each
+    /// triangle, 0-based. Returns a list for each region below `count`, each in the order of `measures`. Triangles of
+    /// other regions, and triangles beyond the end of `regions`, are left out.
     pub fn statistics_by_region(
         &self,
         measures: &[Measure],
@@ -93,7 +93,7 @@ impl Measured<'_> {
         count: usize,
     ) -> Vec<Vec<Statistics>> {
         self.prepare(measures);
-        // The last group is for the triangles that are left out.
+        // The last group collects the triangles that are left out.
         let region =
             |t: usize| regions.get(t).map_or(count, |&region| (region as usize).min(count));
         let groups = Groups::new(self.count(), count + 1, |t| [region(t) as u32]);
@@ -101,7 +101,7 @@ impl Measured<'_> {
         (0..count).map(of_one).collect()
     }
 
-    /// Computes statistics of some measures over the selected triangles, in the order of `measures`.
+    /// Computes statistics of several measures over the selected triangles, in the order of `measures`.
     fn statistics_of(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Statistics> {
         let new = self.sampled(measures, selection);
         let tallies = self.tallies(measures, selection, &new);
@@ -109,11 +109,11 @@ impl Measured<'_> {
         measures.iter().zip(tallies).map(one).collect()
     }
 
-    /// Makes empty tallies, with brackets from a sample.
+    /// Returns an empty tally per measure, with brackets determined from a sample of the triangles.
     fn sampled(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Tally> {
         let count = selection.len();
-        // Samples one random triangle from each of many equal ranges. Regular samples might coincide with the order of
-        // a regular mesh.
+        // The sample has one random triangle from each of many equal ranges. Equidistant samples might coincide with
+        // the order of a regular mesh.
         let taken = count.min(SAMPLE);
         let place = |i: usize| {
             let (start, end) = (i * count / taken, (i + 1) * count / taken);
@@ -134,8 +134,8 @@ impl Measured<'_> {
         samples.into_iter().map(tally).collect()
     }
 
-    /// Measures all selected triangles in one pass. Parts do not depend on the number of threads, and are combined in
-    /// order.
+    /// Measures all selected triangles in one pass. Parts have a fixed size and are joined in order, so results are
+    /// independent of the thread count.
     fn tallies(&self, measures: &[Measure], selection: Selection<'_>, new: &[Tally]) -> Vec<Tally> {
         let size = PART * CHUNK;
         let parts = (0..selection.len().div_ceil(size)).map(|part| part * PART..(part + 1) * PART);
@@ -164,7 +164,7 @@ impl Measured<'_> {
         sums
     }
 
-    /// Appends the values of a chunk of the selected triangles to a list for each measure.
+    /// Replaces the values of each measure by those of a chunk of the selected triangles.
     fn measure(
         &self,
         measures: &[Measure],
@@ -210,7 +210,8 @@ impl Measured<'_> {
         }
     }
 
-    /// Returns the values of some ranks from a list of all values, for a sample that gave a wrong bracket.
+    /// Returns the values at the given ranks by selection from a list of all values. Needed only if the sample gave a
+    /// wrong bracket.
     #[cold]
     fn ranked(&self, measure: Measure, selection: Selection<'_>, ranks: [usize; 3]) -> [f64; 3] {
         let value = |i| measure.value(&self.triangle(selection.at(i)));
@@ -222,7 +223,7 @@ impl Measured<'_> {
     }
 }
 
-/// The triangles of a chunk, as indices in the selection.
+/// Returns the triangles of a chunk, as indices in the selection.
 fn range(chunk: usize, selection: Selection<'_>) -> Range<usize> {
     let end = selection.len();
     (chunk * CHUNK).min(end)..((chunk + 1) * CHUNK).min(end)
@@ -234,7 +235,7 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::topology::Topology;
 
-    /// If a sample gave a wrong bracket, a list of all values is used instead.
+    /// If a sample gives a wrong bracket, quantiles come from a list of all values.
     #[test]
     fn a_misleading_sample_does_not_change_quantiles() {
         let points = (0..31 * 31).map(|i| {

@@ -1,10 +1,10 @@
-//! The table of quality measures. A measure is one row of it; the command line, the documentation and the tests loop
-//! over [`Measure::ALL`].
+//! The table of quality measures, one row per measure. The command line, the documentation and the tests loop over
+//! [`Measure::ALL`].
 
 use crate::measure::triangle::Triangle;
 use crate::metric::Metric;
 
-/// Whether large or small values of a measure are better.
+/// Direction of a measure: whether large or small values are better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
     /// Large values are better: the worst triangle has the least value.
@@ -13,45 +13,45 @@ pub enum Better {
     Lower,
 }
 
-/// The description of a measure.
+/// Description of a measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Definition {
-    /// The name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// The formula, as text. L are edge lengths, S is the area, r the inradius and R the circumradius.
+    /// Formula as text. L are edge lengths, S is the area, r the inradius and R the circumradius.
     pub formula: &'static str,
-    /// The unit written after a value: ° for angles, empty for ratios.
+    /// Unit written after a value: ° for angles, empty for ratios.
     pub unit: &'static str,
-    /// The least and the largest value that a triangle can have, including inverted triangles.
+    /// Least and largest value of a triangle, inverted triangles included.
     pub range: [f64; 2],
-    /// The value of the best triangle.
+    /// Value of the best triangle.
     pub ideal: f64,
     /// Whether large or small values are better.
     pub better: Better,
-    /// The publication that defines the measure.
+    /// Publication that defines the measure.
     pub source: &'static str,
 }
 
 const VERDICT: &str = "Stimpson, Ernst, Knupp, Pébay & Thompson, The Verdict Geometric Quality Library, SAND2007-1751 (2007)";
 
-/// Generates the enum, the definitions and the choice of the formula from one row per measure.
+/// Generates the enum, its definitions and the dispatch to the formulas from one row per measure.
 macro_rules! measures {
     ($($(#[$doc:meta])* $variant:ident = $value:expr, $definition:expr;)*) => {
         /// A quality measure of a triangle. The ideal triangle is equilateral.
         ///
         /// Inverted and flat triangles have the values that the Verdict library gives them. Ratios and angles know no
-        /// orientation, so that an inverted triangle counts as its mirror image; `scaled-jacobian` becomes negative,
+        /// orientation, so an inverted triangle counts as its mirror image; `scaled-jacobian` becomes negative,
         /// `condition` infinite and `shape` 0. A measure that grows without bound is infinite for a flat triangle.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Measure {
             $($(#[$doc])* $variant,)*
-            /// One of the metrics that smoothing minimizes; the measure is q. Infinite for an inverted or flat
-            /// triangle if the metric has a barrier.
+            /// A metric that smoothing minimizes; the measure is its value q. Infinite for an inverted or flat triangle
+            /// if the metric has a barrier.
             Metric(Metric),
         }
 
         impl Measure {
-            /// The measures that are not metrics.
+            /// All measures except metrics, in table order.
             const OWN: &'static [Measure] = &[$(Measure::$variant,)*];
 
             /// Returns the description of the measure.
@@ -62,7 +62,7 @@ macro_rules! measures {
                 }
             }
 
-            /// Returns the value for a triangle.
+            /// Returns the value of the measure for a triangle.
             #[inline]
             pub(crate) fn value(self, triangle: &Triangle) -> f64 {
                 match self {
@@ -125,8 +125,8 @@ measures! {
         better: Better::Lower,
         source: VERDICT,
     };
-    /// Twice the signed area divided by the largest product of two edges, scaled to 1 for the equilateral triangle: the
-    /// least sine of an angle, divided by that of 60°.
+    /// Twice the signed area divided by the largest product of two edges, scaled to 1 for the equilateral triangle.
+    /// Equal to the least sine of an angle divided by sin 60°.
     ScaledJacobian = Triangle::scaled_jacobian, Definition {
         name: "scaled-jacobian",
         formula: "(2/√3) 2 S / max(L1 L2, L2 L3, L3 L1)",
@@ -156,7 +156,7 @@ measures! {
         better: Better::Higher,
         source: VERDICT,
     };
-    /// How far the angles are from 60°: the equiangle skewness of CFD.
+    /// Largest deviation of an angle from 60°, scaled to [0, 1]: the equiangle skewness of CFD.
     Skewness = Triangle::skewness, Definition {
         name: "skewness",
         formula: "max((θmax - 60°) / 120°, (60° - θmin) / 60°)",
@@ -166,8 +166,8 @@ measures! {
         better: Better::Lower,
         source: "ANSYS Fluent User's Guide, Mesh Quality: equiangle skewness; Verdict as of 2019, equiangle_skew",
     };
-    /// How much the area changes to a neighbor: the ratio of the larger to the smaller area, for the worst of the
-    /// triangles across its edges. 1 for a triangle without neighbors.
+    /// Jump of the area to a neighbor: the largest ratio of larger to smaller area among the triangles across the three
+    /// edges. 1 for a triangle without neighbors.
     SizeRatio = |t| t.size_ratio, Definition {
         name: "size-ratio",
         formula: "max over the neighbors N across an edge of max(S / S_N, S_N / S)",
@@ -185,7 +185,7 @@ const fn of_metric(metric: Metric) -> Definition {
         name: row.name,
         formula: row.formula,
         unit: "",
-        // Metrics that depend on size are ideal at the mean size, and may be below that for smaller triangles.
+        // Metrics that depend on size are ideal at the mean size, and may be below the ideal for smaller triangles.
         range: [if row.scale_invariant { row.ideal } else { 0.0 }, f64::INFINITY],
         ideal: row.ideal,
         better: Better::Lower,
@@ -194,7 +194,7 @@ const fn of_metric(metric: Metric) -> Definition {
 }
 
 impl Measure {
-    /// Every measure: first those that are not metrics, then the metrics that smoothing minimizes.
+    /// Every measure: first the measures that are not metrics, then the metrics that smoothing minimizes.
     pub const ALL: &'static [Measure] = &{
         let mut all = [Measure::MinAngle; Self::OWN.len() + Metric::ALL.len()];
         let mut i = 0;
@@ -208,12 +208,12 @@ impl Measure {
         all
     };
 
-    /// The name on the command line.
+    /// Returns the name on the command line.
     pub const fn name(self) -> &'static str {
         self.definition().name
     }
 
-    /// Whether the value `a` is worse than `b`.
+    /// Returns whether the value `a` is worse than `b`.
     pub const fn is_worse(self, a: f64, b: f64) -> bool {
         match self.definition().better {
             Better::Higher => a < b,
@@ -230,7 +230,7 @@ impl std::fmt::Display for Measure {
 
 impl std::str::FromStr for Measure {
     type Err = UnknownMeasure;
-    /// Names may be written with underscores, as in Verdict and VTK.
+    /// Parses a name of [`Measure::ALL`]. Underscores may replace hyphens, as in the names of Verdict and VTK.
     fn from_str(text: &str) -> Result<Self, UnknownMeasure> {
         let name = text.trim().to_ascii_lowercase().replace('_', "-");
         let found = Measure::ALL.iter().find(|measure| measure.name() == name);
@@ -238,12 +238,12 @@ impl std::str::FromStr for Measure {
     }
 }
 
-/// The error for a name that no measure has.
+/// The text does not name a measure.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no measure is called '{0}'; there are {names}", names = names())]
 pub struct UnknownMeasure(pub String);
 
-/// Lists the names of all measures, for the error message.
+/// Returns the names of all measures, separated by commas, for the error message.
 fn names() -> String {
     Measure::ALL.iter().map(|measure| measure.name()).collect::<Vec<_>>().join(", ")
 }
@@ -269,7 +269,7 @@ mod tests {
         for measure in Measure::ALL {
             let Definition { range: [least, most], ideal, better, .. } = measure.definition();
             assert!(least < most);
-            // The ideal of a metric of sizes is that of a triangle of mean size, and a smaller triangle may be below.
+            // A metric that sees sizes is ideal at the mean size, and may be below its ideal for a smaller triangle.
             let may_be_below = |metric: &Metric| !metric.properties().scale_invariant;
             if matches!(measure, Measure::Metric(metric) if may_be_below(metric)) {
                 assert!((least..most).contains(&ideal), "{measure}");

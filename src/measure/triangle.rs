@@ -1,4 +1,4 @@
-//! A triangle as measures see it.
+//! A triangle in the form from which quality measures are computed.
 
 use std::cell::OnceCell;
 
@@ -8,25 +8,25 @@ use crate::topology::predicates::orientation;
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 /// The quantities of a triangle from which measures are computed. Lengths are divided by a power of two near the size
-/// of the triangle, so that no product of them overflows or vanishes. All measures except `size_ratio` and some metrics
-/// do not depend on the size.
+/// of the triangle, so that no product of lengths overflows or vanishes. Only `size_ratio` and some metrics depend on
+/// the size.
 pub(crate) struct Triangle {
-    /// The edge vectors: from the first corner to the second, from the first to the third, and from the second to the
-    /// third.
+    /// Edge vectors between the corners: 0 to 1, 0 to 2, and 1 to 2.
     edges: [[f64; 2]; 3],
     lengths: [f64; 3],
-    /// Twice the signed area. Its sign is exact.
+    /// Twice the signed area, with an exact sign.
     doubled_area: f64,
-    /// The mean area of the mesh, and the inverse of the unit of lengths.
+    /// Mean area of the mesh. `per_unit` is the scale factor that was applied to lengths.
     mean_area: f64,
     per_unit: f64,
-    /// The smallest and the largest angle, computed when first needed, as they take longer than all else.
+    /// Smallest and largest angle in degrees. Computed on first use, as angles take longer than all other quantities.
     angles: OnceCell<[f64; 2]>,
-    /// The value of the measure `size-ratio`, which depends on the neighbors.
+    /// Value of the measure `size-ratio`, which depends on neighbors.
     pub(crate) size_ratio: f64,
 }
 
-/// The power of two at or below a positive number, as far as its inverse is finite.
+/// Returns the largest power of two that is at most `x`, but no less than the smallest normal number, whose inverse is
+/// finite.
 #[inline]
 fn power_of_two(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
@@ -48,7 +48,7 @@ fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[0] + u[1] * v[1]
 }
 
-/// The length of an edge, computed so that squares of short edges do not vanish.
+/// Returns the length of an edge, also where squares of its components vanish.
 #[inline]
 fn length(edge: [f64; 2]) -> f64 {
     match dot(edge, edge).sqrt() {
@@ -58,7 +58,8 @@ fn length(edge: [f64; 2]) -> f64 {
 }
 
 impl Triangle {
-    /// A triangle that has shrunk to a point. Also represents a triangle with a coordinate that is not finite.
+    /// Returns a triangle that has shrunk to a point. Triangles with infinite or NaN coordinates are measured like a
+    /// point.
     fn point(size_ratio: f64) -> Self {
         Self {
             edges: [[0.0; 2]; 3],
@@ -71,8 +72,9 @@ impl Triangle {
         }
     }
 
-    /// Makes the triangle with its corners at `points`, counter-clockwise unless it is inverted. `lengths` are those of
-    /// a unit of each coordinate. `mean_area` is that of the mesh, and `size_ratio` the measure of that name.
+    /// Makes the triangle with its corners at `points`, counter-clockwise unless inverted. `lengths` are the lengths on
+    /// the surface of a unit of each coordinate. `mean_area` is the mean area of the mesh, `size_ratio` the value of
+    /// the measure.
     #[inline]
     pub(crate) fn new(
         mut points: [[f64; 2]; 3],
@@ -83,7 +85,7 @@ impl Triangle {
         if !points.as_flattened().iter().all(|x| x.is_finite()) {
             return Self::point(size_ratio);
         }
-        // Coordinates are scaled before their differences or their products can overflow or vanish.
+        // Coordinates are scaled before their differences or products can overflow or vanish.
         let far = largest(points.as_flattened());
         let mut per_unit = 1.0;
         if !(1e-100..1e100).contains(&far) {
@@ -102,7 +104,7 @@ impl Triangle {
         Self {
             edges,
             lengths: edges.map(length),
-            // Factors above zero keep the sign.
+            // Both factors are positive and keep the sign.
             doubled_area: orientation(&points, &[0, 1, 2])
                 * (lengths[0] * shrink)
                 * (lengths[1] * shrink),
@@ -113,15 +115,15 @@ impl Triangle {
         }
     }
 
-    /// The smallest and the largest angle, in degrees; those of the mirror image if the triangle is inverted.
+    /// Returns the smallest and the largest angle in degrees; for an inverted triangle, the angles of its mirror image.
     #[inline]
     fn angles(&self) -> [f64; 2] {
         *self.angles.get_or_init(|| {
             if self.lengths.contains(&0.0) {
                 return [0.0, 180.0];
             }
-            // The cotangent of each angle is a dot product divided by the same doubled area. The largest one belongs to
-            // the smallest angle.
+            // The cotangent of each angle is a dot product over the doubled area. The largest cotangent belongs to the
+            // smallest angle.
             let [a, b, c] = self.edges;
             let [u, v, w] = [dot(a, b), -dot(a, c), dot(b, c)];
             let area = self.doubled_area.abs();
@@ -158,7 +160,7 @@ impl Triangle {
     }
 
     pub(crate) fn aspect_ratio(&self) -> f64 {
-        // It is at least 1, except for rounding.
+        // The exact ratio is at least 1; a smaller value is due to rounding.
         unbounded(self.longest() * self.perimeter() / (2.0 * SQRT_3 * self.doubled_area.abs()))
             .max(1.0)
     }
@@ -193,7 +195,7 @@ impl Triangle {
         ((most - 60.0) / 120.0).max((60.0 - least) / 60.0).clamp(0.0, 1.0)
     }
 
-    /// The value q of a metric.
+    /// Returns the value q of a metric, infinite if the metric has a barrier and the triangle is inverted or flat.
     pub(crate) fn metric(&self, metric: Metric) -> f64 {
         let is_positive = self.doubled_area > 0.0;
         if metric.properties().barrier && !is_positive {
@@ -203,8 +205,8 @@ impl Triangle {
         let mean_area = self.mean_area * self.per_unit * self.per_unit;
         let mut corner = Corner { a, b, mean_area };
         if is_positive != (corner.doubled_area() > 0.0) {
-            // Rounding has changed the sign of the area. With axes along and across the first edge, that sign is the
-            // sign of a single coordinate, which is set to the exact one.
+            // Rounding has changed the sign of the area. With axes along and across the first edge, a single coordinate
+            // determines the sign, and is set from the exact area.
             let length = self.lengths[0];
             corner.a = [length, 0.0];
             corner.b = [dot(a, b) / length, self.doubled_area / length];
@@ -217,7 +219,7 @@ impl Triangle {
     }
 }
 
-/// A ratio whose denominator may be zero. It is then infinite, even if the numerator is zero too.
+/// Returns `ratio`, or infinity where the ratio is NaN because numerator and denominator are both zero.
 fn unbounded(ratio: f64) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }

@@ -1,15 +1,15 @@
-//! Finds duplicate and unused vertices.
+//! Search for duplicate and unused vertices.
 
 use crate::measure::measured::Measured;
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_ranges;
 
 impl Measured<'_> {
-    /// Returns the vertices at exactly the position of an earlier vertex, ascending. Such pairs may be intended, for
-    /// example along a weir or a crack.
+    /// Returns the vertices whose position exactly equals that of an earlier vertex, ascending. Duplicates may be
+    /// intended, for example along a weir or a crack.
     pub fn duplicate_vertices(&self) -> Vec<u32> {
         let points = self.points();
-        // Adding zero makes the two signs of zero equal.
+        // Adding zero turns -0 into 0, so that equal positions have equal bits.
         let bits = |v: u32| points[v as usize].map(|x| (x + 0.0).to_bits());
         let buckets = points.len() / 4 + 1;
         let bucket = |v: usize| {
@@ -21,7 +21,7 @@ impl Measured<'_> {
         let mut found = map_ranges(buckets, 1 << 12, |range| {
             let mut found = Vec::new();
             for bucket in range {
-                // Ascending within equal positions, so that the first vertex is not listed.
+                // Vertices ascend among equal positions, so the first vertex of each position is not listed.
                 let mut members: Vec<([u64; 2], u32)> =
                     groups.of(bucket).iter().map(|&v| (bits(v), v)).collect();
                 members.sort_unstable();
@@ -38,7 +38,7 @@ impl Measured<'_> {
     /// Returns the vertices that no triangle uses, ascending.
     pub fn unused_vertices(&self) -> Vec<u32> {
         let topology = self.topology();
-        // Finds dropped stars again here, before many threads need them.
+        // If stars have been dropped, this line computes them again before several threads need them.
         topology.star(0);
         let unused = |v: &u32| topology.star(*v).is_empty();
         map_ranges(self.points().len(), 1 << 14, |range| {

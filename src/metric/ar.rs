@@ -21,14 +21,14 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("ar.wgsl"),
 };
 
-/// q² - 1 for q = (excess + area) / area. The numerator is √3/6 times the sum of the squared edge lengths.
+/// Returns q² - 1 for q = (excess + area) / area. The numerator is √3/6 times the sum of the squared edge lengths.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     let q = (t.excess + t.area) / t.area;
     (q - 1.0) * (q + 1.0)
 }
 
-/// Value and derivatives of [`value`] by the shape m = excess / area.
+/// Returns [`value`] and its derivatives by the shape m = excess / area.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let inverse_area = t.area.constant(1.0) / t.area;

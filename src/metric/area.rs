@@ -21,14 +21,14 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("area.wgsl"),
 };
 
-/// q² for q = |area / mean - 1|.
+/// Returns q² for q = |area / mean - 1|.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     let q = (t.area - t.mean) * (1.0 / t.mean);
     q * q
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let q = (t.area - t.mean) * (1.0 / t.mean);

@@ -1,10 +1,10 @@
-//! The arguments of metrics: the edges of a triangle from one vertex, and its invariants.
+//! The arguments of metrics: the edges of a triangle from one vertex, and the invariants of the triangle.
 
 use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::EdgeSlopes;
 
-/// A triangle seen from one vertex: the edge vectors to the other two, in counter-clockwise order, and the mean area
-/// of the mesh. The argument of a [`Metric`](crate::Metric).
+/// A triangle seen from one vertex: the edge vectors to the other two vertices, in counter-clockwise order, and the
+/// mean area of the mesh. The argument of a [`Metric`](crate::Metric).
 #[derive(Clone, Copy, Debug)]
 pub struct Corner<T> {
     /// Edge vector to the next vertex, counter-clockwise.
@@ -15,11 +15,11 @@ pub struct Corner<T> {
     pub mean_area: f64,
 }
 
-/// 1/√3: the target triangle W is equilateral, W⁻¹ = [[1, -1/√3], [0, 2/√3]].
+/// 1/√3. The target triangle W is equilateral, with W⁻¹ = [[1, -1/√3], [0, 2/√3]].
 const W: f64 = 0.577_350_269_189_625_8;
 
 impl<T: Real> Corner<T> {
-    /// Squared lengths of the edges a, b and b - a.
+    /// Returns the squared lengths of the edges a, b and b - a.
     #[inline(always)]
     pub(crate) fn squared_lengths(&self) -> [T; 3] {
         let ([ax, ay], [bx, by]) = (self.a, self.b);
@@ -27,28 +27,28 @@ impl<T: Real> Corner<T> {
         [ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy]
     }
 
-    /// Sum of the squared edge lengths.
+    /// Returns the sum of the squared edge lengths.
     #[inline(always)]
     pub(crate) fn squared_length_sum(&self) -> T {
         let [a, b, c] = self.squared_lengths();
         a + b + c
     }
 
-    /// Twice the signed area.
+    /// Returns twice the signed area.
     #[inline(always)]
     pub fn doubled_area(&self) -> T {
         self.a[0] * self.b[1] - self.a[1] * self.b[0]
     }
 
-    /// Returns T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3]. The sum of their squares is |T|² - 2 det T,
-    /// without the cancellation of that difference.
+    /// Returns T00 - T11 and T01 + T10 of T = A W⁻¹ = [a, (2b - a)/√3]. The sum of the two squares is |T|² - 2 det T,
+    /// without the cancellation of this difference.
     #[inline(always)]
     fn distortion(&self) -> [T; 2] {
         let ([ax, ay], [bx, by]) = (self.a, self.b);
         [ax - (by * 2.0 - ay) * W, (bx * 2.0 - ax) * W + ay]
     }
 
-    /// The invariants of the triangle. All metrics except EDGE are functions of them.
+    /// Returns the invariants of the triangle. All metrics except EDGE are functions of the invariants.
     #[inline(always)]
     pub fn invariants(&self) -> Invariants<T> {
         let [u, v] = self.distortion();
@@ -59,8 +59,8 @@ impl<T: Real> Corner<T> {
         }
     }
 
-    /// Value, gradient and Hessian of a function of the invariants with respect to the visited vertex, by the chain
-    /// rule. The edges depend on the vertex by `edges`.
+    /// Returns value, gradient and Hessian of a function of the invariants with respect to the visited vertex, by the
+    /// chain rule. `edges` has the slopes of the edges by the position of the vertex.
     #[inline(always)]
     pub(crate) fn expansion(&self, edges: impl EdgeSlopes, slopes: &Slopes<T>) -> Dual<T> {
         match slopes {
@@ -71,8 +71,8 @@ impl<T: Real> Corner<T> {
         }
     }
 
-    /// Gradients of excess and area by the visited vertex. Moving the vertex changes u by (α, -γ) and v by (γ, α), with
-    /// γ = w (2β - α) and w = 1/√3. The area is linear.
+    /// Returns the gradients of excess and area by the visited vertex. The distortion (u, v) has the gradients (α, -γ)
+    /// and (γ, α), with γ = w (2β - α) and w = 1/√3. The area is a linear function of the position of the vertex.
     #[inline(always)]
     fn gradients(&self, edges: impl EdgeSlopes) -> ([T; 2], [T; 2]) {
         let [u, v] = self.distortion();
@@ -85,15 +85,14 @@ impl<T: Real> Corner<T> {
         )
     }
 
-    /// The Hessian of the excess is 2w (α² - αβ + β²) times the identity, with w = 1/√3.
+    /// Returns the factor c of the excess's Hessian c I: 2w (α² - αβ + β²), with w = 1/√3.
     #[inline(always)]
     fn curvature(edges: impl EdgeSlopes) -> f64 {
         let (alpha, beta) = (edges.alpha(), edges.beta());
         2.0 * W * (alpha * alpha - alpha * beta + beta * beta)
     }
 
-    /// Does the same as [`Self::expansion`] for a function of the shape m = excess / area, given its first two
-    /// derivatives.
+    /// Computes [`Self::expansion`] for a function of the shape m = excess / area, given its first two derivatives.
     #[inline(always)]
     fn expansion_by_shape(
         &self,
@@ -106,8 +105,8 @@ impl<T: Real> Corner<T> {
     ) -> Dual<T> {
         let ([ex, ey], [dx, dy]) = self.gradients(edges);
         // ∇m = (∇excess - m ∇area) / area, and the Hessian of m is (c I - ∇m ∇areaᵀ - ∇area ∇mᵀ) / area, with c the
-        // curvature of the excess. The Hessian of f(m) is f' times the Hessian of m, plus f'' ∇m ∇mᵀ:
-        // ∇m sᵀ + s ∇mᵀ + c f' I / area with s = f'' ∇m / 2 - f' ∇area / area.
+        // curvature of the excess. The Hessian of f(m) is f' times the Hessian of m, plus f'' ∇m ∇mᵀ. Both terms add up
+        // to ∇m sᵀ + s ∇mᵀ + c f' I / area with s = f'' ∇m / 2 - f' ∇area / area.
         let (mx, my) = ((ex - shape * dx) * inverse_area, (ey - shape * dy) * inverse_area);
         let (slope, half) = (first * inverse_area, second * 0.5);
         let (sx, sy) = (half * mx - slope * dx, half * my - slope * dy);
@@ -119,7 +118,7 @@ impl<T: Real> Corner<T> {
         }
     }
 
-    /// Does the same as [`Self::expansion`] for a function of the excess and the area.
+    /// Computes [`Self::expansion`] for a function of excess and area that is linear in the excess.
     #[inline(always)]
     fn expansion_by_invariants(
         &self,
@@ -129,7 +128,7 @@ impl<T: Real> Corner<T> {
         let InvariantSlopes { unit, value, excess, area, excess_area, area_area } = *slopes;
         let ([ex, ey], [dx, dy]) = self.gradients(edges);
         let (ex, ey, dx, dy) = (ex * unit, ey * unit, dx * unit, dy * unit);
-        // The gradients of ∂f/∂excess and of ∂f/∂area.
+        // (px, py) is the gradient of ∂f/∂excess, (rx, ry) the gradient of ∂f/∂area.
         let (px, py) = (times(excess_area, dx), times(excess_area, dy));
         let rx = sum(times(excess_area, ex), times(area_area, dx));
         let ry = sum(times(excess_area, ey), times(area_area, dy));
@@ -150,8 +149,8 @@ impl<T: Real> Corner<T> {
     }
 }
 
-// Sums and products of derivatives, where `None` is a derivative that is zero for every triangle and costs nothing.
-// They are no closures, which would not be compiled for the lanes' instructions.
+// Sums and products of derivatives. `None` is a derivative that is zero for every triangle and costs nothing. The
+// functions are no closures, as closures would not be compiled with the instructions of the lanes.
 
 #[inline(always)]
 #[allow(clippy::manual_map)]
@@ -180,7 +179,7 @@ fn or<T: Real>(slope: Option<T>, zero: T) -> T {
 }
 
 impl Corner<f64> {
-    /// The inverse mean ratio: 1 if the triangle is equilateral, infinite if it is flat or inverted.
+    /// Returns the inverse mean ratio: 1 for an equilateral triangle, infinite for a flat or inverted one.
     pub fn inverse_mean_ratio(&self) -> f64 {
         let area = self.doubled_area();
         if area > 0.0 {
@@ -191,14 +190,15 @@ impl Corner<f64> {
     }
 }
 
-/// Quantities of a triangle that do not change when it is rotated. All metrics except EDGE are functions of them.
+/// Quantities of a triangle that do not change when the triangle is rotated. All metrics except EDGE are functions of
+/// them.
 ///
 /// For T = A W⁻¹, with A the edges of the triangle and W those of the equilateral triangle of mean area, the squared
 /// Frobenius norm is 2 (excess + area) / mean, and the determinant area / mean.
 #[derive(Clone, Copy, Debug)]
 pub struct Invariants<T> {
-    /// √3/6 times the sum of the squared edge lengths, minus the doubled area: 0 for an equilateral
-    /// triangle and positive for every other. Computed as a sum of squares.
+    /// √3/6 times the sum of the squared edge lengths, minus the doubled area: 0 for an equilateral triangle, positive
+    /// for all others. Computed as a sum of squares.
     pub excess: T,
     /// Twice the signed area.
     pub area: T,
@@ -206,8 +206,8 @@ pub struct Invariants<T> {
     pub mean: f64,
 }
 
-/// The value of a function of the [`Invariants`] and its derivatives. A metric chooses the form. The more special the
-/// form, the cheaper the metric's sweeps.
+/// Value and derivatives of a function of the [`Invariants`]. A metric chooses the form. The more special the form, the
+/// cheaper the metric's sweeps.
 #[derive(Clone, Copy, Debug)]
 pub enum Slopes<T> {
     /// A function of the shape m = excess / area alone.
@@ -223,25 +223,25 @@ pub enum Slopes<T> {
         /// The second derivative with respect to m.
         second: T,
     },
-    /// A function of the excess and the area that is linear in the excess.
+    /// A function of excess and area that is linear in the excess.
     ByInvariants(InvariantSlopes<T>),
 }
 
-/// The value of a function of the excess and the area that is linear in the excess, and its partial derivatives, each
-/// named by its variables. They are derivatives with respect to the invariants times `unit`, so that they have no
-/// dimension. `None` is a derivative that is zero for every triangle.
+/// Value and partial derivatives of a function of excess and area that is linear in the excess. Each derivative is
+/// named after its variables, the invariants times `unit`, and so has no dimension. `None` is a derivative that is zero
+/// for every triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct InvariantSlopes<T> {
-    /// The inverse of an area, either that of the triangle or the mean.
+    /// Inverse of an area, either the doubled area of the triangle or the doubled mean area.
     pub unit: T,
-    /// The value of the function.
+    /// Value of the function.
     pub value: T,
-    /// The derivative by unit · excess.
+    /// Derivative by unit · excess.
     pub excess: Option<T>,
-    /// The derivative by unit · area.
+    /// Derivative by unit · area.
     pub area: Option<T>,
-    /// The mixed second derivative.
+    /// Mixed second derivative.
     pub excess_area: Option<T>,
-    /// The second derivative by unit · area.
+    /// Second derivative by unit · area.
     pub area_area: Option<T>,
 }

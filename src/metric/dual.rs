@@ -1,15 +1,16 @@
-//! Dual numbers, which carry their first and second derivatives.
+//! Dual numbers: values that carry their first and second derivatives.
 //!
-//! Tests use them to differentiate a metric's *value formula*, and check every hand-written derivative against the
-//! result, both in WGSL and in Rust. The engines use the hand-written derivatives; [`Dual`] holds their values.
+//! Tests differentiate the *value formula* of each metric with dual numbers, and compare every hand-written derivative
+//! with the result, both in WGSL and in Rust. The engines use the hand-written derivatives, and [`Dual`] only to hold
+//! their values.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// The arithmetic of a metric's formulas. Implemented by `f64` and SIMD vectors of it for values, and by [`Dual`] for
+/// The arithmetic of a metric's formulas. `f64` and SIMD vectors of `f64` implement the trait for values, [`Dual`] for
 /// derivatives.
 ///
-/// Formulas avoid closures and iterators over such numbers: calls through the standard library are
-/// not compiled for SIMD instructions, which makes them several times slower.
+/// Formulas avoid closures and iterators over such numbers: calls through the standard library are not compiled for
+/// SIMD instructions, which makes them several times slower.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -20,15 +21,15 @@ pub trait Real:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// The constant `value`, with as many lanes as `self`.
+    /// Returns the constant `value`, with as many lanes as `self`.
     fn constant(self, value: f64) -> Self;
-    /// The value of `self` as a constant: its derivatives are zero.
+    /// Returns the value of `self` as a constant, with zero derivatives.
     fn fixed(self) -> Self;
-    /// The square root. Its derivative at zero is infinite.
+    /// Returns the square root, whose derivative at zero is infinite.
     fn sqrt(self) -> Self;
-    /// The smaller of two numbers.
+    /// Returns the smaller of two numbers.
     fn min(self, other: Self) -> Self;
-    /// The larger of two numbers.
+    /// Returns the larger of two numbers.
     fn max(self, other: Self) -> Self;
     /// Calls a function of numbers of this type. The function is compiled as separate code (for SIMD vectors with their
     /// instructions), so that callers stay small enough to be compiled in seconds.
@@ -72,7 +73,7 @@ pub struct Dual<T = f64> {
 }
 
 impl<T: Real> Dual<T> {
-    /// The variable x (`axis` 0) or y (`axis` 1), times `slope`, at `value`.
+    /// Returns the variable x (`axis` 0) or y (`axis` 1), times `slope`, at `value`.
     #[inline(always)]
     pub fn variable(value: T, axis: usize, slope: f64) -> Self {
         let mut dual = Self::of(value);
@@ -80,14 +81,14 @@ impl<T: Real> Dual<T> {
         dual
     }
 
-    /// The constant `value`.
+    /// Returns the constant `value`.
     #[inline(always)]
     fn of(value: T) -> Self {
         let zero = value.constant(0.0);
         Self { value, gradient: [zero; 2], hessian: [zero; 3] }
     }
 
-    /// `f(self)` by the chain rule, from the value and the two derivatives of `f` there.
+    /// Returns `f(self)` by the chain rule, from the value of f and its first two derivatives at `self`.
     #[inline(always)]
     fn chain(self, f: T, df: T, ddf: T) -> Self {
         let [x, y] = self.gradient;
@@ -185,7 +186,7 @@ impl<T: Real> Mul<f64> for Dual<T> {
     }
 }
 
-/// `min` and `max` return constants: their derivatives would be discontinuous.
+/// Numbers with derivatives. `min` and `max` return constants, as their derivatives would be discontinuous.
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn constant(self, value: f64) -> Self {
@@ -217,7 +218,7 @@ mod tests {
 
     #[test]
     fn derivatives_of_a_known_function() {
-        // f = sqrt(x y) / (x - y) at (3, 1), derivatives by hand.
+        // f = sqrt(x y) / (x - y) at (3, 1), with derivatives by hand.
         let (x, y) = (Dual::variable(3.0, 0, 1.0), Dual::variable(1.0, 1, 1.0));
         let f = (x * y).sqrt() / (x - y);
         let (s, d) = (3f64.sqrt(), 2.0);

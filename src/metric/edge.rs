@@ -22,7 +22,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("edge.wgsl"),
 };
 
-/// q² - 1 for q = Lmax / Lmin.
+/// Returns q² - 1 for q = Lmax / Lmin.
 #[inline(always)]
 pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
     let [a, b, c] = t.squared_lengths();
@@ -30,12 +30,13 @@ pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
     (most - least) / least
 }
 
-/// The smooth model of q² - 1 that Newton's method minimizes: a p-norm with exponent k = 2^`sharpness`, minus 1.
+/// Returns the smooth model of q² - 1 that Newton's method minimizes: a p-norm with exponent k = 2^`sharpness`, minus
+/// 1.
 #[inline(always)]
 pub(super) fn model<T: Real>(t: &Corner<T>, sharpness: u32) -> T {
-    // The p-norm over pairs of edges: (max/min) [mean A · mean B]^(1/k) with A = (L/max)^k and
-    // B = (min/L)^k, over squared lengths L. Powers of ratios below 1 cannot overflow. The value does not
-    // depend on the scaling by max and min, so they enter as constants.
+    // The p-norm over pairs of edges: (max/min) [mean A · mean B]^(1/k) with A = (L/max)^k and B = (min/L)^k, over
+    // squared lengths L. Powers of ratios below 1 cannot overflow. The value does not depend on the factors max and
+    // min, so both enter as constants.
     let [la, lb, lc] = t.squared_lengths();
     let most = la.max(lb).max(lc).fixed();
     let least = la.min(lb).min(lc).fixed();
@@ -53,7 +54,8 @@ pub(super) fn model<T: Real>(t: &Corner<T>, sharpness: u32) -> T {
     root * (most / least) - 1.0
 }
 
-/// Value, gradient and Hessian of [`model`] with respect to the visited vertex, on which the edges depend by `edges`.
+/// Returns value, gradient and Hessian of [`model`] with respect to the visited vertex. `edges` has the slopes of the
+/// edges by the position of the vertex.
 #[inline(always)]
 pub(super) fn expansion<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes, sharpness: u32) -> Dual<T> {
     let (alpha, beta, third) = (edges.alpha(), edges.beta(), edges.third());
@@ -75,7 +77,7 @@ pub(super) fn expansion<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes, sharpnes
     }
     let q = root * (most * (least.constant(1.0) / least));
 
-    // The shares of the edges a and b in both sums, and the vectors u, v = ∇L/L of these edges.
+    // The shares of the edges a and b in both sums, and the vectors u, v = ∇L/L of the two edges.
     let shares = one / (a * b);
     let (wa, wb) = (b * shares, a * shares);
     let (wa0, wa1, wb0, wb1) = (a0 * wa, a1 * wa, b0 * wb, b1 * wb);

@@ -67,7 +67,7 @@ fn edge_derivatives(t: Corner) -> Derivatives {
     let vv = 0.5 * edge_symmetric(v, v);
     let net = wa - wb;
     let both = wa + wb;
-    // The Hessian of the logarithm: the curvature of each edge, and the change of the shares.
+    // The Hessian of the logarithm: the curvature of each edge, plus the change of the shares.
     let own = net.x * (vec3(2.0, 0.0, 2.0) / p.lengths.x - uu)
         + net.y * (vec3(2.0, 0.0, 2.0) / p.lengths.y - vv);
     let spread = both.x * uu + both.y * vv

@@ -1,4 +1,4 @@
-//! How the edges of a triangle depend on the position of the visited vertex.
+//! Slopes of the edges of a triangle by the position of the visited vertex.
 
 /// The slopes of the two edges of a [`Corner`](crate::metric::Corner): if the visited vertex moves by d, the edges a and b
 /// change by α d and β d.
@@ -7,12 +7,12 @@
 /// also the end of one edge of each neighboring corner, with the slopes (1, 0) and (0, 1). In an element of second
 /// order, slopes are derivatives of a shape function at a sample point.
 pub(crate) trait EdgeSlopes: Copy {
-    /// The slope α of the edge a.
+    /// Returns the slope α of the edge a.
     fn alpha(self) -> f64;
-    /// The slope β of the edge b.
+    /// Returns the slope β of the edge b.
     fn beta(self) -> f64;
 
-    /// The slope β - α of the edge b - a.
+    /// Returns the slope β - α of the edge b - a.
     #[inline(always)]
     fn third(self) -> f64 {
         self.beta() - self.alpha()
@@ -60,13 +60,13 @@ mod tests {
 
     const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
 
-    /// Maps the two edges of a square's corner to two edges of an equilateral triangle. Edges are vectors, so their
-    /// slopes are mapped by the same function.
+    /// Maps the two edges of a square's corner to two edges of an equilateral triangle. Slopes of edges are mapped like
+    /// the edges themselves.
     fn from_right_angle([a, b]: [f64; 2]) -> [f64; 2] {
         [a, 0.5 * a + HALF_ROOT * b]
     }
 
-    /// Returns a quadrilateral's corner at p, with edges to q and r.
+    /// Returns the corner of a quadrilateral at p, with edges to q and r.
     fn corner_of_quadrilateral([p, q, r]: [[f64; 2]; 3]) -> Corner<f64> {
         let [x, y] = [0, 1].map(|axis| from_right_angle([q[axis] - p[axis], r[axis] - p[axis]]));
         Corner { a: [x[0], y[0]], b: [x[1], y[1]], mean_area: 0.6 }
@@ -121,7 +121,8 @@ mod tests {
 
     #[test]
     fn slopes_of_a_quadrilateral_give_the_differences_of_its_corners() {
-        // The visited vertex is the start of its own corner's edges, then the end of one edge of each neighbor's corner.
+        // The visited vertex is the start of its own corner's edges, then the end of one edge of each neighboring
+        // corner.
         let others = [[1.1, 0.1], [0.2, 0.9], [1.2, 1.3]];
         let own = |v: [f64; 2]| corner_of_quadrilateral([v, others[0], others[1]]);
         let next = |v: [f64; 2]| corner_of_quadrilateral([others[0], others[2], v]);

@@ -21,14 +21,14 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("imr.wgsl"),
 };
 
-/// q² - 1 for q = 1 + m, m = excess / area, as m (m + 2): no cancellation on good triangles.
+/// Returns q² - 1 for q = 1 + m, m = excess / area, computed as m (m + 2), which does not cancel on good triangles.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     let m = t.excess / t.area;
     m * (m + 2.0)
 }
 
-/// Value and derivatives of [`value`] by the shape m = excess / area.
+/// Returns [`value`] and its derivatives by the shape m = excess / area.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let inverse_area = t.area.constant(1.0) / t.area;

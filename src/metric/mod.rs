@@ -1,5 +1,5 @@
-//! The quality metrics: a table with a row for each, the invariants and dual numbers they are computed with, and
-//! schemes of several metrics.
+//! The quality metrics: a table with a row per metric, the invariants and dual numbers in their formulas, and schemes
+//! of several metrics.
 
 mod ar;
 mod area;

@@ -3,36 +3,36 @@
 /// Properties of a metric q: a description, and parameters of its Newton steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Properties {
-    /// The name on the command line. The metric's files have the same name, with `_` for `-`.
+    /// Name on the command line. The files of the metric have this name too, with `_` for `-`.
     pub name: &'static str,
-    /// The formula, as text. L are edge lengths, S is the area.
+    /// Formula as text. L are edge lengths, S is the area.
     pub formula: &'static str,
-    /// The publication that the metric comes from.
+    /// Publication that defines the metric.
     pub citation: &'static str,
-    /// What the metric is good for, and what it does to shapes.
+    /// Purpose of the metric, and its effect on shapes, as text.
     pub purpose: &'static str,
-    /// Whether q grows to infinity as a triangle's area goes to zero.
+    /// Whether q grows to infinity as the area of a triangle goes to zero.
     pub barrier: bool,
-    /// The least value of q, that of an equilateral triangle of the mean area.
+    /// Least value of q, the value of an equilateral triangle of mean area.
     pub ideal: f64,
-    /// Whether q does not depend on the size of the triangle.
+    /// Whether q is independent of the size of a triangle.
     pub scale_invariant: bool,
     /// Whether q equals the inverse mean ratio.
     pub is_inverse_mean_ratio: bool,
-    /// Whether the objective is quadratic in the position of one vertex, so that one Newton step is exact and its
+    /// Whether the objective is quadratic in the position of one vertex. A single Newton step is then exact, and its
     /// decrease needs no test.
     pub quadratic: bool,
-    /// The eigenvalues of a patch's Hessian are replaced by their absolute values, and raised to at least this share of
-    /// the largest.
+    /// Eigenvalues of a patch's Hessian are replaced by their absolute values, and raised to at least this share of the
+    /// larger one.
     pub eigenvalue_floor: f64,
-    /// The largest inverse mean ratio that the shape guard lets a step leave, unless the patch had a worse one
-    /// before; see [`Plan::shape_guard`](crate::internal::Plan::shape_guard). Infinite if the metric has a barrier.
+    /// Largest inverse mean ratio that the shape guard lets a step leave, unless the patch had a larger ratio before;
+    /// see [`Plan::shape_guard`](crate::internal::Plan::shape_guard). Infinite if the metric has a barrier.
     pub shape_guard: f64,
-    /// The default over-relaxation in runs by this metric alone; see [`Relaxed::omega`](crate::options::Relaxed::omega).
+    /// Default over-relaxation in runs by this metric alone; see [`Relaxed::omega`](crate::options::Relaxed::omega).
     pub omega: f64,
     /// Whether sweeps by this metric alone can be corrected from coarser levels; see
     /// [`Method::Multilevel`](crate::Method::Multilevel).
     pub is_corrected: bool,
-    /// The text of the metric's WGSL file.
+    /// Text of the WGSL file of the metric.
     pub wgsl: &'static str,
 }

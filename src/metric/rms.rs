@@ -21,13 +21,14 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("rms.wgsl"),
 };
 
-/// q² - 1, with q² = (excess + area) / mean. The difference area - mean is exact if the two are near each other.
+/// Returns q² - 1, with q² = (excess + area) / mean. The difference area - mean is exact if both are within a factor of
+/// two.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     (t.excess + (t.area - t.mean)) * (1.0 / t.mean)
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let one = t.area.constant(1.0);

@@ -2,18 +2,17 @@
 
 use crate::metric::table::{Metric, UnknownMetric};
 
-/// A sequence of metrics, one for each sweep in turn. The first is the base metric, which alone
-/// judges convergence (Park & Shontz, Section 2.2). Parses from and displays as names joined by `+`, such as
-/// `edge+imr+imr`.
+/// A sequence of metrics, used sweep by sweep in turn. The first is the base metric, which alone judges convergence
+/// (Park & Shontz, Section 2.2). Parsed from and displayed as names joined by `+`, such as `edge+imr+imr`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Scheme(Vec<Metric>);
 
 impl Scheme {
-    /// The most metrics that a scheme can have. The stop rule looks back over four periods or more, and a device stores
+    /// Largest number of metrics in a scheme. The stop rule looks back over four periods or more, and a device stores
     /// 256 evaluations.
     pub const LONGEST: u32 = 60;
 
-    /// Makes a scheme of the given metrics; `None` if there are none.
+    /// Makes a scheme of the given metrics, `None` for an empty list.
     pub fn new(metrics: impl Into<Vec<Metric>>) -> Option<Self> {
         let metrics = metrics.into();
         (!metrics.is_empty()).then_some(Self(metrics))
@@ -34,18 +33,18 @@ impl Scheme {
         self.0.len() as u32
     }
 
-    /// The metrics in order.
+    /// Returns the metrics in the order of their sweeps.
     pub fn metrics(&self) -> &[Metric] {
         &self.0
     }
 
-    /// Whether the scheme has metrics other than the base.
+    /// Returns whether the scheme has metrics other than the base metric.
     pub fn alternates(&self) -> bool {
         self.0.iter().any(|&metric| metric != self.base())
     }
 
-    /// Whether every sweep lowers the base objective, so that the last state is the best: true for
-    /// a single metric that is smooth.
+    /// Returns whether every sweep lowers the base objective, so that the last state is the best. True for a single
+    /// metric that is smooth.
     pub fn is_monotone(&self) -> bool {
         !self.alternates() && self.base().is_smooth()
     }

@@ -3,8 +3,8 @@
 use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;
 
-/// ε / τ + w (τ - 1)² / τ, where τ = area / mean and ε = excess / mean: μ₂ = |T|² / 2τ - 1 = ε / τ and
-/// μ₅₆ = (τ - 1)² / 2τ.
+/// Returns ε / τ + w (τ - 1)² / τ, where τ = area / mean and ε = excess / mean. The terms are μ₂ = |T|² / 2τ - 1 = ε /
+/// τ, and 2 w μ₅₆ with μ₅₆ = (τ - 1)² / 2τ.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>, weight: f64) -> T {
     let scale = 1.0 / t.mean;
@@ -12,7 +12,7 @@ pub(super) fn value<T: Real>(t: &Invariants<T>, weight: f64) -> T {
     (e + off * off * weight) / (t.area * scale)
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>, weight: f64) -> Slopes<T> {
     let scale = 1.0 / t.mean;

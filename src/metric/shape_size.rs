@@ -21,8 +21,8 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("shape_size.wgsl"),
 };
 
-/// q² = |T|² (1 + 1/τ²) - 4 with τ = det T = area / mean and |T|² = 2 (ε + τ), ε = excess / mean. Computed as
-/// 2 ε (1 + 1/τ²) + 2 (τ - 1)² / τ, which is equal and does not cancel.
+/// Returns q² = |T|² (1 + 1/τ²) - 4 with τ = det T = area / mean and |T|² = 2 (ε + τ), ε = excess / mean. Computed as 2
+/// ε (1 + 1/τ²) + 2 (τ - 1)² / τ, which is equal and does not cancel.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     let scale = 1.0 / t.mean;
@@ -31,7 +31,7 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     (e * (inverse * inverse + 1.0) + off * off * inverse) * 2.0
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let scale = 1.0 / t.mean;

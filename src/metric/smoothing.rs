@@ -1,36 +1,36 @@
-//! How EDGE is made smooth: by a p-norm, and with a penalty in front of the shape guard.
+//! Smooth replacement of EDGE: a p-norm, with a penalty near the shape guard.
 
 use crate::metric::corner::{Corner, Slopes};
 use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::EdgeSlopes;
 
-/// How EDGE is made smooth for Newton's method. Smooth metrics make no use of it.
+/// Parameters of the smooth function that replaces EDGE for Newton's method. Smooth metrics ignore them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Smoothing {
-    /// log2 k of the exponent k of the p-norm.
+    /// Binary logarithm of the exponent k of the p-norm.
     pub(crate) sharpness: u32,
-    /// The shape guard that is kept off by a penalty; infinite for none.
+    /// Shape guard that the penalty keeps triangles away from, as an inverse mean ratio; infinite for no penalty.
     pub(crate) penalized: f64,
 }
 
-/// What the penalty amounts to at the shape guard. With a tenth of it runs are stopped by the guard again; with ten times as much they end
-/// as low, after more sweeps.
+/// Value of the penalty at the shape guard. With a tenth of this value, the guard stops runs again; with ten times the
+/// value, runs reach the same f after more sweeps.
 pub(crate) const PENALTY: f64 = 0.1;
 
 impl Smoothing {
-    /// By the p-norm alone, with the exponent 2^`sharpness`.
+    /// Returns the smoothing by the p-norm alone, with the exponent 2^`sharpness`.
     pub(crate) fn of(sharpness: u32) -> Self {
         Self { sharpness, penalized: f64::INFINITY }
     }
 
-    /// Whether there is a penalty.
+    /// Returns whether the objective includes a penalty.
     #[inline(always)]
     pub(crate) fn is_penalized(&self) -> bool {
         self.penalized < f64::INFINITY
     }
 
-    /// The penalty [`PENALTY`] · min(imr / guard, 1)^k, with k the exponent of the p-norm. The penalty is constant beyond the
-    /// guard: triangles that start there feel no force from the penalty.
+    /// Returns the penalty [`PENALTY`] · min(imr / guard, 1)^k, with k the exponent of the p-norm. The penalty is
+    /// constant beyond the guard, so triangles that start there feel no force from the penalty.
     #[inline(always)]
     pub(super) fn penalty<T: Real>(&self, t: &Corner<T>) -> T {
         let [_, ratio] = self.ratio(t);
@@ -38,8 +38,8 @@ impl Smoothing {
         self.power(ratio.min(one)) * PENALTY
     }
 
-    /// Value, gradient and Hessian of [`Self::penalty`] with respect to the visited vertex, on which the edges depend by
-    /// `edges`.
+    /// Returns value, gradient and Hessian of [`Self::penalty`] with respect to the visited vertex. `edges` has the
+    /// slopes of the edges by the position of the vertex.
     #[inline(always)]
     pub(super) fn penalty_expansion<T: Real>(
         &self,
@@ -49,7 +49,7 @@ impl Smoothing {
         let [shape, ratio] = self.ratio(t);
         let one = ratio.constant(1.0);
         let value = self.power(ratio.min(one)) * PENALTY;
-        // 1 below the guard, by the least difference that there can be, and 0 beyond it.
+        // 1 below the guard, even by the least difference of two numbers, and 0 at the guard and beyond.
         let below = ((one - ratio) * 2f64.powi(53)).min(one).max(ratio.constant(0.0));
         let k = f64::from(1u32 << self.sharpness);
         let per_shape = one / (shape + 1.0);
@@ -59,7 +59,7 @@ impl Smoothing {
         t.expansion(edges, &Slopes::ByShape { inverse_area, shape, value, first, second })
     }
 
-    /// A triangle's inverse mean ratio less 1, and over that of the guard.
+    /// Returns a triangle's inverse mean ratio minus 1, and the inverse mean ratio divided by the guard.
     #[inline(always)]
     fn ratio<T: Real>(&self, t: &Corner<T>) -> [T; 2] {
         let invariants = t.invariants();

@@ -22,16 +22,16 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("soft_size.wgsl"),
 };
 
-/// The weight of (τ - 1)² / τ in q² = μ₂ + 0.4 μ₅₆.
+/// Weight of (τ - 1)² / τ in q² = μ₂ + 0.4 μ₅₆.
 const WEIGHT: f64 = 0.2;
 
-/// The function q² = μ₂ + 0.4 μ₅₆.
+/// Returns q² = μ₂ + 0.4 μ₅₆.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     shape_and_size::value(t, WEIGHT)
 }
 
-/// The function q² and its derivatives by the invariants.
+/// Returns q² and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     shape_and_size::slopes(t, WEIGHT)

@@ -1,6 +1,6 @@
 //! The table of quality metrics.
 //!
-//! A metric is a row of the table below and two files, `NAME.rs` and `NAME.wgsl`; everything else (command line, help,
+//! A metric is a row of the table below and two files, `NAME.rs` and `NAME.wgsl`. Everything else (command line, help,
 //! shader composition, property tests, GPU-against-f64 tests, benchmarks) loops over [`Metric::ALL`].
 
 use crate::metric::corner::{Corner, Invariants, Slopes};
@@ -10,8 +10,8 @@ use crate::metric::properties::Properties;
 use crate::metric::smoothing::Smoothing;
 use crate::metric::{ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
 
-/// Generates the enum, the table and the formulas from one row per metric. The rare metrics, in braces, take less time
-/// to compile, and their sweeps take longer.
+/// Generates the enum, the table and the formulas from one row per metric. Metrics in braces are rare: they take less
+/// time to compile, and their sweeps take longer.
 macro_rules! metrics {
     (
         $(#[$edge_doc:meta])*
@@ -21,8 +21,8 @@ macro_rules! metrics {
             $($(#[$rare_doc:meta])* $rare:ident = $rare_file:ident of invariants;)*
         }
     ) => {
-        /// A quality metric q of a triangle. Smaller is better. [`Metric::citation`] names the source
-        /// of each.
+        /// A quality metric q of a triangle. Smaller values are better. [`Metric::citation`] names the source of each
+        /// metric.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Metric {
@@ -36,7 +36,7 @@ macro_rules! metrics {
         pub(crate) enum OfInvariants { $($variant,)* $($rare,)* }
 
         impl Metric {
-            /// Every metric: first those of the paper in the order of its Table 1, then the others.
+            /// Every metric: first Park & Shontz's metrics in the order of their Table 1, then further metrics.
             pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)*];
 
             /// Returns the metric's row of properties, for this project's own tests and benchmarks.
@@ -49,8 +49,8 @@ macro_rules! metrics {
                 }
             }
 
-            /// Returns q² - ideal² by every metric, in the order of [`Self::ALL`]. What several metrics need is
-            /// computed once.
+            /// Returns q² - ideal² by every metric, in the order of [`Self::ALL`]. Quantities that several metrics need
+            /// are computed once.
             #[inline(always)]
             pub(crate) fn every_excess<T: Real>(corner: &Corner<T>) -> [T; Self::ALL.len()] {
                 let invariants = corner.invariants();
@@ -61,7 +61,7 @@ macro_rules! metrics {
                 ]
             }
 
-            /// Returns the metric's formulas.
+            /// Returns the formulas of the metric.
             #[inline(always)]
             pub(crate) const fn formulas(self) -> AnyFormulas {
                 match self {
@@ -72,9 +72,9 @@ macro_rules! metrics {
             }
         }
 
-        /// Evaluates an expression that is compiled separately for each usual metric, with `$f` bound to its
-        /// [`Formulas`]. Does nothing for a rare metric. `$f` is a constant: so a closure in the expression knows the
-        /// metric at compile time, and would not if it had to capture a variable.
+        /// Evaluates an expression that is compiled separately for each usual metric, with `$f` bound to the
+        /// [`Formulas`] of the metric. Does nothing for a rare metric. `$f` is a constant, not a variable, so that
+        /// closures in the expression know the metric at compile time.
         macro_rules! with_each_metric {
             ($metric:expr, $f:ident => $body:expr) => {
                 match $metric {
@@ -100,7 +100,7 @@ macro_rules! metrics {
                 match self { $(Self::$variant => Metric::$variant,)* $(Self::$rare => Metric::$rare,)* }
             }
 
-            /// q² - ideal².
+            /// Returns q² - ideal².
             #[inline(always)]
             fn value<T: Real>(self, t: &Invariants<T>) -> T {
                 match self {
@@ -109,7 +109,7 @@ macro_rules! metrics {
                 }
             }
 
-            /// q² - ideal² with its derivatives by the invariants.
+            /// Returns q² - ideal² with its derivatives by the invariants.
             #[inline(always)]
             fn slopes<T: Real>(self, t: &Invariants<T>) -> Slopes<T> {
                 match self {
@@ -150,12 +150,12 @@ metrics! {
     }
 }
 
-/// The metric EDGE, a function of the lengths of a triangle's edges.
+/// The metric EDGE, a function of the edge lengths of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OfEdges;
 
-/// The formulas of any metric. Hot loops are compiled for each of the two variants, and a metric of the invariants is
-/// looked up at run time. Compiling them for every metric would take minutes.
+/// The formulas of any metric. Hot loops are compiled for each of the two variants, and look up a metric of the
+/// invariants at run time. A compilation for every metric would take minutes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum AnyFormulas {
     Edges(OfEdges),
@@ -164,22 +164,23 @@ pub(crate) enum AnyFormulas {
 
 /// The functions of a metric that engines compute.
 pub(crate) trait Formulas: Copy + Sync {
-    /// Returns the metric, which is known at compile time if the formulas are.
+    /// Returns the metric, a constant at compile time if the type fixes the formulas.
     fn metric(self) -> Metric;
 
     /// Returns the inverse mean ratio of a triangle with positive area, as numerator and denominator; the denominator
-    /// is the doubled area. It is computed from the quantities that the metric uses too, so that the compiler can share
-    /// them.
+    /// is the doubled area. The ratio is computed from quantities that the metric uses too, so that the compiler can
+    /// share them.
     fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> (T, T);
 
-    /// Returns q² - ideal². Sums of it keep their digits on good meshes.
+    /// Returns q² - ideal². Sums of this difference keep their digits on good meshes.
     fn excess<T: Real>(self, corner: &Corner<T>) -> T;
 
-    /// The function that Newton's method minimizes: [`Self::excess`] if that is smooth, else a smooth model of it.
+    /// Returns the function that Newton's method minimizes: [`Self::excess`] if q² is smooth, else a smooth model of
+    /// it.
     fn model<T: Real>(self, corner: &Corner<T>, smoothing: Smoothing) -> T;
 
-    /// Value, gradient and Hessian of [`Self::model`] with respect to the visited vertex, by the hand-written
-    /// derivatives. The edges of `corner` depend on the vertex by `edges`.
+    /// Returns value, gradient and Hessian of [`Self::model`] with respect to the visited vertex, by the hand-written
+    /// derivatives. `edges` has the slopes of the edges of `corner` by the position of the vertex.
     fn expansion<T: Real>(
         self,
         corner: &Corner<T>,
@@ -259,7 +260,7 @@ impl Formulas for OfInvariants {
     }
 }
 
-/// Looks up the metric for each triangle.
+/// Formulas that look up the metric for each triangle.
 impl Formulas for AnyFormulas {
     #[inline(always)]
     fn metric(self) -> Metric {
@@ -314,53 +315,54 @@ impl Formulas for AnyFormulas {
 }
 
 impl Metric {
-    /// The name on the command line.
+    /// Returns the name on the command line.
     pub const fn name(self) -> &'static str {
         self.properties().name
     }
 
-    /// The formula of q, as text: L are edge lengths, S is the area.
+    /// Returns the formula of q as text. L are edge lengths, S is the area.
     pub const fn formula(self) -> &'static str {
         self.properties().formula
     }
 
-    /// The publication that the metric comes from.
+    /// Returns the publication that defines the metric.
     pub const fn citation(self) -> &'static str {
         self.properties().citation
     }
 
-    /// The purpose of the metric, and its effect on shapes.
+    /// Returns a text on the purpose of the metric, and its effect on shapes.
     pub const fn purpose(self) -> &'static str {
         self.properties().purpose
     }
 
-    /// The least value of q, that of an equilateral triangle of the mean area.
+    /// Returns the least value of q, the value of an equilateral triangle of mean area.
     pub const fn ideal(self) -> f64 {
         self.properties().ideal
     }
 
-    /// The over-relaxation of sweeps by this metric alone, if [`Relaxed::omega`](crate::options::Relaxed::omega) is `None`.
+    /// Returns the over-relaxation of sweeps by this metric alone, used if
+    /// [`Relaxed::omega`](crate::options::Relaxed::omega) is `None`.
     pub const fn omega(self) -> f64 {
         self.properties().omega
     }
 
-    /// The largest inverse mean ratio that a step by this metric may leave, unless the patch had a larger ratio before.
-    /// Infinite for a metric with a barrier.
+    /// Returns the largest inverse mean ratio that a step by this metric may leave, unless the patch had a larger ratio
+    /// before. Infinite for a metric with a barrier.
     pub const fn shape_guard(self) -> f64 {
         self.properties().shape_guard
     }
 
-    /// Whether q grows to infinity as a triangle's area goes to zero.
+    /// Returns whether q grows to infinity as the area of a triangle goes to zero.
     pub const fn has_barrier(self) -> bool {
         self.properties().barrier
     }
 
-    /// Whether q does not depend on the size of the triangle.
+    /// Returns whether q is independent of the size of a triangle.
     pub const fn is_scale_invariant(self) -> bool {
         self.properties().scale_invariant
     }
 
-    /// Whether sweeps by this metric alone can be corrected from coarser levels; see
+    /// Returns whether sweeps by this metric alone can be corrected from coarser levels; see
     /// [`Method::Multilevel`](crate::Method::Multilevel).
     pub const fn supports_multilevel(self) -> bool {
         self.properties().is_corrected
@@ -372,32 +374,32 @@ impl Metric {
         ideal * ideal
     }
 
-    /// Whether q² is smooth, so that Newton's method minimizes it directly. False for EDGE alone.
+    /// Returns whether q² is smooth, so that Newton's method minimizes q² directly. False for EDGE alone.
     pub const fn is_smooth(self) -> bool {
         matches!(self.formulas(), AnyFormulas::Invariants(_))
     }
 
-    /// Returns q² - ideal². Sums of it keep their digits on good meshes.
+    /// Returns q² - ideal². Sums of this difference keep their digits on good meshes.
     pub fn excess<T: Real>(self, corner: &Corner<T>) -> T {
         self.formulas().excess(corner)
     }
 
-    /// The function that Newton's method minimizes: [`Self::excess`], except for EDGE, which is
-    /// not smooth. For EDGE it is a p-norm with exponent k = 2^`sharpness`, minus 1.
+    /// Returns the function that Newton's method minimizes: [`Self::excess`] for smooth metrics. For EDGE, which is not
+    /// smooth, the function is a p-norm with exponent k = 2^`sharpness`, minus 1.
     pub fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
         self.formulas().model(corner, Smoothing::of(sharpness))
     }
 
-    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of `corner` start from,
-    /// by the hand-written derivatives that the CPU engine uses.
+    /// Returns value, gradient and Hessian of [`Self::model`] with respect to the vertex from which the edges of
+    /// `corner` start, by the hand-written derivatives of the CPU engine.
     pub fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
         self.formulas().expansion(corner, Own, Smoothing::of(sharpness))
     }
 
-    /// Value, gradient and Hessian of [`Self::model`] with respect to the vertex that the edges of
-    /// `corner` start from, by dual numbers. Tests check the hand-written derivatives against it.
+    /// Returns value, gradient and Hessian of [`Self::model`] with respect to the vertex from which the edges of
+    /// `corner` start, by dual numbers. Tests compare the hand-written derivatives with this function.
     pub fn derivatives<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
-        // Moving the vertex by d changes both edges by -d.
+        // If the vertex moves by d, both edges change by -d.
         let ([ax, ay], [bx, by]) = (corner.a, corner.b);
         let a = [Dual::variable(ax, 0, -1.0), Dual::variable(ay, 1, -1.0)];
         let b = [Dual::variable(bx, 0, -1.0), Dual::variable(by, 1, -1.0)];
@@ -429,12 +431,12 @@ impl std::str::FromStr for Metric {
     }
 }
 
-/// The error for a name that no metric has.
+/// The text does not name a metric.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no metric is called '{0}'; there are {names}", names = names())]
 pub struct UnknownMetric(pub String);
 
-/// Lists the names of all metrics, for the error message.
+/// Returns the names of all metrics, separated by commas, for the error message.
 fn names() -> String {
     Metric::ALL.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
 }

@@ -1,17 +1,17 @@
-//! Target maps: the element that is wanted at a point.
+//! Target maps: the wanted size, stretching and orientation of elements, as linear maps.
 
 use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
 
 /// A target map: the symmetric positive definite matrix S, as xx, xy, yy, that transforms the element wanted at a point
-/// into the ideal one, the equilateral triangle of mean area. A metric measures a triangle transformed by S, T = S A
-/// W⁻¹. S is a target matrix of the target-matrix optimization paradigm (Knupp et al., SIAM J. Sci. Comp. 41, 2019),
+/// into the ideal element, the equilateral triangle of mean area. A metric measures a triangle transformed by S, T = S
+/// A W⁻¹. S is a target matrix of the target-matrix optimization paradigm (Knupp et al., SIAM J. Sci. Comp. 41, 2019),
 /// and the square root of the tensor of metric-based mesh adaptation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TargetMap<T>(pub(crate) [T; 3]);
 
 impl<T: Real> TargetMap<T> {
-    /// Returns the map of a triangle: the mean of the maps at its corners.
+    /// Returns the map of a triangle, the mean of the maps at its three corners.
     #[inline(always)]
     pub(crate) fn mean([a, b, c]: [[T; 3]; 3]) -> Self {
         const THIRD: f64 = 1.0 / 3.0;
@@ -22,7 +22,7 @@ impl<T: Real> TargetMap<T> {
         ])
     }
 
-    /// The inverse map.
+    /// Returns the inverse map.
     #[inline(always)]
     pub(crate) fn inverse(&self) -> Self {
         let [xx, xy, yy] = self.0;
@@ -30,7 +30,7 @@ impl<T: Real> TargetMap<T> {
         Self([yy * one, xy * one * -1.0, xx * one])
     }
 
-    /// The map scaled to keep areas.
+    /// Returns the map scaled to determinant 1, so that areas are kept.
     #[inline(always)]
     pub(crate) fn shape(&self) -> Self {
         let [xx, xy, yy] = self.0;
@@ -52,7 +52,8 @@ impl<T: Real> TargetMap<T> {
         Corner { a, b, mean_area: corner.mean_area }
     }
 
-    /// Returns the derivatives by a vertex of the plane, S g and S H S, given g and H by the transformed vertex.
+    /// Returns the derivatives by a vertex of the plane, S g and S H S, from the gradient g and the Hessian H by the
+    /// transformed vertex.
     #[inline(always)]
     pub(crate) fn pull_back(&self, shown: Dual<T>) -> Dual<T> {
         let [xx, xy, yy] = shown.hessian;

@@ -21,8 +21,8 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("tmop_80.wgsl"),
 };
 
-/// q² = (1 - γ) μ₂ + γ μ₇₇ with γ = 1/2, μ₂ = |T|² / 2τ - 1 = ε / τ and μ₇₇ = (τ - 1/τ)² / 2, where τ = area / mean and
-/// ε = excess / mean. The difference τ - 1/τ is (τ - 1) (τ + 1) / τ.
+/// Returns q² = (1 - γ) μ₂ + γ μ₇₇ with γ = 1/2, μ₂ = |T|² / 2τ - 1 = ε / τ and μ₇₇ = (τ - 1/τ)² / 2, where τ = area /
+/// mean and ε = excess / mean. The difference τ - 1/τ is computed as (τ - 1) (τ + 1) / τ.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     let scale = 1.0 / t.mean;
@@ -32,7 +32,7 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     e * inverse * 0.5 + size * size * 0.25
 }
 
-/// Value and derivatives of [`value`] by the invariants.
+/// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     let scale = 1.0 / t.mean;

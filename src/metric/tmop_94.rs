@@ -1,4 +1,4 @@
-//! The metric TMOP-94, which weighs shape and size, size less than SHAPE-SIZE does.
+//! The metric TMOP-94 of shape and size. Size has less weight than in TMOP-80 and more than in SOFT-SIZE.
 
 use crate::metric::corner::{Invariants, Slopes};
 use crate::metric::dual::Real;
@@ -22,16 +22,16 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("tmop_94.wgsl"),
 };
 
-/// The weight of (τ - 1)² / τ in q² = μ₂ + 1.5 μ₅₆.
+/// Weight of (τ - 1)² / τ in q² = μ₂ + 1.5 μ₅₆.
 const WEIGHT: f64 = 0.75;
 
-/// The function q² = μ₂ + 1.5 μ₅₆.
+/// Returns q² = μ₂ + 1.5 μ₅₆.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
     shape_and_size::value(t, WEIGHT)
 }
 
-/// The function q² and its derivatives by the invariants.
+/// Returns q² and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
     shape_and_size::slopes(t, WEIGHT)

@@ -1,9 +1,9 @@
-//! The table of features that do not go together.
+//! The table of mutually exclusive features.
 
 use crate::options::error::OptionError;
 use crate::options::feature::Feature;
 
-/// Two features that do not go together in one run.
+/// Two features that exclude each other in one run.
 pub(crate) struct Conflict {
     pub(crate) features: [Feature; 2],
     why: &'static str,
@@ -24,7 +24,7 @@ const CHANGING: &str =
 const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
 const TANGLED: &str = "inverted triangles give no bound; untangle the mesh in a run of its own";
 
-/// All conflicts. A run reports the first row whose two features it has.
+/// All conflicts. A run with several conflicts reports the first matching row.
 pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::TargetField, Feature::Slide, CHANGING),
     row(Feature::TargetField, Feature::MaxMove, CHANGING),
@@ -61,7 +61,7 @@ pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::Encoded, Feature::Goal, WHOLE_RUN),
 ];
 
-/// Returns the error of the first row of the table whose two features both are in `features`.
+/// Returns the error of the first row of the table whose two features are both in `features`.
 pub(super) fn check(features: &[Feature]) -> Result<(), OptionError> {
     let meets = |row: &&Conflict| row.features.iter().all(|feature| features.contains(feature));
     match CONFLICTS.iter().find(meets) {

@@ -2,26 +2,26 @@
 
 use crate::options::feature::Feature;
 
-/// A number out of the range of an option, or two features that do not go together.
+/// Error of options: numbers outside their ranges, or mutually exclusive features.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OptionError {
-    /// A number is out of its range.
+    /// An option has a number outside its range.
     #[error("{option} is {value}: it must be {range}")]
     OutOfRange {
-        /// The name of the option.
+        /// Name of the option.
         option: &'static str,
-        /// The value of the option.
+        /// Value that was given.
         value: f64,
-        /// The numbers that the option takes, in words.
+        /// The accepted numbers, in words that follow "it must be".
         range: &'static str,
     },
-    /// Two features do not go together in one run.
+    /// Two features of the run are mutually exclusive.
     #[error("{} does not go with {}: {why}", features[0], features[1])]
     Conflict {
         /// The two features.
         features: [Feature; 2],
-        /// The reason, and a remedy other than dropping one of the features.
+        /// Reason of the conflict, and a remedy other than dropping one of the features.
         why: &'static str,
     },
 }

@@ -1,9 +1,9 @@
-//! The features of a run that rules on combinations speak of.
+//! The features of a run for which the table of conflicts has rules.
 
 use std::fmt;
 
-/// A feature of a run. Some features do not go together; see
-/// [`Options::check_with`](crate::Options::check_with). Displays as the words of the library for the feature.
+/// A feature of a run. Some pairs of features are mutually exclusive; see
+/// [`Options::check_with`](crate::Options::check_with). Displayed as the library's name of the feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Feature {
@@ -42,13 +42,13 @@ pub enum Feature {
 }
 
 impl Feature {
-    /// Returns the features whose condition holds.
+    /// Returns the features whose condition is true, in the given order.
     pub fn present(conditions: impl IntoIterator<Item = (Self, bool)>) -> Vec<Self> {
         let is_present = |(feature, holds): (Self, bool)| holds.then_some(feature);
         conditions.into_iter().filter_map(is_present).collect()
     }
 
-    /// Every feature.
+    /// Every feature, in the order of the variants.
     pub const ALL: [Self; 16] = [
         Self::UnevenScheme,
         Self::UncorrectedScheme,

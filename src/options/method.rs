@@ -8,12 +8,14 @@ pub enum Method {
     /// [`RELAXED`](Self::RELAXED). Sweeps that an application encodes are not corrected by this method.
     #[default]
     Auto,
-    /// Sweeps alone at first; once sweeps gain little, each sweep is followed by a correction from coarser levels. About
-    /// 15 sweeps bring f within 1e-6 of its limit, for meshes of any size. If metrics alternate, they do so in the
-    /// sweeps alone. Sweeps with corrections are by the base metric, so that the run ends at its optimum.
+    /// Sweeps alone at first. Once sweeps gain little, each sweep is followed by a correction from coarser levels.
+    /// About 15 sweeps bring f within 1e-6 of its limit, for meshes of any size. If the scheme has several metrics,
+    /// only the sweeps alone alternate between them. Sweeps with corrections use the base metric, so that the run ends
+    /// at the optimum of the base metric.
     ///
     /// Needs a base metric that [supports corrections](crate::Metric::supports_multilevel) (all but area). Sweeps that
-    /// an application encodes with this method are corrected from the first sweep on, by one metric other than edge.
+    /// an application encodes with this method are corrected from the first sweep on; they need a single metric other
+    /// than edge.
     Multilevel,
     /// Sweeps alone, with over-relaxed Newton steps.
     Relaxed(Relaxed),
@@ -27,7 +29,7 @@ impl Method {
     /// [`Paper`](Self::Paper) with the default settings.
     pub const PAPER: Self = Self::Paper(Paper::DEFAULT);
 
-    /// The settings of over-relaxation in sweeps without corrections: those of [`Relaxed`], or the default ones.
+    /// Returns the settings of over-relaxation in sweeps without corrections: those of [`Relaxed`], or the defaults.
     pub(crate) fn relaxed(self) -> Relaxed {
         match self {
             Self::Relaxed(relaxed) => relaxed,
@@ -36,7 +38,7 @@ impl Method {
         }
     }
 
-    /// The settings of a visit: those of [`Paper`], or the default ones.
+    /// Returns the settings of a visit: those of [`Paper`], or the defaults.
     pub(crate) fn paper(self) -> Paper {
         match self {
             Self::Paper(paper) => paper,
@@ -48,13 +50,13 @@ impl Method {
 /// The settings of [`Method::Relaxed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxed {
-    /// The factor by which each Newton step is multiplied in its first trial, above 0 and below 2.
+    /// Factor by which each Newton step is multiplied in its first trial, above 0 and below 2.
     ///
-    /// `None` takes the metric's own factor in a scheme of one metric, and 1 in a scheme that alternates. With
-    /// alternating metrics each metric would have to undo the overshoot of the metric before, and the run ends worse
-    /// (edge+imr on a 2,000-vertex mesh at 1.536 instead of 1.492).
+    /// `None` takes the factor of the metric in a scheme of one metric, and 1 in a scheme that alternates. If metrics
+    /// alternate, each would have to undo the overshoot of the metric before, and the run would end worse (edge+imr on
+    /// a 2,000-vertex mesh at 1.536 instead of 1.492).
     pub omega: Option<f64>,
-    /// The number of sweeps with plain Newton steps before over-relaxation starts. By default 4.
+    /// Number of sweeps with plain Newton steps before over-relaxation starts; 4 by default.
     pub unrelaxed_sweeps: u32,
 }
 
@@ -71,16 +73,16 @@ impl Default for Relaxed {
 /// The settings of [`Method::Paper`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Paper {
-    /// The most Newton steps per visit of a vertex, from 1 to [`MAX_NEWTON_STEPS`](Self::MAX_NEWTON_STEPS); by default
-    /// 1. With analytic derivatives a visit ends earlier once its steps have become short.
+    /// Largest number of Newton steps per visit of a vertex, from 1 to [`MAX_NEWTON_STEPS`](Self::MAX_NEWTON_STEPS); 1
+    /// by default. With analytic derivatives, a visit ends earlier once its steps have become short.
     pub newton_steps: u32,
-    /// How metrics are differentiated.
+    /// Differentiation of metrics, by formulas or by differences.
     pub derivatives: Derivatives,
 }
 
 impl Paper {
-    /// The largest number of [`newton_steps`](Self::newton_steps). The number has a limit because an
-    /// [`Observer`](crate::Observer) cannot end a sweep.
+    /// Upper limit of [`newton_steps`](Self::newton_steps). The limit exists because an [`Observer`](crate::Observer)
+    /// cannot end a sweep.
     pub const MAX_NEWTON_STEPS: u32 = 1000;
 
     const DEFAULT: Self = Self { newton_steps: 1, derivatives: Derivatives::Analytic };
@@ -92,14 +94,14 @@ impl Default for Paper {
     }
 }
 
-/// How a metric is differentiated.
+/// Method to differentiate a metric.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Derivatives {
     /// Exactly, by formulas that tests compare with dual numbers.
     #[default]
     Analytic,
     /// By forward differences of the value, with 16 evaluations per triangle. Mesquite differentiates metrics without
-    /// analytic derivatives this way (EDGE, AREA and RMS of Park & Shontz). Slower and no better: it serves only to
-    /// test the paper's cost model.
+    /// analytic derivatives this way (EDGE, AREA and RMS of Park & Shontz). Slower than formulas and no better,
+    /// differences serve only to test the paper's cost model.
     FiniteDifference,
 }

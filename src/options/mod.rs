@@ -1,4 +1,4 @@
-//! The options of a run, their ranges, and the table of features that do not go together.
+//! Options of a run, ranges of their numbers, and the table of mutually exclusive features.
 
 mod conflicts;
 mod error;

@@ -1,34 +1,36 @@
-//! The exponent of the p-norm that stands for EDGE in Newton's method.
+//! The exponent of the p-norm that replaces EDGE in Newton's method.
 
-/// The exponent k of the p-norm that replaces EDGE in Newton's method, for each sweep. Given as log2 k.
+/// The exponent k of the p-norm that replaces EDGE in Newton's method, sweep by sweep, as binary logarithms.
 ///
 /// In runs with corrections from coarser levels, k doubles whenever a sweep with its correction gains little by the
-/// p-norm, not after a number of sweeps.
+/// p-norm, instead of after a fixed number of sweeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PNormExponent {
-    /// The log2 of k in the first sweep.
+    /// Binary logarithm of k in the first sweep.
     pub first: u32,
     /// Number of sweeps alone after which k doubles. 0 keeps k constant in any run.
     pub every: u32,
-    /// The log2 of the largest k.
+    /// Binary logarithm of the largest k.
     pub last: u32,
 }
 
 impl PNormExponent {
-    /// k = 16 throughout: good after a few sweeps, but it ends about 1 % above the best optimum.
+    /// k = 16 in every sweep: good after a few sweeps, but f ends about 1 % above the best optimum.
     pub const FIXED: Self = Self { first: 4, every: 0, last: 4 };
-    /// k from 2 to 512, doubling every 5 sweeps: for sweeps alone, which end some 3e-4 above a minimum of f with it, after more sweeps.
+    /// k from 2 to 512, doubled every 5 sweeps, for sweeps alone. f ends some 3e-4 above its own minimum, after more
+    /// sweeps than with [`FIXED`](Self::FIXED).
     pub const CONTINUED: Self = Self { first: 1, every: 5, last: 9 };
 
-    /// k from 2 to 8192: what runs with corrections take, which end within some 2e-5 of a minimum of f with it. Where there are
-    /// none, k doubles every 5 sweeps.
+    /// k from 2 to 8192, the default of runs with corrections. f ends within some 2e-5 of its own minimum. In sweeps
+    /// without corrections, k doubles every 5 sweeps.
     pub const CORRECTED: Self = Self { first: 1, every: 5, last: 13 };
 
-    /// Where EDGE's p-norm with the exponent k is least, f is this share over k above a minimum of its own near by: 0.15 to 0.16 on
-    /// meshes of 1,500 to 6,000 vertices.
+    /// k times the relative distance of f at the minimum of EDGE's p-norm from a nearby minimum of f itself: 0.15 to
+    /// 0.16 on meshes of 1,500 to 6,000 vertices.
     pub(crate) const ABOVE: f64 = 0.16;
 
-    /// [`Self::CORRECTED`] up to where half of this tolerance is left to f; as it is for 0.
+    /// Returns [`Self::CORRECTED`] with the largest k reduced so far that the p-norm's distance from the minimum of f
+    /// uses up half of `tolerance`. A tolerance of 0 reduces nothing.
     pub(crate) fn corrected_to(tolerance: f64) -> Self {
         let Self { first, last, .. } = Self::CORRECTED;
         let enough = (2.0 * Self::ABOVE / tolerance).log2().ceil();
@@ -36,16 +38,17 @@ impl PNormExponent {
         Self { last, ..Self::CORRECTED }
     }
 
-    /// The largest log2 k that is allowed: powers of ratios have an error of 1e-3 by then in single precision.
+    /// Largest binary logarithm of k that is allowed: at 2¹³, powers of ratios have an error of 1e-3 in single
+    /// precision.
     pub const MAX: u32 = 13;
 
-    /// Returns the log2 of k in a sweep; sweeps count from 1.
+    /// Returns the binary logarithm of k in a sweep; sweeps count from 1.
     pub fn of(self, sweep: u32) -> u32 {
         let doublings = sweep.saturating_sub(1).checked_div(self.every).unwrap_or(0);
         self.first.saturating_add(doublings).min(self.last.max(self.first))
     }
 
-    /// Returns the log2 of the largest k.
+    /// Returns the binary logarithm of the largest k.
     pub(crate) fn largest(self) -> u32 {
         if self.every == 0 { self.first } else { self.last.max(self.first) }
     }

@@ -1,16 +1,16 @@
-//! The ranges of numbers in the options.
+//! Ranges of the numbers in the options.
 
 use crate::metric::Scheme;
 use crate::options::error::OptionError;
 use crate::options::method::Paper;
 use crate::options::norm::PNormExponent;
 
-/// The range of a numeric option. The command line parses its values by the same ranges.
+/// Range of a numeric option. The command line parses its values by the same ranges.
 #[derive(Clone, Copy)]
 pub struct OptionRange {
-    /// The name of the option.
+    /// Name of the option.
     pub option: &'static str,
-    /// The numbers of the range, in words that follow "it must be".
+    /// The accepted numbers, in words that follow "it must be".
     pub words: &'static str,
     contains: fn(f64) -> bool,
 }
@@ -37,7 +37,7 @@ impl OptionRange {
         "from 0 to 13, the log2 of the exponent, and the last not below the first",
         |log2| (0.0..=f64::from(PNormExponent::MAX)).contains(&log2),
     );
-    /// The number of metrics in [`Options::scheme`](crate::Options::scheme).
+    /// Number of metrics in [`Options::scheme`](crate::Options::scheme).
     pub const SCHEME_LENGTH: Self =
         Self::new("scheme length", "60 metrics at most", |n| n <= f64::from(Scheme::LONGEST));
     /// [`Slide::corner_angle`](crate::Slide::corner_angle).
@@ -52,7 +52,7 @@ impl OptionRange {
         Self { option, words, contains }
     }
 
-    /// Whether a number is within the range. NaN is within none.
+    /// Returns whether a number is within the range. NaN is in no range.
     pub fn contains(&self, value: f64) -> bool {
         (self.contains)(value)
     }
@@ -60,7 +60,7 @@ impl OptionRange {
     /// Checks a number against the range.
     ///
     /// # Errors
-    /// [`OptionError::OutOfRange`].
+    /// [`OptionError::OutOfRange`] if `value` is not within the range.
     pub fn check(&self, value: f64) -> Result<(), OptionError> {
         match self.contains(value) {
             true => Ok(()),
@@ -82,7 +82,7 @@ fn is_positive(number: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// The words are typed by hand beside the constants.
+    /// The words are typed by hand and must agree with the constants.
     #[test]
     fn the_words_of_a_range_have_its_limits() {
         for (range, limit) in [

@@ -12,39 +12,41 @@ use crate::options::stopping::{Goal, Stopping};
 use crate::options::worst_by::WorstBy;
 use crate::precision::Precision;
 
-/// The options of a run: how the mesh is smoothed. The mesh itself, its targets and its vertices that slide belong to the
+/// The options of a run. The mesh, its targets and its sliding vertices are not options: they belong to the
 /// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR with corrections from coarser levels, until an
 /// estimated 1e-6 of f is left to gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// The metric, or several metrics in turn. The first metric judges convergence.
+    /// The metric, or several metrics that alternate. The first metric judges convergence.
     pub scheme: Scheme,
     /// The method by which sweeps lower the objective.
     pub method: Method,
-    /// The test by which the run ends before `max_sweeps` sweeps.
+    /// The criterion that ends the run before `max_sweeps` sweeps.
     pub stopping: Stopping,
-    /// The most sweeps of the run.
+    /// Largest number of sweeps.
     pub max_sweeps: u32,
     /// A limit on the inverse mean ratio of triangles after a step. No step ever inverts a triangle.
     pub guard: Guard,
-    /// The largest distance of a vertex from its position before the run, divided by the mean length of the edges there
-    /// before. Above 0; `None` for no bound. Only for whole runs, by one metric other than edge.
+    /// Largest distance of a vertex from its position before the run, divided by the mean length of its edges before
+    /// the run. Above 0; `None` for no bound. Only for whole runs, by one metric other than edge.
     pub max_move: Option<f64>,
-    /// Whether every triangle must keep an altitude of at least the least altitude in the mesh, which bounds the time
-    /// step of explicit solvers. Only for whole runs, by one metric other than edge.
+    /// Whether every triangle must keep an altitude of at least the least altitude in the mesh before the run, which
+    /// bounds the time step of explicit solvers. Only for whole runs, by one metric other than edge.
     pub keep_altitude: bool,
-    /// The measure by which the worst triangles are improved after the last sweep, on the CPU; `None` to leave them as
-    /// they are. Free vertices around the worst thousandth of the triangles (10 to 1000 of them) move so that the worst
-    /// triangle around them becomes less bad, and none becomes worse than that was. f may rise a little; where the worst
-    /// triangle of the mesh becomes no better, nothing moves. Only for whole runs, and not after a run that was canceled.
+    /// Measure by which the worst triangles are improved after the last sweep, on the CPU; `None` for no improvement.
+    /// Free vertices around the worst thousandth of the triangles (at least 10, at most 1000 triangles) move so that
+    /// the worst triangle around them becomes less bad, and no other triangle around them becomes worse than that
+    /// triangle was. f may rise a little. If the worst triangle of the mesh becomes no better, no vertex moves. Only
+    /// for whole runs, and not after a canceled run.
     pub improve_worst: Option<WorstBy>,
-    /// The precision of the file or buffer that will store the result. The run rounds all positions, of fixed vertices too,
-    /// to this precision before it checks them: the rounded mesh has no inverted triangle and a lower f.
+    /// Precision of the file or buffer that will store the result. The run rounds all positions, fixed vertices
+    /// included, to this precision before the final checks: the rounded mesh has no inverted triangle and a lower f.
     pub stored: Precision,
-    /// The exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`], as far
-    /// as the tolerance asks, in runs with corrections and [`PNormExponent::FIXED`] in runs of sweeps alone.
+    /// Exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`] in runs
+    /// with corrections, up to an exponent that suffices for the tolerance, and [`PNormExponent::FIXED`] in runs of
+    /// sweeps alone.
     pub edge_norm: Option<PNormExponent>,
-    /// Whether the history holds the objective of every metric, not of the base metric alone.
+    /// Whether the history holds the objective of every metric, or of the base metric alone.
     pub track_all: bool,
 }
 
@@ -73,17 +75,20 @@ impl Options {
         Self { scheme, method: Method::PAPER, ..Self::default() }
     }
 
-    /// Whether runs with these options are corrected from coarser levels, if the device has room for the levels.
+    /// Returns whether runs with these options are corrected from coarser levels, if the device has room for the
+    /// levels.
     pub fn is_multilevel(&self) -> bool {
         let may_be = matches!(self.method, Method::Auto | Method::Multilevel);
         may_be && self.scheme.base().supports_multilevel()
     }
 
-    /// Checks every number against its range, and whether the features of these options go together with each other and
-    /// with `more` features of the run. A [`Run`](crate::Run) does the same check, with the features of its smoother.
+    /// Checks every number against its range, and every pair of features against the table of conflicts. The features
+    /// are those of these options and `more` features of the run. [`Run`](crate::Run) checks its options too, together
+    /// with the features of its smoother.
     ///
     /// # Errors
-    /// [`OptionError::OutOfRange`] or [`OptionError::Conflict`].
+    /// [`OptionError::OutOfRange`] for the first number outside its range. If all ranges hold,
+    /// [`OptionError::Conflict`] for the first conflict in table order.
     pub fn check_with(&self, more: &[Feature]) -> Result<(), OptionError> {
         self.check_ranges()?;
         let mut features = self.features();
@@ -91,7 +96,7 @@ impl Options {
         conflicts::check(&features)
     }
 
-    /// Lists the features of these options that some rule speaks of.
+    /// Returns the features of these options for which the table of conflicts has rules.
     fn features(&self) -> Vec<Feature> {
         let goal = self.stopping.goal();
         let searches = matches!(goal, Some(Goal { desired: None, .. }));

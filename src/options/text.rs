@@ -6,8 +6,8 @@ use crate::options::run_options::Options;
 use crate::options::stopping::{Goal, Stopping};
 
 impl Options {
-    /// Returns a line `name = value` for each option. The names and values stay the same if a field is renamed. Equal
-    /// options have equal lines; numbers are written with all digits.
+    /// Returns a line `name = value` for each option. Names and values do not change when a field is renamed, so old
+    /// checkpoints remain valid. Equal options have equal lines; numbers are written with all digits.
     pub(crate) fn lines(&self) -> String {
         let Self {
             scheme,
@@ -67,7 +67,7 @@ impl Options {
     }
 }
 
-/// Writes a number with all digits, or "none".
+/// Formats a number with all digits; `None` becomes "none".
 fn optional(number: Option<f64>) -> String {
     number.map_or("none".to_owned(), |number| number.to_string())
 }
@@ -79,7 +79,7 @@ mod tests {
     use crate::options::{Guard, WorstBy};
     use crate::precision::Precision;
 
-    /// Lines that change void every checkpoint of the version before.
+    /// A change of any line voids every checkpoint of earlier versions.
     #[test]
     fn the_lines_of_the_default_options_do_not_change() {
         let expected = "scheme = imr\nmethod = auto\nstopping = tolerance 0.000001\nmax sweeps = 1000\n\

@@ -1,22 +1,21 @@
-//! The measure by which the worst triangles are improved after a run.
+//! Measures by which a run improves the worst triangles.
 
-/// The measure of the worst triangles that [`Options::improve_worst`](crate::Options::improve_worst) improves.
+/// Measure of the worst triangles that [`Options::improve_worst`](crate::Options::improve_worst) improves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum WorstBy {
-    /// The largest inverse mean ratio, after target maps are applied; it is made as small as possible.
+    /// Largest inverse mean ratio, after target maps are applied; minimized.
     Imr,
-    /// The least angle, after target maps are applied; it is made as large as possible.
+    /// Least angle, after target maps are applied; maximized.
     MinAngle,
-    /// The least altitude, in coordinates; it is made as large as possible. It bounds the time step of explicit
-    /// solvers.
+    /// Least altitude, in coordinates; maximized. The least altitude bounds the time step of explicit solvers.
     Altitude,
 }
 
 impl WorstBy {
-    /// All measures.
+    /// All measures, in the order of the variants.
     pub const ALL: [Self; 3] = [Self::Imr, Self::MinAngle, Self::Altitude];
 
-    /// The name on the command line and in reports.
+    /// Returns the name on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Imr => "imr",

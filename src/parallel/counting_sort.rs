@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use crate::parallel::tasks::{collect, for_each, for_each_part, map_parts};
 
-/// The most parts that are counted at once. Each part has its own counter for every group.
+/// Upper limit of parts counted in parallel. Memory grows with the parts, as each has a counter per group.
 const MOST_PARTS: usize = 8;
 
-/// The least number of items for each part. Fewer are not worth another thread.
+/// Items that justify a part of their own. Fewer items are not worth another thread.
 const SMALL: usize = 1 << 14;
 
 /// Numbers in groups, ascending within each group.
@@ -20,7 +20,7 @@ pub(crate) struct Groups {
 }
 
 impl Groups {
-    /// Groups the numbers below `items`. Each is put into the `N` groups that `keys` returns, all below `groups`.
+    /// Groups the numbers below `items`. Number `i` is put into the `N` groups `keys(i)`, each below `groups`.
     pub(crate) fn new<const N: usize>(
         items: usize,
         groups: usize,
@@ -32,7 +32,7 @@ impl Groups {
         Self { start, items: plain(grouped) }
     }
 
-    /// Returns where each group starts, and one past the end of the last.
+    /// Returns the offset of each group in the grouped list, and behind these offsets the length of the list.
     pub(crate) fn starts(&self) -> &[u32] {
         &self.start
     }
@@ -42,8 +42,8 @@ impl Groups {
         &self.items[self.start[group] as usize..self.start[group + 1] as usize]
     }
 
-    /// Returns the groups in chunks of `chunk` groups. Each chunk has the starts of its groups, with the end of the
-    /// last, and its numbers.
+    /// Splits the groups into chunks of `chunk` groups; the last may be shorter. Each chunk has the offsets of its
+    /// groups in the whole list, the end of its last group, and its numbers.
     pub(crate) fn chunks_mut(&mut self, chunk: usize) -> Vec<(&[u32], &mut [u32])> {
         let Self { start, items } = self;
         let last = start.len() - 1;
@@ -59,8 +59,9 @@ impl Groups {
     }
 }
 
-/// Groups the numbers below `items` by their keys without storing them. It calls `put(number, place)` for each place
-/// that a number gets, from any thread. Returns where each group starts, and one past the end of the last.
+/// Groups the numbers below `items` by their keys without storing the groups. Calls `put(number, index)`, from any
+/// thread, with each of a number's indices in the grouped list. Returns the offset of each group in this list, and
+/// behind these offsets the length of the list.
 pub(crate) fn place<const N: usize>(
     items: usize,
     groups: usize,
@@ -69,8 +70,9 @@ pub(crate) fn place<const N: usize>(
 ) -> Vec<u32> {
     let parts = rayon::current_num_threads().min(MOST_PARTS).min(items.div_ceil(SMALL)).max(1);
     let part = |part: usize| part * items / parts..(part + 1) * items / parts;
-    // The counters of a group, one for each part, are adjacent, so that their running sum is where each part writes. No
-    // two parts share a counter; counters are atomic only because those of a part are scattered.
+    // The counters of a group, one for each part, are adjacent, so that their running sum is the index where each part
+    // writes. No two parts share a counter. Counters are atomic only because the counters of one part are scattered in
+    // memory.
     let mut next = atomics(groups * parts, 0);
     for_each(parts, &|p| {
         for key in part(p).flat_map(&keys) {
@@ -94,13 +96,13 @@ pub(crate) fn place<const N: usize>(
     start
 }
 
-/// Splits a slice into parts of the given lengths.
+/// Splits a mutable slice into parts of the given lengths.
 pub(crate) fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
     let take = |length| slice.split_off_mut(..length).unwrap_or_default();
     lengths.map(take).collect()
 }
 
-/// Replaces each number by the sum of the numbers before it. Returns the sum of all.
+/// Replaces each cell's number by the sum of all earlier numbers, and returns the total.
 pub(crate) fn running_sum<T: Send>(
     cells: &mut [T],
     number: impl Fn(&mut T) -> &mut u32 + Sync,

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-/// Calls `task` for every number below `count`.
+/// Calls `task` in parallel for the numbers below `count`, in any order.
 pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
     if count <= 1 {
         // Handing a task to another thread and waiting for it takes longer than most tasks.
@@ -18,8 +18,8 @@ pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
     if rayon::current_thread_index().is_some() {
         return (0..count).into_par_iter().for_each(task);
     }
-    // Rayon would do all tasks on its own threads, while this one waits. It takes part instead, so that it need not be woken
-    // when the others are done first.
+    // Rayon would do all tasks on its own threads while the calling thread waits. The calling thread does tasks too, so
+    // it need not be woken when the other threads are done first.
     let next = AtomicUsize::new(0);
     let work = || {
         loop {
@@ -38,7 +38,7 @@ pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
     });
 }
 
-/// Calls `task` with the index of each part and the part, which may be owned or a mutable borrow.
+/// Calls `task(index, part)` for the parts in parallel. Parts may be owned values or mutable borrows.
 pub(crate) fn for_each_part<P: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) + Sync,
@@ -58,7 +58,7 @@ fn for_each_of<P: Send>(parts: Vec<P>, task: &(dyn Fn(usize, P) + Sync)) {
     });
 }
 
-/// Calls `task` as [`for_each_part`] does. Returns the results in the order of the parts.
+/// Calls `task` as [`for_each_part`] does. Results keep the order of the parts.
 pub(crate) fn map_parts<P: Send, T: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) -> T + Sync,
@@ -85,7 +85,8 @@ pub(crate) fn map_ranges<T: Send>(
     map_parts(ranges(count, size), |_, range| task(range))
 }
 
-/// Calls `task` with the index of the first item of each chunk of `size` items, and the chunk. The last may be shorter.
+/// Calls `task(first, chunk)` for each chunk of `size` items, with the index of the chunk's first item. The last chunk
+/// may be shorter.
 pub(crate) fn for_each_chunk<T: Send>(
     items: &mut [T],
     size: usize,
@@ -129,7 +130,7 @@ mod tests {
         assert_eq!(map_parts(["a", "b", "c"], |i, part| format!("{i}{part}")), ["0a", "1b", "2c"]);
     }
 
-    /// The calling thread takes part, whether it is one of a pool or not.
+    /// The calling thread does tasks too, whether the thread belongs to a pool or not.
     #[test]
     fn loops_within_loops_do_each_task_once() {
         let count = || {

@@ -5,14 +5,14 @@ use glam::DVec2;
 use crate::metric::{Corner, Formulas, OfEdges};
 use crate::patch::numbers::Numbers;
 
-/// Whether a triangle is neither inverted nor flat, by its rounded area.
+/// Returns whether a triangle is neither inverted nor flat, by its rounded area.
 #[inline(always)]
 pub(crate) fn is_positive<T: Numbers>(corner: &Corner<T>) -> T::Mask {
     let area = corner.doubled_area();
     area.constant(0.0).lt(area)
 }
 
-/// Whether the inverse mean ratio of a triangle with positive area is at most `max_imr`.
+/// Returns whether the inverse mean ratio of a triangle with positive area is at most `max_imr`.
 #[inline(always)]
 pub(crate) fn is_within<T: Numbers>(
     formulas: impl Formulas,
@@ -24,7 +24,8 @@ pub(crate) fn is_within<T: Numbers>(
     numerator.le(max_imr * area)
 }
 
-/// Whether the inverse mean ratio of a triangle is no larger than `before` a move. The area `now` must be positive.
+/// Returns whether the inverse mean ratio of a triangle is no larger than `before` a move. The area `now` must be
+/// positive.
 #[inline(always)]
 pub(crate) fn is_no_worse<T: Numbers>(
     formulas: impl Formulas,
@@ -36,8 +37,8 @@ pub(crate) fn is_no_worse<T: Numbers>(
     (numerator * area_before).le(numerator_before * area)
 }
 
-/// Whether a moved triangle has positive area, and an inverse mean ratio of at most `guard` or of at most the ratio
-/// `before` the move.
+/// Returns whether a moved triangle has positive area, and an inverse mean ratio of at most `guard` or of at most the
+/// ratio `before` the move.
 pub(crate) fn is_kept(before: &Corner<f64>, now: &Corner<f64>, guard: f64) -> bool {
     is_positive(now) && (is_within(OfEdges, now, guard) || is_no_worse(OfEdges, before, now))
 }
@@ -50,12 +51,12 @@ pub(crate) struct Circle {
 }
 
 impl Circle {
-    /// Whether a point is in the circle.
+    /// Returns whether a point is inside or on the circle.
     pub(crate) fn contains(self, at: DVec2) -> bool {
         !self.radius.is_finite() || at.distance(self.center) <= self.radius
     }
 
-    /// Returns a point, brought back to the circle if the point is beyond.
+    /// Returns `to`, or the nearest point of the circle if `to` is outside.
     pub(crate) fn nearest(self, to: DVec2) -> DVec2 {
         let distance = to.distance(self.center);
         if distance <= self.radius {

@@ -48,7 +48,7 @@ pub(crate) trait Corners<T: Numbers> {
         newton_direction(sum, eigenvalue_floor)
     }
 
-    /// Whether the triangle of corner `i` is neither inverted nor flat. `corner` is the result of
+    /// Returns whether the triangle of corner `i` is neither inverted nor flat. `corner` is the result of
     /// [`corner`](Self::corner) for `i` and `at`.
     #[inline(always)]
     fn is_positive(&self, _: usize, _at: [T; 2], corner: &Corner<T>) -> T::Mask {
@@ -56,8 +56,8 @@ pub(crate) trait Corners<T: Numbers> {
     }
 }
 
-/// Whether every corner of a patch is positive and has an inverse mean ratio of at most `max_imr`, with the vertex at
-/// `at`.
+/// Returns whether every corner of a patch is positive and has an inverse mean ratio of at most `max_imr`, with the
+/// vertex at `at`.
 #[inline(always)]
 pub(crate) fn is_acceptable<T: Numbers>(
     patch: &impl Corners<T>,
@@ -80,7 +80,7 @@ pub(crate) struct MetricObjective<'a, P, F> {
     pub(crate) patch: &'a P,
     pub(crate) formulas: F,
     pub(crate) smoothing: Smoothing,
-    /// The largest inverse mean ratio that a step may leave, unless the patch already has a larger one; infinite for no
+    /// Largest inverse mean ratio that a step may leave, unless the patch already has a larger one; infinite for no
     /// guard.
     pub(crate) shape_guard: f64,
 }

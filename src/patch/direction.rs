@@ -3,10 +3,10 @@
 use crate::metric::{Dual, Real};
 use crate::patch::numbers::Numbers;
 
-/// A search direction, with the objective's slope. In lanes, each vertex has its own direction.
+/// A search direction with the slope of the objective along it. In lanes, each vertex has its own direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Direction<T: Numbers> {
-    /// The vector to the end of a step of length 1.
+    /// Displacement of the vertex in a step of length 1.
     pub(crate) vector: [T; 2],
     /// Derivative of the objective along `vector`; negative for a descent.
     pub(crate) slope: T,

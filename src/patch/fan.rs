@@ -24,18 +24,18 @@ impl Fan {
         Self(topology.star(vertex).iter().map(own_first).collect())
     }
 
-    /// Gives every vertex a new number.
+    /// Replaces every vertex index `v` by `number[v]`.
     pub(crate) fn renumber(&mut self, number: &[u32]) {
         self.0.as_flattened_mut().iter_mut().for_each(|v| *v = number[*v as usize]);
     }
 
-    /// The vertex in the middle.
+    /// Returns the common vertex of the triangles, 0 if there are none.
     pub(crate) fn own(&self) -> u32 {
         self.0.first().map_or(0, |corners| corners[0])
     }
 
-    /// Gathers positions and target maps of the triangles. Trials with an altitude below `min_altitude` (normalized; 0 for
-    /// no limit) will be infeasible.
+    /// Gathers positions and target maps of the triangles. Trials with an altitude below `min_altitude` (normalized; 0
+    /// for no limit) are infeasible.
     pub(crate) fn patch(
         &self,
         problem: &Problem,
@@ -54,9 +54,9 @@ impl Fan {
 /// A triangle at the visited vertex.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FanCorner {
-    /// The positions of the other two corners, counter-clockwise.
+    /// Positions of the other two corners, counter-clockwise.
     pub(crate) ends: [DVec2; 2],
-    /// The target map of the triangle, if the mesh has targets.
+    /// Target map of the triangle, `None` if the mesh has no targets.
     pub(crate) map: Option<TargetMap<f64>>,
 }
 
@@ -98,8 +98,8 @@ impl Corners<f64> for FanPatch {
         self.corners[i].map.map_or(shown, |map| map.pull_back(shown))
     }
 
-    /// Whether a triangle is counter-clockwise by its exact sign and by its rounded area, and no lower than the least
-    /// altitude.
+    /// Returns whether a triangle is counter-clockwise, by its exact sign and by its rounded area, and has at least the
+    /// minimum altitude.
     fn is_positive(&self, i: usize, at: [f64; 2], corner: &Corner<f64>) -> bool {
         let [p, q] = self.corners[i].ends;
         is_positive(&[at, p.into(), q.into()], &[0, 1, 2])

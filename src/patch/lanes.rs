@@ -1,7 +1,7 @@
 //! SIMD lanes: four numbers at once, on any processor.
 //!
-//! Every operation rounds as that of `f64` does, and none are fused, so results depend neither on the processor nor on
-//! which numbers share a vector.
+//! Every operation rounds like the operation of `f64`, and none are fused, so results depend neither on the processor
+//! nor on which numbers share a vector.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f64x4, mask64x4};
@@ -10,13 +10,13 @@ use glam::DVec2;
 use crate::metric::Real;
 use crate::patch::numbers::{self, Numbers};
 
-/// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instruction set that the
-/// code is compiled for, and the constant `$mapped` to whether triangles are transformed by target maps.
+/// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instruction set for which
+/// the code is compiled, and the constant `$mapped` to whether target maps transform the triangles.
 ///
 /// Each copy of a sweep takes seconds to compile, so only usual cases have a copy of their own, with AVX2 on x86: each
-/// usual metric on meshes without targets, and soft-size on meshes with targets, where it takes half the time of the
-/// general copy. The general copy serves all else. It looks up the metric for each triangle, which costs imr nothing
-/// measurable, and gives meshes without targets identity maps.
+/// usual metric on meshes without targets, and soft-size on meshes with targets, where its copy takes half the time of
+/// the general copy. The general copy serves all other cases. It looks up the metric for each triangle, which costs imr
+/// nothing measurable, and gives meshes without targets identity maps.
 macro_rules! with_lanes {
     ($problem:expr, $metric:expr, $simd:ident, $f:ident, $mapped:ident => $body:expr) => {
         'done: {
@@ -59,7 +59,8 @@ macro_rules! with_lanes {
 }
 pub(crate) use with_lanes;
 
-/// Evaluates an expression with `$simd` bound to the instruction set that it is compiled for: AVX2 on x86 if the processor has it.
+/// Evaluates an expression with `$simd` bound to the instruction set for which the expression is compiled: AVX2 on x86
+/// if the processor has AVX2.
 macro_rules! with_instructions {
     ($level:expr, $simd:ident => $body:expr) => {{
         let level = $level;

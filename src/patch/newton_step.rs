@@ -7,7 +7,7 @@ use crate::patch::search_rule::{FLAT_EXPONENT, FLAT_RATIO, LEAST_FLAT, LEAST_MOV
 
 /// A function of the position of one vertex, or of one vertex in each lane, that a Newton step lowers.
 pub(crate) trait Objective<T: Numbers> {
-    /// Returns the value with its derivatives.
+    /// Returns value, gradient and Hessian of the objective.
     fn expansion(&self, at: [T; 2]) -> Dual<T>;
 
     /// Returns the value at a trial position, and whether the trial is feasible. If the objective has a
@@ -26,14 +26,14 @@ pub(crate) trait Objective<T: Numbers> {
         on_line
     }
 
-    /// Returns the sum of q², given the value, which is the sum of q² - ideal².
+    /// Returns the sum of q² over the patch, given the value, which is the sum of q² - ideal².
     #[inline(always)]
     fn squares(&self, value: T) -> T {
         value
     }
 
-    /// The largest inverse mean ratio that a step may leave, unless the patch already has a larger one; infinite for no
-    /// guard.
+    /// Returns the largest inverse mean ratio that a step may leave, unless the patch already has a larger one;
+    /// infinite for no guard.
     #[inline(always)]
     fn shape_guard(&self) -> f64 {
         f64::INFINITY
@@ -70,8 +70,8 @@ pub(crate) fn newton_step<T: Numbers>(
     }
     let mut searching = going & descends;
     let (mut end, mut stepped) = (at, at[0].mask(false));
-    // A triangle may stay as bad as the worst of the patch. Few trials break the guard, so the worst is computed when
-    // one does.
+    // A triangle may stay as bad as the worst of the patch. Few trials break the guard, so the worst ratio is computed
+    // only after a trial does.
     let guard = objective.shape_guard();
     let mut max_imr = at[0].constant(guard);
     let mut worst_is_known = !guard.is_finite();
@@ -126,7 +126,7 @@ fn lengthened<T: Numbers>(
         share.constant(1.0) - share * FLAT_EXPONENT,
         share.constant(1.0 / max_lengthening),
     );
-    // A triangle may be as flat as positions are coarse. A step no longer than that would be rounded away.
+    // A triangle may be as flat as positions are coarse. A step shorter than `coarse` would be rounded away.
     let coarse = Real::max(at[0].abs(), at[1].abs()) * LEAST_MOVE;
     let far = Real::max(length / rest, coarse / Real::sqrt(dx * dx + dy * dy));
     T::select(flat, far, length)

@@ -6,7 +6,7 @@ use crate::metric::Real;
 
 /// A scalar, or a SIMD vector with one number per lane. Comparisons return a mask with one truth value per number.
 pub(crate) trait Numbers: Real {
-    /// The truth values: `bool` for `f64`.
+    /// Type of truth values: `bool` for `f64`.
     type Mask: Mask;
     /// Returns a mask with `value` in every lane.
     fn mask(self, value: bool) -> Self::Mask;
@@ -18,7 +18,7 @@ pub(crate) trait Numbers: Real {
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Returns absolute values.
     fn abs(self) -> Self;
-    /// Changes signs.
+    /// Returns numbers with the opposite sign.
     fn negative(self) -> Self;
 }
 
@@ -26,9 +26,9 @@ pub(crate) trait Numbers: Real {
 pub(crate) trait Mask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
 {
-    /// Whether all truth values are true.
+    /// Returns whether all truth values are true.
     fn all(self) -> bool;
-    /// Whether all truth values are false.
+    /// Returns whether all truth values are false.
     fn none(self) -> bool;
 }
 

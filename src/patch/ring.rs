@@ -9,21 +9,20 @@ use crate::patch::corners::Corners;
 use crate::patch::direction::{Direction, newton_direction};
 use crate::patch::lanes::{LANES, Lanes, Points, points, target_maps};
 
-/// The one-rings of four free vertices with the same number of neighbors. If `MAPPED`, triangles are transformed by
-/// target maps.
+/// One-rings of four free vertices of equal degree. If `MAPPED`, target maps transform the triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct Rings<'a, S: Simd, const MAPPED: bool> {
     /// Positions of the neighbors, counter-clockwise, with the first repeated at the end.
     ring: &'a [Points<S>],
-    /// The target map of each triangle, if the mesh has targets.
+    /// Target map of each triangle; unused if not `MAPPED`.
     maps: &'a [TargetMap<Lanes<S>>],
-    /// The inverse of the target map of each vertex itself, if the mesh has targets.
+    /// Inverse of the target map of each visited vertex; `None` if not `MAPPED`.
     inverse_map: Option<TargetMap<Lanes<S>>>,
     /// Mean area of the mesh's triangles, after their target maps are applied.
     mean_area: f64,
 }
 
-/// Memory for [`Rings`], which one visit after another uses.
+/// Memory for [`Rings`], reused by one visit after another.
 pub(crate) struct Scratch<S: Simd> {
     ring: Vec<Points<S>>,
     maps: Vec<TargetMap<Lanes<S>>>,
@@ -75,13 +74,13 @@ impl<'a, S: Simd, const MAPPED: bool> Rings<'a, S, MAPPED> {
         Self { ring, maps, inverse_map, mean_area: problem.mean_area() }
     }
 
-    /// The inverse of the target map of each vertex, if the mesh has targets.
+    /// Returns the inverse of the target map of each visited vertex, `None` if not `MAPPED`.
     #[inline(always)]
     pub(crate) fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
         &self.inverse_map
     }
 
-    /// The squared length of one edge at each vertex: that to its first neighbor.
+    /// Returns the squared length of the edge from each vertex to its first neighbor.
     #[inline(always)]
     pub(crate) fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
         let (x, y) = (self.ring[0][0] - at[0], self.ring[0][1] - at[1]);
@@ -102,7 +101,7 @@ impl<S: Simd, const MAPPED: bool> Corners<Lanes<S>> for Rings<'_, S, MAPPED> {
         Own
     }
 
-    /// The triangle between the neighbors `i` and `i` + 1.
+    /// Returns the triangle between the neighbors `i` and `i` + 1.
     #[inline(always)]
     fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
         let (p, q) = (self.ring[i], self.ring[i + 1]);

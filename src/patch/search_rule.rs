@@ -1,12 +1,13 @@
-//! The constants of all searches along a direction at one vertex, side by side.
+//! The constants of all line searches for the step of a vertex, side by side.
 
-/// Parameters of a line search: the lengths of trials, and the condition by which a trial is accepted. Every search for
-/// the step of a vertex has a constant here. Callers replace fields that depend on a metric or a sweep.
+/// Parameters of a line search: the lengths of trials, and the condition by which a trial is accepted. Sweeps, sliding,
+/// bounds, worst triangles and untangling have a constant each. Callers replace fields that depend on a metric or a
+/// sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SearchRule {
     /// Length of the first trial; 1 is a full Newton step.
     pub(crate) first_length: f64,
-    /// Limit of the trials. If no trial is accepted, the vertex stays.
+    /// Largest number of trials. If no trial is accepted, the vertex stays.
     pub(crate) trials: u32,
     /// Factor on the length after a trial that does not decrease the objective enough.
     pub(crate) shorten: f64,
@@ -32,8 +33,8 @@ impl SearchRule {
         shorten: 0.5,
         shorten_infeasible: 0.25,
         sufficient_decrease: Some(SUFFICIENT_DECREASE),
-        // The rounding of a patch's objective in single precision. The CPU engine allows for it too, so that both
-        // engines accept the same steps.
+        // The slack allows for the rounding of a patch's objective in single precision. The CPU engine has the same
+        // slack, so that both engines accept equal steps.
         slack: 1e-6,
         eigenvalue_floor: 0.0,
         max_lengthening: None,
@@ -59,16 +60,17 @@ impl SearchRule {
 /// Share of the predicted decrease that a trial must reach (Armijo).
 pub(crate) const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// Around nearly flat triangles the objective E of a patch goes as 1/d², with d their altitude, and a Newton step makes
-/// d larger by a third at most. The search then minimizes -E^(1 - 1.4), which is nearly linear in d and has the same
-/// minima. The Newton step of -E^(1 - 1.4) has the same direction and 1 / (1 - 1.4 r) times the length, with
-/// r = gᵀH⁻¹g / E.
+/// Exponent of the objective that lengthens steps around nearly flat triangles. There the objective E of a patch goes
+/// as 1/d², with d the altitude of the triangles, and a Newton step makes d larger by a third at most. The search then
+/// minimizes -E^(1 - 1.4), which is nearly linear in d and has the same minima. The Newton step of -E^(1 - 1.4) has the
+/// same direction and 1 / (1 - 1.4 r) times the length, with r = gᵀH⁻¹g / E.
 pub(crate) const FLAT_EXPONENT: f64 = 1.4;
-/// Steps are lengthened for r above this ratio. r is 2/3 for E = 1/d², and at most 1/2 for E = 1/d.
+/// Value of r above which steps are lengthened. r is 2/3 for E = 1/d², and at most 1/2 for E = 1/d.
 pub(crate) const FLAT_RATIO: f64 = 0.6;
-/// Steps are lengthened if the sum of q² over a patch is larger: a triangle has an inverse mean ratio of a thousand.
-/// Less flat triangles open in a few steps of Newton's own length.
+/// Sum of q² over a patch above which steps are lengthened: a triangle then has an inverse mean ratio of about a
+/// thousand. Less flat triangles open in a few steps of Newton's own length.
 pub(crate) const LEAST_FLAT: f64 = 1e6;
-/// The shortest first trial next to a nearly flat triangle, on the CPU alone: 2⁻⁴⁶ of the larger coordinate, which is
-/// 128 units in its last place. Shorter moves would be rounded away. Devices never sweep triangles of this flatness.
+/// Length of the shortest first trial next to a nearly flat triangle, on the CPU alone: 2⁻⁴⁶ of the larger coordinate,
+/// which is 64 to 128 units in its last place. Shorter moves would be rounded away. Devices never sweep triangles of
+/// this flatness.
 pub(crate) const LEAST_MOVE: f64 = 1.0 / (1u64 << 46) as f64;

@@ -16,7 +16,7 @@ use crate::layout::{Problem, prepare};
 use crate::mesh::Mesh;
 use crate::metric::{Corner, Dual, Given, Metric, Smoothing};
 
-/// A hexagon of six triangles around one free vertex.
+/// Returns a hexagon of six triangles around one free vertex.
 fn hexagon() -> Problem {
     let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
     let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [1.2 * x, y]).collect();
@@ -25,7 +25,7 @@ fn hexagon() -> Problem {
     prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap().1
 }
 
-/// The triangles around the first vertex, in the order of its one-ring.
+/// Returns the triangles around the first vertex, in the order of its one-ring.
 fn fan(problem: &Problem) -> FanPatch {
     let ring = problem.ring_of(0);
     let next = ring.iter().cycle().skip(1);
@@ -37,7 +37,7 @@ fn fan(problem: &Problem) -> FanPatch {
     FanPatch { corners, mean_area: problem.mean_area(), min_altitude: 0.0 }
 }
 
-/// Positions of the vertex: well inside the hexagon, and so near an edge that first trials are lengthened.
+/// Returns positions of the vertex: well inside the hexagon, and so near an edge that first trials are lengthened.
 fn places(problem: &Problem) -> [[f64; 2]; LANES] {
     let [first, second] = [0, 1].map(|i| problem.positions()[problem.ring_of(0)[i] as usize]);
     let middle = (first + second) * 0.5;
@@ -123,7 +123,7 @@ fn from_right_angle([a, b]: [f64; 2]) -> [f64; 2] {
 
 /// Four quadrilaterals around a vertex. Each has three corners that depend on the vertex.
 struct Quadrilaterals {
-    /// The eight vertices around the visited vertex, counter-clockwise; those with even numbers are its neighbors.
+    /// The eight vertices around the visited vertex, counter-clockwise. Vertices with even indices are its neighbors.
     ring: [DVec2; 8],
 }
 

@@ -1,4 +1,4 @@
-//! The desired objective of a goal.
+//! The desired objective of a goal: as given, or found by search runs.
 
 use glam::DVec2;
 
@@ -14,8 +14,8 @@ use crate::whole::{Device, Ended, Live, Spec, drive};
 use super::prepared::Smoother;
 
 impl Smoother<'_> {
-    /// Returns the desired objective of a goal. If it is not given, finds it by runs to convergence; `None` if the
-    /// observer ended one of them.
+    /// Returns the desired objective of a goal. If the goal has none, runs to convergence determine the objective.
+    /// `None` if the observer ended a search run.
     pub(super) async fn aim(
         &self,
         goal: Goal,
@@ -59,7 +59,7 @@ impl Smoother<'_> {
             describe.push(format!("{label}: {f} after {sweeps} sweeps ({})", end.stop.name()));
             desired = desired.min(f);
         }
-        // On an optimal mesh, what these runs gain is rounding. The first f is then the desired one.
+        // On an optimal mesh, search runs gain no more than rounding. The initial f is then the desired one.
         let initial = self.objective(base, start);
         if initial - desired <= NOISE * initial + ROUNDING {
             desired = initial;
@@ -68,7 +68,7 @@ impl Smoother<'_> {
         Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }))
     }
 
-    /// Runs to convergence, from some positions.
+    /// Runs to convergence from the given positions, with progress reported as [`Phase::Reference`].
     async fn refer(
         &self,
         options: &Options,

@@ -21,19 +21,19 @@ pub struct Smoother<'a> {
     pub(super) mesh: Cow<'a, Mesh>,
     pub(super) topology: Topology<'a>,
     pub(super) problem: Problem,
-    /// The caller's curves, for the fingerprint in checkpoints.
+    /// The curves that the caller set, for the fingerprint in checkpoints; `None` if no vertex slides.
     pub(super) slide: Option<Slide>,
     pub(super) sliding: Option<Sliding>,
     /// Number of periodic pairs that slide, and number of pairs that stay because the common motion does not fit them.
     pairs: [usize; 2],
-    /// The field of targets, if targets belong to points of the plane and not to vertices.
+    /// Field of targets that belong to points of the plane; `None` if targets belong to vertices or are not set.
     pub(super) field: Option<TargetField>,
     prepare: Duration,
 }
 
 impl<'a> Smoother<'a> {
-    /// Prepares a mesh. A mesh without a free vertex, such as a strip of triangles, is accepted: its vertices can slide; see
-    /// [`set_slide`](Self::set_slide).
+    /// Prepares a mesh. A mesh without free vertices, such as a strip of triangles, is accepted, as its vertices can
+    /// slide; see [`set_slide`](Self::set_slide).
     ///
     /// # Errors
     /// [`MeshError`] if the mesh cannot be smoothed: see [`Topology::new`] and [`Topology::check_smoothable`].
@@ -44,14 +44,14 @@ impl<'a> Smoother<'a> {
 
     fn of(mesh: &'a Mesh, prepared: (Topology<'a>, Problem), start: Instant) -> Self {
         let (mut topology, problem) = prepared;
-        // Runs need only the problem. The stars are found again if a vertex has to be set back.
+        // Runs need only the problem. The stars are computed again when a vertex has to be set back.
         topology.forget_stars();
         let (mesh, pairs) = (Cow::Borrowed(mesh), [0; 2]);
         let (slide, sliding, field) = (None, None, None);
         Self { mesh, topology, problem, slide, sliding, pairs, field, prepare: start.elapsed() }
     }
 
-    /// Fails if no vertex is free and none slides.
+    /// Fails with [`MeshError::NothingFree`] if no vertex is free and no vertex slides.
     pub(super) fn check_movable(&self) -> Result<(), MeshError> {
         match self.problem.free_count() == 0 && self.sliding.is_none() {
             true => Err(MeshError::NothingFree { vertices: self.mesh.points.len() }),
@@ -59,8 +59,8 @@ impl<'a> Smoother<'a> {
         }
     }
 
-    /// Copies the mesh into the smoother, which can then outlive the mesh that it was made from: in a struct without
-    /// lifetimes, or in a spawned task.
+    /// Copies the mesh into the smoother, which then borrows nothing and can be stored in a struct without lifetimes,
+    /// or moved into a spawned task.
     pub fn into_owned(self) -> Smoother<'static> {
         Smoother {
             mesh: Cow::Owned(self.mesh.into_owned()),
@@ -74,11 +74,12 @@ impl<'a> Smoother<'a> {
         }
     }
 
-    /// Sets the targets of elements in further runs: one target for each vertex of the mesh, in place of equilateral
-    /// triangles of one size. f is then that of the triangles after the target maps are applied.
+    /// Sets the targets of elements in further runs, one target per vertex of the mesh. Without targets, elements are
+    /// to be equilateral triangles of equal size. f is then evaluated after the target maps are applied to the
+    /// triangles.
     ///
     /// # Errors
-    /// [`MeshError::ValueCount`] if there is not one target for each vertex.
+    /// [`MeshError::ValueCount`] if `targets` does not have one target per vertex.
     pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
         targets.check_count(self.mesh.points.len())?;
         self.problem.set_targets(targets.maps());
@@ -86,14 +87,15 @@ impl<'a> Smoother<'a> {
         Ok(())
     }
 
-    /// Sets the targets of elements at each point of the plane, in place of targets that belong to vertices. A run then
-    /// consists of periods of sweeps, after each of which targets are evaluated at the new positions of the vertices. f
-    /// is evaluated with these targets at the end of each period, and does not rise. Within a period targets do not
-    /// change, so a run may end above the least possible f, when further periods do not lower it. Returns which vertices
-    /// are outside of the field's mesh.
+    /// Sets the targets of elements at each point of the plane, in place of targets that belong to vertices. Returns a
+    /// summary of the vertices outside of the field's background.
+    ///
+    /// A run then consists of periods of sweeps. At the end of each period, targets are evaluated at the new positions
+    /// of the vertices, and f with these targets, which does not rise from period to period. Targets do not change
+    /// within a period, so a run may end above the least possible f, when further periods do not lower f.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] if the position of a vertex is not finite.
+    /// [`MeshError::NotFinite`] if a coordinate of a vertex is infinite or NaN.
     pub fn set_target_field(&mut self, field: TargetField) -> Result<Outside, MeshError> {
         let (targets, outside) = field.at(&self.mesh.points)?;
         self.set_targets(&targets)?;
@@ -101,11 +103,11 @@ impl<'a> Smoother<'a> {
         Ok(outside)
     }
 
-    /// Lets vertices slide along the boundary and other curves in further runs; `None` turns this off. Returns the
+    /// Lets vertices slide along the boundary and other curves in further runs; `None` turns sliding off. Returns the
     /// number of vertices that may slide.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] if a number is out of its range, [`MeshError::IndexOutOfRange`] if a listed vertex does
+    /// [`SmoothError::Option`] if a number is outside its range, [`MeshError::IndexOutOfRange`] if a listed vertex does
     /// not exist.
     pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
         (self.slide, self.sliding, self.pairs) = (None, None, [0; 2]);
@@ -122,18 +124,18 @@ impl<'a> Smoother<'a> {
         Ok(count)
     }
 
-    /// Returns the number of pairs of vertices ([`Slide::periodic`]) that slide, and the number of pairs that do not
-    /// move, as the translation or rotation of most pairs in their list does not fit them.
+    /// Returns the number of vertex pairs ([`Slide::periodic`]) that slide, and the number of pairs that stay. A pair
+    /// stays if the translation or rotation of most pairs in its list does not fit the pair.
     pub fn pairs(&self) -> [usize; 2] {
         self.pairs
     }
 
-    /// Returns the objective f by a metric with the vertices at `points`, after target maps are applied if there are
-    /// any; see [`Self::set_targets`] and [`Self::set_target_field`].
+    /// Returns the objective f by a metric with the vertices at `points`, after target maps are applied if targets are
+    /// set; see [`Self::set_targets`] and [`Self::set_target_field`].
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::NotFinite`] if a point at
-    /// which a target is needed is not finite.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex, [`MeshError::NotFinite`] if a point
+    /// that needs a target has an infinite or NaN coordinate.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
         let positions = self.problem.normalized(points, Vec::new());
@@ -143,14 +145,15 @@ impl<'a> Smoother<'a> {
         Ok(metric.ideal_squared() + mean_excess(metric, &problem, &positions))
     }
 
-    /// Returns the mesh's topology: windings, boundary and free vertices.
+    /// Returns the topology of the mesh: windings, boundary and free vertices.
     pub fn topology(&self) -> &Topology<'a> {
         &self.topology
     }
 
-    /// Returns the triangles that are neither inverted nor flat, but so flat, or so small beside the others, that their
-    /// inverse mean ratio is not finite as computed in double precision from one of their corners. With one of them a run by
-    /// EDGE or a metric that has a barrier may be refused ([`MeshError::BeyondPrecision`]); [`untangle`](fn@crate::untangle) opens those that have a free vertex.
+    /// Returns the triangles that are neither inverted nor flat, but whose inverse mean ratio overflows in double
+    /// precision, computed from any of the three corners. Such triangles are too flat, or too small beside other
+    /// triangles. A mesh with such triangles may be refused by runs by EDGE or by metrics with a barrier
+    /// ([`MeshError::BeyondPrecision`]); [`untangle`](fn@crate::untangle) opens those that have a free vertex.
     pub fn beyond_precision(&self) -> Vec<usize> {
         let beyond = self.problem.beyond_precision(self.problem.positions());
         self.problem.in_mesh(&beyond, self.topology.triangles())
@@ -161,23 +164,23 @@ impl<'a> Smoother<'a> {
         self.problem.colors().len()
     }
 
-    /// Returns the duration of [`Self::new`].
+    /// Returns the time that [`Self::new`] took.
     pub fn prepare_time(&self) -> Duration {
         self.prepare
     }
 
-    /// Returns the number of triangles, and the number of vertices that some triangle uses.
+    /// Returns the size of the mesh. Only vertices that some triangle uses are counted.
     pub fn size(&self) -> MeshSize {
         let triangles = self.problem.triangles().len();
         MeshSize { vertices: self.problem.positions().len(), triangles }
     }
 
     /// Sets the vertices of inverted or flat triangles back to their positions in the mesh, in place, and returns the
-    /// number of these vertices; see [`topology::certify`](crate::topology::certify). Needed if `points` are rounded
-    /// again after [`Self::run`]. For pairs that slide, both vertices are set back.
+    /// number of vertices set back; see [`topology::certify`](crate::topology::certify). Needed if `points` are rounded
+    /// again after [`Self::run`]. If a vertex slides in a pair, both vertices of the pair are set back.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex. Nothing is moved then.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex; no vertex is then moved.
     pub fn certify(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
         let before = &self.mesh.points;
         let mut returned = certify(&self.topology, before, points)?;

@@ -77,22 +77,22 @@ impl<'r> Run<'r> {
         Self { policy: Box::new(policy), ..self }
     }
 
-    /// Continues from a checkpoint of a run on the same mesh with the same options. On the engine that took the checkpoint,
-    /// the run gives the same bits as a run that was never interrupted. If the checkpoint was taken on the CPU, the run
-    /// continues there, whatever the backend. With `None`, the run starts from the mesh.
+    /// Continues from a checkpoint of a run on the same mesh with equal options. On the engine that took the
+    /// checkpoint, the result has the bits of an uninterrupted run. If the checkpoint was taken on the CPU, the run
+    /// continues on the CPU, whatever the backend. With `None`, the run starts from the mesh.
     pub fn resume(self, checkpoint: impl Into<Option<&'r Checkpoint>>) -> Self {
         Self { resumed: checkpoint.into(), ..self }
     }
 
-    /// Smooths the mesh. Blocks until the run ends.
+    /// Smooths the mesh, and blocks until the run ends.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] for a number out of its range, or for two features that do not go together;
-    /// [`SmoothError::Mesh`] with [`MeshError::NothingFree`](crate::MeshError::NothingFree) if no vertex is free and none
-    /// slides; [`SmoothError::Checkpoint`] if the checkpoint is of another run; [`SmoothError::Gpu`] if the device fails
-    /// and the policy does not let the run fall back to the CPU. If the mesh does not fit the device, the error holds
-    /// [`GpuError::Limit`](crate::GpuError::Limit) or [`GpuError::TooLarge`](crate::GpuError::TooLarge) and comes before
-    /// the first sweep.
+    /// [`SmoothError::Option`] if a number is outside its range or two features are mutually exclusive;
+    /// [`SmoothError::Mesh`] with [`MeshError::NothingFree`](crate::MeshError::NothingFree) if no vertex is free and no
+    /// vertex slides; [`SmoothError::Checkpoint`] if the checkpoint belongs to another run; [`SmoothError::Gpu`] if the
+    /// device fails and the policy does not let the run fall back to the CPU. If the mesh does not fit the device, the
+    /// error holds [`GpuError::Limit`](crate::GpuError::Limit) or [`GpuError::TooLarge`](crate::GpuError::TooLarge) and
+    /// comes before the first sweep.
     pub fn block(self) -> Result<Outcome, SmoothError> {
         let device = match self.backend {
             Backend::Cpu => None,

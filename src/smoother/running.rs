@@ -34,7 +34,7 @@ impl Smoother<'_> {
         let began = Instant::now();
         options.check_with(&self.features())?;
         self.check_movable()?;
-        // Vertices slide on the CPU, whatever the engine of the sweeps.
+        // Only the CPU slides vertices, so a mesh without free vertices needs no device.
         let device = device.filter(|_| self.problem.free_count() > 0);
         let (device, fault) = self.checked(device, policy).await?;
         let mut about = self.about(options);
@@ -61,7 +61,8 @@ impl Smoother<'_> {
         };
         let target = goal.as_ref().map(|goal| match goal.desired < initial {
             true => initial - goal.fraction * (initial - goal.desired),
-            // Reached from the start, also where a device's f is a little above this one.
+            // The goal is reached from the start. The target is above f by a margin, as f on a device may be a little
+            // above `initial`.
             false => 2.0 * initial + 1.0,
         });
 
@@ -86,7 +87,7 @@ impl Smoother<'_> {
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
     }
 
-    /// Describes a run with these options, as its checkpoints do.
+    /// Returns the description of a run with these options that its checkpoints carry.
     fn about(&self, options: &Options) -> About {
         let of_slide = self.slide.as_ref().map(Slide::words);
         let of_field = self.field.as_ref().map(TargetField::words);
@@ -94,7 +95,7 @@ impl Smoother<'_> {
         resume::about(&self.mesh, self.problem.targets(), &more, options)
     }
 
-    /// Lists the features that a run has by this smoother.
+    /// Returns the features that the mesh, targets and curves of this smoother give to a run.
     fn features(&self) -> Vec<Feature> {
         Feature::present([
             (Feature::Slide, self.sliding.is_some()),
@@ -103,14 +104,14 @@ impl Smoother<'_> {
         ])
     }
 
-    /// Whether a triangle is so flat, or so small beside the others, that double precision cannot judge it as the metric does,
-    /// given the objective.
+    /// Returns whether a triangle is so flat, or so small beside others, that the metric cannot judge it in double
+    /// precision. `objective` is f by the metric.
     fn is_beyond_precision(&self, metric: Metric, objective: f64) -> bool {
-        // Rounded areas have errors of some 1e-16 of the squared edges, so metrics of such triangles are far beyond this.
+        // Rounded areas have errors of some 1e-16 of the squared edges, so q² of such a triangle far exceeds this sum.
         const LEAST: f64 = 1e13;
         let beyond = || self.problem.beyond_precision(self.problem.positions());
         if metric.properties().barrier {
-            // Some metrics are negative where the rounded area is.
+            // Some metrics are negative where the rounded area is negative.
             let sum = objective.abs() * self.size().triangles as f64;
             return sum > LEAST && !beyond().is_empty();
         }
@@ -119,8 +120,8 @@ impl Smoother<'_> {
         !metric.is_smooth() && beyond().iter().any(can_move)
     }
 
-    /// Returns the device on which a run begins, after checking that the mesh fits it and that it keeps all digits. If
-    /// it drops digits, `policy` may let the run begin on the CPU.
+    /// Returns the device on which a run begins, after checks that the mesh fits the device and that its arithmetic
+    /// keeps all digits. If the device drops digits, `policy` may let the run begin on the CPU.
     async fn checked<'g>(
         &self,
         device: Option<Device<'g>>,
@@ -137,9 +138,9 @@ impl Smoother<'_> {
         }
     }
 
-    /// Converts the final positions of the sweeps to coordinates, and evaluates them. Rounding, and vertices that were
-    /// set back, may have cost more than the sweeps gained, and a device moves the vertices of an optimal mesh by its
-    /// own rounding. If nothing was gained on `initial`, the mesh is returned unchanged.
+    /// Converts the final positions of the sweeps to coordinates, and evaluates the result. Rounding, and vertices that
+    /// were set back, may have cost more than the sweeps gained. A device also moves the vertices of an optimal mesh by
+    /// its own rounding. If nothing was gained on `initial`, the mesh is returned unchanged.
     fn judged(
         &self,
         options: &Options,
@@ -167,7 +168,7 @@ impl Smoother<'_> {
             *x = options.stored.rounded(*x);
         }
         let mut returned = self.certify(&mut points)?;
-        // If one vertex of a pair goes back, its partner does too, which may make another triangle too flat.
+        // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
         let mut low = usize::from(options.keep_altitude);
         while low > 0 {
             low = altitude::restore(&self.topology, &self.mesh.points, &mut points);
@@ -179,7 +180,7 @@ impl Smoother<'_> {
         let written = base.ideal_squared() + mean_excess(base, problem, &judged);
         let gains = initial - written > NOISE * initial + ROUNDING
             || improving.as_ref().is_some_and(|improving| improving.is_better(problem, &judged));
-        // In a smaller gain, errors of f on a device would be a considerable share.
+        // In a smaller gain, the errors of f on a device would be a considerable share.
         let lost = match initial - swept > 100.0 * JITTER * initial {
             true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
             false => 0.0,
@@ -198,7 +199,7 @@ impl Smoother<'_> {
         });
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
-            // 0 / 0 means that the initial objective was the desired one.
+            // 0 / 0 means that the initial objective equals the desired one.
             GoalOutcome { best_fraction: if gone.is_nan() { 1.0 } else { gone }, ..goal }
         });
         Ok(Outcome {
@@ -210,7 +211,7 @@ impl Smoother<'_> {
             opening_sweeps: ended.opening_sweeps,
             levels_left_out: ended.counts.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
-            // A decay that has only begun may promise more than there is between f and its ideal.
+            // A decay that has just begun may promise more than the distance between f and its ideal.
             remaining: ended.remaining.map(|left| left.min(possible)),
             held_back: ended.held_back,
             lost,

@@ -17,7 +17,7 @@ use crate::whole::{
 
 use super::prepared::Smoother;
 
-/// The stages of a run, and their state.
+/// The stages of a run with their state: sliding, move limit, least altitude, and targets that depend on the place.
 pub(super) struct Stages<'s> {
     mesh: &'s Mesh,
     topology: &'s Topology<'s>,
@@ -29,7 +29,7 @@ pub(super) struct Stages<'s> {
 }
 
 impl<'s> Stages<'s> {
-    /// Makes the stages of a run by `plan`.
+    /// Makes the stages required by the curves and targets of the smoother, and by the options.
     pub(super) fn new(smoother: &'s Smoother<'_>, options: &Options, plan: &Plan) -> Self {
         let Smoother { mesh, topology, problem, sliding, field, .. } = smoother;
         let limit =
@@ -54,7 +54,7 @@ impl<'s> Stages<'s> {
         }
     }
 
-    /// Returns the stages in the order in which they work.
+    /// Returns the stages in the order in which they act.
     pub(super) fn in_order(&mut self) -> Vec<&mut dyn Stage> {
         let Self { move_limit, altitude, slide, target_field, .. } = self;
         let mut stages: Vec<&mut dyn Stage> = Vec::new();
@@ -65,19 +65,19 @@ impl<'s> Stages<'s> {
         stages
     }
 
-    /// Returns how far each free vertex may be from its start, normalized, if there is a bound.
+    /// Returns the largest normalized distance of each free vertex from its start, `None` without a bound.
     pub(super) fn bounds(&self) -> Option<&[f64]> {
         self.move_limit.as_ref().map(MoveLimitStage::bounds)
     }
 
-    /// Writes the positions of vertices that slid. The normalized positions do not hold all of their digits.
+    /// Overwrites the points of vertices that slid, as normalized positions do not hold all digits of these points.
     pub(super) fn slide_into(&self, points: &mut [[f64; 2]]) {
         for (v, point) in self.slide.iter().flat_map(SlideStage::moved) {
             points[v as usize] = point;
         }
     }
 
-    /// Evaluates a field of targets, if there is one, with the vertices at these normalized positions.
+    /// Evaluates the field of targets with the vertices at normalized `positions`. Does nothing without a field.
     pub(super) fn set_targets_at(
         &self,
         problem: &mut Problem,
@@ -87,7 +87,8 @@ impl<'s> Stages<'s> {
         self.field.map_or(Ok(()), set)
     }
 
-    /// Returns the result of sliding with the vertices at `points`. Nothing slid if the run gained nothing.
+    /// Returns the result of sliding with the vertices at `points`, `None` if no vertex may slide. If the run gained
+    /// nothing, no vertex has slid.
     pub(super) fn slid(&self, gains: bool, points: &[[f64; 2]]) -> Option<Slid> {
         let slide = self.slide.as_ref()?;
         Some(slide.slid(self.mesh, self.topology, gains, points))

@@ -1,4 +1,4 @@
-//! Targets that belong to points of the plane, given on a mesh.
+//! Targets as a function of position, given on a background mesh.
 
 use crate::error::MeshError;
 use crate::interpolate::{Background, Spot};
@@ -8,9 +8,9 @@ use crate::targets::Targets;
 use crate::targets::surface::Surface;
 use crate::targets::tensor::Tensor;
 
-/// Targets of elements at each point of the plane. They are given at the vertices of a mesh, the smoothed one or
-/// another, and their logarithms are interpolated linearly in its triangles. Outside of that mesh, the target is that
-/// of the nearest point of it.
+/// Targets of elements at each point of the plane. Targets are given at the vertices of a background mesh, the smoothed
+/// mesh or another. Logarithms of the targets are interpolated linearly in the triangles of the background. Points
+/// outside of the background have the target of its nearest point.
 ///
 /// ```
 /// use gpu_smooth::{Mesh, TargetField, Targets};
@@ -26,30 +26,30 @@ use crate::targets::tensor::Tensor;
 #[derive(Clone, Debug)]
 pub struct TargetField {
     background: Background,
-    /// The logarithm of the target map at each vertex of the background.
+    /// Logarithm of the target map at each vertex of the background.
     logarithms: Vec<Tensor>,
-    /// The surface to which coordinates belong, if targets are in lengths on it.
+    /// Surface on which targets are lengths; [`Surface::Plane`] if targets are in coordinates.
     surface: Surface,
 }
 
 /// A full turn, in degrees.
 const TURN: f64 = 360.0;
 
-/// The points that are outside of the mesh of a [`TargetField`].
+/// Summary of the points that are outside of the mesh of a [`TargetField`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outside {
-    /// Number of these points, without those that rounding may have put there.
+    /// Number of points outside, not counting points that rounding may have moved there.
     pub count: usize,
-    /// The largest distance of a point from the mesh, in its unit.
+    /// Largest distance of a point from the mesh, in the unit of the mesh.
     pub most: f64,
 }
 
 impl TargetField {
-    /// Makes a field on a mesh, with one target for each of its vertices.
+    /// Makes a field from a background mesh and the targets of its vertices.
     ///
     /// # Errors
-    /// [`MeshError::ValueCount`] if there is not one target for each vertex, those of [`Topology::new`](crate::Topology::new), and
-    /// [`MeshError::Infeasible`] if triangles of the mesh are inverted or flat.
+    /// [`MeshError::ValueCount`] if `targets` does not have one target per vertex, [`MeshError::Infeasible`] if
+    /// triangles of the mesh are inverted or flat, or an error of [`Topology::new`](crate::Topology::new).
     pub fn new(mesh: &Mesh, targets: &Targets) -> Result<Self, MeshError> {
         targets.check_count(mesh.points.len())?;
         let maps = targets.maps();
@@ -57,27 +57,28 @@ impl TargetField {
         Ok(Self { background: Background::new(mesh)?, logarithms, surface: Surface::Plane })
     }
 
-    /// Converts the field to coordinates on a surface: targets in lengths on the surface become targets in its
-    /// coordinates at each point. Longitudes that differ by whole turns are the same point. So a mesh and the mesh that
-    /// carries its targets may use different ranges of longitudes, and may be continued across the line where
-    /// longitudes jump, as by a [`Chart`](crate::interpolate::Chart). Not for targets that are in coordinates already, by
+    /// Converts the field to coordinates on a surface: lengths on the surface become lengths in its coordinates at each
+    /// point. Longitudes that differ by whole turns denote equal points. A mesh and the background of its targets may
+    /// therefore use different ranges of longitudes, and may be continued across the line where longitudes jump, as by
+    /// a [`Chart`](crate::interpolate::Chart). Do not convert targets already given in coordinates, by
     /// [`Targets::seen_on`] or otherwise.
     pub fn seen_on(self, surface: Surface) -> Self {
         Self { surface, ..self }
     }
 
-    /// Finds points in the background. Of the longitudes that differ by whole turns, it takes the one inside or nearest
-    /// to the background.
+    /// Locates points in the background. Among longitudes that differ by whole turns, the longitude inside or nearest
+    /// to the background is used.
     fn find(&self, places: &[[f64; 2]]) -> Result<Vec<Spot>, MeshError> {
         if self.surface == Surface::Plane {
             return self.background.find(places);
         }
         let [west, east] = self.background.breadth();
-        // How far a longitude is from those of the background. This is known before the point is searched.
+        // Distance between a longitude and the range of longitudes of the background: a lower bound on the distance of
+        // the point, known before the point is located.
         let apart = |x: f64| (west - x).max(x - east).max(0.0);
         let turned = |i: usize| {
             let [x, y] = places[i];
-            // A point among the background's longitudes is first searched there, as it is.
+            // A point within the background's range of longitudes is first located there, unchanged.
             let east_of_west = x + TURN * ((west - x) / TURN).ceil();
             let mut turns = [x, east_of_west, east_of_west - TURN, east_of_west + TURN];
             turns.sort_by(|a, b| apart(*a).total_cmp(&apart(*b)));
@@ -103,7 +104,7 @@ impl TargetField {
         Ok(spots)
     }
 
-    /// Returns all data as words, by whose hash a checkpoint tells the field of its run.
+    /// Returns all data as words, from whose hash a checkpoint recognizes the field of its run.
     pub(crate) fn words(&self) -> Vec<u64> {
         let Self { background, logarithms, surface } = self;
         let mut words = background.words();
@@ -112,15 +113,16 @@ impl TargetField {
         words
     }
 
-    /// Returns how far rounding may move a point out of the background.
+    /// Returns the largest distance by which rounding may move a point out of the background.
     fn rounding(&self) -> f64 {
         1e-9 * self.background.extent()
     }
 
-    /// Returns the targets at the given points, and which of these are outside of the field's mesh.
+    /// Returns the targets at the given points, and a summary of the points outside of the field's background.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] for a point that is not finite.
+    /// [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the index of the
+    /// point in `places`.
     pub fn at(&self, places: &[[f64; 2]]) -> Result<(Targets, Outside), MeshError> {
         let spots = self.find(places)?;
         let map = |i: usize| {

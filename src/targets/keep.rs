@@ -1,20 +1,20 @@
-//! Targets from the mesh itself: the sizes or shapes of its triangles, averaged over neighbors.
+//! Targets from the mesh itself: sizes or shapes of its triangles, averaged over neighbors.
 
 use crate::parallel::collect;
 use crate::targets::surface::Surface;
 use crate::targets::tensor::Tensor;
 
-/// 1/√3: the equilateral triangle W has W⁻¹ = [[1, -1/√3], [0, 2/√3]].
+/// 1/√3. The equilateral triangle W has the inverse W⁻¹ = [[1, -1/√3], [0, 2/√3]].
 const W: f64 = 0.577_350_269_189_625_8;
 
-/// Returns the maps of equilateral triangles with the sizes that the triangles have on a surface.
+/// Returns the target maps of equilateral triangles with the sizes of the mesh's triangles on a surface.
 pub(super) fn sizes(
     triangles: &[[u32; 3]],
     points: &[[f64; 2]],
     surface: Surface,
     rings: u32,
 ) -> Vec<Tensor> {
-    // The logarithm of the size is half that of the area.
+    // The logarithm of a size is half the logarithm of the area.
     let of = |t: &[u32; 3]| {
         let [a, b] = edges(t, points);
         let [x, y] = surface.lengths_in(points, t);
@@ -24,11 +24,11 @@ pub(super) fn sizes(
     averaged(triangles, points.len(), rings, of)
 }
 
-/// Returns the maps that make the triangles equilateral and of one size.
+/// Returns the maps under which the triangles of the mesh are equilateral and of equal size.
 pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
     let of = |t: &[u32; 3]| {
         let [a, b] = edges(t, points);
-        // A W⁻¹ takes the equilateral triangle to this one, so the map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
+        // A W⁻¹ maps the equilateral triangle to the given triangle, so the target map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
         let second = [(2.0 * b[0] - a[0]) * W, (2.0 * b[1] - a[1]) * W];
         let square = Tensor::of_columns([a, second]);
         match square.is_positive() {
@@ -40,14 +40,14 @@ pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) ->
     averaged(triangles, points.len(), rings, of)
 }
 
-/// Returns the edges from the first corner of a triangle.
+/// Returns the two edges of a triangle that start at its first corner.
 fn edges(t: &[u32; 3], points: &[[f64; 2]]) -> [[f64; 2]; 2] {
     let [p, q, r] = t.map(|v| points[v as usize]);
     [[q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]]
 }
 
-/// Averages logarithms of triangles at each vertex, first over the vertex's triangles, then `rings` times over the
-/// means of these triangles' corners. Returns the exponentials.
+/// Averages logarithms of triangles at each vertex. Then, `rings` times, averages vertex values in each triangle and
+/// triangle values at each vertex. Returns the exponentials.
 fn averaged(
     triangles: &[[u32; 3]],
     vertices: usize,
@@ -67,7 +67,7 @@ fn averaged(
     collect(vertices, |v| at[v].exp())
 }
 
-/// Returns the mean over the triangles of each vertex; zero for a vertex without triangles.
+/// Returns the mean of the values of each vertex's triangles; zero for a vertex without triangles.
 fn at_vertices(triangles: &[[u32; 3]], vertices: usize, of: &[Tensor]) -> Vec<Tensor> {
     let mut sums = vec![(Tensor::default(), 0u32); vertices];
     for (t, &value) in triangles.iter().zip(of) {

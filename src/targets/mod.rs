@@ -1,4 +1,4 @@
-//! Targets: the size, stretching and orientation that elements are to have, vertex by vertex.
+//! Targets: the wanted size, stretching and orientation of elements, vertex by vertex.
 
 mod field;
 mod keep;
@@ -11,12 +11,12 @@ pub use field::{Outside, TargetField};
 pub use surface::Surface;
 pub(crate) use tensor::Tensor;
 
-/// The wanted size, stretching and orientation of elements: for each vertex of a mesh a symmetric positive definite
-/// tensor M, under which an element wanted there is equilateral with edges of one length. The quality of a triangle is
-/// then that of its image under √M, with the mean of √M at its corners.
+/// The wanted size, stretching and orientation of elements. Each vertex of a mesh has a symmetric positive definite
+/// tensor M: an element wanted there is equilateral with edges of length 1 under M. The quality of a triangle is the
+/// quality of its image under the mean of √M at its three corners.
 ///
 /// Targets belong to the vertices and move with them. Only the ratios of sizes matter: as the number of triangles is
-/// given, all targets are scaled by one factor so that the elements fill the domain.
+/// given, a common factor scales all targets so that the elements fill the domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Targets {
     /// √M at each vertex.
@@ -24,15 +24,15 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// Makes targets for equilateral elements of one size, for this number of vertices.
+    /// Makes targets for equilateral elements of equal size, for a mesh with `vertices` vertices.
     pub fn equilateral(vertices: usize) -> Self {
         Self { maps: vec![Tensor::isotropic(1.0); vertices] }
     }
 
-    /// Makes targets for equilateral elements with the given lengths of edges, one for each vertex, in any unit.
+    /// Makes targets for equilateral elements with the given edge lengths, one length per vertex, in any unit.
     ///
     /// # Errors
-    /// [`MeshError::Target`] if a length is not a positive number.
+    /// [`MeshError::Target`] if a length, or its inverse, is not positive and finite.
     pub fn sizes(lengths: &[f64]) -> Result<Self, MeshError> {
         let map = |(v, &length): (usize, &f64)| {
             let is_length = length > 0.0 && length.is_finite() && (1.0 / length).is_finite();
@@ -44,8 +44,8 @@ impl Targets {
         Ok(Self { maps: lengths.iter().enumerate().map(map).collect::<Result<_, _>>()? })
     }
 
-    /// Makes targets for elements that are equilateral under the given tensors, one for each vertex, as xx, xy, yy: the
-    /// metric of anisotropic mesh adaptation, in any unit to the power -2.
+    /// Makes targets for elements that are equilateral under the given tensors, one per vertex, as xx, xy, yy. Such a
+    /// tensor is the metric of anisotropic mesh adaptation, in any unit to the power -2.
     ///
     /// # Errors
     /// [`MeshError::Target`] if a tensor is not positive definite.
@@ -63,11 +63,11 @@ impl Targets {
         Ok(Self { maps: tensors.iter().enumerate().map(map).collect::<Result<_, _>>()? })
     }
 
-    /// Makes targets for equilateral elements of the sizes that the mesh has on a surface, averaged over `rings` rings
-    /// of neighbors.
+    /// Makes targets for equilateral elements with the sizes of the mesh's triangles on a surface, averaged over
+    /// `rings` rings of neighbors.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn keep_size(
         topology: &Topology<'_>,
         points: &[[f64; 2]],
@@ -78,11 +78,11 @@ impl Targets {
         Ok(Self { maps: keep::sizes(topology.triangles(), points, surface, rings) })
     }
 
-    /// Makes targets for elements of the size, stretching and orientation that the mesh has, averaged over `rings`
-    /// rings of neighbors. This keeps boundary layers and anisotropic adaptation, and removes noise.
+    /// Makes targets for elements with the size, stretching and orientation of the mesh's triangles, averaged over
+    /// `rings` rings of neighbors. These targets keep boundary layers and anisotropic adaptation, and remove noise.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn keep_shape(
         topology: &Topology<'_>,
         points: &[[f64; 2]],
@@ -92,12 +92,13 @@ impl Targets {
         Ok(Self { maps: keep::shapes(topology.triangles(), points, rings) })
     }
 
-    /// Converts targets in lengths on a surface to targets in its coordinates, with the vertices at `points`. Not for
-    /// [`Self::keep_shape`], which takes shapes in coordinates. A vertex that none of `triangles` uses may be anywhere.
+    /// Converts targets in lengths on a surface to targets in its coordinates, with the vertices at `points`. Do not
+    /// convert targets of [`Self::keep_shape`]: their lengths are in coordinates already. Vertices that none of
+    /// `triangles` uses may be anywhere.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::IndexOutOfRange`] if a
-    /// triangle has a vertex that does not exist, [`MeshError::Target`] if a vertex is not on the surface.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per target, [`MeshError::IndexOutOfRange`] if a
+    /// triangle names a vertex that does not exist, [`MeshError::Target`] if a vertex is not on the surface.
     pub fn seen_on(
         mut self,
         surface: Surface,
@@ -117,7 +118,7 @@ impl Targets {
         Ok(self)
     }
 
-    /// Fails if there is not one target for each of the vertices.
+    /// Fails with [`MeshError::ValueCount`] unless there is a target for each of the `vertices` vertices.
     pub(crate) fn check_count(&self, vertices: usize) -> Result<(), MeshError> {
         match self.maps.len() {
             given if given == vertices => Ok(()),

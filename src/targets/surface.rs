@@ -1,8 +1,8 @@
-//! The surface that the coordinates of a mesh belong to.
+//! Surfaces on which mesh coordinates are defined: plane and sphere.
 
 use crate::error::MeshError;
 
-/// The meaning of a mesh's coordinates.
+/// Meaning of the two coordinates of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Surface {
     /// Lengths in the plane.
@@ -13,7 +13,8 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Fails if a vertex of these triangles is not on the surface.
+    /// Fails with [`MeshError::Target`] if a vertex of `triangles` is not on the surface, or with
+    /// [`MeshError::IndexOutOfRange`] if a vertex has no point.
     pub(crate) fn check(
         self,
         points: &[[f64; 2]],
@@ -35,7 +36,7 @@ impl Surface {
         Ok(())
     }
 
-    /// Returns [`Self::lengths`] in the middle of a triangle.
+    /// Returns [`Self::lengths`] at the center of a triangle.
     #[inline]
     pub(crate) fn lengths_in(self, points: &[[f64; 2]], triangle: &[u32; 3]) -> [f64; 2] {
         match self {
@@ -47,8 +48,8 @@ impl Surface {
         }
     }
 
-    /// Returns the lengths of one unit of the first and of the second coordinate, at points whose second coordinate is
-    /// `y`.
+    /// Returns the lengths on the surface of a unit of each coordinate, at points with the second coordinate `y`. The
+    /// unit of length on the sphere is a degree of latitude.
     pub(crate) fn lengths(self, y: f64) -> [f64; 2] {
         match self {
             Surface::Plane => [1.0, 1.0],

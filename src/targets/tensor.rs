@@ -1,43 +1,43 @@
-//! Symmetric tensors of the plane, and functions of them.
+//! Symmetric tensors of the plane, and functions of their eigenvalues.
 
-/// A symmetric tensor, as xx, xy, yy.
+/// A symmetric tensor of the plane, as xx, xy, yy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Tensor(pub(crate) [f64; 3]);
 
 impl Tensor {
-    /// Returns the identity times this number.
+    /// Returns the identity times `x`.
     pub(crate) fn isotropic(x: f64) -> Self {
         Self([x, 0.0, x])
     }
 
-    /// Returns A Aᵀ for the matrix A with these columns.
+    /// Returns A Aᵀ, where the two arguments are the columns of A.
     pub(crate) fn of_columns([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> Self {
         Self([ax * ax + bx * bx, ax * ay + bx * by, ay * ay + by * by])
     }
 
-    /// Whether it is finite and positive definite.
+    /// Returns whether the tensor is finite and positive definite.
     pub(crate) fn is_positive(self) -> bool {
         let [xx, xy, yy] = self.0;
         let [low, high] = self.eigenvalues();
         xx > 0.0 && yy > 0.0 && low > 0.0 && high.is_finite() && xy.is_finite()
     }
 
-    /// Returns the smaller and the larger eigenvalue. The smaller one of a positive definite tensor is computed without
-    /// cancellation.
+    /// Returns the smaller and the larger eigenvalue. The smaller eigenvalue of a positive definite tensor is computed
+    /// without cancellation.
     pub(crate) fn eigenvalues(self) -> [f64; 2] {
         let [xx, xy, yy] = self.0;
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
         let radius = half.hypot(xy);
         let high = mean + radius;
         let low = match mean > 0.0 {
-            // The determinant, in which each product is divided before it can overflow.
+            // The determinant over the larger eigenvalue; products are divided first, as they may overflow.
             true => (xx / high) * yy - (xy / high) * xy,
             false => mean - radius,
         };
         [low, high]
     }
 
-    /// Returns the tensor with the same eigenvectors, and with `of` applied to the eigenvalues.
+    /// Returns the tensor with equal eigenvectors, and with `of` applied to the eigenvalues.
     fn map(self, of: impl Fn(f64) -> f64) -> Self {
         let [xx, xy, yy] = self.0;
         let half = 0.5 * (xx - yy);
@@ -60,13 +60,12 @@ impl Tensor {
         self.map(f64::ln)
     }
 
-    /// Returns the exponential.
+    /// Returns the exponential of the tensor.
     pub(crate) fn exp(self) -> Self {
         self.map(f64::exp)
     }
 
-    /// Returns the tensor D M D in coordinates that are `factors` times as long, with D the diagonal matrix of the
-    /// factors.
+    /// Returns the tensor D M D, where M is this tensor and D the diagonal matrix of the two factors.
     pub(crate) fn stretched(self, [x, y]: [f64; 2]) -> Self {
         let [xx, xy, yy] = self.0;
         Self([xx * x * x, xy * x * y, yy * y * y])
@@ -93,7 +92,7 @@ mod tests {
     use super::*;
 
     fn near(a: Tensor, b: Tensor) {
-        // Small entries beside large ones are only as precise as the digits of the large ones allow.
+        // Small entries beside large ones are only as precise as the digits of the large entries allow.
         let size = b.0.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         for (x, y) in a.0.into_iter().zip(b.0) {
             assert!((x - y).abs() < 1e-13 * size, "{a:?} {b:?}");

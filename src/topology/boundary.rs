@@ -11,8 +11,8 @@ struct Side {
 }
 
 impl Topology<'_> {
-    /// Returns the boundary edges, those of exactly one triangle. Each is a pair of vertices, from and to, with the
-    /// mesh on its left. In no particular order.
+    /// Returns the boundary edges, those of exactly one triangle, in no particular order. Each edge is a pair of
+    /// vertices, start and end, with the mesh on the left.
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
         self.boundary_sides().map(|side| self.ends(side)).collect()
     }
@@ -30,24 +30,24 @@ impl Topology<'_> {
         [corners[corner], corners[(corner + 1) % 3]]
     }
 
-    /// Returns the triangle across an edge, if there is one.
+    /// Returns the neighboring triangle across an edge, `None` for a boundary edge.
     fn across(&self, side: Side) -> Option<u32> {
         others_at_edge(self.triangles(), self.stars(), side.triangle, self.ends(side)).next()
     }
 
-    /// Returns the boundary as closed loops of vertices, with the mesh on the left. The last vertex is joined to the
-    /// first.
+    /// Returns the boundary as closed loops of vertices, with the mesh on the left. A loop lists each vertex once; a
+    /// closing edge leads from the last vertex to the first.
     ///
-    /// Loops are counter-clockwise around the outside and clockwise around a hole, so the sign of
-    /// [`signed_area`] tells them apart. No loop passes a vertex twice: parts or holes that touch in a vertex have
-    /// separate loops. Each loop starts at its least vertex, and loops are sorted by that vertex.
+    /// Loops are counter-clockwise around the outside and clockwise around a hole, so the sign of [`signed_area`] tells
+    /// them apart. No loop passes a vertex twice: parts or holes that touch in a vertex have separate loops. Each loop
+    /// starts at its least vertex, and loops are sorted by that vertex.
     pub fn boundary_loops(&self) -> Vec<Vec<u32>> {
         let mut edges: Vec<([u32; 2], Side)> =
             self.boundary_sides().map(|side| (self.ends(side), side)).collect();
         edges.sort_unstable_by_key(|&(ends, _)| ends);
         let mut loops = Vec::new();
         let mut left = vec![true; edges.len()];
-        // The index of each vertex in the path, if it is on it.
+        // Position of each vertex in `path`, or `None` for a vertex that is not on the path.
         let mut place = vec![None; self.free().len()];
         for first in 0..edges.len() {
             let mut at = Some(first).filter(|&edge| left[edge]);
@@ -57,7 +57,8 @@ impl Topology<'_> {
                 let ([from, to], side) = edges[edge];
                 place[from as usize] = Some(path.len());
                 path.push(from);
-                // The path has come back to one of its vertices. From that vertex on it is a loop.
+                // The path has returned to one of its vertices. The section from this vertex to the end of the path is
+                // a closed loop.
                 if let Some(start) = place[to as usize] {
                     let closed = path.split_off(start);
                     closed.iter().for_each(|&v| place[v as usize] = None);
@@ -77,9 +78,9 @@ impl Topology<'_> {
         loops
     }
 
-    /// Returns the first triangle of a part that has no boundary edge, if there is such a part. Parts are joined by edges. A
-    /// part without boundary is a closed surface, such as a sphere. Wherever its vertices lie in the plane, some of its
-    /// triangles are inverted or flat.
+    /// Returns the first triangle of an edge-connected part that has no boundary edge. `None` if every part has a
+    /// boundary. A part without boundary edges is a closed surface, such as a sphere. However the vertices of a closed
+    /// surface are placed in the plane, some of its triangles are inverted or flat.
     pub fn closed_part(&self) -> Option<usize> {
         let mut seen = vec![false; self.triangles().len()];
         let mut part = Vec::new();
@@ -109,16 +110,17 @@ impl Topology<'_> {
         None
     }
 
-    /// Returns the boundary edge after another. It goes around the vertex where that edge ends, from triangle to
-    /// triangle, to the other end of the fan. The fans of a vertex share no triangle, so each triangle is visited once
-    /// per corner.
+    /// Returns the boundary edge that follows `side`. The search turns around the end vertex of `side`, from triangle
+    /// to triangle, until it reaches the last edge of the fan. The fans of a vertex share no triangle, so each triangle
+    /// is visited once per corner.
     fn next_on_boundary(&self, side: Side) -> Option<Side> {
         let [mut before, pivot] = self.ends(side);
         let mut triangle = side.triangle;
         loop {
             let corners = self.triangles()[triangle as usize];
             let corner = corners.iter().position(|&v| v == pivot)?;
-            // If windings cannot be made consistent, as on a Möbius strip, the fan may run backward.
+            // If windings cannot be made consistent, as on a Möbius strip, neighboring triangles of a fan may have
+            // opposite windings. The path then ends without closing a loop.
             if corners[(corner + 2) % 3] != before {
                 return None;
             }
@@ -131,12 +133,12 @@ impl Topology<'_> {
     }
 }
 
-/// Returns the area within a loop of vertices, in the square of the unit of `points`: positive if the loop is
-/// counter-clockwise, negative if it is clockwise, as around a hole. Not exact. Vertices without a point are skipped.
+/// Returns the area within a loop of vertices, in the square of the unit of `points`, rounded. The area is positive if
+/// the loop is counter-clockwise, negative if clockwise, as around a hole. Vertices without a point are skipped.
 pub fn signed_area(points: &[[f64; 2]], vertices: &[u32]) -> f64 {
     let mut corners = vertices.iter().filter_map(|&v| points.get(v as usize));
     let Some(&[x, y]) = corners.next() else { return 0.0 };
-    // Relative to the first point, as products of coordinates far from the origin would cancel.
+    // Corners are taken relative to the first point, as products of coordinates far from the origin would cancel.
     let relative: Vec<[f64; 2]> = corners.map(|p| [p[0] - x, p[1] - y]).collect();
     relative.windows(2).map(|pair| pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1]).sum::<f64>()
         / 2.0
@@ -147,7 +149,8 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
 
-    /// An octahedron around the origin, seen from above, its poles at the same place.
+    /// The eight triangles of an octahedron around the origin, seen from above. Both poles, vertices 4 and 5, have the
+    /// coordinates of the origin.
     const OCTAHEDRON: [[u32; 3]; 8] =
         [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]];
 
@@ -172,7 +175,7 @@ mod tests {
         assert_eq!(closed(&OCTAHEDRON), Some(0));
         assert_eq!(closed(&OCTAHEDRON[..7]), None);
         assert_eq!(closed(&OCTAHEDRON[..4]), None);
-        // Another part before it, which touches it in a vertex.
+        // A part with a boundary comes first and touches the octahedron in vertex 0.
         let both = [&[[6, 7, 8], [0, 6, 8]], &OCTAHEDRON[..]].concat();
         assert_eq!(closed(&both), Some(2));
     }

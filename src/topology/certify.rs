@@ -1,18 +1,19 @@
-//! Guarantees, by exact predicates, that no triangle is inverted or flat.
+//! Makes a mesh feasible by exact predicates, after its vertices have been moved and rounded.
 
 use crate::error::MeshError;
 use crate::topology::Topology;
 use crate::topology::predicates::{bad_triangles, is_positive, not_positive};
 
-/// Makes `points` feasible, in place: sets each vertex of an inverted or flat triangle back to its
-/// position in `before`, until no such triangle is left. Returns the number of vertices set back.
+/// Makes `points` feasible, in place: sets each vertex of an inverted or flat triangle back to its position in
+/// `before`, until no such triangle is left. Returns the number of vertices set back.
 ///
 /// Afterwards every triangle of `topology` is counter-clockwise by exact arithmetic on the values in `points`. A
 /// triangle with a coordinate that is not finite counts as inverted.
 ///
 /// # Errors
-/// [`MeshError::PointCount`] if `before` or `points` does not have one point for each vertex; nothing is then moved.
-/// [`MeshError::Infeasible`] if triangles are left that are inverted or flat in `before` itself.
+/// [`MeshError::PointCount`] if `before` or `points` does not have one entry per vertex; no vertex is then moved.
+/// [`MeshError::Infeasible`] if some triangle is inverted or flat in `before`, and remains inverted or flat when its
+/// vertices are set back.
 pub fn certify(
     topology: &Topology<'_>,
     before: &[[f64; 2]],
@@ -24,13 +25,14 @@ pub fn certify(
     let mut suspects = not_positive(points, triangles);
     let is_certified = suspects.is_empty();
     let mut returned = 0;
-    // Each round sets back the moved vertices of every suspect, and then checks the triangles around them again.
+    // Each round sets back the moved vertices of every suspect, and then tests the triangles around these vertices.
     while !suspects.is_empty() {
         let mut touched = Vec::new();
         for &t in &suspects {
             for &v in &triangles[t as usize] {
                 let v_index = v as usize;
-                // Compared by bits: NaN differs from itself, so the vertex would be set back forever.
+                // Coordinates are compared by bits: NaN differs from NaN by value, and the vertex would be set back
+                // forever.
                 if points[v_index].map(f64::to_bits) != before[v_index].map(f64::to_bits) {
                     points[v_index] = before[v_index];
                     returned += 1;
@@ -59,7 +61,7 @@ mod tests {
 
     #[test]
     fn an_inverting_vertex_goes_back_and_others_stay() {
-        // Two squares with their centers. One center is moved out of its square, the other stays inside.
+        // Two squares with their centers. The first center is moved out of its square, the second stays inside.
         let mesh = Mesh {
             points: vec![
                 [0.0, 0.0],

@@ -1,26 +1,27 @@
-//! Moves vertices as far as possible before a triangle inverts or exceeds a bound.
+//! Moves vertices toward new positions, as far as no triangle inverts or exceeds a bound on its inverse mean ratio.
 
 use crate::error::MeshError;
 use crate::metric::Corner;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
-/// Tolerance for rounding, as a share of an inverse mean ratio.
+/// Relative tolerance for the rounding of an inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
 
 impl Topology<'_> {
-    /// Moves vertices straight toward new positions, all by the same share of their ways, as far as the triangles
-    /// allow. Returns the share, from 0 to 1; 1 means that the new positions were reached. For handles and boundaries
-    /// that a user drags: one call in each frame, with sweeps in between that improve the mesh.
+    /// Moves vertices straight toward new positions, all by the same share of their displacement, as far as the
+    /// triangles allow. Returns the share, from 0 to 1; 1 means that the new positions were reached. Applications call
+    /// this function in each frame while a user drags handles or a boundary, with sweeps in between that improve the
+    /// mesh.
     ///
-    /// `moves` are pairs of a vertex and its new position, in the unit of `points`. Fixed vertices and those of the
-    /// boundary can be moved too. If a vertex is listed twice, its last position counts.
+    /// `moves` are pairs of a vertex and its new position, in the unit of `points`. Fixed and boundary vertices can be
+    /// moved like all others. If a vertex is listed twice, its last position counts.
     ///
-    /// No triangle inverts or becomes flat, neither on the way nor, by exact predicates on the values in `points`, at
-    /// the end. No triangle gets an inverse mean ratio above `worst_imr`; a triangle that already has a larger one
-    /// does not get worse. With [`f64::INFINITY`] triangles may become nearly flat; a bound of about 8 leaves room for
-    /// sweeps, and for rounding `points` to single precision. Triangles that are inverted or flat beforehand do not
-    /// limit the move.
+    /// No triangle inverts or becomes flat, neither during the move nor, by exact predicates on the values in `points`,
+    /// at its end. No triangle gets an inverse mean ratio above `worst_imr`; a triangle whose ratio already exceeds
+    /// `worst_imr` does not get worse. If `worst_imr` is [`f64::INFINITY`], triangles may become nearly flat; a bound
+    /// of about 8 leaves room for sweeps, and for rounding `points` to single precision. Triangles that are inverted or
+    /// flat before the move do not limit the share.
     ///
     /// ```
     /// # use gpu_smooth::{Mesh, Topology};
@@ -38,9 +39,10 @@ impl Topology<'_> {
     /// ```
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::IndexOutOfRange`] for a vertex
-    /// that the mesh does not have, [`MeshError::NotFinite`] if a vertex of an affected triangle has, or would get, a
-    /// coordinate that is not finite, [`MeshError::BoundNotANumber`] if `worst_imr` is NaN. Nothing is then moved.
+    /// No vertex is moved on an error: [`MeshError::PointCount`] if `points` does not have one entry per vertex,
+    /// [`MeshError::IndexOutOfRange`] if `moves` lists a vertex that the mesh does not have,
+    /// [`MeshError::BoundNotANumber`] if `worst_imr` is NaN, [`MeshError::NotFinite`] if a vertex of an affected
+    /// triangle has, or would get, a coordinate that is infinite or NaN.
     pub fn move_clamped(
         &self,
         points: &mut [[f64; 2]],
@@ -66,7 +68,7 @@ impl Topology<'_> {
         triangles.sort_unstable();
         triangles.dedup();
         let corners = || triangles.iter().map(|&t| self.triangles()[t as usize]);
-        // The vertices of these triangles, and moved vertices that no triangle uses.
+        // The vertices of the affected triangles, and moved vertices that no triangle uses.
         let mut touched = ways.0.iter().map(|way| way.vertex).chain(corners().flatten());
         if let Some(vertex) = touched.find(|&v| !is_finite(points[v as usize])) {
             return Err(MeshError::NotFinite { vertex });
@@ -79,7 +81,8 @@ impl Topology<'_> {
         let gives_way =
             |(corners, limit): &([u32; 3], f64)| ways.gives_way(points, corners, *limit);
         let mut share = limited.iter().map(gives_way).fold(1.0, f64::min);
-        // The share and the points are rounded, so a triangle may exceed its limit: lowers the share until none does.
+        // The share and the points are rounded, so a triangle may still exceed its limit. The share is lowered until no
+        // triangle does.
         let mut less = f64::EPSILON;
         loop {
             ways.go(points, share);
@@ -96,14 +99,14 @@ impl Topology<'_> {
     }
 }
 
-/// The way of a vertex, from its position to its new position.
+/// The straight path of a vertex, from its position to its new position.
 struct Way {
     vertex: u32,
     from: [f64; 2],
     to: [f64; 2],
 }
 
-/// One way for each vertex that moves, in ascending order of vertices.
+/// Paths of all moved vertices, one per vertex, in ascending order of vertices.
 struct Ways(Vec<Way>);
 
 impl Ways {
@@ -118,7 +121,7 @@ impl Ways {
         Self(ways)
     }
 
-    /// Moves the vertices by the given share of their ways.
+    /// Sets each vertex to the point at `share` of its path. At share 1 the vertex gets the bits of its new position.
     fn go(&self, points: &mut [[f64; 2]], share: f64) {
         for &Way { vertex, from, to } in &self.0 {
             let between = |i: usize| from[i] + share * (to[i] - from[i]);
@@ -126,7 +129,7 @@ impl Ways {
         }
     }
 
-    /// Returns the displacement of a vertex over its whole way.
+    /// Returns the displacement of a vertex over its whole path, zero for a vertex that does not move.
     fn of(&self, vertex: u32) -> [f64; 2] {
         match self.0.binary_search_by_key(&vertex, |way| way.vertex) {
             Ok(i) => minus(self.0[i].to, self.0[i].from),
@@ -134,14 +137,14 @@ impl Ways {
         }
     }
 
-    /// Returns the share of the ways at which a triangle's inverse mean ratio reaches `limit`. The ratio is L / (2√3
-    /// D), with L the sum of the squared lengths and D the doubled area, so the share is the least root of the
-    /// quadratic D - L / (2√3 limit).
+    /// Returns the share of the paths at which the inverse mean ratio of a triangle reaches `limit`, infinite if never.
+    /// The ratio is L / (2√3 D), with L the sum of the squared edge lengths and D the doubled area. So the share is the
+    /// least positive root of the quadratic D - L / (2√3 limit).
     fn gives_way(&self, points: &[[f64; 2]], corners: &[u32; 3], limit: f64) -> f64 {
         let [p, q, r] = corners.map(|v| points[v as usize]);
         let [dp, dq, dr] = corners.map(|v| self.of(v));
         let edges = [minus(q, p), minus(r, p), minus(dq, dp), minus(dr, dp)];
-        // Divided by the largest difference of coordinates, so that nothing overflows.
+        // Edges are divided by the largest difference of coordinates, so that no product overflows.
         let unit = edges.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let [e, f, de, df] = edges.map(|edge| edge.map(|x| x / unit));
         let [c, dc] = [minus(f, e), minus(df, de)];
@@ -158,13 +161,13 @@ impl Ways {
     }
 }
 
-/// Returns the least positive root t of constant + slope t + bend t² = 0. Infinite if there is none.
+/// Returns the least positive root t of constant + slope t + bend t² = 0, infinite if there is none.
 fn least_root(constant: f64, slope: f64, bend: f64) -> f64 {
     let discriminant = slope * slope - 4.0 * bend * constant;
     if discriminant < 0.0 {
         return f64::INFINITY;
     }
-    // Both roots by the formula that does not cancel.
+    // The smaller root is found from the product of the roots, as the quadratic formula would cancel for one of them.
     let half = -0.5 * (slope + discriminant.sqrt().copysign(slope));
     let roots = [half / bend, constant / half].into_iter();
     roots.filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min)
@@ -178,7 +181,7 @@ fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[1] - u[1] * v[0]
 }
 
-/// Returns the inverse mean ratio of a triangle that is not flat.
+/// Returns the inverse mean ratio of a triangle that is neither inverted nor flat.
 fn imr(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| points[v as usize]);
     Corner { a: minus(q, p), b: minus(r, p), mean_area: 1.0 }.inverse_mean_ratio()

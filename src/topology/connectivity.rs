@@ -12,13 +12,13 @@ use crate::topology::stars::{close, outer_edge, stars};
 use crate::topology::turns;
 use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
 
-/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the mesh's triangles if they
+/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the triangles of the mesh if they
 /// already are consistent and counter-clockwise.
 #[derive(Clone, Debug)]
 pub struct Topology<'m> {
     triangles: Cow<'m, [[u32; 3]]>,
     free: Vec<bool>,
-    /// The triangles at each vertex. Empty after [`Self::forget_stars`], until they are needed again.
+    /// The triangles at each vertex. Empty after [`Self::forget_stars`], until [`Self::stars`] computes them again.
     stars: OnceLock<Groups>,
 }
 
@@ -26,20 +26,21 @@ impl<'m> Topology<'m> {
     /// Checks the mesh and finds its windings, boundary and free vertices.
     ///
     /// Windings are made consistent across shared edges, so that most triangles of each edge-connected part are
-    /// counter-clockwise. If equally many are clockwise, the sum of their areas decides. A vertex is free unless it is
-    /// on the boundary, is listed in [`Mesh::fixed`], is used by no triangle, or joins two fans of triangles.
+    /// counter-clockwise. If a part has equally many triangles of each orientation, the sum of their signed areas
+    /// becomes positive. A vertex is free unless it is on the boundary, is listed in [`Mesh::fixed`], is used by no
+    /// triangle, or joins two fans of triangles.
     ///
     /// # Errors
     /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
-    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`].
-    /// [`check_smoothable`](Self::check_smoothable) checks whether the mesh is feasible and has a free vertex.
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`]. Inverted triangles
+    /// and a lack of free vertices are no errors here: [`check_smoothable`](Self::check_smoothable) finds both.
     pub fn new(mesh: &'m Mesh) -> Result<Self, MeshError> {
         Self::wound(mesh, Majority::OfTriangles)
     }
 
-    /// Finds the topology of a mesh that may be tangled. Windings are made consistent as in [`new`](Self::new), but so
-    /// that the signed areas of each part have a positive sum. That sum is the area which the boundary encloses, and
-    /// does not depend on the vertices inside.
+    /// Finds the topology of a mesh that may be tangled. Windings are consistent as in [`new`](Self::new), but the
+    /// signed areas of each edge-connected part have a positive sum. This sum is the area that the boundary encloses,
+    /// and does not depend on the positions of inner vertices.
     ///
     /// # Errors
     /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
@@ -54,7 +55,8 @@ impl<'m> Topology<'m> {
         let mut stars = stars(points.len(), triangles);
         check_size(points, &stars)?;
         let mut free = vec![false; points.len()];
-        // Most meshes are consistent and counter-clockwise already. The stars are enough to see that.
+        // Most meshes are consistent and counter-clockwise already, and the stars alone prove it. The triangle across
+        // each edge is found only for other meshes.
         let triangles =
             if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
                 Cow::Borrowed(triangles.as_slice())
@@ -78,12 +80,12 @@ impl<'m> Topology<'m> {
     /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, some vertex is free, and
     /// the triangles around each free vertex wind around it once.
     ///
-    /// Other overlaps of parts of a mesh are not found.
+    /// Other overlaps pass the check, for example two parts of a mesh over one area.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex, [`MeshError::Infeasible`] if a triangle is
-    /// inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free, [`MeshError::OverlappingStar`] if
-    /// triangles wind more than once around a free vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex, [`MeshError::Infeasible`] if a
+    /// triangle is inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free,
+    /// [`MeshError::OverlappingStar`] if triangles wind more than once around a free vertex.
     pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
         self.check_count(points)?;
         let is_feasible = turns::is_feasible(points, &self.triangles, &self.free);
@@ -107,30 +109,30 @@ impl<'m> Topology<'m> {
     /// order. Triangles with a coordinate that is not finite count as inverted.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn bad_triangles(&self, points: &[[f64; 2]]) -> Result<Vec<BadTriangle>, MeshError> {
         self.check_count(points)?;
         Ok(predicates::bad_triangles(points, &self.triangles))
     }
 
-    /// Fails unless there is one point for each vertex.
+    /// Fails with [`MeshError::PointCount`] unless `points` has one entry per vertex.
     pub(crate) fn check_count(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
         let (expected, given) = (self.free.len(), points.len());
         if given == expected { Ok(()) } else { Err(MeshError::PointCount { expected, given }) }
     }
 
-    /// Returns the triangles in the mesh's order, with consistent windings: counter-clockwise unless inverted.
+    /// Returns the triangles in the order of the mesh, with consistent windings: counter-clockwise unless inverted.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Returns for each vertex of the mesh whether it is free to move.
+    /// Returns for each vertex whether a run may move it.
     pub fn free(&self) -> &[bool] {
         &self.free
     }
 
-    /// Whether a triangle has a free vertex. Other triangles stay as they are in a run. False for a triangle that the mesh
-    /// does not have.
+    /// Returns whether a triangle has a free vertex. A run changes no other triangle. False if the mesh has no triangle
+    /// of this index.
     pub fn can_move(&self, triangle: usize) -> bool {
         self.triangles.get(triangle).is_some_and(|t| t.iter().any(|&v| self.free[v as usize]))
     }
@@ -140,8 +142,8 @@ impl<'m> Topology<'m> {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// Returns the indices of the triangles at a vertex. Around a free vertex they are in counter-clockwise order,
-    /// starting with the least. Empty for a vertex that the mesh does not have.
+    /// Returns the indices of the triangles at a vertex. Around a free vertex, triangles are in counter-clockwise order
+    /// and start with the least index; around other vertices, indices ascend. Empty if the mesh has no such vertex.
     pub fn star(&self, vertex: u32) -> &[u32] {
         match self.free.get(vertex as usize) {
             Some(_) => self.stars().of(vertex as usize),
@@ -149,12 +151,12 @@ impl<'m> Topology<'m> {
         }
     }
 
-    /// Returns the triangles at each vertex.
+    /// Returns the triangles at each vertex, computed if [`Self::forget_stars`] has freed them.
     pub(crate) fn stars(&self) -> &Groups {
         self.stars.get_or_init(|| self.find_stars())
     }
 
-    /// Frees the memory of the stars. They are found again when one is needed.
+    /// Frees the memory of the stars. The next access computes them again.
     pub(crate) fn forget_stars(&mut self) {
         self.stars.take();
     }
@@ -167,13 +169,13 @@ impl<'m> Topology<'m> {
     }
 
     /// Returns the one-ring of a free vertex: its neighbors in counter-clockwise order. Neighbor `i` is the next corner
-    /// after the vertex in triangle `i` of [`star`](Self::star); the third corner is the neighbor after it, cyclically.
-    /// Empty for a vertex that is not free, or that the mesh does not have.
+    /// after the vertex in triangle `i` of [`star`](Self::star); the third corner is the next neighbor of the ring,
+    /// cyclically. Empty if the vertex is not free or its index exceeds the mesh.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
         self.ring_of(free_vertex).collect()
     }
 
-    /// Iterates over the one-ring of a free vertex; see [`ring`](Self::ring).
+    /// Iterates over the one-ring of a free vertex, in the order of [`ring`](Self::ring).
     #[inline]
     pub(crate) fn ring_of(&self, free_vertex: u32) -> impl Iterator<Item = u32> + '_ {
         let star = match self.free.get(free_vertex as usize) {
@@ -184,7 +186,8 @@ impl<'m> Topology<'m> {
     }
 }
 
-/// Checks the lengths of lists, that coordinates are finite, and that indices are valid.
+/// Checks that the mesh has triangles, that indices fit 32 bits and are valid, that coordinates are finite, and that no
+/// triangle repeats a vertex.
 fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     let Mesh { points, triangles, fixed } = mesh;
     if triangles.is_empty() {
@@ -221,17 +224,17 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// Returns the index of the first bad item.
+/// Returns the index of the first item for which `is_bad` holds.
 fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     const CHUNK: usize = 1 << 14;
-    // All items of a chunk are checked, as this takes no branches.
+    // Every item of a chunk is tested, as a loop without branches is faster than a loop that may end early.
     let any = |_, chunk: &[T]| chunk.iter().fold(false, |any, item| any | is_bad(item));
     let chunk = map_parts(items.chunks(CHUNK), any).into_iter().position(|any| any)?;
     items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
 }
 
-/// Checks that coordinates are neither too large nor all too small to compute with. Vertices that no triangle uses may
-/// be anywhere.
+/// Checks that the largest coordinate of a vertex that some triangle uses is from 1e-100 to 1e100 in absolute value.
+/// Unused vertices may be anywhere.
 fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
     let size = |v: usize| match stars.of(v) {
         [] => 0.0,

@@ -1,17 +1,17 @@
-//! Edges that cross and cannot move: a mesh that has them is not valid wherever its free vertices are.
+//! Edges that cross and cannot move. If two such edges cross, the mesh is not valid wherever its free vertices are.
 
 use crate::error::MeshError;
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 
-/// Two edges that cross, each as its ends, ascending.
+/// Two edges that cross. The ends of each edge are in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Crossing {
-    /// The edges, ascending.
+    /// The two edges as pairs of vertices, in ascending order.
     pub edges: [[u32; 2]; 2],
 }
 
-/// An edge with the range of its coordinates along an axis.
+/// An edge with the range of its coordinates along an axis, both ends inclusive.
 struct Span {
     ends: [u32; 2],
     low: f64,
@@ -19,19 +19,20 @@ struct Span {
 }
 
 impl Topology<'_> {
-    /// Returns pairs of edges between vertices that are not free, such as boundary edges, that cross in a point inside both, by
-    /// exact predicates. No move of free vertices makes such a mesh valid, unless it is meant to lie over itself. At most
-    /// `most` pairs are returned, ascending.
+    /// Returns pairs of edges that cross in a point inside both, by exact predicates. Only edges between two vertices
+    /// that are not free are tested, such as boundary edges. No move of free vertices makes a mesh with such a crossing
+    /// valid, unless the mesh is meant to overlap itself. At most `most` pairs are returned, in ascending order.
     ///
-    /// Edges that touch in an end of one of them, or lie on one another, do not cross: both sides of a slit have such edges.
+    /// Two edges do not cross if they touch in an end of either edge, or are collinear and overlap: both sides of a
+    /// slit have such edges.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn crossings(&self, points: &[[f64; 2]], most: usize) -> Result<Vec<Crossing>, MeshError> {
         self.check_count(points)?;
         let mut found = Vec::new();
         let edges = self.held_edges();
-        // Along the axis in which they reach farther, fewer edges are side by side.
+        // The sweep goes along the axis of the larger extent, as fewer edges then overlap along that axis.
         let axis = if extent(points, &edges, 0) >= extent(points, &edges, 1) { 0 } else { 1 };
         let mut spans: Vec<Span> = edges.iter().map(|&ends| span(points, ends, axis)).collect();
         spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.ends.cmp(&b.ends)));
@@ -52,7 +53,7 @@ impl Topology<'_> {
         Ok(found)
     }
 
-    /// The edges of which neither end is free, each once.
+    /// Returns the edges of which neither end is free, each once, ascending.
     fn held_edges(&self) -> Vec<[u32; 2]> {
         let is_held = |edge: &[u32; 2]| edge.iter().all(|&v| !self.free()[v as usize]);
         let sides = self.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
@@ -69,7 +70,7 @@ fn span(points: &[[f64; 2]], ends: [u32; 2], axis: usize) -> Span {
     Span { ends, low: a.min(b), high: a.max(b) }
 }
 
-/// How far all edges reach along an axis.
+/// Returns the length of the range that all edges together span along an axis.
 fn extent(points: &[[f64; 2]], edges: &[[u32; 2]], axis: usize) -> f64 {
     let spans = || edges.iter().map(|&ends| span(points, ends, axis));
     let low = spans().map(|span| span.low).fold(f64::INFINITY, f64::min);

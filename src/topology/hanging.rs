@@ -1,4 +1,5 @@
-//! Hanging nodes: vertices inside an edge of one triangle, on whose other side triangles have shorter edges.
+//! Hanging nodes: vertices inside an edge of one triangle, where the triangles on the other side of the edge have
+//! shorter edges.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,32 +7,34 @@ use crate::error::MeshError;
 use crate::parallel::map_parts;
 use crate::topology::Topology;
 
-/// A hanging node: a vertex on the boundary between the ends of a boundary edge, on whose other side shorter boundary
-/// edges lead through the vertex from one end to the other. The mesh is open there, as if cut along the edge.
+/// A hanging node: a vertex that lies between the ends of a boundary edge. On the other side of this edge, shorter
+/// boundary edges lead from one end through the vertex to the other end. The mesh is open there, as if cut along the
+/// edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HangingNode {
-    /// The vertex.
+    /// Index of the hanging node.
     pub vertex: u32,
-    /// The ends of the edge that it is inside of, with the edge's triangle on the left.
+    /// Start and end of the boundary edge that contains the node, with the triangle of the edge on the left.
     pub edge: [u32; 2],
 }
 
-/// How far from an edge a node may be, as a share of the distance along it. Files hold few digits of points on edges
-/// that are not along an axis, so these are rarely on them exactly.
+/// Largest distance of a node from an edge, as a share of the distance along the edge; compared as an angle in radians.
+/// Files store few digits, so nodes on edges that are not parallel to an axis are rarely on them exactly.
 const OFF: f64 = 1e-3;
-/// How many edges in nearly one direction are looked at, at each vertex. Only overlapping triangles have several.
+/// Largest number of edges of nearly equal direction that are tested at a vertex. Only overlapping triangles have
+/// several such edges.
 const MOST: usize = 64;
 
 impl Topology<'_> {
-    /// Returns the hanging nodes of a mesh with its vertices at `points`, ascending, each once. They are on the boundary,
-    /// as the edges on both sides are, and do not move.
+    /// Returns the hanging nodes of a mesh with its vertices at `points`, ascending, each once. Hanging nodes never
+    /// move in a run: the edges on both sides are boundary edges, so every hanging node is on the boundary.
     ///
-    /// The ends of the edge must be vertices of both sides, so that sides with vertices of their own at the same places,
-    /// as slits and interfaces have them on purpose, have none. A node may be off the edge by a thousandth of its length.
-    /// This takes about as long as one pass over the triangles.
+    /// Both sides must share the end vertices of the long edge. Sides whose ends are separate vertices at equal places,
+    /// as slits and interfaces have them on purpose, have no hanging nodes. A node may lie off the edge by up to a
+    /// thousandth of the edge length. The search costs about one pass over the triangles.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if there is not one point for each vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn hanging_nodes(&self, points: &[[f64; 2]]) -> Result<Vec<HangingNode>, MeshError> {
         self.check_count(points)?;
         let edges = self.outer_edges();
@@ -44,8 +47,8 @@ impl Topology<'_> {
         Ok(nodes)
     }
 
-    /// Returns the boundary edges, each with the third corner of its triangle. They are found without the triangles at
-    /// each vertex: the ends of a boundary edge are not free.
+    /// Returns the boundary edges, each with the third corner of its triangle. Needs no stars: sorts the edges that
+    /// join two fixed or boundary vertices, and keeps edges that occur once.
     fn outer_edges(&self) -> Vec<[u32; 3]> {
         let is_held = |&[a, b, _]: &[u32; 3]| !self.free()[a as usize] && !self.free()[b as usize];
         let of_part = |_, part: &[[u32; 3]]| {
@@ -60,10 +63,10 @@ impl Topology<'_> {
     }
 }
 
-/// The boundary edges that start at each vertex, by direction.
+/// Boundary edges grouped by their start vertex, and sorted by direction within a group.
 struct Seam<'p> {
     points: &'p [[f64; 2]],
-    /// Start, direction from -π to π, and end of each edge. Sorted by start and direction.
+    /// Start, direction in radians from -π to π, and end of each edge, sorted by start and then by direction.
     edges: Vec<(u32, f64, u32)>,
 }
 
@@ -75,8 +78,9 @@ impl<'p> Seam<'p> {
         Self { points, edges }
     }
 
-    /// Returns the nodes inside an edge, which is given with the third corner of its triangle, if edges on its other side
-    /// lead through them from its end to its start. `used` are the edges that were gone along, each once.
+    /// Returns the hanging nodes inside the edge from `start` to `end` of a triangle whose third vertex is `corner`.
+    /// Follows boundary edges on the other side, from `end` back to `start`; empty if they do not lead there. Edges
+    /// that were followed are marked in `used` and are not followed again.
     fn nodes_inside(&self, [start, end, corner]: [u32; 3], used: &mut [bool]) -> Vec<HangingNode> {
         let (mut at, mut nodes) = (end, Vec::new());
         while let Some(edge) = self.toward(at, start).filter(|&edge| !used[edge]) {
@@ -84,7 +88,8 @@ impl<'p> Seam<'p> {
             at = self.edges[edge].2;
             match at {
                 at if at == start => return nodes,
-                // The other sides of a needle, not of a gap.
+                // The path has reached the third vertex: it follows the other two sides of a needle-shaped triangle,
+                // not the far side of a gap.
                 at if at == corner => break,
                 _ => {}
             }
@@ -93,13 +98,14 @@ impl<'p> Seam<'p> {
         Vec::new()
     }
 
-    /// Returns the edge from a vertex that goes toward another, and not beyond it.
+    /// Returns the index of the boundary edge that starts at `from` in the direction of `to` and ends at `to` or
+    /// before.
     fn toward(&self, from: u32, to: u32) -> Option<usize> {
         let own = self.edges.partition_point(|edge| edge.0 < from)
             ..self.edges.partition_point(|edge| edge.0 <= from);
         let wanted = direction(self.points, from, to);
         let all = &self.edges[own.clone()];
-        // Directions go on from π to -π.
+        // Directions wrap around from π to -π.
         let least = wanted - OFF;
         let least = if least < -PI { least + TAU } else { least };
         let first = all.partition_point(|edge| edge.1 < least);
@@ -111,7 +117,7 @@ impl<'p> Seam<'p> {
         })
     }
 
-    /// Whether a vertex comes before another, seen from a third.
+    /// Returns whether `vertex` is nearer to `from` than `other` is.
     fn is_before(&self, from: u32, vertex: u32, other: u32) -> bool {
         let [from, vertex, other] = [from, vertex, other].map(|v| self.points[v as usize]);
         let length = |p: [f64; 2]| (p[0] - from[0]).hypot(p[1] - from[1]);
@@ -119,7 +125,7 @@ impl<'p> Seam<'p> {
     }
 }
 
-/// Returns the direction from a vertex to another, from -π to π.
+/// Returns the angle of the vector between two vertices in radians, from -π to π.
 fn direction(points: &[[f64; 2]], from: u32, to: u32) -> f64 {
     let [from, to] = [from, to].map(|v| points[v as usize]);
     (to[1] - from[1]).atan2(to[0] - from[0])

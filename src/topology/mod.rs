@@ -1,5 +1,5 @@
-//! The connectivity of a mesh: consistent windings, stars, one-rings and the boundary. Also exact predicates, and the
-//! checks based on them.
+//! The connectivity of a mesh: consistent windings, stars, one-rings and boundary edges. Contains the exact predicates
+//! for inverted and flat triangles, and the checks of meshes based on them.
 
 mod boundary;
 mod certify;

@@ -1,35 +1,37 @@
-//! Exact predicates for inverted and flat triangles, for coordinates as given.
+//! Exact predicates for inverted and flat triangles, on coordinates as given.
 
 use robust::Coord;
 
 use crate::error::{BadTriangle, MeshError};
 use crate::parallel::map_parts;
 
-/// If the determinant is below this, its products may have lost bits to underflow. It is about 2^-960, far above the
-/// least positive number.
+/// Bound below which the products of a determinant may have lost bits to underflow. About 2^-960, far above the least
+/// positive `f64`.
 const UNDERFLOW: f64 = 1e-289;
 
-/// If the determinant of a triangle exceeds this share of the sum of its two products, rounding cannot have changed its
-/// sign (Shewchuk, Discrete Comput. Geom. 18, 1997, the bound of ORIENT2D's first stage).
+/// Relative rounding error of a determinant. If the determinant of a triangle exceeds this share of the sum of its two
+/// products, rounding cannot have changed its sign (Shewchuk, Discrete Comput. Geom. 18, 1997, the bound of ORIENT2D's
+/// first stage).
 const ROUNDING: f64 = (3.0 + 8.0 * f64::EPSILON) * 0.5 * f64::EPSILON;
 
 /// Returns twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value is
-/// rounded; it is zero only if the triangle is flat. NaN or infinite if a coordinate is.
+/// rounded, but zero only if the triangle is flat. The result is NaN or infinite if a coordinate is.
 ///
-/// The sign holds for all coordinates up to 1e100, if those that are not zero are at least 1e-300.
+/// The sign is exact for all coordinates of absolute value up to 1e100, if coordinates other than zero are at least
+/// 1e-300 in absolute value.
 #[inline]
 pub(crate) fn orientation(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| points[v as usize]);
     let (left, right) = ((p[0] - r[0]) * (q[1] - r[1]), (p[1] - r[1]) * (q[0] - r[0]));
     let determinant = left - right;
-    // Nearly all triangles of a mesh are decided here, without a call.
+    // The inequality decides nearly all triangles of a mesh without a call.
     let least = ROUNDING * (left.abs() + right.abs()) + UNDERFLOW;
     if determinant.abs() > least { determinant } else { exact_orientation([p, q, r]) }
 }
 
 fn exact_orientation(corners: [[f64; 2]; 3]) -> f64 {
     let orientation = orient(corners);
-    // This comparison is false for NaN, which is returned.
+    // The comparison is false if `orientation` is NaN; NaN is then returned.
     if orientation.abs() < UNDERFLOW { tiny_orientation(corners) } else { orientation }
 }
 
@@ -38,8 +40,8 @@ fn orient(corners: [[f64; 2]; 3]) -> f64 {
     robust::orient2d(p, q, r)
 }
 
-/// Does the same as [`orientation`] for triangles so small or flat that products of their coordinates may underflow.
-/// Each axis is first scaled by a power of two, which rounds nothing and keeps the sign.
+/// Computes [`orientation`] for triangles so small or flat that products of their coordinates may underflow. Scales
+/// each axis by a power of two first, which rounds nothing and keeps the sign.
 #[cold]
 fn tiny_orientation(corners: [[f64; 2]; 3]) -> f64 {
     let [x, y] = [0, 1].map(|axis| {
@@ -48,21 +50,21 @@ fn tiny_orientation(corners: [[f64; 2]; 3]) -> f64 {
     });
     let scaled = orient(corners.map(|corner| [scaled(corner[0], x), scaled(corner[1], y)]));
     let value = unscaled(unscaled(scaled, x), y);
-    // The value itself may underflow to zero.
+    // The unscaled value may underflow to zero although the triangle is not flat.
     if value == 0.0 && scaled != 0.0 { f64::from_bits(1).copysign(scaled) } else { value }
 }
 
-/// Returns the exponent of the largest power of two by which a number can be multiplied to stay below 2^480.
+/// Returns the largest exponent of a power of two that keeps `size` below 2^480 when multiplied. 0 if `size` is 0.
 fn up(size: f64) -> i32 {
     if size == 0.0 {
         return 0;
     }
-    // A subnormal number is scaled first, to find its exponent.
+    // A subnormal number has no exponent bits, and is scaled before they are read.
     let (size, already) = if size < 1e-200 { (size * 600f64.exp2(), 600) } else { (size, 0) };
     479 - (((size.to_bits() >> 52) & 0x7ff) as i32 - 1023 - already)
 }
 
-/// Returns a number times a power of two, in two steps, as the power itself may overflow.
+/// Returns `x` times 2 to the power `exponent`. Multiplies twice, as the power itself may overflow.
 fn scaled(x: f64, exponent: i32) -> f64 {
     let half = exponent / 2;
     x * f64::from(half).exp2() * f64::from(exponent - half).exp2()
@@ -72,8 +74,9 @@ fn unscaled(x: f64, exponent: i32) -> f64 {
     scaled(x, -exponent)
 }
 
-/// Whether a triangle is surely counter-clockwise, without a branch, so that a loop over triangles is fast. False also
-/// for a triangle so flat or small that only [`is_positive`] can tell; a mesh has few of them.
+/// Returns whether a triangle is counter-clockwise by the fast test alone, without a branch, so that loops over
+/// triangles are fast. False also for a triangle so flat or small that only [`is_positive`] can decide; a mesh has few
+/// of them.
 #[inline(always)]
 pub(crate) fn is_surely_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
     let [p, q, r] = corners.map(|v| points[v as usize]);
@@ -83,19 +86,19 @@ pub(crate) fn is_surely_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> boo
     (determinant > least) & (determinant < f64::INFINITY)
 }
 
-/// Whether a triangle is counter-clockwise. False if a coordinate is NaN or infinite.
+/// Returns whether a triangle is counter-clockwise, by exact arithmetic. False if a coordinate is NaN or infinite.
 #[inline]
 pub(crate) fn is_positive(points: &[[f64; 2]], corners: &[u32; 3]) -> bool {
     let orientation = orientation(points, corners);
     orientation > 0.0 && orientation < f64::INFINITY
 }
 
-/// Returns the indices of the `triangles` that are not counter-clockwise at `points`: those that are inverted or flat,
-/// or have a coordinate that is not finite. In ascending order.
+/// Returns the indices of the `triangles` that are not counter-clockwise at `points`, in ascending order. These
+/// triangles are inverted or flat, or have a coordinate that is infinite or NaN.
 ///
 /// # Errors
-/// [`MeshError::IndexOutOfRange`] if a triangle names a vertex that `points` does not have,
-/// [`MeshError::TooLarge`] if there are more triangles than 32-bit indices can number.
+/// [`MeshError::IndexOutOfRange`] if a triangle names a vertex that `points` does not have, [`MeshError::TooLarge`] if
+/// there are more triangles than 32-bit indices can number.
 pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32>, MeshError> {
     let vertices = points.len();
     if triangles.len() >= u32::MAX as usize {
@@ -111,7 +114,7 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
     Ok(not_positive(points, triangles))
 }
 
-/// Returns the same as [`infeasible`], for triangles whose vertices all have a point.
+/// Returns the triangles that [`infeasible`] would return. Panics if `points` lacks a vertex of `triangles`.
 pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
     const CHUNK: usize = 1 << 10;
     let found = map_parts(triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
@@ -124,7 +127,8 @@ pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u
     found.concat()
 }
 
-/// Returns the triangles that are not counter-clockwise, each with its vertices and whether it is flat.
+/// Returns the triangles that are not counter-clockwise, in ascending order. Each [`BadTriangle`] tells flat triangles
+/// from inverted ones.
 pub(crate) fn bad_triangles(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<BadTriangle> {
     let describe = |t: u32| {
         let vertices = triangles[t as usize];
@@ -140,14 +144,14 @@ mod tests {
 
     #[test]
     fn an_inversion_smaller_than_rounding_is_found() {
-        // 0.1 + 0.2 is above 0.3 by a rounding error, which a plain determinant may not see.
+        // 0.1 + 0.2 exceeds 0.3 by a rounding error, which a plain determinant may miss.
         let points = [[0.0, 0.0], [1.0, 1.0], [0.1 + 0.2, 0.3]];
         assert_eq!(infeasible(&points, &[[0, 1, 2]]), Ok(vec![0]));
         assert_eq!(infeasible(&points, &[[1, 0, 2]]), Ok(vec![]));
     }
 
-    /// Corners on a fine grid, many of them nearly on a line, with sizes at which products of coordinates underflow.
-    /// Their orientation is compared with the one computed in integers.
+    /// Tests corners on a fine grid, many of them nearly collinear, with sizes at which products of coordinates
+    /// underflow. Compares their orientation with the orientation computed in integers.
     #[test]
     fn signs_are_exact_for_triangles_of_any_size() {
         let mut state = 1_u64;
@@ -180,7 +184,7 @@ mod tests {
 
     #[test]
     fn signs_are_exact_where_sizes_differ_by_hundreds_of_decades() {
-        // The area is 1e-600, and its sign is that of the last coordinate.
+        // The area is 1e-600, with the sign of the last coordinate.
         for (y, sign) in [(1e-300, -1.0), (-1e-300, 1.0), (0.0, 0.0)] {
             let points = [[0.0, 0.0], [1.0, y], [1e-300, 0.0]];
             let found = orientation(&points, &[0, 1, 2]);
@@ -202,7 +206,7 @@ mod tests {
         let mut sure = 0;
         for round in 0..20_000 {
             let [a, b] = [0; 2].map(|_| [random(), random()]);
-            // Every other triangle is flat except for rounding.
+            // In every other triangle, the third corner is on the line through the first two, except for rounding.
             let share = random() / 1e7;
             let middle = [0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis]));
             let points = [a, b, if round % 2 == 0 { middle } else { [random(), random()] }];

@@ -1,16 +1,16 @@
-//! Stars: the triangles at each vertex, and whether they form a cycle around it.
+//! Stars: the triangles at each vertex, and whether these triangles form a cycle around the vertex.
 
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_parts;
 
-/// Returns the triangles at each vertex, in ascending order.
+/// Returns the triangles at each vertex, as ascending indices.
 pub(crate) fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
     Groups::new(triangles.len(), vertices, |t| triangles[t])
 }
 
-/// Returns the triangles other than `triangle` at the edge between two vertices.
+/// Returns the triangles other than `triangle` at the edge between the vertices `a` and `b`.
 ///
-/// It searches around the vertex that has fewer triangles. For all edges of a planar mesh this takes linear time,
+/// Searches the star of the vertex that has fewer triangles. For all edges of a planar mesh this takes linear time,
 /// however many triangles some vertices have (Chiba & Nishizeki, SIAM J. Comput. 14, 1985).
 pub(crate) fn others_at_edge<'a>(
     triangles: &'a [[u32; 3]],
@@ -24,9 +24,9 @@ pub(crate) fn others_at_edge<'a>(
     star.iter().copied().filter(is_other)
 }
 
-/// Sets `closed` for the vertices around which the triangles form one cycle, and sorts their stars in its order.
-/// Returns false if two triangles have an edge in the same direction: windings are then inconsistent, or more than two
-/// triangles share the edge, and `closed` is not valid.
+/// Sets `closed` for the vertices around which the triangles form one cycle, and sorts the stars of these vertices in
+/// the order of the cycle. Returns false if two triangles have an edge in the same direction: either windings are
+/// inconsistent, or more than two triangles share the edge. `closed` is then not valid.
 pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
     const CHUNK: usize = 1 << 12;
     let parts = stars.chunks_mut(CHUNK).into_iter().zip(closed.chunks_mut(CHUNK));
@@ -44,7 +44,7 @@ pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bo
                     *t = edge.triangle;
                 }
             } else {
-                // The edges of a cycle are different in any case.
+                // Edges of a cycle always differ, so the test is needed only here.
                 consistent &= are_different(&edges);
             }
         }
@@ -53,7 +53,7 @@ pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bo
     !consistent.contains(&false)
 }
 
-/// The edge of a triangle opposite to one of its vertices.
+/// The edge of a triangle opposite to one of its vertices, in the direction of the triangle's winding.
 #[derive(Clone, Copy, Default)]
 struct OuterEdge {
     from: u32,
@@ -61,15 +61,15 @@ struct OuterEdge {
     triangle: u32,
 }
 
-/// Returns the ends of a triangle's edge opposite to a vertex. It has no branches, which the processor could not
-/// predict.
+/// Returns start and end of the edge of a triangle opposite to a vertex, in the direction of its winding. Computed
+/// without branches, as a processor could not predict them.
 #[inline]
 pub(crate) fn outer_edge(corners: &[u32; 3], vertex: u32) -> (u32, u32) {
     let [is_a, is_b, is_c] = corners.map(|corner| usize::from(corner == vertex));
     (corners[is_a + 2 * is_b], corners[2 * is_a + is_c])
 }
 
-/// Collects the edges opposite to a vertex in its triangles, in the order of the triangles.
+/// Replaces `edges` by the edges opposite to `vertex` in the triangles of `star`, in the order of `star`.
 #[inline]
 fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Vec<OuterEdge>) {
     edges.clear();
@@ -79,8 +79,8 @@ fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Ve
     }));
 }
 
-/// Sorts edges into one cycle of three or more, in which each edge starts where the one before it ends. Returns false
-/// if they do not form one.
+/// Sorts edges into one cycle of three or more, in which each edge starts where the previous edge ends. Returns false,
+/// with the edges unsorted, if they do not form one cycle.
 fn chain(edges: &mut [OuterEdge]) -> bool {
     match edges.len() {
         0..3 => false,
@@ -89,17 +89,17 @@ fn chain(edges: &mut [OuterEdge]) -> bool {
     }
 }
 
-/// The largest number of edges that are all compared with each other.
+/// Largest number of edges for which [`chain_few`] compares all pairs.
 const FEW: usize = 8;
 
-/// Does the work of [`chain`] for at most [`FEW`] edges.
+/// Sorts at most [`FEW`] edges into a cycle; see [`chain`].
 fn chain_few(edges: &mut [OuterEdge]) -> bool {
-    // Padded by a number that no vertex has.
+    // Unused entries hold a number that no vertex has.
     let mut from = [u32::MAX; FEW];
     for (from, edge) in from.iter_mut().zip(&*edges) {
         *from = edge.from;
     }
-    // For the edges that start where `edge` ends: FEW times their number, plus the sum of their indices.
+    // For the edges that start where `edge` ends: `FEW` times their number, plus the sum of their indices.
     let after = |edge: &OuterEdge| {
         let found = |k: usize| if from[k] == edge.to { FEW + k } else { 0 };
         (0..FEW).map(|k| found(k) as u32).sum::<u32>()
@@ -117,7 +117,7 @@ fn chain_few(edges: &mut [OuterEdge]) -> bool {
     let mut sorted = [OuterEdge::default(); FEW];
     let mut at = 0;
     for (i, to) in sorted[..edges.len()].iter_mut().enumerate() {
-        // The path is back at the first edge before all edges were visited.
+        // The path has returned to the first edge before all edges were visited.
         if i > 0 && at == 0 {
             return false;
         }
@@ -128,7 +128,7 @@ fn chain_few(edges: &mut [OuterEdge]) -> bool {
     at == 0
 }
 
-/// Does the work of [`chain`] for any number of edges.
+/// Sorts any number of edges into a cycle; see [`chain`].
 fn chain_many(edges: &mut [OuterEdge]) -> bool {
     let mut by_start = edges.to_vec();
     by_start.sort_unstable_by_key(|edge| edge.from);
@@ -141,7 +141,7 @@ fn chain_many(edges: &mut [OuterEdge]) -> bool {
     while let Ok(i) = by_start.binary_search_by_key(&at, |edge| edge.from) {
         chained.push(by_start[i]);
         at = by_start[i].to;
-        // The path is back at the first edge, or in a cycle without it.
+        // The path has returned to the first vertex, or runs in a cycle that does not contain this vertex.
         if at == first || chained.len() == edges.len() {
             break;
         }
@@ -153,7 +153,7 @@ fn chain_many(edges: &mut [OuterEdge]) -> bool {
     true
 }
 
-/// Whether no two edges start at the same vertex, and no two end at the same vertex.
+/// Returns whether all edges have different start vertices and different end vertices.
 fn are_different(edges: &[OuterEdge]) -> bool {
     if edges.len() <= FEW {
         let alike = |a: &OuterEdge, b: &OuterEdge| a.from == b.from || a.to == b.to;
@@ -172,8 +172,8 @@ mod tests {
 
     #[test]
     fn a_vertex_joining_two_fans_stays() {
-        // Two closed fans around one vertex cannot lie flat without overlap, but their topology
-        // must not make a ring of either half.
+        // Two closed fans around one vertex cannot lie flat without overlap, but their topology must not make a ring of
+        // either half.
         let ring_of = |triangles: &[[u32; 3]]| {
             let mut edges = Vec::new();
             outer_edges(triangles, stars(7, triangles).of(0), 0, &mut edges);
@@ -194,7 +194,7 @@ mod tests {
         assert!(chained.iter().map(|e| (e.from, e.to)).eq((0..20).map(|i| (i, (i + 1) % 20))));
         assert!(chained.iter().all(|e| cycle[e.triangle as usize] == (e.from, e.to)));
 
-        // Edges that are not a cycle are kept, in any order.
+        // Edges that do not form a cycle keep all their values, in any order.
         let mut open = cycle.clone();
         open.retain(|edge| edge.0 != 7);
         let mut two = cycle.clone();

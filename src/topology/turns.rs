@@ -1,30 +1,30 @@
 //! Counts how many times the triangles around a vertex wind around it.
 //!
 //! Triangles may all be counter-clockwise and yet overlap: five of them can wind twice around their common vertex, as
-//! in a pentagram. The count needs only comparisons of coordinates, so it is exact.
+//! in a pentagram. Counting needs only comparisons of coordinates, so the number of turns is exact.
 
 use crate::parallel::map_parts;
 use crate::topology::predicates::{is_positive, is_surely_positive};
 
-/// Whether a point is above another, or at the same height to the right of it.
+/// Returns whether `p` has a greater y coordinate than `q`, or the same y and a greater x.
 #[inline(always)]
 fn is_above(p: [f64; 2], q: [f64; 2]) -> bool {
     (p[1] > q[1]) | ((p[1] == q[1]) & (p[0] > q[0]))
 }
 
-/// Returns for each corner of a counter-clockwise triangle whether the direction of the x axis leads from it into the
-/// triangle or along the second of the two edges there. That holds for at most one corner. The number of triangles with
-/// this corner at a vertex is the number of times that they wind around it.
+/// Returns for each corner of a counter-clockwise triangle whether the direction of the x axis, starting at the corner,
+/// leads into the triangle or along the second of the two edges at the corner. At most one corner has this property.
+/// The turns around a vertex are as many as the triangles whose corner at the vertex has this property.
 #[inline(always)]
 fn ahead(points: &[[f64; 2]], corners: &[u32; 3]) -> [bool; 3] {
     let [p, q, r] = corners.map(|v| points[v as usize]);
-    // From such a corner, the next corner is not above it, and the one after that is.
+    // At a corner with this property, the next corner is not above it, and the third corner is.
     let falls = [!is_above(q, p), !is_above(r, q), !is_above(p, r)];
     [falls[2] & falls[0], falls[0] & falls[1], falls[1] & falls[2]]
 }
 
-/// Whether every triangle is counter-clockwise and the triangles of every free vertex wind once around it. It makes a
-/// single pass, as nearly all meshes are feasible.
+/// Returns whether every triangle is counter-clockwise and the triangles of every free vertex wind once around it.
+/// Tests both in a single pass, as nearly all meshes are feasible.
 pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[bool]) -> bool {
     let count = |_, chunk: &[[u32; 3]]| -> Option<usize> {
         let (mut sure, mut turns) = (true, 0);
@@ -38,8 +38,8 @@ pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[b
     turns == Some(count_of(free))
 }
 
-/// Returns a free vertex around which the triangles wind more than once, and how many times, if there is one. All
-/// triangles must be counter-clockwise.
+/// Returns the first free vertex around which triangles wind more than once, and the number of turns. `None` if there
+/// is no such vertex. All triangles must be counter-clockwise.
 pub(crate) fn overlapping_star(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
@@ -49,7 +49,7 @@ pub(crate) fn overlapping_star(
         chunk.iter().map(|t| turns_at_free(points, t, free)).sum()
     };
     let turns: usize = map_parts(triangles.chunks(1 << 12), count).into_iter().sum();
-    // Each star winds at least once.
+    // Each star winds at least once, so equal sums mean that every star winds exactly once.
     if turns == count_of(free) {
         return None;
     }
@@ -66,8 +66,8 @@ pub(crate) fn overlapping_star(
     Some((vertex as u32, turns[vertex]))
 }
 
-/// Returns 1 if the corner of a triangle that counts for turns is at a free vertex, else 0. It has no branches, as a
-/// processor would mispredict every other one.
+/// Returns 1 if the corner of a triangle that counts as a turn (see [`ahead`]) is a free vertex, else 0. Computed
+/// without branches, as a processor would mispredict every second branch.
 #[inline(always)]
 fn turns_at_free(points: &[[f64; 2]], corners: &[u32; 3], free: &[bool]) -> usize {
     let is_ahead = ahead(points, corners);
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// A fan of `around` triangles that winds `turns` times, turned by `angle`.
+    /// Returns a fan of `around` triangles that winds `turns` times, rotated by `angle` in radians.
     fn fan(around: u32, turns: u32, angle: f64) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
         let on_circle = |k: u32| {
             let (y, x) = (angle + TAU * f64::from(k * turns) / f64::from(around)).sin_cos();

@@ -1,4 +1,4 @@
-//! Makes windings consistent across edges.
+//! Makes the windings of triangles consistent across edges.
 
 use std::ops::Range;
 
@@ -8,11 +8,12 @@ use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::others_at_edge;
 
-/// The neighbor across an edge of the boundary, where there is no triangle.
+/// Index in place of a neighbor across a boundary edge, where there is no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Returns for each triangle the triangle across its edge from corner i to corner i + 1, or [`NONE`]. Fails with
-/// [`MeshError::EdgeOfThree`].
+/// Returns for each triangle the triangles across its three edges: entry i is across the edge from corner i to corner i
+/// + 1. [`NONE`] stands for a boundary edge. Fails with [`MeshError::EdgeOfThree`] if more than two triangles share an
+/// edge.
 pub(crate) fn neighbors(
     triangles: &[[u32; 3]],
     stars: &Groups,
@@ -40,24 +41,24 @@ pub(crate) fn neighbors(
     Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-/// Whether corner b comes directly after corner a in a triangle, cyclically.
+/// Returns whether corner `b` follows directly after corner `a` in a triangle, cyclically.
 fn runs(corners: &[u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
 }
 
-/// The majority that decides the winding of an edge-connected part.
+/// Criterion that decides the winding of an edge-connected part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Majority {
-    /// Most triangles are counter-clockwise, whatever their sizes. A single inverted triangle may be larger than all
-    /// others together, for example where a mesh of the globe crosses the date line. If equally many are clockwise, the
-    /// area decides.
+    /// Most triangles become counter-clockwise, whatever their sizes. If both orientations are equally frequent, the
+    /// sum of the signed areas becomes positive. Areas alone may mislead: a single inverted triangle may be larger than
+    /// all others together, for example where a mesh of the globe crosses the date line.
     OfTriangles,
-    /// The sum of the signed areas is positive. If it is zero, the number of triangles decides.
+    /// The sum of the signed areas becomes positive. If the sum is zero, most triangles become counter-clockwise.
     OfArea,
 }
 
-/// Returns the triangles with windings made consistent across edges, and each edge-connected part wound by the
-/// majority. The result does not depend on the order of triangles and vertices.
+/// Returns the triangles with windings that are consistent across edges. `decides` chooses the winding of each
+/// edge-connected part. The result does not depend on the order of triangles and vertices.
 pub(crate) fn wind(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
@@ -82,8 +83,8 @@ pub(crate) fn wind(
             let orientation = predicates::orientation(points, &corners);
             majority += i64::from(orientation > 0.0) - i64::from(orientation < 0.0);
             doubled_area += orientation;
-            // `across` refers to the corners as given. If the last two have been swapped since, edges run in the other
-            // direction.
+            // `across` refers to the corners as given. If the last two corners have been swapped since, the edges of
+            // the triangle run in the opposite direction.
             let given = triangles[t as usize];
             for (i, &other) in across[t as usize].iter().enumerate() {
                 if other == NONE || seen[other as usize] {
@@ -113,7 +114,7 @@ pub(crate) fn wind(
     wound
 }
 
-/// Whether every triangle is counter-clockwise.
+/// Returns whether every triangle is counter-clockwise.
 pub(crate) fn are_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> bool {
     let all_of = |_, chunk: &[[u32; 3]]| chunk.iter().all(|t| predicates::is_positive(points, t));
     !map_parts(triangles.chunks(1 << 12), all_of).contains(&false)

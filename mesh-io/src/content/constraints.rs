@@ -1,47 +1,48 @@
-//! Lines, points and periodic pairs of a mesh file: what the file says of vertices besides their coordinates and triangles.
+//! Facts of a mesh file that constrain its vertices: lines, points, model geometry, periodic pairs and motions.
 
-/// An affine map of the plane, for a translation or a rotation: the rows of the matrix that takes (x, y, 1) to the moved
-/// point.
+/// Affine map of the plane, for a translation or a rotation: the two rows of the matrix whose product with (x, y, 1) is
+/// the moved point.
 pub type Affine = [[f64; 3]; 2];
 
-/// Pairs of vertices of a periodic model. One motion takes the first vertex of each pair to the second.
+/// Pairs of vertices of a periodic model, with the motion that maps the first vertex of each pair to the second.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PeriodicPairs {
-    /// The pairs, in the order of the file.
+    /// First and second vertex of each pair as 0-based indices, in the order of the file.
     pub pairs: Vec<[u32; 2]>,
-    /// The motion, if the file gives it.
+    /// Motion from first to second vertices; `None` if the file gives pairs alone.
     pub motion: Option<Affine>,
 }
 
-/// Elements other than triangles, and the geometry of a model that vertices lie on, as vertices of the mesh. A program that
-/// moves vertices decides by these facts which vertices may move and how.
+/// Vertices and edges on elements other than triangles and on the geometry of a model, and the periodicity of the mesh.
+/// A program decides from these facts which vertices may move, and how.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Constraints {
     /// Vertices of points, lines, quadrilaterals and polygons, and vertices on points and curves of the model (gmsh 4).
     /// In any order, with repeats.
     pub vertices: Vec<u32>,
-    /// Line elements, segments and parts of polylines.
+    /// Edges of line elements, segments and polylines, as pairs of vertices.
     pub lines: Vec<[u32; 2]>,
-    /// Vertices that belong to no line alone: points and corners of the model, vertices of quadrilaterals and polygons.
-    /// In any order, with repeats.
+    /// Vertices constrained by more than lines: vertices of points, quadrilaterals and polygons, vertices on points of
+    /// the model (gmsh 4), and the listed vertex of a periodic pair whose other node is missing. In any order, with
+    /// repeats.
     pub anchored: Vec<u32>,
-    /// Vertices that belong together in a periodic model, from gmsh's `$Periodic`.
+    /// Periodic pairs from gmsh's `$Periodic`, in lists of pairs with a common motion.
     pub periodic: Vec<PeriodicPairs>,
-    /// Motions that take vertices of the boundary to others where the file does not list the pairs, from SU2's
+    /// Motions that map boundary vertices to their periodic partners where the file lists no pairs, from SU2's
     /// `NPERIODIC`.
     pub motions: Vec<Affine>,
-    /// Whether the file says that its model is periodic, but the pairs could not be read. Any vertices of the boundary
-    /// may then be pairs.
+    /// Whether the file declares a periodic model whose pairs could not be read. Any boundary vertex may then have a
+    /// periodic partner.
     pub has_unread_pairs: bool,
 }
 
-/// Returns the edges between triangles of different regions, ascending.
+/// Returns the edges between triangles of different regions, ascending, the smaller vertex of each edge first.
 pub(crate) fn edges_between_regions(
     regions: &[u32],
     triangles: &[[u32; 3]],
     vertices: usize,
 ) -> Vec<[u32; 2]> {
-    // Most vertices lie in one region, and on none of these edges.
+    // Marks the vertices at which regions meet. Most vertices stay unmarked, which leaves few edges to sort.
     let mut region = vec![None; vertices];
     let mut is_between = vec![false; vertices];
     for (corners, &own) in triangles.iter().zip(regions) {

@@ -4,40 +4,41 @@ use crate::error::GroupError;
 use std::collections::HashMap;
 use std::fmt;
 
-/// Elements and vertices that a mesh file gives a tag or a name of their own.
+/// Group of elements and vertices to which a mesh file gives a tag or a name.
 ///
-/// Displayed as its kind, the name of its dimension, and its name or tag: `physical line inlet`.
+/// [`Display`](fmt::Display) writes kind, dimension, and name or tag: `physical line inlet`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// The format's word for groups of its kind: `physical` and `entity` of gmsh, `marker` and `zone` of SU2,
-    /// `reference` and `list` of Medit, `label` of FreeFem, `material` and `nodestring` of SMS, `boundary` of ADCIRC, `material`, `object` and
-    /// `group` of OBJ, `attribute` and `marker` of Triangle, `block`, `sideset` and `nodeset` of Exodus, `solid` of STL, `elset`, `nset` and `surface` of Abaqus, `property` of Nastran, and in VTK and XDMF the name of
-    /// the array of cell data.
+    /// The format's word for the kind of group, such as `physical` of gmsh, `marker` of SU2 or `sideset` of Exodus; in
+    /// VTK and XDMF, the name of the array of cell data. [`MeshFile::groups`](crate::MeshFile::groups) has a table of
+    /// the words of each format.
     pub kind: String,
     /// 0 for a group of points, 1 for lines, 2 for triangles and quadrilaterals.
     pub dimension: u8,
-    /// Its name, if the file gives it one.
+    /// Name in the file; `None` for a group identified by its tag alone.
     pub name: Option<String>,
-    /// Its number, if the file gives it one.
+    /// Number in the file; `None` for a group identified by its name alone.
     pub tag: Option<i64>,
-    /// How many points it has, each vertex of a polyline counted as one. Vertices that the file marks one by one do not
-    /// count, nor do polygons of more than four corners; their vertices are among [`vertices`](Self::vertices).
+    /// Number of point elements, plus one for each vertex of a polyline. Single vertices that the file assigns to the
+    /// group, and polygons of more than four corners, are not counted. Their vertices are among
+    /// [`vertices`](Self::vertices).
     pub points: usize,
-    /// How many line elements it has.
+    /// Number of line elements, without the segments of polylines.
     pub lines: usize,
-    /// How many quadrilaterals it has.
+    /// Number of quadrilaterals.
     pub quadrilaterals: usize,
     pub(crate) triangles: Vec<u32>,
     pub(crate) vertices: Vec<u32>,
 }
 
 impl Group {
-    /// The indices of its triangles in [`MeshFile::triangles`](crate::MeshFile::triangles), ascending.
+    /// Returns the indices of the group's triangles in [`MeshFile::triangles`](crate::MeshFile::triangles), ascending.
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
     }
 
-    /// The indices of the vertices of all its elements in [`MeshFile::points`](crate::MeshFile::points), ascending.
+    /// Returns the indices of the vertices of all elements of the group, and of single vertices in the group, in
+    /// [`MeshFile::points`](crate::MeshFile::points), ascending.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }
@@ -51,8 +52,8 @@ impl Group {
         }
     }
 
-    /// Returns the names that [`Groups::find`] takes for the group, from the label alone to `kind:dimension:label`. Other groups may
-    /// have the same names.
+    /// Returns the spellings by which [`Groups::find`] finds the group: its name, then its tag, each alone, with a
+    /// prefix, and as `kind:dimension:label`. Other groups may share a spelling.
     fn qualified_names(&self) -> impl Iterator<Item = String> {
         let tag = self.tag.map(|tag| tag.to_string());
         let labels = [self.name.clone(), tag].into_iter().flatten();
@@ -75,37 +76,40 @@ impl fmt::Display for Group {
     }
 }
 
-/// All groups of a mesh file, sorted by kind, then by dimension and tag.
+/// All groups of a mesh file. Kinds keep their order of first use in the file; groups of one kind ascend by dimension,
+/// then by tag.
 ///
-/// A user names a group by its name or its tag. The kind of the group, the name of its dimension, or both may precede, each followed
-/// by a colon: `inlet`, `1`, `physical:1`, `line:1`, `physical:line:1`.
+/// A user refers to a group by name or tag, optionally with prefixes: kind, name of the dimension, or both, each
+/// followed by a colon. Examples: `inlet`, `1`, `physical:1`, `line:1`, `physical:line:1`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Groups {
     pub(crate) groups: Vec<Group>,
 }
 
 impl Groups {
-    /// Each group.
+    /// Returns an iterator over the groups.
     pub fn iter(&self) -> std::slice::Iter<'_, Group> {
         self.groups.iter()
     }
 
-    /// How many groups there are.
+    /// Returns the number of groups.
     pub fn len(&self) -> usize {
         self.groups.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether the file has no groups.
     pub fn is_empty(&self) -> bool {
         self.groups.is_empty()
     }
 
-    /// Returns for each group, in the order of [`iter`](Self::iter), the shortest of its names that no other group has.
+    /// Returns for each group a name that no other group shares, in the order of [`iter`](Self::iter). The name has as
+    /// few prefixes as possible, and is replaced by the tag only if other groups share the name even with all prefixes.
+    /// A group without any unique name gets `kind:dimension:label`.
     pub fn unique_names(&self) -> Vec<String> {
         let mut uses: HashMap<String, usize> = HashMap::new();
         for group in &self.groups {
             let mut all: Vec<_> = group.qualified_names().collect();
-            // A name that is a number may be its own tag.
+            // A group whose name is its tag has each spelling twice.
             all.sort_unstable();
             all.dedup();
             for name in all {
@@ -119,13 +123,14 @@ impl Groups {
         self.groups.iter().map(own).collect()
     }
 
-    /// Returns the group that has `name` among its names.
+    /// Returns the group to which `name` refers, with or without prefixes.
     ///
     /// # Errors
-    /// [`GroupError::Unknown`] if no group has the name, [`GroupError::Ambiguous`] if several groups have it.
+    /// [`GroupError::Unknown`] if no group has the name, [`GroupError::Ambiguous`] if several groups share the name.
     pub fn find(&self, name: &str) -> Result<&Group, GroupError> {
         let fits = |group: &Group| {
-            // Every name of a group ends in its label. The comparison is quick where there are very many groups.
+            // Each spelling ends in the name or tag. This cheap test excludes most groups, of which a file may have
+            // very many.
             let ends_as = |label: &str| name.ends_with(label);
             let may_fit = group.name.as_deref().is_some_and(ends_as)
                 || group.tag.is_some_and(|tag| ends_as(&tag.to_string()));
@@ -158,7 +163,8 @@ impl<'g> IntoIterator for &'g Groups {
     }
 }
 
-/// How many letters are to be inserted, removed or replaced to make one word of another, capitals or not (Levenshtein).
+/// Returns the Levenshtein distance of two words: the least number of inserted, removed and replaced letters. Capital
+/// and small letters are equal.
 pub(crate) fn distance(a: &str, b: &str) -> usize {
     let [a, b] = [a, b].map(|word| word.to_lowercase().chars().collect::<Vec<_>>());
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -234,7 +240,8 @@ mod tests {
         assert_eq!(groups.find("surface:-3").unwrap().to_string(), "entity surface -3");
     }
 
-    /// Two groups of one name are told apart by their tags, and a name that is the tag of another by what it is.
+    /// Groups with equal names are identified by their tags. If a name equals the tag of another group, the kind
+    /// precedes the name.
     #[test]
     fn groups_of_one_name_are_spelled_with_their_tag_or_kind() {
         let groups = Groups {

@@ -1,9 +1,10 @@
-//! Groups by what tells them apart, with their numbers and names.
+//! Numbers and names of groups, by kind, dimension and label.
 
 use crate::content::group_label::GroupLabel;
 use std::collections::HashMap;
 
-/// Numbers groups in the order in which they are first met, and knows the names that files give to tags.
+/// Map from kind, dimension and label of groups to their numbers, with the names of tags in the file. Groups are
+/// numbered from 0 in the order of first occurrence.
 #[derive(Default)]
 pub(crate) struct GroupKeys {
     numbers: HashMap<(String, u8, GroupLabel), usize>,
@@ -12,7 +13,7 @@ pub(crate) struct GroupKeys {
 }
 
 impl GroupKeys {
-    /// Returns the number of a group, from 0 on, and whether it is new.
+    /// Returns the 0-based number of a group, and whether this call added the group.
     pub(crate) fn number(
         &mut self,
         kind: &str,
@@ -25,12 +26,13 @@ impl GroupKeys {
         (number, number == next)
     }
 
-    /// Names the groups with a tag, of one dimension or of all.
+    /// Sets the name of the groups with a tag in one dimension; `None` sets the name in all dimensions.
     pub(crate) fn set_name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: String) {
         self.names.insert((kind.to_owned(), dimension, tag), name);
     }
 
-    /// Returns the name that the file gives to the tag of a group.
+    /// Returns the name that the file gives to the tag of a group; `None` for an unnamed tag, or a label that is a name
+    /// itself. A name for the dimension takes precedence over a name for all dimensions.
     pub(crate) fn name_of(&self, kind: &str, dimension: u8, label: &GroupLabel) -> Option<String> {
         let &GroupLabel::Tag(tag) = label else { return None };
         let of = |dimension| self.names.get(&(kind.to_owned(), dimension, tag));

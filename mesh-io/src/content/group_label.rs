@@ -1,6 +1,6 @@
 //! The label of a group: a number or a name.
 
-/// Number or name of a group, unique among groups of one kind.
+/// Number or name that identifies a group among groups of equal kind and dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum GroupLabel {
     Tag(i64),
@@ -8,14 +8,15 @@ pub(crate) enum GroupLabel {
 }
 
 impl GroupLabel {
-    /// Makes a label from a name in a file, which may be in any encoding.
+    /// Makes a label from the bytes of a name; invalid UTF-8 becomes replacement characters.
     pub(crate) fn name(name: &[u8]) -> GroupLabel {
         GroupLabel::Name(String::from_utf8_lossy(name).into_owned())
     }
 
-    /// Makes a label from a number: a tag if it is whole, else a name.
+    /// Makes a label from a real number. Whole numbers up to 2^53 in size become tags, other numbers become names in
+    /// decimal text.
     pub(crate) fn number(number: f64) -> GroupLabel {
-        // A double represents every whole number up to this one.
+        // 2^53: doubles represent every whole number up to this size.
         const LIMIT: f64 = 9_007_199_254_740_992.0;
         match number.fract() == 0.0 && number.abs() <= LIMIT {
             true => GroupLabel::Tag(number as i64),

@@ -1,24 +1,24 @@
-//! Finds the index of a vertex by its id, the number that the file gives it. Tags are arbitrary numbers.
+//! Lookup of vertex indices by node ids, which are arbitrary numbers in the file.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-/// Map from the id of a node in the file to the index of the vertex.
+/// Map from the ids of the nodes of a file to the 0-based indices of the vertices.
 pub(crate) enum IdIndex {
-    /// Consecutive ids, which most files have.
+    /// Consecutive ids from `first` on, as in most files.
     Run { first: u64, count: u64 },
-    /// Tags with few gaps: the index for each id from `first` on, and [`ABSENT`] in the gaps.
+    /// Ids with few gaps: the index for each id from `first` on, and [`ABSENT`] in the gaps.
     Dense { first: u64, indices: Vec<u32> },
-    /// Tags far apart.
+    /// Ids with wide gaps.
     Sparse(HashMap<u64, u32>),
 }
 
-/// Marks an id without a vertex. All indices are smaller, as there are at most `u32::MAX` vertices.
+/// Entry of a dense map for an id without a vertex. All indices are smaller, as a mesh has at most `u32::MAX` vertices.
 const ABSENT: u32 = u32::MAX;
 
 impl IdIndex {
-    /// Maps each id to its position. There may be at most `u32::MAX` ids. The error is the position of the first id
-    /// that repeats an earlier one.
+    /// Maps each id to its 0-based position in `ids`, which holds at most `u32::MAX` ids. If ids are repeated, the
+    /// error is the position of the first id that repeats an earlier id.
     pub(crate) fn new(ids: &[u64]) -> Result<IdIndex, usize> {
         let first = ids.iter().copied().min().unwrap_or(0);
         let last = ids.iter().copied().max().unwrap_or(0);
@@ -26,7 +26,7 @@ impl IdIndex {
         if ids.iter().enumerate().all(|(position, &id)| id - first == position as u64) {
             return Ok(IdIndex::Run { first, count });
         }
-        // The table is at most four times as long as the list of ids, whatever their values.
+        // The table has at most four entries per id, which bounds its memory for any ids.
         if last - first < 4 * count {
             let mut indices = vec![ABSENT; (last - first) as usize + 1];
             for (position, &id) in ids.iter().enumerate() {
@@ -62,14 +62,14 @@ impl IdIndex {
     }
 }
 
-/// The ids of the nodes in file order. Consecutive ids are stored as first and count, others as a list.
+/// Ids of the nodes of a file, in file order. Consecutive ids are stored as first id and count, other ids as a list.
 #[derive(Default)]
 pub(crate) struct IdList {
     first: u64,
     count: u64,
-    /// All ids, if they are not consecutive.
+    /// All ids in file order; empty while the ids are consecutive.
     list: Vec<u64>,
-    /// About how many ids there will be.
+    /// Announced number of ids, for which the list reserves memory.
     expected: usize,
 }
 
@@ -83,7 +83,7 @@ impl IdList {
         self.extend(id, 1);
     }
 
-    /// Adds `count` consecutive ids.
+    /// Appends `count` consecutive ids from `first` on.
     #[inline]
     pub(crate) fn extend(&mut self, first: u64, count: u64) {
         if self.count == 0 {
@@ -103,7 +103,7 @@ impl IdList {
         self.list.extend((0..count).map(|position| first + position));
     }
 
-    /// Returns the id at this position.
+    /// Returns the id at a 0-based position in file order.
     pub(crate) fn of(&self, position: usize) -> u64 {
         match self.list.is_empty() {
             true => self.first + position as u64,
@@ -111,7 +111,7 @@ impl IdList {
         }
     }
 
-    /// Maps the ids to their positions, as [`IdIndex::new`] does.
+    /// Maps the ids to their positions, with the error of [`IdIndex::new`].
     pub(crate) fn map(&self) -> Result<IdIndex, usize> {
         match self.list.is_empty() {
             true => Ok(IdIndex::Run { first: self.first, count: self.count }),
@@ -120,7 +120,8 @@ impl IdList {
     }
 }
 
-/// Node ids in file order, and the map from ids to indices, which is built at the first lookup.
+/// Builder of an [`IdIndex`]: collects node ids in file order, and builds the map in [`finish`](Self::finish) or at the
+/// first lookup.
 #[derive(Default)]
 pub(crate) struct IdIndexBuilder {
     list: IdList,
@@ -128,7 +129,8 @@ pub(crate) struct IdIndexBuilder {
 }
 
 impl IdIndexBuilder {
-    /// Returns the list of ids, to which more can be added until [`index`](Self::index) is called.
+    /// Returns the list of ids. Ids pushed after the first call of [`finish`](Self::finish) or [`index`](Self::index)
+    /// are missing from the map.
     pub(crate) fn list(&mut self) -> &mut IdList {
         &mut self.list
     }
@@ -138,26 +140,26 @@ impl IdIndexBuilder {
         self.list.push(id);
     }
 
-    /// Returns how many ids there are.
+    /// Returns the number of ids.
     pub(crate) fn len(&self) -> usize {
         self.list.count as usize
     }
 
-    /// Makes the map after all ids are found, and drops the list. The error is the id that is repeated first, with the
-    /// position of its second node.
+    /// Builds the map from all ids, and drops the list. If ids are repeated, the error holds the first repeated id and
+    /// the position of its second node.
     pub(crate) fn finish(&mut self) -> Result<&IdIndex, (u64, usize)> {
         let map = self.list.map().map_err(|second| (self.list.of(second), second))?;
         self.list.list = Vec::new();
         Ok(self.map.get_or_init(|| map))
     }
 
-    /// Returns the map; `None` before [`finish`](Self::finish).
+    /// Returns the map; `None` before [`finish`](Self::finish) or the first lookup.
     pub(crate) fn map(&self) -> Option<&IdIndex> {
         self.map.get()
     }
 
-    /// Returns the index of the node with an id. Of a file that was not refused, each id belongs to one node; of others, no
-    /// node is found.
+    /// Returns the 0-based index of the node with an id; the first call builds the map. If the file repeats an id, no
+    /// node is found at all. Files with repeated ids are refused when they are first read.
     #[inline]
     pub(crate) fn index(&self, id: u64) -> Option<u32> {
         match self.map.get() {

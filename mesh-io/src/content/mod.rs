@@ -1,4 +1,4 @@
-//! Parts of a mesh in memory, of no format: groups, regions, constraints on vertices, and numbers of nodes.
+//! Format-independent facts of a mesh in memory: groups, regions, constraints on vertices, remarks, and ids of nodes.
 
 pub(crate) mod constraints;
 pub(crate) mod group;

@@ -1,7 +1,7 @@
-//! The region of each triangle, and the vertices between regions.
+//! Regions of triangles, and the vertices at which regions meet.
 //!
-//! A reader names the region of each triangle by what its format has: a tag, a group, attributes. [`TriangleRegions`] takes
-//! these names, and the rest is the same for all formats.
+//! Formats identify the region of a triangle by tags, groups or attributes. An [`Interner`] numbers the identifiers of
+//! any format, and [`TriangleRegions`] stores the numbers.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -10,7 +10,7 @@ use std::hash::Hash;
 #[derive(Default)]
 pub(crate) struct Interner<N> {
     numbers: HashMap<N, u32>,
-    /// The last name and its number, as the next name is mostly the same.
+    /// The last value and its number. Most values equal their predecessor and need no lookup in the map.
     last: Option<(N, u32)>,
 }
 
@@ -24,7 +24,7 @@ impl<N: Clone + Eq + Hash> Interner<N> {
     }
 
     fn look_up(&mut self, name: N) -> u32 {
-        // There are no more names than triangles, of which there are fewer than 2^32.
+        // There are at most as many values as elements, fewer than 2^32.
         let next = self.numbers.len() as u32;
         let number = *self.numbers.entry(name.clone()).or_insert(next);
         self.last = Some((name, number));
@@ -36,12 +36,12 @@ impl<N: Clone + Eq + Hash> Interner<N> {
 #[derive(Default)]
 pub(crate) struct TriangleRegions {
     triangles: usize,
-    /// The region of each triangle; empty as long as all are of region 0.
+    /// The region of each triangle; empty while all triangles are in region 0.
     numbers: Vec<u32>,
 }
 
 impl TriangleRegions {
-    /// Adds a triangle that belongs to a region. The first triangle must be of region 0.
+    /// Appends a triangle in a region. The first triangle must have region 0.
     #[inline]
     pub(crate) fn push(&mut self, region: u32) {
         if region != 0 && self.numbers.is_empty() {
@@ -53,13 +53,14 @@ impl TriangleRegions {
         self.triangles += 1;
     }
 
-    /// Returns the region of each triangle; `None` if all are of one.
+    /// Returns the region of each triangle; `None` if all triangles have equal regions.
     pub(crate) fn finish(self) -> Option<Vec<u32>> {
         (!self.numbers.is_empty()).then_some(self.numbers)
     }
 }
 
-/// Returns the vertices of triangles of different regions, ascending. Vertices on the boundary are left out.
+/// Returns the interior vertices at which triangles of different regions meet, ascending. Boundary vertices are left
+/// out.
 pub(crate) fn interface_vertices(
     regions: &[u32],
     triangles: &[[u32; 3]],
@@ -70,8 +71,9 @@ pub(crate) fn interface_vertices(
         /// The region of the vertex's first triangle.
         region: Option<u32>,
         is_between: bool,
-        /// The exclusive or of its neighbors in all its triangles. Around a vertex inside the mesh each neighbor is met
-        /// twice, which gives 0. On the boundary the two ends of the fan remain, which differ.
+        /// Exclusive or of the neighbor indices over all triangles of the vertex. Each neighbor of an interior vertex
+        /// occurs in two triangles, and the result is 0. On the boundary, the two end vertices of the fan occur once
+        /// and differ.
         neighbors: u32,
     }
     let mut all = vec![Vertex { region: None, is_between: false, neighbors: 0 }; vertices];

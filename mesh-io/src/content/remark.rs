@@ -2,38 +2,38 @@
 
 use std::fmt;
 
-/// A fact about a mesh file that its user may want to know. [`Display`](fmt::Display) words the fact in one line.
+/// Fact about a mesh file for the user of the mesh. [`Display`](fmt::Display) states the fact in one line.
 ///
-/// Which vertices move is decided outside of this crate, so that a program may word the first three kinds by what it
-/// does with these vertices.
+/// This crate does not decide which vertices move. For the first three variants, a program may word the message by its
+/// own treatment of the vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// The file has elements other than triangles. Their vertices are among
+    /// The file has elements other than triangles, whose vertices are among
     /// [`Constraints::vertices`](crate::Constraints::vertices).
     OtherElements {
-        /// The number of these elements.
+        /// Number of the elements.
         count: u64,
-        /// The name of these elements, in the plural if there are several: `quadrilaterals`, `segment of la.poly`.
+        /// Name of the elements, in the plural if `count` is not 1: `quadrilaterals`, `segment of la.poly`.
         name: String,
     },
-    /// Every vertex lies on a point or a curve of the model, and so is among
+    /// All vertices lie on points or curves of the model (gmsh 4), and are therefore among
     /// [`Constraints::vertices`](crate::Constraints::vertices).
     AllOnModelCurves,
-    /// Some periodic pairs name a node that the file does not list. The other vertex of such a pair is among
+    /// Periodic pairs name nodes that the file does not list. The vertex of a listed partner is among
     /// [`Constraints::anchored`](crate::Constraints::anchored).
     UnlistedPairs {
-        /// The number of these pairs.
+        /// Number of pairs with an unlisted node.
         count: u64,
         /// The name of the file's list of nodes, such as `$Nodes`.
         list: String,
     },
-    /// Another fact, in words.
+    /// Any other fact, as a sentence.
     Text(String),
 }
 
 impl Remark {
-    /// Makes the remark that a file has `count` elements, called `name` in the singular, followed by `of`.
+    /// Makes the remark that a file has `count` elements. `name` is their name in the singular; `of` follows the name.
     pub(crate) fn elements(count: u64, name: &str, of: &str) -> Remark {
         let s = if count == 1 { "" } else { "s" };
         Remark::OtherElements { count, name: format!("{name}{s}{of}") }

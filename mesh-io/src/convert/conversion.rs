@@ -1,4 +1,4 @@
-//! Writes a mesh in another format than it was read in.
+//! Conversion of meshes to other formats.
 
 use super::names;
 use super::targets::{TARGETS, Target, WriteFunction};
@@ -17,7 +17,7 @@ use crate::registry::FormatEntry;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A mesh that is to be written in another format.
+/// Mesh prepared for writing in another format.
 ///
 /// ```no_run
 /// # use mesh_io::{Conversion, Format, MeshFile};
@@ -39,24 +39,24 @@ pub struct Conversion {
 }
 
 impl Conversion {
-    /// Lists the formats that meshes are converted to, each with a short name. Of formats whose files end the same way,
-    /// the usual one comes first.
+    /// Lists the target formats of conversions, each with a short name. Among formats with a common file ending, the
+    /// usual format comes first.
     pub fn targets() -> impl Iterator<Item = (&'static str, Format)> {
         TARGETS.iter().map(|target| (target.name, target.format))
     }
 
-    /// Returns the format of [`targets`](Self::targets) whose files end as this path does. An ending of compressed
-    /// files is ignored. `None` if no format ends so.
+    /// Returns the first format of [`targets`](Self::targets) with the ending of `path`. An ending of compressed files
+    /// is ignored. `None` if no target has the ending.
     pub fn target_of(path: &Path) -> Option<Format> {
         let ends_so = |target: &&Target| FormatEntry::of(target.format).matches_extension(path);
         TARGETS.iter().find(ends_so).map(|target| target.format)
     }
 
-    /// Makes a mesh ready to be written in another format. The file's content is searched again for elements of all
-    /// kinds, groups and data. `None` if meshes are not converted to this format.
+    /// Prepares a mesh for writing in the format `to`. The bytes of the file are parsed again for elements of all
+    /// kinds, groups and data. `None` if `to` is no target of conversions.
     ///
     /// # Errors
-    /// [`ReadError`] if the names of groups, or other parts that reading the mesh does not need, are damaged.
+    /// [`ReadError`] if names of groups, or other content that [`MeshFile::read`] skips, are damaged.
     pub fn new(file: &MeshFile, to: Format) -> Result<Option<Conversion>, ReadError> {
         let Some(target) = TARGETS.iter().find(|target| target.format == to) else {
             return Ok(None);
@@ -69,26 +69,25 @@ impl Conversion {
         Ok(Some(Conversion { content, target, losses: lost, renamings: renamed, creator }))
     }
 
-    /// Sets the name of the program that titles of written files give: `written by NAME`. Without this call, the name is
-    /// `mesh-io`.
+    /// Sets the program name in the titles of written files, `written by NAME`. The default name is `mesh-io`.
     pub fn set_creator(&mut self, name: &str) {
         name.clone_into(&mut self.creator);
     }
 
-    /// Lists what the format does not hold of the mesh, one line each. Comments, titles and the numbers of elements are
-    /// always lost, and not listed.
+    /// Lists the parts of the mesh that the format cannot store, one line each. Comments, titles and element numbers
+    /// are always lost, and not listed.
     pub fn losses(&self) -> &[String] {
         &self.losses
     }
 
-    /// Lists the names that change, as the format cannot hold them, or cannot tell them from others: one line for the
-    /// groups of each dimension and for each kind of data. Groups and data that were different stay so.
+    /// Lists changes of names that the format cannot spell or cannot distinguish: one line for groups, one for data of
+    /// vertices and one for data of elements. Distinct groups and arrays stay distinct.
     pub fn renamings(&self) -> &[String] {
         &self.renamings
     }
 
-    /// Lists the files that [`write`](Self::write) to `path` writes. A Triangle mesh without lines has no `.poly`,
-    /// which is listed all the same.
+    /// Lists the files that [`write`](Self::write) to `path` may create. The `.poly` of a Triangle mesh is always
+    /// listed, but written only for a mesh with lines.
     pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
         match self.target.write {
             WriteFunction::One(_) | WriteFunction::Binary(_) => vec![path.to_owned()],
@@ -99,11 +98,12 @@ impl Conversion {
         }
     }
 
-    /// Writes the mesh, compressed if `path` ends in `.gz` or `.zst`. Existing files are replaced once all is written.
+    /// Writes the mesh, compressed if `path` ends in `.gz` or `.zst`. Existing files are replaced after all new content
+    /// is on the disk.
     ///
     /// # Errors
-    /// [`WriteError`] if the system refuses, if the ending is that of another format, or if several files are to be written
-    /// under a compressed name.
+    /// [`WriteError`] for errors of the operating system, if `path` has the ending of another format, if a Triangle
+    /// mesh gets a compressed name, or if an existing `.poly` would be read with a new Triangle mesh without lines.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         let destinations = self.destinations(path);
         let contents = self.contents();
@@ -139,8 +139,8 @@ impl Conversion {
         atomic::write_all(&writes)
     }
 
-    /// Returns the content of the file if it is text. `None` for binary formats, and for a Triangle mesh, which has
-    /// several files.
+    /// Returns the content of a single text file. `None` for binary formats, and for the several files of a Triangle
+    /// mesh.
     pub fn text(&self) -> Option<String> {
         match self.target.write {
             WriteFunction::One(write) => Some(write(&self.input())),
@@ -148,7 +148,7 @@ impl Conversion {
         }
     }
 
-    /// Returns the content of the file, text or binary. `None` for a Triangle mesh, which has several files.
+    /// Returns the content of a single file, text or binary. `None` for the several files of a Triangle mesh.
     pub fn bytes(&self) -> Option<Vec<u8>> {
         match self.target.write {
             WriteFunction::One(_) | WriteFunction::Binary(_) => self.contents().pop(),

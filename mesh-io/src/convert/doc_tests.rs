@@ -1,6 +1,6 @@
-//! Makes the tables of docs/formats.md from the rows of formats and targets, and tests that the document has them.
+//! Makes the tables of docs/formats.md from the rows of formats and targets, and tests that the document matches.
 //!
-//! After a change, `UPDATE_DOCS=1 cargo test --lib doc_tests` writes them anew.
+//! After a change, `UPDATE_DOCS=1 cargo test -p mesh-io --lib doc_tests` rewrites the tables.
 
 use super::tables;
 use super::targets::TARGETS;
@@ -10,18 +10,18 @@ use crate::registry::{FormatEntry, REGISTRY};
 use std::fmt::Write;
 use std::path::Path;
 
-/// What the document says of the formats of one row, beside names, endings and conversions, which come from the code.
+/// Texts of a row in the table of formats. Names, endings and conversions come from the code.
 struct Row {
     formats: &'static [Format],
     /// Versions and layouts that are read and written.
     layouts: &'static str,
-    /// Vertices that stay fixed besides those on the boundary.
+    /// Vertices that stay fixed besides boundary vertices.
     fixed: &'static str,
     /// The property that triangles of a region share.
     region: &'static str,
     /// Groups that can be named.
     named: &'static str,
-    /// What is not held, or refused.
+    /// Content that is refused or not kept.
     limits: &'static str,
 }
 
@@ -357,13 +357,13 @@ fn document(name: &str) -> String {
     std::fs::read_to_string(path).unwrap().replace("\r\n", "\n")
 }
 
-/// Returns the part of a document from a mark to an end.
+/// Returns the text of a document from `mark` up to `end`, exclusive.
 fn part<'d>(document: &'d str, mark: &str, end: &str) -> &'d str {
     let start = document.find(mark).unwrap_or_else(|| panic!("no {mark}"));
     document[start..].split(end).next().unwrap()
 }
 
-/// A list of formats names each by the usual ending of its files or by its own name.
+/// Each list of formats must have every format, by its usual file ending or by its name.
 #[test]
 fn the_lists_of_formats_in_both_readme_files_have_every_format() {
     let readme = document("README.md");
@@ -382,7 +382,7 @@ fn the_lists_of_formats_in_both_readme_files_have_every_format() {
     assert!(Compression::of(Path::new("m.msh.gz")).is_some() && readme.contains("`.gz`"));
 }
 
-/// Names of rows that stand for several formats, which have rows of their own.
+/// Names of registry entries for container files, whose formats have separate entries.
 const HOLDS_OTHERS: [&str; 1] = ["HDF5 or netCDF"];
 
 /// The paragraph names a target by the name that `--to` takes, or by the first word of the format's name.
@@ -399,7 +399,7 @@ fn the_readme_names_every_format_that_meshes_are_converted_to() {
     }
 }
 
-/// No number of formats stands in a document or in a comment, as it would be forgotten.
+/// Documents must not state the number of formats, which becomes wrong with every new format.
 #[test]
 fn documents_do_not_count_formats() {
     for name in ["README.md", "mesh-io/README.md", "mesh-io/src/lib.rs", "docs/formats.md"] {

@@ -1,5 +1,5 @@
-//! Writes a mesh of one format in another. A reader and a visitor make the [`content`](mod@crate::export::content) of a mesh, a row of
-//! [`targets`] says which parts the format holds, and a writer writes these parts.
+//! Conversion of meshes between formats. A reader and a visitor make the [`content`](mod@crate::export::content) of a
+//! mesh, a row of [`targets`] defines the capabilities of the target format, and a writer writes the supported content.
 
 mod conversion;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Names of groups and data as a format can hold them: the only place where a conversion changes a name.
+//! Respelling of the names of groups and data for a format. Conversions change names nowhere else.
 
 use crate::content::group_label::GroupLabel;
 use crate::export::capabilities::{Capabilities, join_first};
@@ -8,9 +8,9 @@ use crate::export::name_rules::{NameRules, distinct};
 use crate::formats::ugrid;
 use std::collections::HashMap;
 
-/// Changes the names that the format holds to what it can hold. Names that were different stay so, and where the
-/// format tells groups by their names alone, groups of one name get different ones: the later ones end in `_2`, `_3` and
-/// so on. Returns what was changed, one line for groups and for each kind of data.
+/// Respells the names that a format stores but cannot spell. Distinct names stay distinct. If the format identifies
+/// groups by names alone, later groups with an equal name get a suffix `_2`, `_3` and so on. Returns the changes: a
+/// line for groups, a line for data of vertices and a line for data of elements, each only if names change.
 pub(crate) fn fit(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     match holds.name_rules {
         NameRules::Any => Vec::new(),
@@ -21,7 +21,7 @@ pub(crate) fn fit(holds: &Capabilities, content: &mut Content) -> Vec<String> {
 fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     let tags = GroupNumbers::new(content, holds.allows_negative_numbers);
     let main = [0, 1, 2].map(|dimension| content.group_kinds(dimension).first().copied());
-    // Where names are words, a group without one is called by its number.
+    // If names must be words, an unnamed group gets its number as name.
     let name = |(place, group): (usize, &ContentGroup)| {
         let dimension = usize::from(group.dimension);
         let is_held = holds.names[dimension] && main[dimension] == Some(&group.kind);
@@ -30,7 +30,8 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
         group.name().map(str::to_owned).or_else(by_number).filter(|_| is_held)
     };
     let names: Vec<Option<String>> = content.groups.iter().enumerate().map(name).collect();
-    // Lines and surfaces of one group, as formats have them that tell no dimensions, are one group again.
+    // Lines and surfaces of equal kind, label and name share a new name, as formats without dimensions of groups have
+    // them in one group.
     let mut places: HashMap<(&str, &GroupLabel, &str), usize> = HashMap::new();
     let mut owners: Vec<usize> = Vec::new();
     let mut old: Vec<&str> = Vec::new();
@@ -49,7 +50,7 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     let changes = old.iter().zip(&new).zip(&owners).filter(|((old, new), _)| old != new);
     let told: Vec<String> = changes
         .map(|((old, new), &owner)| match content.groups[owner].label {
-            // Groups of one name are told apart by their numbers.
+            // The number distinguishes groups with equal names.
             GroupLabel::Tag(tag) if *old != tag.to_string() => {
                 format!("`{old}` ({tag}) to `{new}`")
             }
@@ -69,7 +70,7 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
 
 fn data(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     let mut taken: Vec<String> = match holds.name_rules {
-        // The coordinates are properties of vertices like data of one number.
+        // In PLY, coordinates are properties of vertices, like data with one component.
         NameRules::Word => ["x", "y", "z"].map(String::from).to_vec(),
         NameRules::Variable => ugrid::write::NAMES.map(String::from).to_vec(),
         _ => Vec::new(),
@@ -84,7 +85,7 @@ fn data(holds: &Capabilities, content: &mut Content) -> Vec<String> {
         let all: Vec<&str> = taken.iter().map(String::as_str).collect();
         let new = distinct(&names, holds.name_rules, &all, |at| format!("data{}", at + 1));
         if holds.name_rules == NameRules::Variable {
-            // Variables of vertices and of elements stand side by side.
+            // Variables of vertices and of elements share a name space.
             taken.extend_from_slice(&new);
         }
         let mut told = Vec::new();
@@ -97,7 +98,7 @@ fn data(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     changed
 }
 
-/// Makes a line of the first changes, and counts the rest.
+/// Joins the first 8 changes in a line, and counts the rest. Returns an empty list without changes.
 fn line(what: &str, told: &[String]) -> Vec<String> {
     let told: Vec<&str> = told.iter().map(String::as_str).collect();
     if told.is_empty() { Vec::new() } else { vec![format!("{what}: {}", join_first(&told))] }

@@ -1,4 +1,4 @@
-//! Makes the table of conversions in docs/formats.md from what each target holds.
+//! Makes the table of conversions in docs/formats.md from the capabilities of each target.
 
 use super::targets::TARGETS;
 use crate::export::capabilities::{Capabilities, DataSupport, ElementSupport, GroupSupport};
@@ -6,13 +6,13 @@ use crate::format::Format;
 use crate::registry::FormatEntry;
 use std::fmt::Write;
 
-/// Returns the name of a format in conversions, if it is a target.
+/// Returns the name of a format in conversions; `None` if the format is no target.
 pub(crate) fn name_of(format: Format) -> Option<String> {
     let target = TARGETS.iter().find(|target| target.format == format);
     target.map(|target| format!("`{}`", target.name))
 }
 
-/// Makes a row for each target.
+/// Returns the Markdown table of targets, with a row for each.
 pub(crate) fn targets() -> String {
     let mut table = "| `--to` | ending | elements besides triangles | z | own numbers of vertices | groups of elements | \
                      names of groups of | groups of vertices | data of vertices | data of elements |\n\

@@ -12,19 +12,19 @@ use crate::precision::Precision;
 /// A format that meshes are converted to: a row of [`TARGETS`].
 pub(crate) struct Target {
     pub(crate) format: Format,
-    /// A short name, to choose a format that the ending of a file name does not stand for.
+    /// Short name, which selects the format independently of file endings.
     pub(crate) name: &'static str,
     pub(crate) capabilities: Capabilities,
     pub(crate) write: WriteFunction,
 }
 
-/// How a format is written.
+/// Function that writes a format, by number and type of files.
 pub(crate) enum WriteFunction {
-    /// As one file of text.
+    /// One text file.
     One(fn(&WriterInput<'_>) -> String),
-    /// As one binary file.
+    /// One binary file.
     Binary(fn(&WriterInput<'_>) -> Vec<u8>),
-    /// As several files of text.
+    /// Several text files, in the order of [`Conversion::destinations`](super::Conversion::destinations).
     Several(fn(&WriterInput<'_>) -> Vec<String>),
 }
 
@@ -66,7 +66,7 @@ const MEDIT: Capabilities = Capabilities {
     ..Capabilities::TRIANGLES
 };
 
-/// All targets. Of formats whose files end the same way, the usual one comes first.
+/// All targets. Among formats with a common file ending, the usual format comes first.
 pub(crate) static TARGETS: &[Target] = &[
     Target {
         format: Format::Gmsh41,

@@ -1,4 +1,4 @@
-//! Numbers of a file that may be replaced, with their new values.
+//! Columns of numbers in a file, with old and new values for a rewrite.
 
 use crate::edit::numbers::{CoordinateEncoding, NumberEncoding, Offsets};
 use std::ops::Range;
@@ -9,33 +9,33 @@ pub(crate) struct EditableColumn<'a> {
     encoding: NumberEncoding,
     old: &'a [f64],
     new: &'a [f64],
-    /// Item `i` is number `first + step * i` of `old` and `new`.
+    /// Item `i` has index `first + step * i` in `old` and `new`; with `owners`, index `first + step * owners[i]`.
     first: usize,
     step: usize,
-    /// The `i` of each item, if several items have the same number.
+    /// The vertex of each item in a file with repeated vertices; `None` if item `i` is vertex `i`.
     owners: Option<&'a [u32]>,
 }
 
 /// Offsets of the items of a column.
 enum ItemOffsets<'a> {
-    /// Each item starts this many bytes after one of these places; before it, if that is negative.
+    /// Each item is a number. It starts at an offset of the list plus a shift in bytes, which may be negative.
     After(&'a Offsets, isize),
-    /// Each item is two numbers: one at one of these places, and the next token after it.
+    /// Each item is a pair of numbers: x starts at an offset of the list, and y is the next token.
     Pairs(&'a Offsets),
 }
 
-/// A number to be replaced, with its range in the file.
+/// Replacement of a number: byte range in the file, new value and encoding.
 pub(crate) struct NumberEdit {
     pub(crate) range: Range<usize>,
     pub(crate) value: f64,
     pub(crate) encoding: NumberEncoding,
-    /// How many characters the number must have at least, with blanks.
+    /// Least width of the new text in characters, reached by padding with blanks; 0 permits any length.
     pub(crate) width: usize,
 }
 
 impl<'a> EditableColumn<'a> {
-    /// Makes columns for the coordinates of vertices, from the places of x. If a vertex has several places, `owners`
-    /// gives the vertex of each place.
+    /// Makes columns for the coordinates of vertices, given the offset of each x: a column of pairs for text, a column
+    /// per axis for binary numbers. In files with repeated vertices, `owners` holds the vertex of each offset.
     pub(crate) fn of_points(
         x_at: &'a Offsets,
         owners: Option<&'a [u32]>,
@@ -60,7 +60,7 @@ impl<'a> EditableColumn<'a> {
         }
     }
 
-    /// Makes a column for the numbers of an array.
+    /// Makes a column for an array of numbers at `offsets`.
     pub(crate) fn of_array(
         offsets: &'a Offsets,
         encoding: NumberEncoding,
@@ -99,7 +99,7 @@ impl<'a> EditableColumn<'a> {
         }
     }
 
-    /// Returns the byte after an item.
+    /// Returns the exclusive end of an item in `bytes`.
     pub(crate) fn end(&self, bytes: &[u8], item: usize) -> usize {
         let (end, _) = self.encoding.extent(bytes, self.start(item));
         match self.at {
@@ -108,7 +108,7 @@ impl<'a> EditableColumn<'a> {
         }
     }
 
-    /// Returns the first item that starts at this byte or later.
+    /// Returns the index of the first item that starts at or behind `at`; if all items start before, the item count.
     pub(crate) fn first_from(&self, at: usize) -> usize {
         let (mut low, mut high) = (0, self.count());
         while low < high {
@@ -121,7 +121,8 @@ impl<'a> EditableColumn<'a> {
         low
     }
 
-    /// Adds the numbers of some items that have changed, rounded to the precision of the file.
+    /// Appends an edit to `changes` for each new number in `items` that differs from its old number after rounding to
+    /// the file's precision.
     pub(crate) fn changes(&self, bytes: &[u8], items: Range<usize>, changes: &mut Vec<NumberEdit>) {
         let encoding = self.encoding;
         let mut add = |number: usize, start: usize, extent: Option<(usize, usize)>| {

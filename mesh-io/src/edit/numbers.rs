@@ -1,4 +1,4 @@
-//! How coordinates and other numbers are stored in a file.
+//! Encodings and offsets of coordinates and other numbers in a file.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::precision::{Precision, short_text};
@@ -11,11 +11,11 @@ use std::ops::Range;
 /// Encoding of the two coordinates of a vertex, relative to the offset of x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CoordinateEncoding {
-    /// As text. y is the token after x. Programs that read the format may know only single precision.
+    /// Text, with y as the next token behind x. Programs that read the text may store less than double precision.
     Text { precision: Precision },
-    /// As text in the fields of a card of Nastran. y is in the field after that of x.
+    /// Text in fields of a Nastran card, with y in the next field behind x.
     Fields { precision: Precision },
-    /// In binary. y is `y_after` bytes after x; before x, if that is negative.
+    /// Binary numbers. y starts `y_after` bytes behind x, or before x for a negative distance.
     Binary { order: ByteOrder, precision: Precision, y_after: isize },
 }
 
@@ -24,7 +24,7 @@ impl CoordinateEncoding {
     pub(crate) const TEXT: CoordinateEncoding =
         CoordinateEncoding::Text { precision: Precision::Double };
 
-    /// Numbers in binary, with y right after x.
+    /// Returns the encoding of binary numbers with y directly behind x.
     pub(crate) fn adjacent(order: ByteOrder, precision: Precision) -> CoordinateEncoding {
         CoordinateEncoding::Binary { order, precision, y_after: precision.bytes() as isize }
     }
@@ -38,14 +38,14 @@ impl CoordinateEncoding {
     }
 }
 
-/// Encoding of a single number in a file.
+/// Encoding of individual numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberEncoding {
-    /// As a token of text. Programs that read the format may know only single precision.
+    /// Token of text. Programs that read the text may store less than double precision.
     Text(Precision),
-    /// As text in a field of a card of Nastran.
+    /// Text in a field of a Nastran card.
     Field(Precision),
-    /// In binary.
+    /// Binary number.
     Binary(ByteOrder, Precision),
 }
 
@@ -58,7 +58,8 @@ impl NumberEncoding {
         }
     }
 
-    /// Returns the end of a number, with the characters that stand for it, and how many its place must have if that is given.
+    /// Returns the exclusive end of the number at `at`, and the width to which a replacement is padded with blanks: the
+    /// width of a fixed field, or 0 if any length fits.
     pub(crate) fn extent(self, bytes: &[u8], at: usize) -> (usize, usize) {
         match self {
             NumberEncoding::Text(_) => (number_end(bytes, at), 0),
@@ -67,7 +68,7 @@ impl NumberEncoding {
         }
     }
 
-    /// Returns where y starts, given where x ends. Of text only.
+    /// Returns the start of y, given the exclusive end of x. Meaningful for text encodings only.
     pub(crate) fn next(self, bytes: &[u8], end: usize) -> usize {
         match self {
             NumberEncoding::Field(_) => card::next_field(bytes, end),
@@ -75,7 +76,8 @@ impl NumberEncoding {
         }
     }
 
-    /// Writes a number, which is rounded to the precision. Text has the fewest digits that parse back to the same bits.
+    /// Appends an encoded number. The caller has rounded `value` to the precision. Text has the fewest digits that
+    /// parse back to the same bits.
     pub(crate) fn write(self, value: f64, out: &mut Vec<u8>) {
         match self {
             NumberEncoding::Field(precision) => {
@@ -125,7 +127,7 @@ pub(crate) enum Offsets {
 }
 
 impl Offsets {
-    /// Returns the offset of the number with this index.
+    /// Returns the offset of the number at a 0-based index.
     #[inline]
     pub(crate) fn at(&self, index: usize) -> usize {
         match self {
@@ -136,15 +138,15 @@ impl Offsets {
 }
 
 /// Builder of [`Offsets`]. Stores start, stride and count while offsets are evenly spaced, and a list of all offsets
-/// from the first one that is not.
+/// after the first irregular distance.
 #[derive(Default)]
 pub(crate) struct OffsetsBuilder {
     start: usize,
     stride: usize,
     count: usize,
-    /// All offsets, if they are not evenly spaced.
+    /// All offsets; empty while offsets are evenly spaced.
     list: Vec<usize>,
-    /// About how many offsets there will be.
+    /// Announced number of offsets, for which the list reserves memory.
     expected: usize,
 }
 
@@ -164,7 +166,7 @@ impl OffsetsBuilder {
         }
     }
 
-    /// Adds `count` offsets that are `stride` bytes apart.
+    /// Appends `count` offsets that are `stride` bytes apart.
     pub(crate) fn extend(&mut self, start: usize, stride: usize, count: usize) {
         let follows = match (self.count, count) {
             (_, 0) => return,
@@ -192,7 +194,7 @@ impl OffsetsBuilder {
         self.count += count;
     }
 
-    /// Returns the offset with this index.
+    /// Returns the offset at a 0-based index.
     pub(crate) fn at(&self, index: usize) -> usize {
         match self.list.is_empty() {
             true => self.start + index * self.stride,
@@ -219,9 +221,9 @@ pub(crate) struct ByteEdit {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct AppendedOffset {
     pub(crate) value: usize,
-    /// The offset of the array in the file.
+    /// Offset of the array from the start of the file, in bytes.
     pub(crate) array_start: usize,
-    /// The bytes of the number in the file.
+    /// Byte range of the number's text in the file.
     pub(crate) range: Range<usize>,
 }
 

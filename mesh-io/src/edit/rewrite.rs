@@ -1,4 +1,4 @@
-//! Writes a file again with some of its numbers replaced.
+//! Rewrite of a file with some of its numbers replaced.
 
 use crate::edit::column::{EditableColumn, NumberEdit};
 use crate::edit::numbers::ByteEdit;
@@ -9,13 +9,13 @@ use std::ops::Range;
 /// Bytes that one thread rewrites at a time.
 const BLOCK_BYTES: usize = 1 << 17;
 
-/// A file's content, with the numbers that may be replaced.
+/// Content of a file, with numbers and byte ranges to be replaced.
 pub(crate) struct Rewrite<'a> {
     /// The content as it was read.
     pub(crate) bytes: &'a [u8],
-    /// The numbers in the content that may be replaced.
+    /// Columns of numbers in the content. Changed numbers are replaced.
     pub(crate) columns: &'a [EditableColumn<'a>],
-    /// Replacements of whole ranges, ascending. The ranges hold no number of the columns.
+    /// Replacements of byte ranges, ascending and outside of all numbers of the columns.
     pub(crate) edits: &'a [ByteEdit],
 }
 
@@ -44,7 +44,7 @@ impl Rewrite<'_> {
         })
     }
 
-    /// Returns the first offset from `at` on that is not within a number.
+    /// Returns the first offset at or behind `at` outside of all numbers.
     fn cut(&self, mut at: usize) -> usize {
         loop {
             let before = at;
@@ -60,7 +60,7 @@ impl Rewrite<'_> {
         }
     }
 
-    /// Returns the new content of a range.
+    /// Returns the rewritten content of a byte range.
     fn block(&self, range: Range<usize>) -> Vec<u8> {
         let mut changes = Vec::new();
         for column in self.columns {
@@ -78,7 +78,7 @@ impl Rewrite<'_> {
             let start = out.len();
             encoding.write(value, &mut out);
             let blanks = std::iter::repeat_n(b' ', (start + width).saturating_sub(out.len()));
-            // What stood at the end of its field stays there.
+            // If the field has no blank at its end, the old number is right-aligned, and so is the new number.
             let is_right = width > 0 && self.bytes[..range.end].last().is_some_and(|&b| b > b' ');
             match is_right {
                 true => drop(out.splice(start..start, blanks)),
@@ -91,7 +91,7 @@ impl Rewrite<'_> {
     }
 }
 
-/// Writes blocks of a file in their order. While one thread writes blocks, the others make the next ones.
+/// Writes the blocks of a file in order. While one thread writes finished blocks, other threads make the next blocks.
 fn write_blocks(
     out: &mut (dyn Write + Send),
     count: usize,

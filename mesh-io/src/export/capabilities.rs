@@ -1,4 +1,4 @@
-//! What each format holds, and what of a mesh is lost in it.
+//! Capabilities of formats, and the losses of a mesh in a format.
 
 use super::content::{Content, ContentGroup, DataArray};
 use super::group_numbers::{GroupNumbers, determines};
@@ -8,7 +8,7 @@ use crate::content::group_label::GroupLabel;
 use crate::precision::Precision;
 use crate::visit::items::CellKind;
 
-/// The parts of a mesh that a format can store.
+/// Elements, groups, names and data that a format can store.
 #[derive(Clone, Copy)]
 pub(crate) struct Capabilities {
     pub(crate) points: ElementSupport,
@@ -17,20 +17,19 @@ pub(crate) struct Capabilities {
     pub(crate) polygons: bool,
     /// Whether vertices have third coordinates.
     pub(crate) z: bool,
-    /// Whether vertices keep their ids, whatever these are.
+    /// Whether the format stores arbitrary ids of vertices.
     pub(crate) keeps_vertex_ids: bool,
-    /// Which groups an element can belong to.
+    /// Groups that the format can assign to an element.
     pub(crate) groups: GroupSupport,
-    /// Whether groups of points, lines and surfaces have names.
+    /// Whether groups have names, by dimension: points, lines and surfaces.
     pub(crate) names: [bool; 3],
     /// The rules for names of groups and data.
     pub(crate) name_rules: NameRules,
-    /// A kind of group whose names belong to the format itself, such as the lists of Medit; empty if the format has
-    /// no such kind.
+    /// Kind of groups whose names the format defines, such as the lists of Medit; empty if users name all groups.
     pub(crate) builtin_group_kind: &'static str,
-    /// Whether the numbers of groups may be negative.
+    /// Whether group numbers may be negative.
     pub(crate) allows_negative_numbers: bool,
-    /// Whether the format stores one group number per vertex.
+    /// Whether the format stores one group number per vertex; with [`GroupSupport::Blocks`], named sets of vertices.
     pub(crate) vertex_groups: bool,
     /// Whether the format stores named sets of vertices.
     pub(crate) vertex_sets: bool,
@@ -45,7 +44,7 @@ pub(crate) struct Capabilities {
 pub(crate) enum ElementSupport {
     None,
     All,
-    /// Only elements that belong to a group.
+    /// Only elements in a group.
     OfGroups,
 }
 
@@ -53,15 +52,16 @@ pub(crate) enum ElementSupport {
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum GroupSupport {
     None,
-    /// One group for each element. All elements of a dimension have the same kind of group.
+    /// One group per element. Elements of equal dimension have groups of equal kind.
     One,
-    /// One group for each line, and none for other elements.
+    /// One group per line, and no groups of other elements.
     OneOfLines,
-    /// A physical group, or the most important kind of group, and an entity of the model.
+    /// Two groups per element: an entity of the model, and a physical group or, without physical groups, one of the
+    /// most important kind.
     PhysicalAndEntity,
-    /// One group of each kind.
+    /// One group of each kind per element.
     Each,
-    /// A block of elements of one kind and group; for lines also a side set.
+    /// A block for the elements of each shape and group. Lines may be in side sets instead.
     Blocks,
 }
 
@@ -70,11 +70,11 @@ pub(crate) enum GroupSupport {
 pub(crate) enum DataSupport {
     None,
     All,
-    /// Data of one number.
+    /// Arrays with one component.
     Scalars,
-    /// Data of one number, without names.
+    /// Arrays with one component, without their names.
     Unnamed,
-    /// Only data of one number with this name.
+    /// Arrays with the given name and one component.
     Only(&'static str),
 }
 
@@ -286,7 +286,7 @@ impl DataSupport {
     }
 }
 
-/// Lists the names or numbers of the first groups, and counts the rest.
+/// Joins the names or numbers of the first 8 groups by commas, and counts the rest.
 fn group_names<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
     let names: Vec<String> = groups
         .map(|group| match (group.name(), &group.label) {

@@ -1,10 +1,10 @@
-//! A mesh in memory with all that its file says of it, independent of any format.
+//! Format-independent mesh in memory, with all cells, groups and data of its file.
 
 use crate::content::group_label::GroupLabel;
 use crate::visit::items::CellKind;
 
-/// A mesh with its cells of all kinds, groups and data, independent of a format. Made by
-/// [`MeshFile::content`](crate::MeshFile::content).
+/// Mesh with cells of all kinds, groups and data, independent of formats.
+/// [`MeshFile::content`](crate::MeshFile::content) reads the content of a file.
 ///
 /// ```no_run
 /// use mesh_io::{CellKind, MeshFile};
@@ -25,26 +25,26 @@ pub struct Content {
     pub(crate) z_values: Vec<f64>,
     /// The third coordinate of all vertices, if `z_values` is empty.
     pub(crate) common_z: f64,
-    /// The id of each vertex in the file.
+    /// Id of each vertex in the file.
     pub(crate) vertex_ids: Vec<u64>,
     pub(crate) cells: Cells,
     pub(crate) groups: Vec<ContentGroup>,
-    /// Sets of groups. Cells that belong to the same groups have the same index, in [`Cells::sets`].
+    /// Distinct sets of groups, as indices in `groups`. [`Cells::sets`] holds the index of each cell's set.
     pub(crate) sets: Vec<Vec<u32>>,
     /// Groups of vertices, each with its vertices.
     pub(crate) vertex_groups: Vec<(ContentGroup, Vec<u32>)>,
     pub(crate) point_data: Vec<DataArray>,
     pub(crate) cell_data: Vec<DataArray>,
-    /// Short descriptions of other parts of the file.
+    /// Short descriptions of file content that the mesh does not include.
     pub(crate) unsupported: Vec<String>,
 }
 
-/// Elements of all kinds in the order of the file.
+/// Cells of all kinds in file order.
 #[derive(Default)]
 pub(crate) struct Cells {
     /// The kind of each cell.
     pub(crate) kinds: Vec<CellKind>,
-    /// The end of each cell's vertices in `vertices`.
+    /// Exclusive end of each cell's vertices in `vertices`.
     pub(crate) ends: Vec<usize>,
     pub(crate) vertices: Vec<u32>,
     /// The index of each cell's groups in [`Content::sets`].
@@ -58,7 +58,7 @@ pub(crate) struct Cells {
 pub struct Cell<'c> {
     /// The kind of the cell.
     pub kind: CellKind,
-    /// The number that the file gives the cell; without numbers in the file, the position in the file's list.
+    /// Id of the cell in the file; in formats without ids, the position in the file's list.
     pub id: u64,
     /// The indices of the cell's vertices, in the order of the file.
     pub vertices: &'c [u32],
@@ -69,7 +69,7 @@ pub struct Cell<'c> {
 /// The identity of a group of cells or vertices in a [`Content`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContentGroup {
-    /// The kind of group, such as `physical`. It is the same for formats that mean the same.
+    /// Kind of the group, such as `physical`. Equivalent kinds of several formats have a common word.
     pub(crate) kind: String,
     pub(crate) dimension: u8,
     pub(crate) label: GroupLabel,
@@ -77,8 +77,8 @@ pub struct ContentGroup {
 }
 
 impl ContentGroup {
-    /// Returns the kind of group, such as `physical`, `reference` or `nodeset`. Formats that mean the same have the same
-    /// kind.
+    /// Returns the kind of the group, such as `physical`, `reference` or `nodeset`. Equivalent kinds of several formats
+    /// have a common word.
     pub fn kind(&self) -> &str {
         &self.kind
     }
@@ -96,7 +96,7 @@ impl ContentGroup {
         }
     }
 
-    /// Returns the name of the group, if the file gives one.
+    /// Returns the name of the group; `None` if only a number identifies the group.
     pub fn name(&self) -> Option<&str> {
         match (&self.name, &self.label) {
             (Some(name), _) | (None, GroupLabel::Name(name)) => Some(name),
@@ -105,7 +105,7 @@ impl ContentGroup {
     }
 }
 
-/// Numbers of the vertices or cells of a mesh, with a name.
+/// Named array of numbers on the vertices or cells of a mesh.
 pub struct DataArray {
     pub(crate) name: String,
     pub(crate) components: usize,
@@ -116,12 +116,12 @@ pub struct DataArray {
 }
 
 impl DataArray {
-    /// Returns the name. Later time steps of a result have a number after their name.
+    /// Returns the name. The second and later time steps of a result have the step's number after the name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Returns how many numbers each vertex or cell has, at least 1.
+    /// Returns the number of components per vertex or cell, at least 1.
     pub fn components(&self) -> usize {
         self.components
     }
@@ -164,7 +164,7 @@ impl Cells {
         self.ids.push(id);
     }
 
-    /// Lists the cells of a kind, in the order of the file.
+    /// Returns the indices of the cells of a kind, ascending.
     pub(crate) fn all(&self, kind: CellKind) -> impl Iterator<Item = usize> + '_ {
         (0..self.len()).filter(move |&cell| self.kinds[cell] == kind)
     }
@@ -176,7 +176,7 @@ impl Content {
         &self.points
     }
 
-    /// Returns the number that the file gives each vertex; without numbers in the file, the position in the file's list.
+    /// Returns the id of each vertex in the file; in formats without ids, the position in the file's list.
     pub fn vertex_ids(&self) -> &[u64] {
         &self.vertex_ids
     }
@@ -192,23 +192,23 @@ impl Content {
         })
     }
 
-    /// Lists the groups to which the file assigns vertices themselves, each with the indices of its vertices.
+    /// Lists the groups to which the file assigns single vertices, each with the indices of its vertices.
     pub fn vertex_groups(&self) -> impl Iterator<Item = (&ContentGroup, &[u32])> {
         self.vertex_groups.iter().map(|(group, vertices)| (group, &vertices[..]))
     }
 
-    /// Returns the data of vertices. Third coordinates are not among them: see [`z`](Self::z).
+    /// Returns the data of vertices, without third coordinates, which [`z`](Self::z) returns.
     pub fn point_data(&self) -> &[DataArray] {
         &self.point_data
     }
 
-    /// Returns the data of cells, with numbers in the order of [`cells`](Self::cells). Data that tell groups are groups
-    /// instead.
+    /// Returns the data of cells, with numbers in the order of [`cells`](Self::cells). Data that define groups are
+    /// stored as groups instead.
     pub fn cell_data(&self) -> &[DataArray] {
         &self.cell_data
     }
 
-    /// Lists the parts of the file that are not in the content, in a few words each.
+    /// Returns short descriptions of file content that the mesh does not include.
     pub fn unsupported(&self) -> &[String] {
         &self.unsupported
     }
@@ -218,7 +218,7 @@ impl Content {
         self.z_values.get(vertex).copied().unwrap_or(self.common_z)
     }
 
-    /// Returns the number of the first vertex, if the vertices are numbered consecutively.
+    /// Returns the id of the first vertex; `None` unless the ids of all vertices are consecutive.
     pub(crate) fn first_vertex_id(&self) -> Option<u64> {
         let first = *self.vertex_ids.first()?;
         let follow =
@@ -226,7 +226,7 @@ impl Content {
         follow.then_some(first)
     }
 
-    /// Returns for each cell its first group of this kind, if it has one.
+    /// Returns each cell's first group with the given kind; `None` if the cell lacks one.
     pub(crate) fn column(&self, kind: &str) -> Vec<Option<u32>> {
         let of_set = |set: &Vec<u32>| {
             set.iter().copied().find(|&group| self.groups[group as usize].kind == kind)
@@ -235,9 +235,9 @@ impl Content {
         self.cells.sets.iter().map(|&set| found[set as usize]).collect()
     }
 
-    /// Lists the kinds of groups of a dimension, the most important first.
+    /// Lists the kinds of groups in a dimension, sorted by descending importance.
     pub(crate) fn group_kinds(&self, dimension: u8) -> Vec<&str> {
-        // What users give names to comes before what programs number.
+        // Kinds that programs number come last, in this order. Users name the groups of all other kinds.
         const LAST: [&str; 6] = ["reference", "block", "section", "family", "entity", "zone"];
         let is_number = |kind: &str| {
             let mut own = self.groups.iter().filter(|group| group.kind == kind);

@@ -1,4 +1,4 @@
-//! Makes a description of a mesh from what a reader hands on.
+//! Visitor that builds the format-independent content of a mesh file.
 
 use super::content::{Content, ContentGroup, DataArray};
 use crate::content::group_keys::GroupKeys;
@@ -13,7 +13,7 @@ use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
-/// Reads the description of a mesh, from a file that was read before.
+/// Reads a file again, and returns its format-independent content.
 pub(crate) fn content(reader: &ReaderFunctions, source: &Source) -> Result<Content, ReadError> {
     let mut collector = ContentBuilder::default();
     (reader.visit)(source, &mut collector)?;
@@ -26,27 +26,27 @@ struct ContentBuilder {
     content: Content,
     ids: IdIndexBuilder,
     columns: Vec<RegionAttribute>,
-    /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
+    /// Current group scopes: kind, label, and dimension; `None` means that each element sets the dimension.
     within: Vec<(String, GroupLabel, Option<u8>)>,
     keys: GroupKeys,
     vertex_keys: GroupKeys,
     sets: HashMap<Vec<u32>, u32>,
-    /// The last set of cells of a dimension and region, as long as the groups they stand within are the same.
+    /// The set of groups for each pair of dimension and region under the current group scopes.
     last: HashMap<(u8, [i64; 2]), u32>,
     /// The array that was announced last.
     announced: Option<PendingArray>,
-    /// How many data have the same name, for names with more than one.
+    /// Number of time steps so far, for each array name with several time steps.
     steps: HashMap<String, usize>,
-    /// The last vertex of a line that may be continued.
+    /// Last vertex of the preceding polyline, which the next polyline may continue.
     open_end: Option<u32>,
-    /// Data of cells, with the tags of their elements.
+    /// Cell data, with the element id of each tuple; `None` for the ids 0, 1, 2 and so on.
     by_tag: Vec<(DataArray, Option<Vec<u64>>)>,
 }
 
-/// What data are called that have no name.
+/// Name of arrays that lack a name in the file.
 const UNNAMED: &str = "unnamed";
 
-/// An array of data that the reader announced and whose numbers come next.
+/// Array that the reader has announced, and whose numbers come next.
 struct PendingArray {
     name: String,
     components: usize,
@@ -54,7 +54,7 @@ struct PendingArray {
     is_height: bool,
 }
 
-/// Returns the common name for a kind of group, which formats call differently.
+/// Returns the common word for kinds of groups that formats name differently.
 fn common_kind(kind: &str) -> String {
     let small = kind.to_ascii_lowercase();
     let common = match small.as_str() {
@@ -68,7 +68,7 @@ fn common_kind(kind: &str) -> String {
 }
 
 impl ContentBuilder {
-    /// Returns the description after all was handed on.
+    /// Completes the content after the last item of the file.
     fn finish(self) -> Content {
         let Self { mut content, keys, by_tag, .. } = self;
         let of_vertices = content.vertex_groups.iter_mut().map(|(group, _)| group);
@@ -105,7 +105,7 @@ impl ContentBuilder {
             }
             content.cell_data.push(DataArray { values, ..data });
         }
-        // Data that tell regions are kept as groups.
+        // Data that define regions are stored as groups alone.
         let groups = &content.groups;
         let is_group =
             |data: &DataArray| groups.iter().any(|group| group.kind == common_kind(&data.name));
@@ -122,7 +122,7 @@ impl ContentBuilder {
         number as u32
     }
 
-    /// Returns the number of the set of groups that an element belongs to.
+    /// Returns the index in [`Content::sets`] of an element's set of groups, and adds new sets.
     fn set(&mut self, dimension: u8, region: [i64; 2]) -> u32 {
         if let Some(&set) = self.last.get(&(dimension, region)) {
             return set;
@@ -132,7 +132,7 @@ impl ContentBuilder {
             let label = (column.label)(number).filter(|_| dimension >= column.from_dimension)?;
             Some((column.kind.clone(), dimension, label))
         });
-        // Each dimension has groups of its own here, even if the format has not.
+        // Groups are separate for each dimension here, even in formats whose groups mix dimensions.
         let within = self.within.iter();
         let within = within.map(|(kind, label, _)| (kind.clone(), dimension, label.clone()));
         for (kind, dimension, label) in of_columns.chain(within).collect::<Vec<_>>() {
@@ -170,7 +170,7 @@ impl MeshVisitor for ContentBuilder {
         let &Element { id, kind, region, nodes } = element;
         self.open_end = None;
         if kind == CellKind::Polygon {
-            // The corners of required triangles, which are listed a second time.
+            // Elements of this kind are corners of required triangles, which the file lists a second time.
             self.unsupported("the list of required triangles");
             return Ok(());
         }
@@ -229,7 +229,7 @@ impl MeshVisitor for ContentBuilder {
         let owned =
             |group: &GroupScope<'_>| (group.kind.to_owned(), group.label.clone(), group.dimension);
         let within: Vec<_> = groups.iter().map(owned).collect();
-        // A line is continued only within the same group. Calls without groups in between do not end it.
+        // A polyline continues only within its group. Calls without groups between two parts do not end the polyline.
         if !within.is_empty() && within != self.within {
             let same = self.content.cells.sets.last().is_some_and(|&set| {
                 let set = &self.content.sets[set as usize];
@@ -298,7 +298,7 @@ impl MeshVisitor for ContentBuilder {
                 scatter(&numbers, components, self.content.points.len(), nodes.iter().map(index))
             }
         };
-        // Each part of a mesh may have its own values.
+        // Parts of a mesh may list the values of their own vertices in separate arrays of equal name.
         let same = |data: &&mut DataArray| data.name == name && data.components == components;
         if let Some(data) = self.content.point_data.iter_mut().find(same)
             && data.values.len() == values.len()
@@ -309,7 +309,7 @@ impl MeshVisitor for ContentBuilder {
             }
             return;
         }
-        // Time steps of a result have one name.
+        // The time steps of a result have equal names, and later steps get a number.
         let others = self.content.point_data.iter();
         let name = match others.filter(|data| data.name == name).count() {
             0 => name,
@@ -328,7 +328,7 @@ impl MeshVisitor for ContentBuilder {
 
     fn cell_numbers(&mut self, values: Vec<f64>, tags: Option<Vec<u64>>) {
         if let Some(PendingArray { name, components, is_real, .. }) = self.announced.take() {
-            // Each part of a mesh may have its own values.
+            // Parts of a mesh may list the values of their own cells in separate arrays of equal name.
             let before = self.by_tag.iter_mut().find(|(data, _)| data.name == name);
             if let (Some((data, Some(known))), Some(tags)) = (before, &tags)
                 && data.components == components

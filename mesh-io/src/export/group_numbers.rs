@@ -1,4 +1,4 @@
-//! One group and number for each element, for formats that hold no more.
+//! Selection of one group and number per element, for formats that store only one.
 
 use super::content::{Content, ContentGroup};
 use crate::content::group_label::GroupLabel;
@@ -8,12 +8,12 @@ use std::collections::{HashMap, HashSet};
 pub(crate) struct GroupNumbers {
     /// For each dimension, the most important group of each cell.
     columns: [Vec<Option<u32>>; 3],
-    /// The number of each group. Only a group that has number 0 itself gets it.
+    /// The number of each group; 0 only for a group with the tag 0.
     numbers: Vec<i64>,
 }
 
 impl GroupNumbers {
-    /// Chooses the groups and numbers. `negative` says whether numbers may be negative.
+    /// Selects a group for each cell, and numbers all groups. `negative` permits negative numbers.
     pub(crate) fn new(content: &Content, negative: bool) -> GroupNumbers {
         let column = |dimension| match content.group_kinds(dimension).first() {
             Some(kind) => content.column(kind),
@@ -39,8 +39,8 @@ impl GroupNumbers {
     }
 }
 
-/// Gives each group a number that no other group of its kind and dimension has. It is the group's own tag if possible,
-/// else a number that no tag has.
+/// Returns a number for each group, unique within its kind and dimension. The number is the group's tag, if the tag
+/// fits into 32 bits with a permitted sign, else a positive number unequal to every tag.
 fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     let is_fit = |tag: i64| i32::try_from(tag).is_ok_and(|tag| negative || tag >= 0);
     let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();

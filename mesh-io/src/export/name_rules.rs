@@ -1,35 +1,35 @@
-//! How a format spells names, and names that differ.
+//! Spelling rules of formats for names, and the choice of distinct names.
 
 use std::collections::HashMap;
 
 /// Rules of a format for the names of groups and data.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum NameRules {
-    /// As they are.
+    /// Any text.
     Any,
-    /// Between quotation marks, so that a name has none of its own. Groups have numbers besides.
+    /// Text in quotation marks, without quotation marks inside. Numbers identify groups besides names.
     Quoted,
-    /// As one word, which alone tells what it names from others.
+    /// Word without blanks or percent signs. Names alone identify groups and arrays.
     Word,
-    /// As the name of a variable of netCDF: a word without slashes that starts with a letter, a digit or an underscore.
+    /// Name of a netCDF variable: a word without slashes that starts with a letter, a digit or an underscore.
     Variable,
-    /// As a word of letters without accents, digits, underscores and hyphens that starts with a letter. Capital and small letters
-    /// are the same.
+    /// Word of ASCII letters, digits, underscores and hyphens that starts with a letter or an underscore. Capital and
+    /// small letters are equal.
     Label,
 }
 
 impl NameRules {
-    /// Whether names alone tell what they name.
+    /// Returns whether names alone identify groups and arrays, and must therefore be distinct.
     pub(crate) fn is_word(self) -> bool {
         matches!(self, NameRules::Word | NameRules::Variable | NameRules::Label)
     }
 
-    /// Returns what is the same for two names that the format does not tell apart.
+    /// Returns a key that is equal for names that the format does not distinguish.
     fn key(self, name: &str) -> String {
         if self == NameRules::Label { name.to_ascii_lowercase() } else { name.to_owned() }
     }
 
-    /// Spells a name as the format can hold it.
+    /// Returns a name in the format's spelling; empty or blank if no valid character remains.
     pub(crate) fn of(self, name: &str) -> String {
         match self {
             NameRules::Any => name.to_owned(),
@@ -73,16 +73,16 @@ impl NameRules {
     }
 }
 
-/// Spells names as a format can hold them. A name that has to be changed gets one that no other has, nor any of `taken`;
-/// so does the later of two equal ones if the format tells by names alone. `spare` is the name in place of one of which
-/// nothing is left.
+/// Returns valid names for a format. Valid names are kept; if the format identifies by name, of equal names only the
+/// first. Other names are respelled, with a suffix `_2`, `_3` and so on that makes them differ from `taken` and from
+/// all results. `spare(i)` replaces name `i` if its respelling is blank.
 pub(crate) fn distinct(
     names: &[&str],
     spelling: NameRules,
     taken: &[&str],
     spare: impl Fn(usize) -> String,
 ) -> Vec<String> {
-    // Each name that is given, with the number that the next one of that name ends in.
+    // Keys of all names in use, each with the suffix for the next equal name.
     let key = |name: &str| spelling.key(name);
     let mut given: HashMap<String, usize> = taken.iter().map(|&name| (key(name), 2)).collect();
     let mut spelled: Vec<Option<String>> = Vec::with_capacity(names.len());
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(spelled(&names, NameRules::Label), labels);
     }
 
-    /// Names between quotation marks are given numbers besides, so equal ones stay.
+    /// Numbers identify groups besides quoted names, and therefore equal names stay.
     #[test]
     fn only_quotation_marks_are_changed_between_them() {
         let names = ["a\"b", "a'b", "wall", "wall", "in let", "a\nb"];

@@ -1,4 +1,4 @@
-//! Finds lines that are sides of elements, and what is lost of a mesh whose elements stand in blocks.
+//! Lines that are sides of elements, and the losses of a mesh in a format with element blocks (Exodus).
 
 use super::content::{Content, DataArray};
 use super::group_numbers::GroupNumbers;
@@ -10,7 +10,8 @@ pub(crate) fn pair(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
-/// Finds the lines with a group that are sides of triangles or quadrilaterals.
+/// Returns the lines for side sets: sides of triangles or quadrilaterals, for which `group` returns a group outside of
+/// blocks.
 pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> HashSet<usize> {
     let mut of_elements = HashSet::new();
     for kind in [CellKind::Triangle, CellKind::Quadrilateral] {
@@ -19,7 +20,7 @@ pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
             of_elements.extend(corners.iter().zip(next).map(|(&a, &b)| pair(a, b)));
         }
     }
-    // Lines that the file has in a block stay in it.
+    // Lines of a block in the original file stay in their block.
     let is_of_block = |group: u32| content.groups[group as usize].kind == "block";
     let is_side = |&line: &usize| match (group(line), content.cells.of(line)) {
         (Some(group), &[a, b]) => !is_of_block(group) && of_elements.contains(&pair(a, b)),
@@ -28,7 +29,7 @@ pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
     content.cells.all(CellKind::Line).filter(is_side).collect()
 }
 
-/// Lists what is lost if elements stand in blocks, one line each.
+/// Appends the losses of a mesh in element blocks to `lost`, one line each.
 pub(crate) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
     let tags = GroupNumbers::new(content, false);
     let group = |cell: usize| tags.group(content, cell);

@@ -1,4 +1,4 @@
-//! The mesh that a writer is given.
+//! Input of the writers of formats.
 
 use super::capabilities::Capabilities;
 use super::content::{Content, ContentGroup, DataArray};
@@ -6,14 +6,14 @@ use super::group_numbers::GroupNumbers;
 use crate::content::group_label::GroupLabel;
 use crate::visit::items::CellKind;
 
-/// A mesh to be written in a format, with the capabilities of the format and the numbers of groups.
+/// Mesh to be written in a format, with the format's capabilities and the group numbers.
 pub(crate) struct WriterInput<'a> {
     pub(crate) content: &'a Content,
     /// The name of the program, for titles of files.
     pub(crate) creator: &'a str,
     pub(crate) capabilities: Capabilities,
     pub(crate) group_numbers: GroupNumbers,
-    /// File ids of the vertices; `None` if the content has no ids, or the id 0.
+    /// Ids of the vertices in the original file; `None` if an id is 0, which many formats cannot store.
     numbers: Option<&'a [u64]>,
 }
 
@@ -93,13 +93,13 @@ impl<'a> WriterInput<'a> {
         Some(&self.content.groups[group as usize])
     }
 
-    /// Returns the name of a group, or its number if the group has no name.
+    /// Returns the name of a group; for unnamed groups, the group number as text.
     pub(crate) fn name_or_number(&self, group: u32) -> String {
         let name = self.content.groups[group as usize].name().map(str::to_owned);
         name.unwrap_or_else(|| self.group_numbers.number(group).to_string())
     }
 
-    /// Returns for each vertex the number of its group of vertices, or 0.
+    /// Returns the tag of the first tagged vertex group of each vertex; 0 for vertices without tagged groups.
     pub(crate) fn vertex_group_numbers(&self) -> Vec<i64> {
         let mut tags = vec![0; self.content.points.len()];
         for (group, vertices) in self.content.vertex_groups.iter().rev() {

@@ -1,4 +1,4 @@
-//! Coordinates of which those of each axis stand by themselves.
+//! Coordinates that a file stores axis by axis, not node by node.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
@@ -16,24 +16,25 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 use std::ops::Range;
 
-/// The encoding of real numbers in binary.
+/// Byte order and precision of binary floating-point numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct BinaryReals {
     pub(crate) order: ByteOrder,
     pub(crate) precision: Precision,
 }
 
-/// The coordinates of a mesh, axis by axis. There are at least two.
+/// Coordinates of the nodes of a mesh, stored axis by axis. At least two axes are present.
 pub(crate) struct Axes<'a> {
     source: &'a Source,
     form: BinaryReals,
-    /// Where those of each axis are, in the file or among those that are encoded.
+    /// Byte range of each axis: in the file, or in the decoded bytes of `encoded`.
     ranges: Vec<Range<usize>>,
+    /// HDF5 datasets with the coordinates. `None` if each dataset is a single range of plain bytes in the file.
     encoded: Option<Hdf5Arrays>,
 }
 
 impl<'a> Axes<'a> {
-    /// Makes coordinates that stand uncompressed in the file: for each axis, `count` numbers from the offset
+    /// Makes coordinates that the file stores uncompressed: for each axis, `count` numbers from the offset
     /// `starts[axis]` on.
     pub(crate) fn in_place(
         source: &'a Source,
@@ -46,7 +47,8 @@ impl<'a> Axes<'a> {
         Axes { source, form, ranges, encoded: None }
     }
 
-    /// Of datasets that have `axes` of them together, `count` to an axis, one axis after another.
+    /// Makes coordinates from HDF5 datasets. Together the datasets hold `axes` axes of `count` numbers each, axis after
+    /// axis.
     pub(crate) fn of_arrays(
         file: &Hdf5<'a>,
         form: BinaryReals,
@@ -57,7 +59,8 @@ impl<'a> Axes<'a> {
         let source = file.source;
         let length = count * form.precision.bytes();
         let of_each = axes / arrays.len().max(1);
-        // In the file itself, if they stand there as they are; else as what is written anew.
+        // If each dataset is a single range of plain bytes, a rewrite replaces numbers in place. Otherwise it encodes
+        // all datasets again.
         let places: Option<Vec<usize>> = arrays.iter().map(DatasetArray::start).collect();
         if let Some(places) = places {
             let of = |start: usize| (0..of_each).map(move |axis| start + axis * length);
@@ -68,7 +71,8 @@ impl<'a> Axes<'a> {
         Axes { source, form, ranges, encoded: Some(Hdf5Arrays::new(file, arrays)) }
     }
 
-    /// Hands on the nodes, of which there are `count`, numbered from `first` on. Returns how the format has them.
+    /// Visits `count` nodes with consecutive ids from `first` on, and their third coordinates if there are three axes.
+    /// Returns encoding and location of the coordinates for a rewrite.
     pub(crate) fn send(
         self,
         format: Format,
@@ -80,7 +84,7 @@ impl<'a> Axes<'a> {
         let [x, y] = [0, 1].map(|axis| ranges.get(axis).cloned().unwrap_or_default());
         let size = precision.bytes();
         let bytes = encoded.as_ref().map_or(&source.bytes[..], Hdf5Arrays::bytes);
-        // Numbers that are encoded have no place of their own.
+        // A number of a compressed dataset has no offset of its own; messages name a byte of the dataset.
         let place = |at: usize| match &encoded {
             None => Cursor::at_byte_offset(source, at),
             Some(encoding) => Cursor::at_byte_offset(source, encoding.byte_of(at)),

@@ -1,4 +1,4 @@
-//! Files of HDF5 and netCDF, of which the content tells the format.
+//! HDF5 and netCDF files, whose format depends on their objects and variables.
 
 use crate::disk::source::Source;
 use crate::error::ReadError;

@@ -1,14 +1,14 @@
-//! Coordinates of nodes, in variables of a netCDF file.
+//! Node coordinates in variables of a netCDF file.
 
 use crate::error::ReadError;
 use crate::formats::axes::{Axes, BinaryReals};
 use crate::netcdf::{Header, Items, Variable};
 
-/// Finds the coordinates of `nodes` nodes, which these variables have: those of `axes` axes in all, one axis after another. All
-/// numbers have the same form.
+/// Locates the coordinates of `nodes` nodes in netCDF variables. Together the variables hold `axes` axes, axis after
+/// axis, all encoded as `form`.
 ///
 /// # Errors
-/// If what a variable holds cannot be read.
+/// If the content of a variable cannot be read.
 pub(crate) fn axes<'a>(
     header: &Header<'a>,
     variables: &[&Variable],

@@ -1,4 +1,4 @@
-//! Data of nodes: variables whose numbers are handed on record by record.
+//! Node data of netCDF files: variables that are visited record by record.
 
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::hdf5::Hdf5Arrays;
@@ -9,26 +9,30 @@ use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The parts of each record of a variable that are visited. Each part has the numbers of all nodes.
+/// Layout of a variable's record, and its visited parts. A record consists of `all` equal parts, such as model layers,
+/// with `components` numbers per node.
 #[derive(Clone)]
 pub(crate) struct RecordParts {
+    /// Indices of the visited parts, from 0.
     pub(crate) wanted: Range<usize>,
-    /// How many equal parts a record consists of.
+    /// Number of equal parts of a record.
     pub(crate) all: usize,
-    /// How many numbers each node has in a part.
+    /// Numbers per node in a part.
     pub(crate) components: u64,
 }
 
 impl RecordParts {
-    /// A record has one number for each node.
+    /// Layout of a record with a single number per node.
     pub(crate) const WHOLE: RecordParts = RecordParts { wanted: 0..1, all: 1, components: 1 };
 }
 
-/// Reads data of nodes or faces, and hands those of nodes on. What is encoded of a variable is shared by all of its parts and records.
+/// Reader of node and face data, which visits the node data. All parts and records of a compressed variable share an
+/// encoding, so that their edits are encoded together.
 pub(crate) struct PointData<'h, 'a> {
     header: &'h Header<'a>,
+    /// HDF5 variables read so far that edits must encode again, by name: compressed ones, or those in several chunks.
     encoded: Vec<(&'h [u8], Arc<Hdf5Arrays>)>,
-    /// The content of the variable that was read last.
+    /// Name and content of the variable read last, so that its records and parts are decoded once.
     last: Option<(&'h [u8], Items<'a>)>,
 }
 
@@ -37,8 +41,8 @@ impl<'h, 'a> PointData<'h, 'a> {
         PointData { header, encoded: Vec::new(), last: None }
     }
 
-    /// Hands on parts of each record of a variable, as point data of this name. Real numbers can be replaced. Numbers that are
-    /// equal to `missing` are not known.
+    /// Visits the wanted parts of each record of a variable as arrays of point data called `name`. Real numbers can be
+    /// rewritten, whole numbers cannot. Numbers equal to `missing` become NaN.
     pub(crate) fn send(
         &mut self,
         name: &[u8],
@@ -59,7 +63,7 @@ impl<'h, 'a> PointData<'h, 'a> {
         }
     }
 
-    /// Reads one of the parts of one record. None if the variable has no numbers, or they cannot be read.
+    /// Reads one part of one record. `None` if the variable holds text, or if its content cannot be read.
     pub(crate) fn numbers(
         &mut self,
         variable: &'h Variable,
@@ -108,7 +112,8 @@ impl<'h, 'a> PointData<'h, 'a> {
         known.map(|(_, encoding)| encoding)
     }
 
-    /// The content of a variable, whose encoding is kept if the file does not have its numbers as they are.
+    /// Reads the content of a variable. If the variable is not a single range of plain bytes in the file, its content
+    /// moves to `encoded` for later edits.
     fn items(&mut self, variable: &'h Variable) -> Option<Items<'a>> {
         let mut items = self.header.items(variable).ok()?;
         if items.start().is_none()

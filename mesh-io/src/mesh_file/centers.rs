@@ -1,4 +1,4 @@
-//! Centers of faces and edges, which UGRID's files may have.
+//! Centers of faces and edges, which UGRID files may store.
 
 use crate::content::id_index::IdIndex;
 use crate::error::FieldError;
@@ -12,13 +12,13 @@ use crate::visit::visitor::MeshVisitor;
 /// farthest corner along the axis.
 const CENTER_TOLERANCE: f64 = 1e-6;
 
-/// How a center follows from the corners of an element. `None` if it has none.
+/// Function from the corners of an element to its center; `None` if the corners have no such center.
 type CenterFunction = fn(&[[f64; 2]]) -> Option<[f64; 2]>;
 
-/// The centers that programs store, in the order in which arrays are compared with them.
+/// Functions for the centers that programs store, in the order in which arrays are tested.
 const CENTER_FUNCTIONS: [CenterFunction; 3] = [mean, centroid, circumcenter];
 
-/// An array of the file: one coordinate of the centers of some elements.
+/// Array in the file with one coordinate of the centers of elements.
 struct Array {
     name: String,
     axis: usize,
@@ -26,13 +26,14 @@ struct Array {
 }
 
 impl MeshFile {
-    /// Returns the centers of faces and edges that the file has, updated for vertices at `points`, as fields for
-    /// [`write_with_fields`](Self::write_with_fields): one coordinate each, one number for each face or edge. An array is updated if all of its
-    /// numbers are means of corners, or centroids, or circumcenters of triangles. Also returns the names of the other arrays.
-    /// Without centers, both are empty.
+    /// Returns the stored centers of faces and edges, updated for vertices at `points`, as fields for
+    /// [`write_with_fields`](Self::write_with_fields). A field has one coordinate of the centers, with a number per
+    /// face or edge. An array is updated if all its numbers are means of corners, all are centroids, or all are
+    /// circumcenters of triangles. The second list holds the names of the remaining arrays. Without centers in the
+    /// file, both lists are empty.
     ///
     /// # Errors
-    /// [`FieldError::PointCount`] if there is not one point for each vertex.
+    /// [`FieldError::PointCount`] if `points` does not have exactly one point per vertex.
     pub fn centers(
         &self,
         points: &[[f64; 2]],
@@ -43,7 +44,7 @@ impl MeshFile {
         }
         let mut visitor = CenterVisitor::default();
         if self.has_centers() {
-            // Reading the file again cannot fail, as it was read before.
+            // A second reading of the bytes cannot fail, as the first reading had no error.
             _ = (self.reader().visit)(self.source(), &mut visitor);
         }
         let map = IdIndex::new(&visitor.ids).unwrap_or(IdIndex::Run { first: 0, count: 0 });
@@ -68,14 +69,14 @@ impl MeshFile {
     }
 }
 
-/// The vertices of some elements.
+/// Vertices of the elements of an array of centers.
 struct Elements<'c> {
     vertices: Vec<u32>,
     ends: &'c [usize],
 }
 
 impl<'c> Elements<'c> {
-    /// `None` if a node is no vertex of the mesh.
+    /// Looks up the vertices of elements. `None` for an unknown node id, or unless there is one number per element.
     fn of(centers: &'c Centers, map: &IdIndex) -> Option<Elements<'c>> {
         let vertices = centers.nodes.iter().map(|&node| map.index(node)).collect::<Option<_>>()?;
         (centers.ends.len() == centers.numbers.numbers.len())
@@ -87,7 +88,9 @@ impl<'c> Elements<'c> {
         starts.zip(self.ends).map(|(start, &end)| &self.vertices[start..end])
     }
 
-    /// The numbers where vertices have moved. `None` if they are not known to follow from the old places.
+    /// Returns the numbers for the new positions of vertices; elements without a moved vertex keep their numbers.
+    /// `None` if no center function reproduces all numbers from the old positions. `error` bounds the rounding error of
+    /// numbers of a size.
     fn moved(
         &self,
         numbers: &[f64],
@@ -129,12 +132,12 @@ impl<'c> Elements<'c> {
 
 fn mean(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
     let &first = corners.first()?;
-    // Of differences, so that no digit is lost far from the origin.
+    // Sums differences to the first corner, which loses no digits far from the origin.
     let offset = |axis: usize| corners.iter().map(|corner| corner[axis] - first[axis]).sum::<f64>();
     Some([0, 1].map(|axis| first[axis] + offset(axis) / corners.len() as f64))
 }
 
-/// The center of mass of a polygon.
+/// Returns the center of mass of a polygon; `None` for zero area.
 fn centroid(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
     let &[first, ref others @ ..] = corners else { return None };
     let (mut area, mut moment) = (0.0, [0.0; 2]);

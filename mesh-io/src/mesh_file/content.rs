@@ -6,13 +6,13 @@ use crate::export::content_builder;
 use crate::mesh_file::mesh::MeshFile;
 
 impl MeshFile {
-    /// Reads cells of all kinds, groups and data. The file's content is searched again for them.
+    /// Reads cells of all kinds, groups and data, by parsing the bytes of the file again.
     ///
     /// # Errors
-    /// [`ReadError`] if the names of groups, or other parts that reading the mesh does not need, are damaged.
+    /// [`ReadError`] if names of groups, or other content that [`read`](Self::read) skips, are damaged.
     pub fn content(&self) -> Result<Content, ReadError> {
         let mut content = content_builder::content(self.reader(), self.source())?;
-        // The points as they were read, rounded to the precision of the file.
+        // The points of the first reading are rounded to the precision of the file.
         content.points = self.points().to_vec();
         Ok(content)
     }

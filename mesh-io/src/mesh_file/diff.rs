@@ -1,4 +1,5 @@
-//! Checks whether two files of a mesh differ in nothing but coordinates. This code is not used to write files.
+//! Comparison of two files of a mesh apart from coordinates. Files are written without this code, which can therefore
+//! verify them.
 
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding, Offsets};
 use crate::error::Location;
@@ -9,30 +10,30 @@ use crate::visit::field::PointField;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::ops::Range;
 
-/// The first place at which two files of a mesh differ in more than coordinates.
+/// First difference between two files of a mesh, apart from coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Where the first file differs. The label is 0.
+    /// Location of the difference in the first file, with the id 0.
     pub location: SourceLocation,
-    /// Where the second file differs. The label is 0.
+    /// Location of the difference in the second file, with the id 0.
     pub other_location: SourceLocation,
     /// A description of the difference.
     pub description: String,
 }
 
 impl MeshFile {
-    /// Finds the first difference to another file of the mesh, apart from coordinates. `None` if both have the same
-    /// format, list the same triangles, and have the same bytes except for coordinates.
+    /// Returns the first difference to another file of the mesh, apart from coordinates. `None` if both files have
+    /// equal formats, equal triangles, and equal bytes outside of coordinates.
     ///
-    /// Where a file has its points encoded, as a `.vtu` may, the bytes that encode them are left out, and the numbers
-    /// themselves compared; so are the offsets of what stands after them. In HDF5, where chunks that are compressed anew may go to the end of
-    /// the file, that is what the files have at the places of such chunks in either of them, and where their places stand.
+    /// If the points are encoded, as in a `.vtu`, their decoded bytes are compared instead of the encoded bytes, and
+    /// the offsets of later arrays are ignored. In HDF5, a rewrite may move compressed chunks to the end of the file.
+    /// Bytes at the old and new places of the chunks, and the addresses of the chunks, are ignored.
     pub fn difference(&self, other: &MeshFile) -> Option<Difference> {
         self.difference_ignoring(other, [&[], &[]])
     }
 
-    /// Finds the first difference as [`difference`](Self::difference) does, but also leaves out the numbers of some
-    /// data: fields of this file, and the same fields of the other.
+    /// Returns the first difference as [`difference`](Self::difference) does, but also ignores the numbers of `fields`:
+    /// fields of this file, and the corresponding fields of the other file.
     pub fn difference_ignoring(
         &self,
         other: &MeshFile,
@@ -114,7 +115,7 @@ impl MeshFile {
         None
     }
 
-    /// Returns the vertex whose coordinates stand last before a place in the bytes that hold them.
+    /// Returns the vertex whose x has the largest offset up to `at`, in the bytes with the coordinates.
     fn vertex_before(&self, at: usize) -> u32 {
         let owners = self.offset_vertices();
         let count = owners.map_or(self.points().len(), <[u32]>::len);
@@ -124,10 +125,11 @@ impl MeshFile {
         owners.map_or(index as u32, |owners| owners[index])
     }
 
-    /// Returns the ranges of coordinates in the bytes that hold them, ascending.
+    /// Returns the byte ranges of all coordinates, ascending. If the points are encoded, the ranges refer to the
+    /// decoded bytes.
     fn coordinates(&self) -> Vec<Range<usize>> {
         let x_at = self.x_offsets();
-        // There are as many coordinates as vertices, or as places where they are repeated.
+        // Number of coordinate pairs in the file, repeated vertices included.
         let count = self.offset_vertices().map_or(self.points().len(), <[u32]>::len);
         let mut ranges = Vec::with_capacity(2 * count);
         let places = (0..count).map(|index| x_at.at(index));
@@ -154,7 +156,8 @@ impl MeshFile {
         ranges
     }
 
-    /// Whether places in one of the files are told by lines.
+    /// Returns whether locations in a file are lines, not bytes. A file without coordinates is text if it has no zero
+    /// byte.
     fn is_text(&self, file_index: usize) -> bool {
         match self.encoding() {
             CoordinateEncoding::Text { .. } | CoordinateEncoding::Fields { .. }
@@ -167,7 +170,7 @@ impl MeshFile {
         }
     }
 
-    /// Whether what does not change keeps its place, whatever the lengths of encoded arrays.
+    /// Returns whether unchanged bytes keep their offsets for any lengths of encoded arrays, as in HDF5.
     fn preserves_offsets(&self, file_index: usize, fields: &[PointField]) -> bool {
         let of = |field: &PointField| match field.location()? {
             ArrayLocation { space: ByteSpace::Encoded(array), file_index: own, .. } => {
@@ -180,7 +183,7 @@ impl MeshFile {
             || fields.iter().filter_map(of).any(|keeps| keeps)
     }
 
-    /// The ranges of a file that may change where vertices move and these data change, ascending.
+    /// Returns the byte ranges of a file that depend on coordinates and on the values of `fields`, ascending.
     fn changeable(&self, file_index: usize, fields: &[PointField]) -> Vec<Range<usize>> {
         let bytes = &self.files()[file_index].bytes;
         let encoded = self.encoded_points().filter(|_| file_index == self.file_index());
@@ -190,7 +193,7 @@ impl MeshFile {
             Some(points) => points.ranges(),
         };
         if file_index == 0 {
-            // Companions may have other names.
+            // The names of companions may change.
             let named_at = self.source().companions.iter().flat_map(|own| &own.named_at);
             ranges.extend(named_at.cloned());
         }
@@ -203,7 +206,7 @@ impl MeshFile {
             _ => None,
         });
         ranges.extend(arrays.clone().flat_map(EncodedArrays::ranges));
-        // What follows from the length of an array.
+        // Offsets, addresses and checksums that depend on the lengths of arrays.
         let encoded = || encoded.into_iter().chain(arrays.clone());
         let first = encoded().flat_map(EncodedArrays::ranges).map(|range| range.end).min();
         if let (Some(first), Some(array)) = (first, encoded().next()) {
@@ -216,8 +219,9 @@ impl MeshFile {
     }
 }
 
-/// All that is in the ranges of one of two files in which everything else has the same place, as far as each file goes. What stands
-/// behind the end of the shorter one is chunks, or where chunks were.
+/// Returns the union of the ranges of two files, clipped to the length of each file. Bytes outside of the ranges must
+/// have equal offsets in both files. The bytes beyond the end of the shorter file belong to present or former chunks,
+/// and are added to the union.
 fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<usize>>; 2] {
     let [mine, theirs] = ranges;
     let [a, b] = bytes.map(<[u8]>::len);
@@ -240,7 +244,7 @@ fn is_beside_points(stored: &ArrayLocation) -> bool {
     matches!(stored.space, ByteSpace::Points)
 }
 
-/// Returns the ranges of the numbers of fields in the bytes that hold them.
+/// Returns the byte ranges of the numbers of all fields whose location passes `in_these`.
 fn number_ranges(
     bytes: &[u8],
     fields: &[PointField],
@@ -267,14 +271,15 @@ fn number_ranges(
     ranges
 }
 
-/// Joins two lists of ranges, ascending.
+/// Returns the ranges of both lists, sorted by start.
 fn merged(mut ranges: Vec<Range<usize>>, more: Vec<Range<usize>>) -> Vec<Range<usize>> {
     ranges.extend(more);
     ranges.sort_unstable_by_key(|range| range.start);
     ranges
 }
 
-/// Returns where two files first differ outside of these ranges. Files that are equal have the same number of ranges.
+/// Returns the offsets in both files of the first difference outside of `ranges`; `None` without a difference. Equal
+/// files must have equally many ranges.
 fn unequal(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> Option<[usize; 2]> {
     let [a, b] = bytes;
     let mut at = [0, 0];

@@ -9,16 +9,16 @@ use crate::visit::point_data;
 use crate::visit::point_data::{FieldSelection, PointData};
 
 impl MeshFile {
-    /// Reads the real numbers that the file gives its vertices under these names, or all real numbers for `None`. The
-    /// file's content is searched again for them.
+    /// Reads arrays of real numbers on vertices: arrays with the given names, or all arrays for `None`. The bytes of
+    /// the file are parsed again.
     ///
-    /// Third coordinates are named `z`, and those of ADCIRC, SCHISM and FVCOM `depth`. Other data have the names that the file
-    /// gives them. The table of data of vertices in `docs/formats.md` of the repository has the names of each format.
+    /// Third coordinates are named `z`, depths of ADCIRC, SCHISM and FVCOM `depth`. Other arrays keep their names in
+    /// the file. The table of data of vertices in `docs/formats.md` of the repository lists the names for each format.
     ///
-    /// Each array is one field. Several fields may have the same name, such as the time steps of a result.
+    /// Each array is one field. The time steps of a result are fields with equal names.
     ///
     /// # Errors
-    /// [`ReadError`] if no data have one of the names, if their numbers are whole, or if they are damaged.
+    /// [`ReadError`] if a name belongs to no array or to an array of whole numbers, or if an array is damaged.
     pub fn point_fields(&self, names: Option<&[String]>) -> Result<Vec<PointField>, ReadError> {
         let PointData { fields, known } =
             self.data_of(names.map_or(FieldSelection::Real, FieldSelection::Named))?;
@@ -45,7 +45,8 @@ impl MeshFile {
                 return Err(self.damaged(name));
             }
         }
-        // Whole numbers may come first under a name that real ones have too.
+        // Checks `fields` instead of `known`: an array of whole numbers may precede an array of real numbers with an
+        // equal name.
         for field in &fields {
             let (found, each) = (field.values().len(), field.components());
             if Some(found) != vertices.checked_mul(each) {
@@ -58,11 +59,10 @@ impl MeshFile {
     }
 
     /// Reads an array of point data with one number for each vertex, real or whole: scalars of VTK's formats,
-    /// properties of PLY's vertices, and all data that [`point_fields`](Self::point_fields) finds.
+    /// properties of PLY's vertices, and all arrays that [`point_fields`](Self::point_fields) reads.
     ///
     /// # Errors
-    /// [`ReadError`] if there is no such array, if its data are damaged, or if it does not have one number for each
-    /// vertex.
+    /// [`ReadError`] if no array has the name, if the array is damaged, or if its numbers are not one per vertex.
     pub fn point_array(&self, name: &str) -> Result<Vec<f64>, ReadError> {
         let source = self.source();
         let PointData { fields, known } =

@@ -10,11 +10,11 @@ use crate::visit::group_visitor;
 use std::path::Path;
 
 impl MeshFile {
-    /// Returns all groups that the file names or numbers. The file's content is searched again for them.
+    /// Parses the bytes of the file again, and returns all groups with a name or number.
     ///
     /// | format | groups |
     /// |---|---|
-    /// | gmsh | `physical`, with their names, and `entity`; parts of an entity, for partitions, are the one they are parts of |
+    /// | gmsh | `physical`, with their names, and `entity`; in partitioned meshes, the parts of an entity belong to the entity's group |
     /// | SU2 | `marker`, and `zone` if there are several |
     /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, RequiredVertices and RequiredTriangles |
     /// | FreeFem | `label` of vertices, triangles and edges |
@@ -25,33 +25,37 @@ impl MeshFile {
     /// | CGNS | `section`, `boundary` and its `family`, by name |
     /// | MED | `group` of elements and of nodes, by name; `family` of elements |
     /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
-    /// | VTK, XDMF | values of the cell data that tell [regions](Self#regions), called as these arrays are |
+    /// | VTK, XDMF | values of the cell data that define [regions](Self#regions); the name of the array is the kind |
     /// | STL | `solid` |
     /// | Abaqus | `elset`, `surface` and `nset`, by name |
     /// | Nastran | `property`, with the names that comments of preprocessors give |
+    /// | MFEM | `attribute` of elements and of the boundary |
+    /// | JIGSAW | `tag` of points, edges, triangles and quadrilaterals |
+    /// | MIKE | `code` of vertices |
     /// | others | none |
     ///
-    /// Points, lines and surfaces with the same tag are separate groups. Zero is no group where programs write it for
-    /// no tag, as in gmsh and for markers and references of vertices.
+    /// Points, lines and surfaces with equal tags are separate groups. The tag 0 is no group where programs write 0 for
+    /// untagged items, as in gmsh and for markers and references of vertices.
     ///
     /// # Errors
-    /// [`ReadError`] if the names of groups, such as gmsh's `$Entities`, are damaged. Reading the mesh does not need
-    /// them.
+    /// [`ReadError`] if the description of groups is damaged, such as gmsh's `$Entities`, which [`read`](Self::read)
+    /// skips.
     pub fn groups(&self) -> Result<Groups, ReadError> {
         let table = group_visitor::groups(self.reader(), self.source())?;
         Ok(table.finish(self.triangles(), self.points().len()))
     }
 
-    /// Reads a list of vertices by the mesh file's own numbers, those of [`SourceLocation::id`](crate::SourceLocation::id). Numbers
-    /// are separated by blanks or line ends, and `#` starts a comment. Returns indices in
-    /// [`MeshFile::points`](crate::MeshFile::points), in the order of the list.
+    /// Reads a text file with the ids of vertices in the mesh file, as in
+    /// [`SourceLocation::id`](crate::SourceLocation::id). Ids are separated by blanks or line ends, and `#` starts a
+    /// comment. Returns the indices of the vertices in [`MeshFile::points`](crate::MeshFile::points), in the order of
+    /// the list.
     ///
     /// # Errors
-    /// [`ReadError`] if the list cannot be read, holds anything but whole numbers, or has a number that no vertex has.
+    /// [`ReadError`] if the list cannot be read, holds anything but whole numbers, or has an id without a vertex.
     pub fn read_vertices(&self, list: &Path) -> Result<Vec<u32>, ReadError> {
         let list = &Source::load(list)?;
         let labels = self.vertex_ids()?;
-        // Each label belongs to one vertex, as files with repeated labels are refused.
+        // Each id belongs to one vertex, as files with repeated ids are refused.
         let map = IdIndex::new(&labels).ok();
         let cursor = &mut Cursor::new(list);
         let mut vertices = Vec::new();

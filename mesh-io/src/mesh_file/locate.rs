@@ -1,4 +1,4 @@
-//! Finds where a file has its vertices and triangles, for messages.
+//! Locations of vertices and triangles in a mesh file, for messages.
 
 use crate::error::Location;
 use crate::mesh_file::mesh::MeshFile;
@@ -12,9 +12,9 @@ use std::path::PathBuf;
 pub struct SourceLocation {
     /// The file.
     pub path: PathBuf,
-    /// The line or byte, or [`Location::Unknown`] if a second search of the file does not find the item.
+    /// The line or byte, or [`Location::Unknown`] if a second reading of the file does not find the item.
     pub location: Location,
-    /// The file's own number or tag of the vertex or triangle; its zero-based index if the location is unknown.
+    /// Id of the vertex or triangle in the file; the 0-based index if the location is unknown.
     pub id: u64,
 }
 
@@ -25,20 +25,20 @@ impl fmt::Display for SourceLocation {
 }
 
 impl MeshFile {
-    /// Returns the location of the coordinates of a vertex in the file. `index` is the 0-based index in
+    /// Returns the location of a vertex's coordinates in the file. `index` is the 0-based index in
     /// [`MeshFile::points`](crate::MeshFile::points).
     ///
     /// Meant for messages: the method may search the whole file.
     ///
     /// # Panics
-    /// If the mesh has no vertex with the index.
+    /// Panics if `index` is out of range for the mesh's vertices.
     pub fn vertex_location(&self, index: u32) -> SourceLocation {
         let found = self.vertex_locations([index]).remove(&index);
         found.unwrap_or_else(|| panic!("vertex {index} of {}", self.points().len()))
     }
 
-    /// Returns where vertices have their coordinates, by their zero-based indices. The file is searched once for all of
-    /// them. Indices of vertices that do not exist are left out.
+    /// Returns the locations of the coordinates of vertices, by 0-based index. A single reading of the file finds all
+    /// locations. Indices out of range are left out.
     pub fn vertex_locations(
         &self,
         indices: impl IntoIterator<Item = u32>,
@@ -55,14 +55,14 @@ impl MeshFile {
     /// Meant for messages: the method may search the whole file.
     ///
     /// # Panics
-    /// If the mesh has no triangle with the index.
+    /// Panics if `index` is out of range for the mesh's triangles.
     pub fn triangle_location(&self, index: usize) -> SourceLocation {
         let found = self.triangle_locations([index]).remove(&index);
         found.unwrap_or_else(|| panic!("triangle {index} of {}", self.triangles().len()))
     }
 
-    /// Returns where triangles list their vertices, by their zero-based indices. The file is searched once for all of
-    /// them. Indices of triangles that do not exist are left out.
+    /// Returns the locations of the vertex lists of triangles, by 0-based index. A single reading of the file finds all
+    /// locations. Indices out of range are left out.
     pub fn triangle_locations(
         &self,
         indices: impl IntoIterator<Item = usize>,
@@ -73,7 +73,7 @@ impl MeshFile {
         self.locations(&wanted, found).collect()
     }
 
-    /// Returns the place of each of these items with the index of the item.
+    /// Pairs each index in `wanted` with its location, completed by the path of the file.
     fn locations<'a>(
         &'a self,
         wanted: &'a [usize],
@@ -89,7 +89,7 @@ impl MeshFile {
     }
 }
 
-/// Sorts indices, each once, and drops those that are not below `count`.
+/// Sorts indices, and removes repeated indices and indices of `count` or more.
 fn keep_ascending(indices: &mut Vec<usize>, count: usize) {
     indices.retain(|&index| index < count);
     indices.sort_unstable();
@@ -110,8 +110,8 @@ mod tests {
     use std::path::Path;
     use std::sync::atomic::{AtomicBool, Ordering};
 
-    /// A second reading of a file may find other items than the first one only by a fault of a reader. Messages must come out
-    /// even so.
+    /// Only a defect of a reader can make a second reading find other items than the first reading. Messages must then
+    /// lack a line, but appear.
     #[test]
     fn items_that_a_second_reading_does_not_find_have_a_location_without_a_line() {
         static READER: ReaderFunctions = ReaderFunctions {
@@ -135,7 +135,7 @@ mod tests {
         assert!(std::panic::catch_unwind(no_triangle).is_err());
     }
 
-    /// The reader of this test comes to no node in its second reading.
+    /// The second reading fails before the first node.
     #[test]
     fn a_coordinate_beyond_single_precision_is_an_error_even_if_its_place_is_not_found() {
         static WAS_READ: AtomicBool = AtomicBool::new(false);

@@ -1,4 +1,4 @@
-//! A mesh with its file, which is read once and written with nothing changed but coordinates.
+//! Mesh with the bytes of its file, which is read once and rewritten with new coordinates alone.
 
 use crate::content::constraints::{Constraints, edges_between_regions};
 use crate::content::regions::interface_vertices;
@@ -13,24 +13,24 @@ use crate::visit::reader::ReaderFunctions;
 use std::fmt;
 use std::path::Path;
 
-/// A mesh with the file it was read from.
+/// Mesh with the bytes of its file.
 ///
-/// The file's content is kept. [`write`](Self::write) replaces the coordinates of moved vertices and nothing else.
-/// Numbering, comments, attributes, physical groups, third coordinates, node and element data, and line ends come back
-/// byte for byte.
+/// The file's content stays in memory. [`write`](Self::write) replaces the coordinates of moved vertices and nothing
+/// else. Numbering, comments, attributes, physical groups, third coordinates, node and element data, and line ends come
+/// back byte for byte.
 ///
 /// # Regions
-/// Triangles are of one region if the file has the same entries for them, such as the material of an SMS 2dm, the reference of
-/// Medit, or the physical group and the entity of gmsh 2.2. Attributes in the `.ele` of Triangle are compared as numbers. If a
-/// format has no such entries, all triangles are of one region. The table of formats in `docs/formats.md` of the repository has the
-/// entries of each format.
+/// Triangles with equal entries in the file form a region. Entries are the material of an SMS 2dm, the reference of
+/// Medit, the physical group and the entity of gmsh 2.2, and others. Attributes in the `.ele` of Triangle are compared
+/// as numbers. In formats without entries, all triangles form one region. The table of formats in `docs/formats.md` of
+/// the repository lists the entries of each format.
 ///
-/// [`interface_vertices`](Self::interface_vertices) lies between triangles of different regions. Two surfaces of a model are two
-/// regions even where they belong to one physical group.
+/// [`interface_vertices`](Self::interface_vertices) returns the vertices between triangles of different regions. Two
+/// surfaces of a model are two regions even within a common physical group.
 ///
 /// # Facts, not decisions
-/// A mesh file never changes after it is read, and says nothing about which vertices may move. [`constraints`](Self::constraints) and
-/// [`regions`](Self::regions) are the facts by which a program decides.
+/// A mesh file never changes after reading, and does not decide which vertices may move. A program decides by the facts
+/// in [`constraints`](Self::constraints) and [`regions`](Self::regions).
 pub struct MeshFile {
     parsed: ParsedMesh,
     reader: &'static ReaderFunctions,
@@ -39,10 +39,10 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Makes a mesh file of what a reader returned.
+    /// Makes a mesh file from a parsed mesh and its source.
     ///
     /// # Errors
-    /// [`ReadError::Format`] if there is no triangle.
+    /// [`ReadError::Format`] if the mesh has no triangle.
     pub(crate) fn new(
         parsed: ParsedMesh,
         reader: &'static ReaderFunctions,
@@ -56,23 +56,24 @@ impl MeshFile {
         Ok(MeshFile { parsed, reader, source })
     }
 
-    /// Returns the path of the file that was read; for a Triangle mesh, that of its `.node`.
+    /// Returns the path of the main file; for a Triangle mesh, the path of the `.node`.
     pub fn path(&self) -> &Path {
         &self.source.path
     }
 
-    /// All files that were read: of a Triangle mesh its `.node`, `.ele` and, if there is one, `.poly`; of an XDMF the files beside it
-    /// that it has numbers in.
+    /// Lists the paths of all files of the mesh, the main file first. A Triangle mesh has a `.node`, an `.ele` and
+    /// optionally a `.poly`; an XDMF may be followed by files with its numbers.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.files().into_iter().map(|source| source.path.as_path())
     }
 
-    /// Lists all files that were read, in the order of [`paths`](Self::paths), with their bytes.
+    /// Lists all files of the mesh in the order of [`paths`](Self::paths), with their bytes on the disk, compressed or
+    /// not.
     pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
         self.files().into_iter().map(|source| (source.path.as_path(), source.stored()))
     }
 
-    /// Returns x and y of each vertex, in the order of the file, in its unit.
+    /// Returns x and y of each vertex, in the order and the unit of the file.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.parsed.points
     }
@@ -88,7 +89,7 @@ impl MeshFile {
     }
 
     /// Returns the [region](Self#regions) of each triangle, in the order of [`triangles`](Self::triangles). Regions are
-    /// numbered from 0 in the order in which the file first names them. `None` if all triangles are of one region.
+    /// numbered from 0 in the order of first occurrence. `None` if all triangles have equal regions.
     pub fn regions(&self) -> Option<&[u32]> {
         self.parsed.regions.as_deref()
     }
@@ -110,12 +111,12 @@ impl MeshFile {
         })
     }
 
-    /// Returns the format that the file was read in, which is also written.
+    /// Returns the format of the file, which [`write`](Self::write) keeps.
     pub fn format(&self) -> Format {
         self.parsed.format
     }
 
-    /// Returns the reader by which the file was read.
+    /// Returns the functions of the reader that has read the file.
     pub(crate) fn reader(&self) -> &'static ReaderFunctions {
         self.reader
     }
@@ -147,7 +148,7 @@ impl MeshFile {
         self.parsed.encoding
     }
 
-    /// Returns the encoded points, if the file has them encoded.
+    /// Returns the encoded array of the points; `None` if the file stores points unencoded.
     pub(crate) fn encoded_points(&self) -> Option<&dyn EncodedArrays> {
         self.parsed.encoded.as_deref()
     }
@@ -162,21 +163,21 @@ impl MeshFile {
         &self.parsed.remarks
     }
 
-    /// Returns the names of the real numbers that the file gives vertices besides x and y: depths, third coordinates
-    /// that differ, point data. [`write`](Self::write) keeps these numbers, so they no longer fit where vertices move.
-    /// [`point_fields`](Self::point_fields) reads them.
+    /// Returns the names of arrays of real numbers on vertices besides x and y: depths, third coordinates that differ,
+    /// point data. [`write`](Self::write) keeps the numbers, which then no longer fit moved vertices.
+    /// [`point_fields`](Self::point_fields) reads the arrays.
     pub fn data_names(&self) -> &[String] {
         &self.parsed.data
     }
 
-    /// Whether the file gives vertices parameters on surfaces of a model, as gmsh 4.1 may. [`write`](Self::write) keeps
-    /// these parameters; [`plane_parameters`](Self::plane_parameters) updates them.
+    /// Returns whether vertices have parameters on surfaces of a model, as in gmsh 4.1. [`write`](Self::write) keeps
+    /// the parameters; [`plane_parameters`](Self::plane_parameters) updates them.
     pub fn has_parameters(&self) -> bool {
         self.parsed.has_parameters
     }
 
-    /// Whether the file has the centers of faces or edges, as UGRID may. [`write`](Self::write) keeps them;
-    /// [`centers`](Self::centers) updates them.
+    /// Returns whether the file stores centers of faces or edges, as in UGRID. [`write`](Self::write) keeps the
+    /// centers; [`centers`](Self::centers) updates them.
     pub fn has_centers(&self) -> bool {
         self.parsed.has_centers
     }

@@ -1,4 +1,4 @@
-//! A mesh with the bytes of its files: reading, rewriting, comparison, groups and data.
+//! Meshes with the bytes of their files: reading, rewriting, comparison, locations, groups and data.
 
 pub(crate) mod centers;
 mod content;

@@ -1,4 +1,4 @@
-//! Reads files with long lists both on all threads and item by item. The meshes and the errors must be the same.
+//! Reads files with long lists on all threads and item by item. Both must yield equal meshes and equal errors.
 
 use crate::detect;
 use crate::disk::source::{Companion, Source};

@@ -1,4 +1,4 @@
-//! Parameters of vertices on surfaces of a model, which gmsh's files may have.
+//! Parameters of vertices on surfaces of a model, which gmsh files may store.
 
 use crate::error::FieldError;
 use crate::mesh_file::mesh::MeshFile;
@@ -11,11 +11,12 @@ const PLANE_TOLERANCE: f64 = 1e-8;
 
 impl MeshFile {
     /// Returns the parameters of vertices on plane surfaces of a model, updated for vertices at `points`, as fields for
-    /// [`write_with_fields`](Self::write_with_fields). On a plane, u and v are linear in x and y. Also returns the number of other
-    /// surfaces with parameters, which cannot be updated. Without parameters, both are empty.
+    /// [`write_with_fields`](Self::write_with_fields). On a plane, u and v are linear in x and y. The second result
+    /// counts other surfaces with parameters, which cannot be updated. A file without parameters returns an empty list
+    /// and 0.
     ///
     /// # Errors
-    /// [`FieldError::PointCount`] if there is not one point for each vertex.
+    /// [`FieldError::PointCount`] if `points` does not have exactly one point per vertex.
     pub fn plane_parameters(
         &self,
         points: &[[f64; 2]],
@@ -24,7 +25,7 @@ impl MeshFile {
         if points.len() != old.len() {
             return Err(FieldError::PointCount { expected: old.len(), given: points.len() });
         }
-        // Reading the file again cannot fail, as it was read before.
+        // A second reading of the bytes cannot fail, as the first reading had no error.
         let read = || parametric::parameters(self.reader(), self.source()).ok();
         let fields = self.has_parameters().then(read).flatten();
         let (mut plane, mut others) = (Vec::new(), 0);
@@ -53,8 +54,8 @@ impl MeshFile {
 /// x and y of a vertex, and its parameters u and v.
 type Pair = ([f64; 2], [f64; 2]);
 
-/// Returns the slopes of u and v in x and y, by least squares. `None` unless u and v are linear for all vertices that
-/// have them.
+/// Returns the slopes of u and v in x and y, by least squares. `None` unless u and v are linear over all vertices with
+/// parameters, three or more.
 fn slopes(points: &[[f64; 2]], parameters: &[f64]) -> Option<[[f64; 2]; 2]> {
     let pairs = points.iter().zip(parameters.as_chunks::<2>().0);
     let given: Vec<Pair> = pairs
@@ -83,7 +84,7 @@ fn slopes(points: &[[f64; 2]], parameters: &[f64]) -> Option<[[f64; 2]; 2]> {
     let slopes =
         right.map(|[x, y]| [(x * yy - y * xy) / determinant, (y * xx - x * xy) / determinant]);
     let reach = centered().flat_map(|(_, own)| own).fold(0.0, |a: f64, b| a.max(b.abs()));
-    // If all vertices lie on a line, the slopes are NaN and this does not hold.
+    // If all vertices lie on a line, the slopes are NaN and the comparison fails.
     let is_linear = centered().all(|([x, y], own)| {
         let far = |k: usize| (slopes[k][0] * x + slopes[k][1] * y - own[k]).abs();
         far(0) <= PLANE_TOLERANCE * reach && far(1) <= PLANE_TOLERANCE * reach

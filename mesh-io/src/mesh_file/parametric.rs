@@ -1,4 +1,4 @@
-//! Visitor for a second reading of a file: for the parameters of vertices on surfaces of a model.
+//! Visitor of a second reading, which collects the parameters of vertices on surfaces of a model.
 
 use crate::content::id_index::IdIndex;
 use crate::disk::source::Source;
@@ -16,7 +16,7 @@ pub(crate) fn parameters(
 ) -> Result<Vec<PointField>, ReadError> {
     let mut visitor = ParameterVisitor::default();
     (reader.visit)(source, &mut visitor)?;
-    // There is no error to report, as the file was read before without one.
+    // Repeated ids would have been an error of the first reading.
     let map = IdIndex::new(&visitor.ids).unwrap_or(IdIndex::Run { first: 0, count: 0 });
     let field = |(surface, numbers): (i64, PointNumbers)| {
         let nodes = numbers.nodes.as_deref().unwrap_or_default();

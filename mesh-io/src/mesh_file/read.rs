@@ -10,22 +10,23 @@ use crate::visit::reader::ReaderFunctions;
 use std::path::Path;
 
 impl MeshFile {
-    /// Reads a mesh. The content of the file tells the format.
+    /// Reads a mesh. The format is detected by the file's content and, for ambiguous content, by the ending of its
+    /// name.
     ///
-    /// A Triangle mesh is named by its `.node`, by its `.ele`, or without either ending. Files of all other formats may be
-    /// compressed by gzip or zstd. Of an XDMF that has numbers in other files, these are read too.
+    /// A path to a Triangle mesh ends in `.node`, `.ele` or neither. Files of all other formats may be compressed by
+    /// gzip or zstd. The reader of an XDMF also loads the other files with its numbers.
     ///
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of [`Format`](crate::Format),
     /// does not follow its format, has elements other than first-order elements of the plane, or has no triangle. An
-    /// STL is [`ReadError::Unwelded`] unless [`ReadOptions::weld`] is set. A mesh that names files outside of its directory is
-    /// [`ReadError::Outside`] unless [`ReadOptions::allow_outside`] is set.
+    /// STL is [`ReadError::Unwelded`] unless [`ReadOptions::weld`] is set. A mesh that names files outside of its
+    /// directory is [`ReadError::Outside`] unless [`ReadOptions::allow_outside`] is set.
     pub fn read(path: &Path) -> Result<MeshFile, ReadError> {
         ReadOptions::new().read(path)
     }
 
-    /// Reads a mesh from memory, such as what a program got by its standard input. `name` stands for the file in
-    /// messages. The ending of `name` helps to tell the format if the content is not enough.
+    /// Reads a mesh from memory, such as from the standard input of a program. `name` is the file's name in messages.
+    /// For ambiguous content, the ending of `name` selects the format.
     ///
     /// # Errors
     /// [`ReadError`] for the reasons of [`read`](Self::read), and for a mesh of several files.
@@ -59,13 +60,13 @@ impl ReadOptions {
     }
 }
 
-/// Finds the reader of a file, or explains why the file has no format that is read.
+/// Returns the reader of a file, or an error with the reason why no reader fits.
 fn reader(given: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     detect::reader(given).map_err(|error| ends_by_returns(given).unwrap_or(error))
 }
 
 fn parsed(reader: &'static ReaderFunctions, source: Source) -> Result<MeshFile, ReadError> {
-    // Formats that are read by words may have any line ends.
+    // Formats read by words accept carriage returns. The error about line ends is therefore used only if reading fails.
     let ends = source.files().find_map(ends_by_returns);
     let read = mesh_builder::parse(reader, &source);
     let made = read.and_then(|parsed| MeshFile::new(parsed, reader, source));

@@ -1,4 +1,4 @@
-//! Writes a mesh file again, with the coordinates of moved vertices replaced.
+//! Rewrite of a mesh file with the coordinates of moved vertices.
 
 use crate::compress::file::Compression;
 use crate::detect;
@@ -19,7 +19,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The new values for a rewrite of a file.
+/// New coordinates and fields for a rewrite.
 #[derive(Clone, Copy)]
 struct Edits<'a> {
     points: &'a [[f64; 2]],
@@ -29,25 +29,26 @@ struct Edits<'a> {
 impl MeshFile {
     /// Writes the file again with vertex `i` at `points[i]`, in the units of the file.
     ///
-    /// A coordinate with the bits that were read keeps its text. Others are written with the fewest digits that read
-    /// back as the same bits. For a Triangle mesh, all files are written under the name that `path` gives, with or
-    /// without ending. `path` may be the file that was read. Existing files are replaced only once all is written, and
-    /// symbolic links are followed.
+    /// Coordinates with unchanged bits keep their text. Changed coordinates are written with the fewest digits that
+    /// parse back to equal bits. All files of a Triangle mesh get the name in `path`, which may lack an ending. `path`
+    /// may name the file that was read. Existing files are replaced after all new content is on the disk, and symbolic
+    /// links are followed.
     ///
-    /// The file is compressed if `path` ends in `.gz` (gzip) or `.zst` (zstd); if nothing has moved, a file that was compressed keeps its
-    /// bytes.
+    /// If `path` ends in `.gz` or `.zst`, the file is compressed by gzip or zstd. Without any change, a file of equal
+    /// compression keeps its compressed bytes.
     ///
     /// # Errors
-    /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), if the points are not finite
-    /// or not one per vertex, if the system refuses, or if a file that was read would be replaced but has another content than
-    /// when it was read, or last written here ([`WriteError::Changed`]). Existing files are then unchanged.
+    /// [`WriteError`] for the reasons of [`check_destination`](Self::check_destination), for points that are not finite
+    /// or not one per vertex ([`WriteError::Points`]), and for errors of the operating system ([`WriteError::Io`]).
+    /// [`WriteError::Changed`] if another program has changed a file to be replaced since this process read or wrote
+    /// the file. After an error, existing files are unchanged.
     pub fn write(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {
         self.write_with_fields(path, points, &[])
     }
 
-    /// Writes the file as [`write`](Self::write) does, and also replaces data of vertices by the values of these
-    /// fields. The fields must come from [`point_fields`](Self::point_fields) or
-    /// [`plane_parameters`](Self::plane_parameters) or [`centers`](Self::centers) of this file. A number with the bits that were read keeps its text.
+    /// Writes the file as [`write`](Self::write) does, and also replaces data of vertices by the values of `fields`.
+    /// Fields must come from [`point_fields`](Self::point_fields), [`plane_parameters`](Self::plane_parameters) or
+    /// [`centers`](Self::centers) of this file. Numbers with unchanged bits keep their text.
     ///
     /// # Errors
     /// [`WriteError`] for the reasons of [`write`](Self::write).
@@ -78,8 +79,9 @@ impl MeshFile {
             .map(|(part, _)| part)
             .collect();
         let mut writes: Vec<_> = destinations.iter().cloned().enumerate().map(file_write).collect();
-        // The one that names the others takes its place last, so that what is there is whole. Where it stays as it is, it never has to
-        // leave its place if that is left to the one with the coordinates.
+        // The first entry is the main file, which is renamed last: readers never see a mix of old and new files. If the
+        // main file is unchanged, the file with the coordinates becomes the first entry, and the main file stays in
+        // place.
         if self.file_index() > 0 && self.is_written(&writes[0].0, renamed) {
             writes.swap(0, self.file_index());
         }
@@ -94,7 +96,7 @@ impl MeshFile {
         Ok(())
     }
 
-    /// Whether the destination of the main file already has exactly the bytes that would be written.
+    /// Returns whether the destination of the main file already has exactly the bytes of the rewrite.
     fn is_written(&self, path: &Path, renamed: &[ByteEdit]) -> bool {
         let mut new = Vec::new();
         let bytes = &self.source().bytes;
@@ -102,12 +104,12 @@ impl MeshFile {
         written.is_ok() && std::fs::read(path).is_ok_and(|old| old == new)
     }
 
-    /// Writes what [`write`](Self::write) does to where bytes can be written, such as the standard output. It is compressed if
-    /// the file that was read is.
+    /// Writes the file as [`write`](Self::write) does, to any writer such as the standard output. The output is
+    /// compressed if the original file is compressed.
     ///
     /// # Errors
-    /// [`WriteError`] if the points are not finite or not one per vertex, for a mesh of several files, or
-    /// if nothing can be written; `name` stands in it for where that is.
+    /// [`WriteError`] if the points are not finite or not one per vertex, if the mesh has several files, or if `out`
+    /// reports an error. Messages use `name` as the name of the output.
     pub fn write_to(
         &self,
         name: &Path,
@@ -117,7 +119,7 @@ impl MeshFile {
         self.write_to_with_fields(name, out, points, &[])
     }
 
-    /// Writes the file and these fields as [`write_with_fields`](Self::write_with_fields) does, to any writer as
+    /// Writes the file and `fields` as [`write_with_fields`](Self::write_with_fields) does, to any writer as
     /// [`write_to`](Self::write_to) does.
     ///
     /// # Errors
@@ -144,8 +146,8 @@ impl MeshFile {
         )
     }
 
-    /// Returns the compression of a file that is written to `path`, by the extension. If neither `path` nor the file
-    /// that was read has the extension of a compression, the compression of the file that was read stays.
+    /// Returns the compression for a rewrite to `path`, given by the extension. If neither `path` nor the original path
+    /// has a compression's extension, the original compression is kept.
     fn compression_of(&self, path: &Path) -> Option<Compression> {
         let source = self.source();
         match Compression::of(path) {
@@ -156,7 +158,7 @@ impl MeshFile {
         }
     }
 
-    /// Writes the file with index `part`.
+    /// Writes the file with index `part`, compressed by `packs`.
     fn put(
         &self,
         part: usize,
@@ -168,7 +170,7 @@ impl MeshFile {
         let Some(packing) = packs else { return self.put_plain(part, edits, &[], out) };
         let is_same = || self.is_unmoved(points) && !fields.iter().any(PointField::is_changed);
         match &self.files()[part].compressed {
-            // Another program may pack the same content into other bytes.
+            // The original bytes are kept: another program may have compressed equal content to other bytes.
             Some(packed) if packed.compression == packing && is_same() => {
                 out.write_all(&packed.bytes)
             }
@@ -176,7 +178,7 @@ impl MeshFile {
         }
     }
 
-    /// Writes one of the files, with what of it is replaced because files beside it get other names.
+    /// Writes the file with index `part` uncompressed. `renamed` holds the edits for new names of companions.
     fn put_plain(
         &self,
         part: usize,
@@ -196,7 +198,8 @@ impl MeshFile {
                 points,
             )
         };
-        // Columns of the file itself and of the encoded points. Arrays that are encoded by themselves become edits.
+        // Columns of numbers in the file itself and in the decoded points. Columns of other encoded arrays become
+        // edits.
         let (mut in_file, mut in_points) = (Vec::new(), Vec::new());
         let mut in_others: Vec<(&Arc<dyn EncodedArrays>, Vec<EditableColumn<'_>>)> = Vec::new();
         let (mut edits, mut end) = (renamed.to_vec(), bytes.len());
@@ -256,16 +259,16 @@ impl MeshFile {
         Rewrite { bytes, columns: &in_file, edits: &edits }.write(out)
     }
 
-    /// Whether these points, rounded to the precision of the file, are those that were read.
+    /// Returns whether all points, rounded to the file's precision, equal the original points.
     fn is_unmoved(&self, points: &[[f64; 2]]) -> bool {
         let bits = |x: f64| self.precision().rounded(x).to_bits();
         let mut pairs = points.iter().flatten().zip(self.points().iter().flatten());
         pairs.all(|(&new, &old)| bits(new) == old.to_bits())
     }
 
-    /// Checks, without writing, whether [`write`](Self::write) to `path` can work. The ending must not belong to
-    /// another format, the directory must exist and take new files, and no directory or read-only file may be in the
-    /// way.
+    /// Checks, without writing, whether [`write`](Self::write) to `path` can succeed. `path` must not have the ending
+    /// of another format, its directory must exist and accept new files, and no directory or read-only file may block a
+    /// destination.
     ///
     /// # Errors
     /// [`WriteError`] if the file cannot be written, with the reason.
@@ -278,8 +281,8 @@ impl MeshFile {
     /// Lists the files that [`write`](Self::write) to `path` writes, in the order of [`paths`](Self::paths).
     ///
     /// # Errors
-    /// [`WriteError::Format`] if `path` is not the name of a file, if its ending belongs to another format, or if a
-    /// file in the way would be read in place of or with a Triangle mesh.
+    /// [`WriteError::Format`] if `path` is no file name or has the ending of another format, or if an existing file
+    /// would be read instead of the new Triangle mesh or together with the new mesh.
     pub fn destinations(&self, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
         let usual = FormatEntry::of(self.format()).extensions[0];
         let refused = |problem: String, remedy: String| {

@@ -1,16 +1,17 @@
-//! The fields of a card, which is what Nastran calls an entry of its bulk data.
+//! Lines and fields of Nastran's cards, the entries of its bulk data.
 //!
-//! A line has a name and eight fields of 8 characters (small field), or four of 16 if an asterisk follows the name (large field), or
-//! as many fields between commas (free field). The last field of a line, and the first one of the next, may name a continuation.
+//! In small field, a line has a name and eight data fields of 8 characters. In large field, with an asterisk after the
+//! name, a line has four data fields of 16 characters. In free field, commas separate eight data fields, or four after
+//! an asterisk. The last field of a line and the first field of the next line may name a continuation.
 
 use memchr::{memchr, memchr2, memrchr};
 use std::ops::Range;
 
-/// Characters of the first and the last field of a line, and of a small field.
+/// Width in characters of a small field, and of the name and continuation fields in every fixed format.
 const SMALL_FIELD_WIDTH: usize = 8;
-/// Characters of a large field.
+/// Width in characters of a large field.
 const LARGE_FIELD_WIDTH: usize = 16;
-/// Number of characters at the start of a line in which a comma makes the line free-field.
+/// Number of leading characters of a line in which a comma marks free field.
 const MAX_COMMA_COLUMN: usize = 10;
 
 /// One line of a Nastran card.
@@ -18,23 +19,23 @@ const MAX_COMMA_COLUMN: usize = 10;
 pub(crate) struct CardLine<'a> {
     bytes: &'a [u8],
     start: usize,
-    /// Where its comment starts, or its line end.
+    /// Exclusive end of the fields: offset of the comment or, without a comment, of the line end.
     end: usize,
     pub(crate) is_free: bool,
     pub(crate) is_large: bool,
     has_tabs: bool,
 }
 
-/// The name of a card in capital letters, without an asterisk and padded with zeros.
+/// Name of a card in capital letters, without an asterisk, padded with zero bytes.
 pub(crate) type CardName = [u8; SMALL_FIELD_WIDTH];
 
-/// Returns the name of a card without the zeros that pad it to 8 bytes.
+/// Returns the name of a card without the zero bytes of the padding.
 pub(crate) fn name_bytes(name: &CardName) -> &[u8] {
     &name[..memchr(0, name).unwrap_or(SMALL_FIELD_WIDTH)]
 }
 
 impl<'a> CardLine<'a> {
-    /// Takes the line that starts here.
+    /// Parses the line that starts at offset `start`.
     pub(crate) fn starting_at(bytes: &'a [u8], start: usize) -> CardLine<'a> {
         let rest = &bytes[start..];
         let rest = &rest[..memchr2(b'\n', b'$', rest).unwrap_or(rest.len())];
@@ -47,14 +48,14 @@ impl<'a> CardLine<'a> {
         CardLine { bytes, start, end: start + rest.len(), is_free, is_large, has_tabs }
     }
 
-    /// Takes the line that has this byte.
+    /// Parses the line with the byte at offset `at`.
     fn of(bytes: &'a [u8], at: usize) -> CardLine<'a> {
         let mark = if bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
         let start = memrchr(b'\n', &bytes[..at]).map_or(mark, |before| before + 1);
         CardLine::starting_at(bytes, start.min(at))
     }
 
-    /// The card that the line starts, if it is no continuation.
+    /// Returns the content of the name field, which is meaningful only for the first line of a card.
     pub(crate) fn name(&self) -> CardName {
         let mut name = CardName::default();
         let letters = self.bytes[self.start..self.end].iter();
@@ -65,18 +66,18 @@ impl<'a> CardLine<'a> {
         name
     }
 
-    /// Characters of a field, as far as its line has them.
+    /// Returns the width of the line's data fields in characters. The line end may cut off the last field.
     fn width(&self) -> usize {
         if self.is_large { LARGE_FIELD_WIDTH } else { SMALL_FIELD_WIDTH }
     }
 
-    /// How many fields of data a line has.
+    /// Returns the number of data fields in a full line: 4 or 8.
     fn count(&self) -> usize {
         if self.is_large { 4 } else { 8 }
     }
 
-    /// Lists where the fields of data are that the line has, each without blanks around it in free field, and else with all of its
-    /// characters.
+    /// Returns the byte ranges of the line's data fields. In free field, ranges exclude blanks around the value; fixed
+    /// fields have their full width.
     pub(crate) fn fields(self) -> Fields<'a> {
         let at = match self.is_free {
             true => self.comma_from(self.start),
@@ -85,12 +86,13 @@ impl<'a> CardLine<'a> {
         Fields { line: self, at, index: 0 }
     }
 
-    /// Returns the first comma from a byte on, or the end.
+    /// Returns the offset of the first comma at or behind `at`, or the line's end.
     fn comma_from(&self, at: usize) -> usize {
         memchr(b',', &self.bytes[at..self.end]).map_or(self.end, |comma| at + comma)
     }
 
-    /// Returns the byte at a column, counted from zero, or the end. A tab moves on to the next column that is a multiple of eight.
+    /// Returns the offset of the byte in a 0-based column, at most the line's end. A tab advances to the next multiple
+    /// of eight columns.
     fn at_column(&self, column: usize) -> usize {
         if !self.has_tabs {
             return self.end.min(self.start + column);
@@ -103,7 +105,7 @@ impl<'a> CardLine<'a> {
         at
     }
 
-    /// Returns the column of a byte.
+    /// Returns the 0-based column of the byte at offset `at`.
     fn column(&self, at: usize) -> usize {
         if !self.has_tabs {
             return at - self.start;
@@ -111,7 +113,7 @@ impl<'a> CardLine<'a> {
         (self.start..at).fold(0, |column, at| self.after(column, at))
     }
 
-    /// Returns the column after the byte that stands in a column.
+    /// Returns the column behind the byte at offset `at`, given the byte's own `column`.
     fn after(&self, column: usize, at: usize) -> usize {
         if self.bytes[at] == b'\t' {
             (column / SMALL_FIELD_WIDTH + 1) * SMALL_FIELD_WIDTH
@@ -121,10 +123,10 @@ impl<'a> CardLine<'a> {
     }
 }
 
-/// The fields of data of a line.
+/// Iterator over the byte ranges of a line's data fields.
 pub(crate) struct Fields<'a> {
     line: CardLine<'a>,
-    /// The comma before the next field, or where that starts.
+    /// Offset of the comma before the next field (free field), or of the next field's start (fixed fields).
     at: usize,
     index: usize,
 }
@@ -144,7 +146,8 @@ impl Iterator for Fields<'_> {
             if line.is_free {
                 let start = self.at + 1;
                 self.at = line.comma_from(start);
-                // What goes on in the same line has the two fields between that name a continuation.
+                // A line in free field may hold the data of several lines, with the two continuation fields between
+                // them.
                 if index % (line.count() + 2) >= line.count() {
                     continue;
                 }
@@ -163,7 +166,7 @@ impl Iterator for Fields<'_> {
     }
 }
 
-/// Leaves out blanks around what is in a range. A range of blanks becomes the empty one at its start.
+/// Returns a range without the blanks at both ends. A range of blanks becomes an empty range at its start.
 fn trimmed(bytes: &[u8], Range { mut start, mut end }: Range<usize>) -> Range<usize> {
     let is_blank = |at: usize| bytes[at] <= b' ';
     let all = start;
@@ -179,7 +182,8 @@ fn trimmed(bytes: &[u8], Range { mut start, mut end }: Range<usize>) -> Range<us
     start..end
 }
 
-/// Lists the fields of data of all lines of a card, without blanks around them. Fields that a line leaves out at its end are empty.
+/// Returns the data fields of all lines of a card, without blanks around the values. Fields missing at the end of a
+/// line are empty.
 pub(crate) fn words(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = &[u8]> {
     lines(bytes, card).flat_map(move |line| {
         let count = line.count();
@@ -194,7 +198,7 @@ pub(crate) fn words(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = &[
     })
 }
 
-/// Lists the lines of a card, without comments and blank lines between them.
+/// Returns the lines of a card, without comment lines and blank lines.
 pub(crate) fn lines(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = CardLine<'_>> {
     let mut at = card.start;
     std::iter::from_fn(move || {
@@ -210,8 +214,8 @@ pub(crate) fn lines(bytes: &[u8], card: Range<usize>) -> impl Iterator<Item = Ca
     })
 }
 
-/// Returns the end of the field that starts here, and how many characters what is written there must have. That is none in free
-/// field, and where the line ends before the field.
+/// Returns the exclusive end of the field at offset `at`, and the width in characters to which a new value is padded.
+/// The width is 0 in free field, and for a field that the line end cuts off.
 pub(crate) fn extent(bytes: &[u8], at: usize) -> (usize, usize) {
     let line = CardLine::of(bytes, at);
     if line.is_free {
@@ -223,7 +227,7 @@ pub(crate) fn extent(bytes: &[u8], at: usize) -> (usize, usize) {
     (line.at_column(column + width).max(at), if is_whole { width } else { 0 })
 }
 
-/// Returns where the field starts that follows one which ends here.
+/// Returns the start of the next field, given the exclusive end of a field.
 pub(crate) fn next_field(bytes: &[u8], end: usize) -> usize {
     let line = CardLine::of(bytes, end);
     let comma = line.comma_from(end.min(line.end));
@@ -287,7 +291,7 @@ mod tests {
         assert_eq!(words_of("X"), [""; 8]);
     }
 
-    /// A field is found again from where it starts, also where nothing is in it.
+    /// The start of a field determines its end and the next field, even if the field is empty.
     #[test]
     fn fields_are_found_again_from_their_starts() {
         for line in [

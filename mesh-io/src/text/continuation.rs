@@ -1,15 +1,16 @@
-//! Rows that go on in lines which start with a blank, a comma, `+` or `*`, as cards of Nastran do.
+//! Rows of several lines: a line that starts with a blank, a comma, `+` or `*` continues a row, as in Nastran's cards.
 
 use crate::text::token::line_end;
 
-/// Whether a line end or a comment, which starts with `#` or with the byte `comment`, is at `at`.
+/// Returns whether a line end, a comment or the end of `bytes` is at `at`. Comments start with `#` or the byte
+/// `comment`.
 pub(super) fn is_left_out(bytes: &[u8], at: usize, comment: u8) -> bool {
     let first = bytes.get(at);
     first.is_none_or(|&byte| matches!(byte, b'\n' | b'\r' | b'#') || byte == comment)
 }
 
-/// Returns the end of the lines that belong to the line which ends at `end`. Comments start with `#` or with the byte
-/// `comment`.
+/// Returns the exclusive end of a row whose first line ends at `end`. Blank lines and comments behind the last
+/// continuation line are excluded. Comments start with `#` or the byte `comment`.
 pub(super) fn continued_end(bytes: &[u8], mut end: usize, comment: u8) -> usize {
     let mut next = end;
     while next < bytes.len() {

@@ -1,4 +1,4 @@
-//! Rows and tokens of a text file.
+//! Cursor over the rows and tokens of a text file.
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
@@ -7,23 +7,23 @@ use crate::text::syntax::{Commas, Items, Syntax};
 use crate::text::token::line_end;
 use std::ops::Range;
 
-/// The remedy for a single wrong line.
+/// Remedy in messages about a single wrong line.
 pub(crate) const CORRECT: &str = "Correct the line, or write the mesh again";
-/// The remedy for a file that ends too early.
+/// Remedy in messages about a file that ends too early.
 pub(crate) const CUT_OFF: &str = "The file is cut off: copy it again, or write the mesh again";
 
-/// Walks over the rows of a file: the lines that have more than blanks and a comment. In a binary file it also takes
-/// bytes between lines.
+/// Cursor over the rows of a file, which are the lines with content besides blanks and comments. In a binary file, the
+/// cursor also takes bytes between lines.
 #[derive(Clone)]
 pub(crate) struct Cursor<'a> {
     pub(crate) source: &'a Source,
     /// The source's bytes, up to the end of the cursor's range.
     pub(crate) bytes: &'a [u8],
     pub(crate) at: usize,
-    /// How many lines were begun. 0 before the first line and after bytes were taken, when the next line starts at
-    /// `at`.
+    /// 1-based number of the current line. 0 before the first line and directly behind taken bytes, where the next line
+    /// starts at `at`.
     line: usize,
-    /// The offset of the bytes taken last. `None` in a text file.
+    /// Offset of the bytes taken last; `None` in a text file.
     last_taken: Option<usize>,
     pub(crate) syntax: Syntax,
     /// Whether line ends count as blanks for the current item.
@@ -59,7 +59,8 @@ impl<'a> Cursor<'a> {
         cursor
     }
 
-    /// Makes a cursor before the first row of a range, beyond which it does not read.
+    /// Makes a cursor at the start of a byte range, inside the line with the start. The cursor does not read beyond the
+    /// range.
     pub(crate) fn within(source: &'a Source, range: Range<usize>) -> Self {
         let mut cursor = Cursor::on_line_of(source, range.start);
         cursor.bytes = &source.bytes[..range.end];
@@ -71,13 +72,13 @@ impl<'a> Cursor<'a> {
         Cursor { syntax, ..self }
     }
 
-    /// Splits the lines that follow into parts of about `size` bytes, at most `count` of them. Each part counts lines
-    /// from its own first.
+    /// Splits the following lines into at most `count` parts of about `size` bytes. Parts end at row ends and number
+    /// their lines separately.
     pub(crate) fn parts(&self, size: usize, count: usize) -> Vec<Cursor<'a>> {
         self.parts_after(None, size, count)
     }
 
-    /// Splits the lines after `part` as [`parts`](Self::parts) does, or the lines after this cursor for `None`.
+    /// Splits the lines behind `part` as [`parts`](Self::parts) does; `None` splits the lines behind this cursor.
     pub(crate) fn parts_after(
         &self,
         part: Option<&Cursor<'_>>,
@@ -95,17 +96,18 @@ impl<'a> Cursor<'a> {
         parts
     }
 
-    /// Moves to the last line of a part whose rows were all read. It must be the first of [`parts`](Self::parts).
+    /// Moves to the last line of `part`, whose rows were all read. `part` must start at the cursor's next line, as the
+    /// first of [`parts`](Self::parts) does.
     pub(crate) fn skip(&mut self, part: &Cursor<'_>) {
         self.line += part.line;
         self.at = part.bytes.len() - usize::from(part.bytes.ends_with(b"\n"));
     }
 
-    /// Returns the location: the current line, or the last one if there are no more rows. In a binary file, it is the
-    /// offset of the bytes taken last.
+    /// Returns the location for messages: the current line, or the file's last line if no row follows. In a binary
+    /// file, the location is the offset of the bytes taken last, or of the cursor inside a line.
     pub(crate) fn location(&self) -> Location {
         match self.last_taken {
-            // The count is 0 if nothing was read so far, but editors count from 1.
+            // Before the first line, `line` is 0, but editors count from 1.
             None if self.syntax.joins_lines || self.syntax.continues_cards => {
                 Location::Line(self.source.line_of(self.at))
             }
@@ -115,7 +117,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Returns the location of the byte at offset `at`.
+    /// Returns the location of the byte at offset `at`: a line in text files, an offset in binary files.
     pub(crate) fn location_of(&self, at: usize) -> Location {
         match self.last_taken {
             None => Location::Line(self.source.line_of(at)),
@@ -123,8 +125,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Takes `count` bytes from the start of the next line, or after the bytes taken last. From then on the file counts
-    /// as binary. `None` if there are fewer.
+    /// Takes `count` bytes, starting at the next line or behind the bytes taken last. The file then counts as binary.
+    /// `None` if fewer bytes remain.
     #[inline]
     pub(crate) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let start = self.next_line();
@@ -134,16 +136,16 @@ impl<'a> Cursor<'a> {
         Some(taken)
     }
 
-    /// Returns the next `count` items of `size` bytes, without taking them, and the offset of the first item. `None`
-    /// if the file has fewer.
+    /// Returns the next `count` items of `size` bytes, without moving the cursor, and the offset of the first item.
+    /// `None` if fewer bytes remain.
     pub(crate) fn peek(&self, count: u64, size: usize) -> Option<(&'a [u8], usize)> {
         let start = self.next_line();
         let length = usize::try_from(count).ok()?.checked_mul(size)?;
         Some((self.bytes[start..].get(..length)?, start))
     }
 
-    /// Moves to the byte at offset `at`, for messages, and counts the lines up to the byte. Moving forward takes time
-    /// in proportion to the distance.
+    /// Moves to the byte at offset `at`, and updates the line number. Forward moves take time in proportion to the
+    /// distance, backward moves in proportion to `at`.
     pub(crate) fn seek(&mut self, at: usize) {
         match self.last_taken {
             Some(_) => self.last_taken = Some(at),
@@ -153,22 +155,22 @@ impl<'a> Cursor<'a> {
         self.at = at;
     }
 
-    /// Whether enough text follows that reading it on several threads pays.
+    /// Returns whether more than 2^18 bytes follow, enough to read faster on several threads.
     pub(crate) fn is_long(&self) -> bool {
         self.bytes.len() - self.at > 1 << 18
     }
 
-    /// Skips `count` bytes, which must exist, without counting them as taken.
+    /// Skips `count` bytes, which must exist. [`last_taken`](Self::last_taken) is unchanged.
     pub(crate) fn skip_bytes(&mut self, count: usize) {
         self.at += count;
     }
 
-    /// Returns the offset of the bytes that would be taken next.
+    /// Returns the offset from which [`take`](Self::take) takes bytes.
     pub(crate) fn at_byte(&self) -> usize {
         self.next_line()
     }
 
-    /// Returns the offset of the bytes taken last.
+    /// Returns the offset of the bytes taken last; in a text file, the cursor's offset.
     #[inline]
     pub(crate) fn last_taken(&self) -> usize {
         self.last_taken.unwrap_or(self.at)
@@ -179,26 +181,28 @@ impl<'a> Cursor<'a> {
         if self.line > 0 { self.row_end(self.at) } else { self.at }
     }
 
-    /// Returns the end of the line that has this byte, and of lines joined to it, after the line feed.
+    /// Returns the end, behind the line feed, of the line with the byte at offset `at` and of its continuation lines.
     #[inline]
     pub(crate) fn row_end(&self, at: usize) -> usize {
         let end = line_end(self.bytes, at);
         match (self.syntax.joins_lines, self.syntax.continues_cards) {
             (false, false) => end,
             (true, _) => self.joined_end(at, end),
-            // A comment does not go on. If it did, each of many would look at all that follow.
+            // A comment has no continuation lines. Otherwise each of many comments would scan all following comments,
+            // in quadratic time.
             (_, true) if is_left_out(self.bytes, at, self.syntax.comment) => end,
             (_, true) => continued_end(self.bytes, end, self.syntax.comment),
         }
     }
 
-    /// Returns the range of the current row, from the start of its first line on.
+    /// Returns the byte range of the current row, from the start of the cursor's line.
     pub(crate) fn row_range(&self) -> Range<usize> {
         let start = memchr::memrchr(b'\n', &self.bytes[..self.at]).map_or(0, |before| before + 1);
         start.max(self.source.begin())..self.row_end(self.at)
     }
 
-    /// Returns the end of the row that has this byte, or that has lines before and after this one.
+    /// Returns the end of the row around the byte at offset `at`, even if a comment between the row's lines holds the
+    /// byte.
     fn part_end(&self, at: usize) -> usize {
         match self.syntax.continues_cards {
             true => continued_end(self.bytes, line_end(self.bytes, at), self.syntax.comment),
@@ -216,7 +220,7 @@ impl<'a> Cursor<'a> {
         end
     }
 
-    /// Returns the first offset from `at` on whose byte is not a separator.
+    /// Skips separators from `at` on, and returns the offset of the next other byte.
     #[inline]
     pub(crate) fn skip_blanks(&self, mut at: usize) -> usize {
         let bytes = self.bytes;
@@ -255,7 +259,7 @@ impl<'a> Cursor<'a> {
         at
     }
 
-    /// Returns the end of the word that starts at `at`.
+    /// Returns the exclusive end of the word that starts at `at`.
     #[inline]
     pub(crate) fn word_end(&self, mut at: usize) -> usize {
         while at < self.bytes.len() && !self.syntax.ends_before(self.bytes[at]) {
@@ -264,13 +268,13 @@ impl<'a> Cursor<'a> {
         at
     }
 
-    /// Whether a word ends before `at`.
+    /// Returns whether the byte at `at` cannot continue a word; true at the end of `bytes`.
     #[inline]
     pub(crate) fn is_word_end(&self, at: usize) -> bool {
         self.bytes.get(at).is_none_or(|&byte| self.syntax.ends_before(byte))
     }
 
-    /// Moves to the first token of the next row. Returns false if there is none.
+    /// Moves to the first token of the next row. Returns false if no row follows.
     pub(crate) fn next_row(&mut self) -> bool {
         let bytes = self.bytes;
         loop {
@@ -288,8 +292,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Moves to the next of `count` items, after `done` were read: to the next row, or to the next word if items do not
-    /// keep to rows.
+    /// Moves to the next item of a list: to the next row or, for [`Items::Words`], the next word. If the file ends, the
+    /// error reports `done` of `count` items, which `what` names.
     #[inline]
     pub(crate) fn row(&mut self, done: u64, count: u64, what: &str) -> Result<(), ReadError> {
         if (self.syntax.items == Items::Words && self.is_within_row()) || self.next_row() {
@@ -298,7 +302,7 @@ impl<'a> Cursor<'a> {
         Err(self.error(format!("the file ends after {done} of {count} {what}"), CUT_OFF))
     }
 
-    /// Takes the next line whole, without its end, even if it is blank or a comment.
+    /// Takes the next line without blanks at its end, even a blank line or a comment. `None` at the end of the file.
     pub(crate) fn line(&mut self) -> Option<&'a [u8]> {
         let start = self.next_line();
         if start == self.bytes.len() {
@@ -306,12 +310,12 @@ impl<'a> Cursor<'a> {
         }
         let end = line_end(self.bytes, start);
         self.line += 1;
-        // The cursor stays on the line feed, so that the next line is the one after it.
+        // The cursor stays on the line feed, behind which the next line starts.
         self.at = end - usize::from(self.bytes[..end].ends_with(b"\n"));
         Some(self.bytes[start..end].trim_ascii_end())
     }
 
-    /// Takes the rest of the row, without the blanks around it.
+    /// Takes the rest of the row, trimmed of blanks at both ends.
     pub(crate) fn rest(&mut self) -> &'a [u8] {
         let end = self.row_end(self.at);
         let rest = self.bytes[self.at..end].trim_ascii();
@@ -319,35 +323,36 @@ impl<'a> Cursor<'a> {
         rest
     }
 
-    /// Whether the next token of the row starts with a letter.
+    /// Returns whether the next token of the row starts with an ASCII letter.
     pub(crate) fn is_at_letter(&self) -> bool {
         self.bytes.get(self.skip_blanks(self.at)).is_some_and(u8::is_ascii_alphabetic)
     }
 
-    /// Returns the offset of the row's next token.
+    /// Returns the offset of the row's next token, or of the row's end.
     pub(crate) fn at(&self) -> usize {
         self.skip_blanks(self.at)
     }
 
-    /// Whether the row has no token left.
+    /// Returns whether the row has no token left.
     #[inline]
     pub(crate) fn is_at_end(&self) -> bool {
         let at = self.skip_blanks(self.at);
         self.is_word_end(at)
     }
 
-    /// Whether the current row has words left.
+    /// Returns whether the current row has words left.
     fn is_within_row(&self) -> bool {
         self.line > 0 && !self.is_at_end()
     }
 
-    /// Whether the items that follow may be read row by row.
+    /// Returns whether the following items may be read row by row: false if items are words and the current row has
+    /// words left.
     pub(crate) fn is_between_rows(&self) -> bool {
         self.syntax.items != Items::Words || !self.is_within_row()
     }
 
-    /// Reads an item that starts here. If it does not fit on the row and the syntax allows it, the item continues on
-    /// later rows. In a list of words, `missing` then keeps the error of the row, as a number may be missing there.
+    /// Reads an item at the cursor. If the row is too short for the item and the syntax allows, the item continues on
+    /// later rows. In a list of words, `missing` then stores the error of the first short row, which may lack a number.
     pub(crate) fn item<T>(
         &mut self,
         mut read: impl FnMut(&mut Cursor<'a>) -> Result<T, ReadError>,
@@ -362,7 +367,7 @@ impl<'a> Cursor<'a> {
         let read = read(&mut longer);
         longer.crosses_line_ends = false;
         match self.syntax.items {
-            // If another item starts on the row that this one would end on, a number is missing.
+            // If tokens follow the item on its last row, the first row lacks a number.
             Items::Records if read.is_err() || !longer.is_at_end() => return Err(error),
             Items::Words if read.is_err() => return read,
             Items::Words if missing.is_none() => *missing = Some(error),
@@ -373,7 +378,7 @@ impl<'a> Cursor<'a> {
         read
     }
 
-    /// Moves before the next token of the file, on this row or a later one. Returns false if there is none.
+    /// Moves to the next token of the file, on this row or a later row. Returns false at the end of the file.
     #[inline]
     pub(crate) fn next_word(&mut self) -> bool {
         self.is_within_row() || self.next_row()
@@ -393,7 +398,8 @@ impl<'a> Cursor<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// Takes up to `count` tokens of the row, with what stands between them.
+    /// Takes up to `count` tokens of the row, and returns the bytes from the first token to the last, separators
+    /// included.
     pub(crate) fn tokens(&mut self, count: u64) -> &'a [u8] {
         let bytes = self.bytes;
         let start = self.skip_blanks(self.at);
@@ -407,13 +413,13 @@ impl<'a> Cursor<'a> {
         &bytes[start..end]
     }
 
-    /// Whether the next token starts with this byte.
+    /// Returns whether the next token starts with `byte`.
     pub(crate) fn is_at(&self, byte: u8) -> bool {
         self.bytes.get(self.skip_blanks(self.at)) == Some(&byte)
     }
 
-    /// Returns for how many of `count` rows to reserve memory: no more than the rest of the file can hold, as the count
-    /// may be wrong.
+    /// Returns the number of rows to reserve memory for: `count`, limited to rows of `bytes_per_row` bytes in the rest
+    /// of the file, as damaged files announce wrong counts.
     pub(crate) fn capacity(&self, count: u64, bytes_per_row: usize) -> usize {
         let possible = (self.bytes.len() - self.at) / bytes_per_row;
         usize::try_from(count).map_or(possible, |count| count.min(possible))

@@ -6,7 +6,7 @@ use crate::text::syntax::Commas;
 use crate::text::token::{float, fortran_float, integer, parse_digits, quoted, short_float};
 use std::fmt::Display;
 
-/// The third coordinate of a point that has only two in the file.
+/// Offset and value of the third coordinate of points with two coordinates in the file.
 pub(crate) const NO_Z: (usize, f64) = (usize::MAX, 0.0);
 
 const WHOLE: &str = "a whole number from 0 to 2^64-1";
@@ -42,8 +42,8 @@ impl<'a> Cursor<'a> {
         number.ok_or_else(|| self.unusable(token, what, SIGNED))
     }
 
-    /// Reads the whole number at the start of the next token, if it is the whole token or `stop` follows. Otherwise the
-    /// cursor does not move.
+    /// Reads the whole number at the start of the next token, and skips the token. If the number is followed by another
+    /// byte than `stop` or a separator, returns `None` without moving the cursor.
     #[inline]
     pub(crate) fn signed_up_to(&mut self, stop: u8) -> Option<i64> {
         let (number, end) = self.short_signed()?;
@@ -53,8 +53,8 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Returns the whole number at the start of the next token, and its end. `None` if it has no digit, or more than 18:
-    /// they might overflow.
+    /// Returns the whole number at the start of the next token, and its exclusive end. `None` without digits, and for
+    /// more than 18 digits, which might overflow.
     #[inline]
     fn short_signed(&self) -> Option<(i64, usize)> {
         let start = self.skip_blanks(self.at);
@@ -114,7 +114,8 @@ impl<'a> Cursor<'a> {
         value.ok_or_else(|| self.unusable(token, what, "a number"))
     }
 
-    /// Reads a number in the usual form. If the next token is not one, the cursor does not move.
+    /// Reads the next token by [`short_float`]. For tokens in other notations, returns `None` without moving the
+    /// cursor.
     #[inline]
     fn short_number(&mut self) -> Option<f64> {
         let (value, end) = short_float(self.bytes, self.skip_blanks(self.at))?;
@@ -124,7 +125,8 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Returns the number that a token stands for. Fortran has more ways to write exponents.
+    /// Parses a token as a number. Where commas are blanks (Fortran, Abaqus), Fortran's further notations of exponents
+    /// are accepted.
     fn float(&self, token: &[u8]) -> Option<f64> {
         let of_fortran = || match self.syntax.commas {
             Commas::Blanks => fortran_float(token),
@@ -133,7 +135,7 @@ impl<'a> Cursor<'a> {
         float(token).or_else(of_fortran)
     }
 
-    /// Reads z, which need not be finite, as programs write NaN for an unknown depth. Returns the offset of z, and z.
+    /// Reads z, and returns its offset and value. NaN is accepted, which programs write for an unknown depth.
     #[inline]
     pub(crate) fn z(&mut self, owner: impl Display) -> Result<(usize, f64), ReadError> {
         Ok((self.at(), self.real(format_args!("z of {owner}"))?))
@@ -155,7 +157,7 @@ impl<'a> Cursor<'a> {
         Ok((x_at, [self.coordinate('x', owner)?, self.coordinate('y', owner)?]))
     }
 
-    /// Makes the error that a token is missing, or that it is not what is wanted.
+    /// Returns the error for a missing token, or for a token that is not `wanted`. `what` names the number.
     #[cold]
     pub(crate) fn unusable(
         &self,
@@ -164,7 +166,7 @@ impl<'a> Cursor<'a> {
         wanted: &str,
     ) -> ReadError {
         match token {
-            // Not even the end of the line follows.
+            // Without a further line feed, the file is cut off.
             None if memchr::memchr(b'\n', &self.bytes[self.at..]).is_none() => {
                 self.error(format!("{what} is missing"), CUT_OFF)
             }

@@ -1,4 +1,4 @@
-//! Tests of the cursor on text, and the texts that other tests of text begin with.
+//! Tests of the cursor, and sources and cursors for other tests of text.
 
 use super::*;
 

@@ -1,26 +1,27 @@
-//! Real numbers in a field of Nastran's bulk data, which holds 8 or 16 characters.
+//! Decimal text of real numbers in fields of Nastran's bulk data, which hold 8 or 16 characters.
 //!
-//! A real number has a point, and its exponent needs no letter: `1.5-3` is 0.0015, and `.5` is a half.
+//! Nastran's real numbers need a point, but no letter before the exponent: `1.5-3` is 0.0015, and `.5` is a half.
 
 /// Field width that holds every double with all its digits: a sign, a point, seventeen digits and an exponent of five
 /// characters.
 pub(crate) const MAX_LENGTH: usize = 24;
 
-/// Writes a finite number in at most `most` characters, 8 or more, with as many digits as fit, but no more than it needs.
+/// Returns a finite number as text of at most `most` characters (8 or more), with the digits that fit, but without
+/// superfluous digits.
 pub(crate) fn field_text(number: f64, most: usize) -> String {
     let sign = if number.is_sign_negative() { "-" } else { "" };
     let (_, text) = nearest(number.abs(), most - sign.len());
     format!("{sign}{text}")
 }
 
-/// Returns the number that [`field_text`] stands for.
+/// Returns the number that Nastran reads from the result of [`field_text`]; infinity and NaN unchanged.
 pub(crate) fn rounded_to_field(number: f64, most: usize) -> f64 {
     if number == 0.0 || !number.is_finite() || most >= MAX_LENGTH {
         return number;
     }
     let (size, room) = (number.abs(), most - usize::from(number.is_sign_negative()));
-    // Without an exponent these numbers have as many digits as with one. The power of ten and the digits as a whole number are
-    // exact, so that the quotient is the number that is read back.
+    // For these sizes, text without an exponent has no fewer digits than text with an exponent. The power of ten and
+    // the scaled whole number are exact doubles, and therefore the quotient is the number that a reader parses.
     let whole = POWERS.iter().position(|&power| size < power).unwrap_or(usize::MAX);
     if size >= 1e-3 && whole < room {
         let scale = POWERS[room - 1 - whole];
@@ -29,7 +30,7 @@ pub(crate) fn rounded_to_field(number: f64, most: usize) -> f64 {
     nearest(size, room).0.value().copysign(number)
 }
 
-/// Returns a bound on how far numbers of at most this size are from what [`field_text`] stands for.
+/// Returns a bound on the rounding error of [`field_text`] for numbers up to `size`.
 pub(crate) fn field_error(size: f64, most: usize) -> f64 {
     if size == 0.0 || !size.is_finite() {
         return size;
@@ -51,20 +52,20 @@ pub(crate) fn field_error(size: f64, most: usize) -> f64 {
 const POWERS: [f64; 16] =
     [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 
-/// A number in decimal: its digits, with a point after the first one, times a power of ten.
+/// Number in decimal scientific notation: digits with a point after the first digit, times ten to the power `exponent`.
 struct Decimal {
-    /// Without zeros at the end, at least one digit.
+    /// Decimal digits without trailing zeros; at least one digit.
     digits: String,
     exponent: i32,
 }
 
-/// Returns the decimal nearest to a number of this size that fits into so many characters, and its text.
+/// Returns the decimal nearest to `size` whose text has at most `room` characters, and the text.
 fn nearest(size: f64, room: usize) -> (Decimal, String) {
     let all = Decimal::of(&format!("{size:e}"));
     if let Some(text) = all.text(room) {
         return (all, text);
     }
-    // Beside the digits there is a point at least.
+    // Besides digits, the text has at least a point.
     let most = all.digits.len().min(room - 1);
     let shorter = (1..=most).rev().find_map(|count| {
         let mut shorter = Decimal::of(&format!("{size:.*e}", count - 1));
@@ -80,7 +81,7 @@ fn nearest(size: f64, room: usize) -> (Decimal, String) {
 }
 
 impl Decimal {
-    /// Takes a number as `{:e}` writes it.
+    /// Parses a number in the notation of the format specifier `{:e}`.
     fn of(scientific: &str) -> Decimal {
         let (mantissa, exponent) = scientific.split_once('e').unwrap_or((scientific, "0"));
         let digits = mantissa.replace('.', "");
@@ -96,7 +97,7 @@ impl Decimal {
         format!("{}e{last}", self.digits).parse().unwrap_or(f64::INFINITY)
     }
 
-    /// Writes all digits in at most `room` characters, if they fit.
+    /// Returns the text of all digits in at most `room` characters; `None` if the digits do not fit.
     fn text(&self, room: usize) -> Option<String> {
         let count = self.digits.len();
         let plain = match usize::try_from(self.exponent) {
@@ -116,11 +117,11 @@ impl Decimal {
         };
         let plain = plain.filter(|text| text.len() <= room);
         if let Some(text) = plain {
-            // The zero before the point is left out where it takes the room of a digit.
+            // The zero before the point is left out if a digit needs its room.
             let has_zero = text.starts_with('.') && text.len() < room;
             return Some(if has_zero { format!("0{text}") } else { text });
         }
-        // With the point elsewhere, the exponent may have a digit less.
+        // For other positions of the point, the exponent may need a digit less.
         let forms = [(1, "E"), (1, ""), (0, ""), (count, "")];
         forms.into_iter().find_map(|(point, letter)| {
             let (whole, part) = self.digits.split_at(point);
@@ -184,7 +185,8 @@ mod tests {
         }
     }
 
-    /// For numbers of all sizes: they fit, differ by no more than is announced, and do not change any more.
+    /// Rounded numbers of all sizes fit into the field, differ by at most [`field_error`], and survive further rounding
+    /// unchanged.
     #[test]
     fn rounded_numbers_fit_and_stay_as_they_are() {
         let mut random = random();
@@ -212,7 +214,7 @@ mod tests {
                 let error = (rounded - number).abs();
                 assert!(error <= field_error(number.abs(), most), "{number:e} {text}");
                 assert!(most < MAX_LENGTH || rounded.to_bits() == number.to_bits());
-                // As near as what is written of the number itself, but where two are as near.
+                // The text of the unrounded number is equally near, except for ties between two decimals.
                 let direct = (read(&field_text(number, most)) - number).abs();
                 assert!((direct - error).abs() <= 2.0 * f64::EPSILON * number.abs(), "{number:e}");
             }
@@ -222,7 +224,7 @@ mod tests {
         }
     }
 
-    /// What fits into a field is not changed, however it is written there.
+    /// Rounding keeps every number read from a field, in any notation.
     #[test]
     fn numbers_of_a_field_are_kept() {
         let mut random = random();

@@ -1,7 +1,7 @@
-//! Reads the rows of a long list on all threads, as long as they are plain.
+//! Parallel reading of the rows of a long list, up to the first unusual row.
 //!
-//! Reading stops before the first row that is damaged or has an unexpected number. A reader that takes row by row
-//! continues from there, and is the only one that returns errors.
+//! Parallel reading stops before the first row with damage or an unexpected number. The reader continues row by row
+//! from the stopping point, and alone returns errors.
 
 use crate::error::ReadError;
 use crate::parallel::{map_parts, run_both};
@@ -12,11 +12,12 @@ const CHUNK_BYTES: usize = 1 << 17;
 /// Smallest number of rows that are read on several threads. Shorter lists are read as fast on one thread.
 const MIN_PARALLEL_ROWS: u64 = 1 << 14;
 
-/// Reads up to `count` rows by `read`, each with a cursor at its first token, and hands them to `take` in their order.
-/// Stops if a row cannot be read or `take` refuses it. Returns how many rows were taken.
+/// Parses up to `count` rows by `read`, which gets a cursor at the first token of a row, and passes the rows to `take`
+/// in file order. Stops at the first row that `read` cannot parse or `take` refuses. Returns the number of rows taken,
+/// 0 for lists below [`MIN_PARALLEL_ROWS`].
 ///
-/// The cursor's next row is then the first one that was not taken. If all `count` were taken, the cursor stands on the
-/// last one.
+/// Afterwards, the cursor's next row is the first row that `take` has not accepted. After all `count` rows, the cursor
+/// is on the last row.
 pub(crate) fn take_rows<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -42,7 +43,7 @@ fn take_chunks<'a, T: Send>(
     batch.read(count, &read);
     let mut done = 0;
     while done < count && !batch.parts.is_empty() {
-        // While this thread takes rows, the others read the next ones.
+        // While this thread takes rows, other threads parse the next batch.
         let found: u64 = batch.rows.iter().map(|rows| rows.len() as u64).sum();
         let parts = match done + found < count {
             true => cursor.parts_after(batch.parts.last(), size, at_once),
@@ -61,22 +62,22 @@ fn take_chunks<'a, T: Send>(
     done
 }
 
-/// Some parts of a list, with the rows that were read from each.
+/// Consecutive parts of a list, each with its parsed rows.
 struct Batch<'a, T> {
     parts: Vec<Cursor<'a>>,
     rows: Vec<Vec<T>>,
-    /// Whether a part has a row that cannot be read, after those in `rows`.
+    /// Whether an unreadable row follows the parsed rows, for each part.
     damaged: Vec<bool>,
 }
 
 impl<'a, T: Send> Batch<'a, T> {
-    /// Makes a batch without rows. `rows` are empty lists, whose memory is used again.
+    /// Makes a batch without rows. `rows` are empty lists, whose memory is reused.
     fn new(parts: Vec<Cursor<'a>>, mut rows: Vec<Vec<T>>) -> Batch<'a, T> {
         rows.resize_with(parts.len(), Vec::new);
         Batch { parts, rows, damaged: Vec::new() }
     }
 
-    /// Reads at most `most` rows of each part.
+    /// Parses up to `most` rows of each part, using all threads.
     fn read(
         &mut self,
         most: u64,
@@ -94,8 +95,8 @@ impl<'a, T: Send> Batch<'a, T> {
         });
     }
 
-    /// Takes rows until `done` reaches `count`, and moves the cursor past them. Returns whether all rows of the parts
-    /// were taken.
+    /// Passes rows to `take` until `done` reaches `count`, and moves the cursor past accepted rows. Returns false at
+    /// the first row not accepted, and when `done` has reached `count`.
     fn take(
         &mut self,
         cursor: &mut Cursor<'a>,
@@ -131,8 +132,8 @@ mod tests {
     use crate::disk::source::Source;
     use crate::error::Location;
 
-    /// The rows that were taken; the location of the cursor, if all were taken; location and tokens of the rows that
-    /// follow.
+    /// The rows taken; the cursor's location, `None` unless all rows were taken; location and tokens of each remaining
+    /// row.
     type Seen = (Vec<(u64, u64)>, Option<Location>, Vec<(Location, Vec<u8>)>);
 
     fn seen(source: &Source, count: u64, size: Option<usize>) -> Seen {

@@ -1,13 +1,13 @@
-//! How text formats separate numbers.
+//! Separators, comments and the layout of items in text formats.
 
-/// How the items of a list are laid out on lines.
+/// Layout of the items of a list on lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Items {
     /// One item in each line.
     Rows,
-    /// Each item starts on a new line and may continue on the next ones, as Fortran reads lists.
+    /// Each item starts on a new line and may continue on further lines, as Fortran reads lists.
     Records,
-    /// Anywhere. The end of a line is a blank.
+    /// Items start and end anywhere; line ends count as blanks.
     Words,
 }
 
@@ -16,7 +16,7 @@ pub(crate) enum Items {
 pub(crate) enum Commas {
     /// Part of a word.
     Letters,
-    /// At the end of a word, a comma is ignored.
+    /// A comma at the end of a word is ignored.
     Trailing,
     /// A comma between two numbers is a blank.
     Blanks,
@@ -24,19 +24,19 @@ pub(crate) enum Commas {
     Semicolons,
 }
 
-/// How a text format separates numbers.
+/// Syntax of a text format: layout of items, separators, comments and continuation lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Syntax {
     pub(crate) items: Items,
     pub(crate) commas: Commas,
-    /// Whether a backslash at the end of a line joins the line to the next one.
+    /// Whether a backslash at the end of a line joins the next line.
     pub(crate) joins_lines: bool,
     /// Whether a line that starts with a blank, a comma, `+` or `*` continues the card of the line before, as in
     /// Nastran.
     pub(crate) continues_cards: bool,
     /// The byte that starts a comment, besides `#`.
     pub(crate) comment: u8,
-    /// The bytes that end a word.
+    /// Table of all byte values, true for bytes that end a word.
     ends: &'static [bool; 256],
     /// Whether words are separated only by blanks.
     pub(crate) is_plain: bool,
@@ -86,18 +86,18 @@ impl Syntax {
     pub(crate) const RECORDS: Syntax = Syntax { items: Items::Records, ..Syntax::PLAIN };
     /// Items stand anywhere on lines.
     pub(crate) const WORDS: Syntax = Syntax { items: Items::Words, ..Syntax::PLAIN };
-    /// A number may be followed by a comma, which stands before a blank.
+    /// Triangle: commas directly behind numbers are ignored.
     pub(crate) const TRAILING: Syntax = Syntax { commas: Commas::Trailing, ..Syntax::PLAIN };
     /// A line that ends in a backslash continues in the next one.
     pub(crate) const JOINED: Syntax =
         Syntax { joins_lines: true, ends: &JOINED_ENDS, is_plain: false, ..Syntax::PLAIN };
 
-    /// Whether items stand anywhere on lines.
+    /// Returns whether items start and end anywhere on lines.
     pub(crate) fn is_of_words(&self) -> bool {
         self.items == Items::Words
     }
 
-    /// Whether a word ends before this byte.
+    /// Returns whether a byte ends the word before it.
     #[inline]
     pub(crate) fn ends_before(&self, byte: u8) -> bool {
         self.ends[usize::from(byte)]
@@ -111,7 +111,7 @@ static SEMICOLON_ENDS: [bool; 256] = ends(b"#;");
 static COMMA_ENDS: [bool; 256] = ends(b",");
 static JOINED_ENDS: [bool; 256] = ends(b"#\\");
 
-/// Returns a table in which blanks, control characters and `others` are marked.
+/// Returns a table that is true for blanks, control characters and the bytes in `others`.
 const fn ends(others: &[u8]) -> [bool; 256] {
     let mut ends = [false; 256];
     let mut at = 0;

@@ -1,11 +1,11 @@
-//! Words of a text and the numbers they stand for.
+//! Parses the words of a text: numbers, quoted names, and pairs of key and value.
 
-/// Where the line ends that holds this byte, after its line feed.
+/// Returns the end, behind the line feed, of the line with the byte at offset `at`.
 pub(crate) fn line_end(bytes: &[u8], at: usize) -> usize {
     memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n + 1)
 }
 
-/// Shortens a token and escapes its control characters, for a message of one line.
+/// Shortens a token to 40 characters and escapes its control characters, for a message of one line.
 pub(crate) fn quoted(token: &[u8]) -> String {
     on_one_line(token, 40)
 }
@@ -20,8 +20,8 @@ pub(crate) fn on_one_line(text: &[u8], most: usize) -> String {
     shown
 }
 
-/// Where the next number starts, on this line or a later one, behind a comment too: some formats break lines between x
-/// and y, or have a comma or a semicolon there.
+/// Returns the offset of the next number, on this line or a later line. Blanks, comments, commas, semicolons and
+/// backslashes are skipped: some formats have separators or line breaks between x and y.
 #[inline]
 pub(crate) fn skip_to_number(bytes: &[u8], mut at: usize) -> usize {
     loop {
@@ -34,7 +34,7 @@ pub(crate) fn skip_to_number(bytes: &[u8], mut at: usize) -> usize {
     }
 }
 
-/// Returns the end of the number that starts at `at`: the first byte that cannot be part of it.
+/// Returns the exclusive end of the number that starts at `at`: the first byte that numbers cannot contain.
 #[inline]
 pub(crate) fn number_end(bytes: &[u8], mut at: usize) -> usize {
     let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'+' | b'-');
@@ -54,15 +54,16 @@ pub(crate) fn unquoted(text: &[u8]) -> &[u8] {
     in_quotes(text).unwrap_or(text.trim_ascii())
 }
 
-/// Returns the two sides of the first equals sign of a row, without blanks around them. If there is no equals sign, the value
-/// is empty.
+/// Returns the key and the value around the first equals sign of a row, trimmed of blanks. Without an equals sign, the
+/// value is empty.
 pub(crate) fn key_value(row: &[u8]) -> (&[u8], &[u8]) {
     let equals = memchr::memchr(b'=', row).unwrap_or(row.len());
     (row[..equals].trim_ascii(), row.get(equals + 1..).unwrap_or_default().trim_ascii())
 }
 
-/// Reads digits from `at` on, after those that `number` stands for. Returns the number modulo 2^64, and the end of the
-/// digits. Numbers of up to 19 digits are below 2^64. A call for each number would make text slower to read.
+/// Parses digits from `at` on, as continuation of the digits of `number`. Returns the number modulo 2^64, and the
+/// exclusive end of the digits. Numbers of up to 19 digits are below 2^64. The function is always inlined, as a call
+/// per number slows down reading.
 #[inline(always)]
 pub(crate) fn parse_digits(bytes: &[u8], mut at: usize, mut number: u64) -> (u64, usize) {
     while let Some(&digit @ b'0'..=b'9') = bytes.get(at) {
@@ -72,7 +73,7 @@ pub(crate) fn parse_digits(bytes: &[u8], mut at: usize, mut number: u64) -> (u64
     (number, at)
 }
 
-/// Returns the whole number that a token stands for, if it is less than 2^64.
+/// Parses a token as an unsigned whole number below 2^64; `None` for other tokens. A plus sign is accepted.
 #[inline]
 pub(crate) fn integer(token: &[u8]) -> Option<u64> {
     let digits = token.strip_prefix(b"+").unwrap_or(token);
@@ -98,9 +99,10 @@ pub(crate) fn float(token: &[u8]) -> Option<f64> {
     })
 }
 
-/// Reads the number at `at`, if it is a whole number of at most 53 bits times or divided by a power of ten up to 1e22.
-/// Then a single operation rounds it correctly (Clinger, How to read floating point numbers accurately, 1990). Returns
-/// the number and its end. Most numbers of up to 16 digits qualify, and take a third of the time.
+/// Parses the number at `at`, if its digits form a whole number up to 2^53 and its power of ten is between 1e-22 and
+/// 1e22. A single multiplication or division then rounds correctly (Clinger, How to read floating point numbers
+/// accurately, 1990). Returns the number and its exclusive end. Most numbers of up to 16 digits qualify, and take a
+/// third of the time of general parsing.
 #[inline]
 pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     const POWERS: [f64; 23] = [
@@ -146,7 +148,7 @@ pub(crate) fn short_float(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     Some((if is_negative { -number } else { number }, end))
 }
 
-/// Reads a number in a form that only Fortran knows: of quadruple precision (`Q`), or with a three-digit exponent
+/// Parses a number in a notation specific to Fortran: with quadruple precision (`Q`), or with a three-digit exponent
 /// without a letter.
 #[cold]
 pub(crate) fn fortran_float(token: &[u8]) -> Option<f64> {
@@ -230,7 +232,7 @@ mod tests {
         assert_eq!(skip_to_number(b"1 , # 2, 3\n\t4", 1), 12);
     }
 
-    /// The results must be those of the standard library, for usual numbers and for texts that look like numbers.
+    /// Results must equal the standard library's, for usual numbers and for random text similar to numbers.
     #[test]
     fn short_floats_are_those_of_the_standard_library() {
         let mut state = 3_u64;

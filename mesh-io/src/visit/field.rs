@@ -1,29 +1,30 @@
-//! Data of a file's vertices, and where the numbers stand in the file.
+//! Data of a file's vertices, with the locations of the numbers in the file.
 
 use crate::edit::column::EditableColumn;
 use crate::error::FieldError;
 use crate::visit::items::PointNumbers;
 use crate::visit::storage::ArrayLocation;
 
-/// Real numbers that a mesh file gives its vertices: depths, third coordinates, point data.
-/// [`MeshFile::point_fields`](crate::MeshFile::point_fields) reads them. With new values,
-/// [`MeshFile::write_with_fields`](crate::MeshFile::write_with_fields) writes them.
+/// Field of real numbers on the vertices of a mesh file: depths, third coordinates or point data.
+/// [`MeshFile::point_fields`](crate::MeshFile::point_fields) reads fields, and
+/// [`MeshFile::write_with_fields`](crate::MeshFile::write_with_fields) writes fields with new values. Fields of
+/// [`MeshFile::centers`](crate::MeshFile::centers) hold a number for each face or edge instead.
 pub struct PointField {
     name: String,
     components: usize,
     /// `components` values for each vertex.
     values: Vec<f64>,
-    /// The numbers as they were read, in the order of the file; `new` are those to be written.
+    /// Numbers as read, in file order; `new` holds the numbers to be written, in equal order.
     old: Vec<f64>,
     new: Vec<f64>,
-    /// The vertex of each tuple of numbers; `None` if there is one for each vertex in order.
+    /// The vertex of each tuple of numbers; `None` if tuple `i` belongs to vertex `i`.
     vertices: Option<Vec<u32>>,
     location: Option<ArrayLocation>,
 }
 
 impl PointField {
-    /// Makes a field from the numbers of an array, in a file of `count` vertices. In `vertices`, a tuple that belongs
-    /// to no vertex has an index of no vertex.
+    /// Makes a field from the numbers of an array in a file of `count` vertices. `vertices` holds the vertex of each
+    /// tuple; an index of `count` or more marks a tuple without a vertex.
     pub(crate) fn new(
         name: String,
         components: usize,
@@ -38,29 +39,30 @@ impl PointField {
         PointField { name, components, values, new: old.clone(), old, vertices, location: stored }
     }
 
-    /// Returns the name in the file: that of an array, `depth` in grids of ADCIRC and SCHISM, or `z` for third
-    /// coordinates. Several fields may have the same name, such as the time steps of a result.
+    /// Returns the name in the file: the name of an array, `depth` in grids of ADCIRC, SCHISM and FVCOM, or `z` for
+    /// third coordinates. The time steps of a result are fields with equal names.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Returns how many numbers each vertex has.
+    /// Returns the number of components per vertex, 1 for scalars.
     pub fn components(&self) -> usize {
         self.components
     }
 
-    /// Returns the numbers, vertex by vertex in the order of [`MeshFile::points`](crate::MeshFile::points):
-    /// [`components`](Self::components) for each vertex, NaN if the file gives none.
+    /// Returns the values in the order of [`MeshFile::points`](crate::MeshFile::points),
+    /// [`components`](Self::components) for each vertex. Vertices without numbers in the file have NaN.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Sets new values, in the order of [`values`](Self::values). If a value is not finite, the file keeps its old
-    /// number. A vertex without a number in the file gets none. Returns how many finite numbers were kept because the
-    /// new value is not finite.
+    /// Sets new values, in the order of [`values`](Self::values). If a value is not finite after rounding to the file's
+    /// precision, the file keeps its old number. Values of vertices without numbers in the file are not written.
+    /// Returns how many infinite or NaN values are replaced by finite old numbers.
     ///
     /// # Errors
-    /// [`FieldError::ValueCount`] if there are not as many as [`values`](Self::values) has; then nothing is changed.
+    /// [`FieldError::ValueCount`] if the length differs from the length of [`values`](Self::values). The field is then
+    /// unchanged.
     pub fn set(&mut self, values: Vec<f64>) -> Result<usize, FieldError> {
         let (expected, given) = (self.values.len(), values.len());
         if expected != given {
@@ -91,7 +93,7 @@ impl PointField {
         Ok(left)
     }
 
-    /// Returns how many numbers the file has.
+    /// Returns the number of values stored in the file.
     pub(crate) fn numbers(&self) -> usize {
         self.old.len()
     }
@@ -101,22 +103,23 @@ impl PointField {
         self.location.as_ref()
     }
 
-    /// Whether a number changes, after rounding to the precision of the file.
+    /// Returns whether a number changes after rounding to the file's precision; false if the numbers cannot be
+    /// replaced.
     pub(crate) fn is_changed(&self) -> bool {
         let Some(stored) = &self.location else { return false };
         let bits = |x: f64| stored.encoding.precision().rounded(x).to_bits();
         self.new.iter().zip(&self.old).any(|(&new, &old)| bits(new) != old.to_bits())
     }
 
-    /// Returns the numbers as a column for rewriting, if they stand in the file.
+    /// Returns old and new numbers as a column for a rewrite; `None` if the numbers cannot be replaced.
     pub(crate) fn column(&self) -> Option<EditableColumn<'_>> {
         let ArrayLocation { offsets, encoding, .. } = self.location.as_ref()?;
         Some(EditableColumn::of_array(offsets, *encoding, &self.old, &self.new))
     }
 }
 
-/// Returns `components` values for each of `count` vertices: the tuple of numbers whose vertex it is, else NaN. Tuples of
-/// vertices that do not exist are left out.
+/// Returns `components` values for each of `count` vertices: the vertex's tuple in `numbers`, or NaN for vertices
+/// without a tuple. Tuples with vertex indices of `count` or more are dropped.
 pub(crate) fn scatter(
     numbers: &[f64],
     components: usize,

@@ -6,14 +6,14 @@ use crate::content::group_label::GroupLabel;
 use crate::visit::items::CellKind;
 use std::collections::HashMap;
 
-/// The groups found so far. Their indices are their numbers.
+/// Groups of a file, collected during a visit. Indices in `groups` number the groups from 0.
 #[derive(Default)]
 pub(crate) struct GroupTable {
     groups: Vec<GroupMembers>,
     keys: GroupKeys,
 }
 
-/// A group, with the vertices of its elements that are not triangles.
+/// Group under construction: `group` holds its triangles, `others` the vertices of its other elements.
 struct GroupMembers {
     group: Group,
     /// Vertices of elements other than triangles, unordered and with repeats.
@@ -21,7 +21,7 @@ struct GroupMembers {
 }
 
 impl GroupTable {
-    /// Returns the number of a group, after adding it if it is new.
+    /// Returns the 0-based number of a group; the first use adds the group.
     pub(crate) fn number(&mut self, kind: &str, dimension: u8, label: &GroupLabel) -> usize {
         let (number, is_new) = self.keys.number(kind, dimension, label);
         if is_new {
@@ -50,7 +50,7 @@ impl GroupTable {
         self.groups[group].group.triangles.push(triangle);
     }
 
-    /// Adds the vertices of an element other than a triangle.
+    /// Adds the vertices of an element other than a triangle to a group, and counts the element.
     pub(crate) fn add(&mut self, group: usize, kind: CellKind, vertices: &[u32]) {
         let GroupMembers { group, others } = &mut self.groups[group];
         match kind {
@@ -67,7 +67,8 @@ impl GroupTable {
         self.groups[group].others.push(vertex);
     }
 
-    /// Names groups that are known or are added later. A group with a name exists even if it has no element.
+    /// Sets the name of the groups with a tag in one dimension; `None` sets the name in all dimensions. Groups may be
+    /// added later. With a dimension, the named group exists even without elements.
     pub(crate) fn name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
         let GroupLabel::Name(name) = GroupLabel::name(name) else { return };
         if let Some(dimension) = dimension {
@@ -76,15 +77,15 @@ impl GroupTable {
         self.keys.set_name(kind, dimension, tag, name);
     }
 
-    /// Returns the groups of a mesh with these triangles and this many vertices.
+    /// Completes the groups of a mesh with the given triangles and vertex count.
     pub(crate) fn finish(mut self, triangles: &[[u32; 3]], vertices: usize) -> Groups {
-        // Groups of one kind stand together, and kinds are in the order in which the file first has them.
+        // Maps each kind to its position in the order of first use, by which groups are sorted.
         let mut order: HashMap<String, usize> = HashMap::new();
         for GroupMembers { group, .. } in &self.groups {
             let next = order.len();
             order.entry(group.kind.clone()).or_insert(next);
         }
-        // For each vertex the last group that it was counted in.
+        // For each vertex, the 1-based number of the last group that lists the vertex: a group lists each vertex once.
         let mut last = vec![0; vertices];
         for (number, GroupMembers { group, others }) in (1_u32..).zip(&mut self.groups) {
             let of_triangles = group.triangles.iter().flat_map(|&t| triangles[t as usize]);

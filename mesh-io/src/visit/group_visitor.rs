@@ -1,4 +1,4 @@
-//! Visitors for a second reading of a file: for its groups, and for the ids of its vertices.
+//! Visitors of a second reading, which collect the groups of a file and the ids of its vertices.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::id_index::IdIndexBuilder;
@@ -11,14 +11,14 @@ use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
 use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 
-/// Gathers the groups of a file.
+/// Reads a file again, and returns its groups.
 pub(crate) fn groups(reader: &ReaderFunctions, source: &Source) -> Result<GroupTable, ReadError> {
     let mut gatherer = GroupVisitor::default();
     (reader.visit)(source, &mut gatherer)?;
     Ok(gatherer.table)
 }
 
-/// Returns the file's number or tag of each vertex.
+/// Reads a file again, and returns the id of each vertex in file order.
 pub(crate) fn vertex_ids(reader: &ReaderFunctions, source: &Source) -> Result<Vec<u64>, ReadError> {
     let mut labels = VertexIdVisitor::default();
     (reader.visit)(source, &mut labels)?;
@@ -32,20 +32,20 @@ struct GroupVisitor {
     ids: IdIndexBuilder,
     triangles: u32,
     columns: Vec<RegionAttribute>,
-    /// For each column, the numbers that were met, by dimension.
+    /// Distinct pairs of dimension and region integer among the visited elements, for each region attribute.
     met: Vec<Interner<(u8, i64)>>,
-    /// For each column, the group of each number that was met, if it has one.
+    /// The group of each pair in `met`, for each region attribute; `None` for integers without a group.
     groups: Vec<Vec<Option<usize>>>,
-    /// The groups that elements stand within: kind of group, label, and dimension if it is not that of the element.
+    /// Current group scopes: kind, label, and dimension; `None` means that each element sets the dimension.
     within: Vec<(String, GroupLabel, Option<u8>)>,
-    /// The groups of `within` for elements of each dimension, once such an element was met.
+    /// The groups of `within` by dimension of elements; `None` until an element of the dimension is visited.
     within_groups: [Option<Vec<usize>>; 3],
     /// The groups of the current element.
     of_element: Vec<usize>,
 }
 
 impl GroupVisitor {
-    /// Finds the groups of an element and puts them into `of_element`.
+    /// Sets `of_element` to the groups of an element, ascending and without repeats.
     fn find(&mut self, dimension: u8, region: [i64; 2]) {
         let Self { table, columns, met, groups, within, within_groups, of_element, .. } = self;
         of_element.clear();
@@ -69,7 +69,7 @@ impl GroupVisitor {
             within.iter().map(number).collect()
         });
         of_element.extend_from_slice(within);
-        // An element may be in the same group twice, as by two arrays of one name. It must be counted once.
+        // Two arrays with equal names put an element into a group twice. The group must count the element once.
         of_element.sort_unstable();
         of_element.dedup();
     }

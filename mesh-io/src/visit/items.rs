@@ -1,10 +1,10 @@
-//! The items that readers hand on: elements, groups, periodic pairs, and numbers of points.
+//! Items that readers pass to visitors: elements, groups, periodic pairs, and numbers of points.
 
 use crate::content::constraints::Affine;
 use crate::content::group_label::GroupLabel;
 use crate::visit::storage::ArrayLocation;
 
-/// The kinds of cells. A line of several segments becomes several cells.
+/// Shape of a cell. A line of several segments becomes several cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CellKind {
@@ -21,7 +21,8 @@ pub enum CellKind {
 }
 
 impl CellKind {
-    /// Returns the number of nodes of an [`Element`] of the kind: 1 for a polygon, whose corners are elements.
+    /// Returns the number of nodes in [`Element::nodes`]: 1 to 4 by shape. Polygons return 1, as each corner is visited
+    /// as a separate element.
     pub(crate) fn nodes(self) -> usize {
         match self {
             CellKind::Point | CellKind::Polygon => 1,
@@ -50,7 +51,7 @@ impl CellKind {
         }
     }
 
-    /// Returns the kind of a polygon by its number of corners.
+    /// Returns the kind of cell with 1 to 4 corners; `None` for 0 corners, and for polygons of five or more.
     pub(crate) fn of_polygon(corners: u64) -> Option<CellKind> {
         [CellKind::Point, CellKind::Line, CellKind::Triangle, CellKind::Quadrilateral]
             .into_iter()
@@ -60,27 +61,28 @@ impl CellKind {
 
 /// An element of a file.
 pub(crate) struct Element {
-    /// The file's number of the element. If it has none, its position in the list, counted as the file counts.
+    /// Id of the element in the file. In formats without element ids, the position in the list, from 0 or 1 as the
+    /// format counts.
     pub(crate) id: u64,
     pub(crate) kind: CellKind,
-    /// Numbers that name the element's region; 0 where the format has none.
+    /// Integers that identify the element's region; 0 where the format has fewer than two.
     pub(crate) region: [i64; 2],
-    /// The tags of the nodes. Elements of fewer than four nodes leave the rest unused.
+    /// Node ids. Entries beyond [`CellKind::nodes`] are unused.
     pub(crate) nodes: [u64; 4],
 }
 
 /// Maps one of the two integers of [`Element::region`] to a group.
 pub(crate) struct RegionAttribute {
-    /// The kind of group that the number stands for: `physical`, `reference`, or the name of an array.
+    /// Kind of the groups: `physical`, `reference`, or the name of an array.
     pub(crate) kind: String,
-    /// The least dimension of elements that have this number.
+    /// Least dimension of elements with the attribute; other elements have an unused integer.
     pub(crate) from_dimension: u8,
-    /// Returns the label that a number stands for; `None` if it stands for no group.
+    /// Maps an integer to the label of its group; `None` for integers without a group.
     pub(crate) label: fn(i64) -> Option<GroupLabel>,
 }
 
 impl RegionAttribute {
-    /// Makes a column of tags that all stand for groups.
+    /// Makes an attribute whose integers are all tags of groups, 0 included.
     pub(crate) fn tags(kind: &str, from_dimension: u8) -> RegionAttribute {
         RegionAttribute {
             kind: kind.into(),
@@ -89,7 +91,7 @@ impl RegionAttribute {
         }
     }
 
-    /// Makes a column of tags in which 0 stands for no group.
+    /// Makes an attribute whose integers are tags of groups, except 0 for elements without a group.
     pub(crate) fn tags_from_one(kind: &str) -> RegionAttribute {
         let label = |tag| (tag != 0).then_some(GroupLabel::Tag(tag));
         RegionAttribute { kind: kind.into(), from_dimension: 0, label }
@@ -100,10 +102,10 @@ impl RegionAttribute {
 /// entity of a gmsh block.
 #[derive(Clone, Debug)]
 pub(crate) struct GroupScope<'w> {
-    /// The format's word for the kind of group.
+    /// Kind of the group: `physical`, `marker` and similar words of the format.
     pub(crate) kind: &'w str,
     pub(crate) label: GroupLabel,
-    /// The dimension of the group, if it differs from that of its elements.
+    /// Dimension of the group; `None` for the dimension of each element.
     pub(crate) dimension: Option<u8>,
 }
 
@@ -111,9 +113,9 @@ pub(crate) struct GroupScope<'w> {
 /// second.
 #[derive(Debug, PartialEq)]
 pub(crate) struct PeriodicNodes {
-    /// The motion that takes the first node of each pair to the second, if the file gives it.
+    /// Motion from first to second nodes; `None` if the file lists pairs alone.
     pub(crate) motion: Option<Affine>,
-    /// The tags of the two nodes of each pair; empty if the file gives only the motion.
+    /// Ids of the two nodes of each pair; empty in formats that store a motion alone.
     pub(crate) nodes: Vec<[u64; 2]>,
 }
 
@@ -121,16 +123,17 @@ pub(crate) struct PeriodicNodes {
 pub(crate) struct PointNumbers {
     /// The numbers, tuple by tuple in the order of the file.
     pub(crate) numbers: Vec<f64>,
-    /// The tag of each tuple's node; `None` if there is a tuple for each node in order.
+    /// Node id of each tuple; `None` if tuple `i` belongs to node `i` in file order.
     pub(crate) nodes: Option<Vec<u64>>,
-    /// The bytes of the numbers in the file; `None` if the numbers cannot be replaced.
+    /// Location of the numbers in the file; `None` if the numbers cannot be replaced.
     pub(crate) location: Option<ArrayLocation>,
 }
 
-/// One coordinate of the centers of some elements: faces, edges, or single nodes.
+/// One coordinate of the centers of faces or edges, or of the corners of faces (UGRID). A corner counts as an element
+/// of one node.
 pub(crate) struct Centers {
-    /// The tags of the nodes of all elements, one element after another, and where those of each end. An element without nodes has
-    /// no center.
+    /// Node ids of all elements, element by element. `ends` holds the exclusive end of each element's ids. An element
+    /// without nodes has no center.
     pub(crate) nodes: Vec<u64>,
     pub(crate) ends: Vec<usize>,
     /// A number for each element.

@@ -1,4 +1,5 @@
-//! Finds where nodes and triangles stand in a file that was read before. Messages alone need it, so that no place is kept.
+//! Finds the locations of nodes and triangles in a file that was read before. Only messages need locations, and
+//! therefore the first reading stores none.
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
@@ -19,13 +20,14 @@ pub(crate) enum ItemList {
 pub(crate) struct ItemLocation {
     /// [`Location::Unknown`] if the reader does not visit the item.
     pub(crate) location: Location,
-    /// The file's number of the item; its index in the list if the location is unknown.
+    /// Id of the item in the file; its 0-based index in the list if the location is unknown.
     pub(crate) id: u64,
     /// The index of the file, in the order of [`Source::files`].
     pub(crate) file_index: usize,
 }
 
-/// Reads the file again and returns the location of each of these items of a list. `indices` are ascending.
+/// Reads the file again, and returns the locations of the items with the given 0-based indices in a list. `indices`
+/// must ascend.
 pub(crate) fn locate(
     reader: &ReaderFunctions,
     source: &Source,
@@ -34,7 +36,7 @@ pub(crate) fn locate(
 ) -> Vec<ItemLocation> {
     let found = Vec::with_capacity(indices.len());
     let mut locator = LocationVisitor { list, left: indices, next: 0, found, source };
-    // The file was read before without an error. If there is one now, items after it are not found.
+    // The first reading had no error. If this reading has an error, the items behind the error have unknown locations.
     let _ = (reader.visit)(source, &mut locator);
     let LocationVisitor { left, mut found, .. } = locator;
     let unknown = |&index: &usize| ItemLocation {
@@ -58,7 +60,7 @@ struct LocationVisitor<'a> {
 }
 
 impl LocationVisitor<'_> {
-    /// Notes the place of the next item of the list, if the item is looked for.
+    /// Advances to the next item of the list, and stores the item's location if its index is wanted.
     fn pass(&mut self, cursor: &Cursor<'_>, label: u64) {
         if self.left.first() == Some(&self.next) {
             let mut files = self.source.files();
@@ -69,7 +71,7 @@ impl LocationVisitor<'_> {
         self.next += 1;
     }
 
-    /// Stops the reader by an error, which is discarded, once all items are found.
+    /// Returns an error once all items are found, to stop the reader. [`locate`] discards the error.
     fn end_if_found(&self, cursor: &Cursor<'_>) -> Result<(), ReadError> {
         if self.left.is_empty() { Err(cursor.error("", "")) } else { Ok(()) }
     }

@@ -22,7 +22,7 @@ pub(crate) fn parse(reader: &ReaderFunctions, source: &Source) -> Result<ParsedM
     parse_by(reader, source, true)
 }
 
-/// Reads a mesh: long lists on all threads if `takes_ahead`, else all of it item by item.
+/// Reads a mesh: long lists on all threads if `takes_ahead` is true, otherwise every list item by item.
 pub(crate) fn parse_by(
     reader: &ReaderFunctions,
     source: &Source,
@@ -86,7 +86,7 @@ pub(crate) fn parse_by(
 /// Visitor that builds a [`ParsedMesh`].
 #[derive(Default)]
 struct MeshBuilder {
-    /// Whether items that were read on all threads are taken.
+    /// Whether readers may parse long lists on all threads.
     allows_parallel: bool,
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
@@ -97,16 +97,16 @@ struct MeshBuilder {
     constraints: Constraints,
     quadrilaterals: u64,
     remarks: Vec<Remark>,
-    /// The names of the real numbers that the file gives vertices besides x and y.
+    /// Names of the arrays of real numbers on vertices besides x and y, each once.
     data: Vec<String>,
-    /// The names in `data`. A damaged file may announce any number of them.
+    /// The names in `data` as a set, as a damaged file may announce very many names.
     named: HashSet<String>,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
     has_centers: bool,
-    /// Names the file's list of vertices in messages.
+    /// Name of the file's list of vertices in messages.
     vertices_of: &'static str,
-    /// How many nodes lie on points and curves of the model.
+    /// Number of nodes on points and curves of the model.
     on_lower: usize,
 }
 
@@ -142,8 +142,8 @@ impl MeshVisitor for MeshBuilder {
     #[inline]
     fn node(&mut self, _: &Cursor<'_>, id: u64, dimension: u64, x_at: usize, at: [f64; 2]) {
         if dimension < 2 {
-            // On a point or curve of the model. It may lie inside the domain without being saved as line elements, such
-            // as the interface of two surfaces.
+            // The node lies on a point or curve of the model. A curve inside the domain, such as the interface of two
+            // surfaces, may be saved without line elements.
             self.on_lower += 1;
             self.constraints.vertices.push(self.points.len() as u32);
         }
@@ -192,7 +192,7 @@ impl MeshVisitor for MeshBuilder {
                 match (self.ids.index(a), self.ids.index(b)) {
                     (Some(a), Some(b)) => pairs.push([a, b]),
                     (a, b) => {
-                        // The known node of the pair cannot move along its curve.
+                        // Without its partner, the listed node of the pair cannot move along its curve.
                         unlisted += 1;
                         anchored.extend(a.into_iter().chain(b));
                     }

@@ -1,4 +1,5 @@
-//! The protocol between readers and visitors: the items that a reader visits, and visitors that build a mesh, groups or data of them.
+//! Protocol between readers and visitors: the items of a file, and visitors that build a mesh, groups or data from the
+//! items.
 
 pub(crate) mod field;
 pub(crate) mod group_table;

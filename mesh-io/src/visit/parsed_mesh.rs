@@ -1,36 +1,36 @@
-//! What the reader of a format returns.
+//! The mesh that a visitor builds from the items of a file.
 
 use crate::content::constraints::Constraints;
 use crate::content::remark::Remark;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, Offsets};
 use crate::format::Format;
 
-/// The mesh of a file, with the storage of its coordinates.
+/// Mesh of a file, with the encoding and the offsets of its coordinates.
 pub(crate) struct ParsedMesh {
     pub(crate) format: Format,
     /// x and y of each vertex.
     pub(crate) points: Vec<[f64; 2]>,
     /// The vertices of each triangle.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Offset of each vertex's x in the file that holds the vertices, ascending.
+    /// Byte offset of each x in the file with the coordinates, ascending; in the decoded bytes if `encoded` is present.
     pub(crate) x_offsets: Offsets,
-    /// The vertex of each offset in `x_at`; `None` if there is one for each vertex in order.
+    /// The vertex of each offset in `x_offsets`; `None` if offset `i` belongs to vertex `i`.
     pub(crate) owners: Option<Vec<u32>>,
-    /// How the file stores coordinates.
+    /// Encoding of the coordinates.
     pub(crate) encoding: CoordinateEncoding,
-    /// Which of the files of the mesh holds them, counted from zero.
+    /// 0-based index of the file with the coordinates; the main file is 0, companions follow.
     pub(crate) file_index: usize,
-    /// The points, if they are encoded.
+    /// Encoded array of the points, if the file stores points in base64 or compressed.
     pub(crate) encoded: Option<Box<dyn EncodedArrays>>,
-    /// The region of each triangle; `None` if all are of one.
+    /// The region of each triangle; `None` if all triangles have equal regions.
     pub(crate) regions: Option<Vec<u32>>,
     /// Lines, points and periodic pairs of the file.
     pub(crate) constraints: Constraints,
     pub(crate) remarks: Vec<Remark>,
-    /// The names of real numbers that the file gives vertices besides x and y, each once.
+    /// Names of the arrays of real numbers on vertices besides x and y, each once.
     pub(crate) data: Vec<String>,
-    /// Whether the file gives vertices parameters on surfaces of a model, at offsets that are known.
+    /// Whether vertices have parameters on surfaces of a model (gmsh 4), which can be replaced.
     pub(crate) has_parameters: bool,
-    /// Whether the file gives elements centers.
+    /// Whether the file stores centers of faces or edges (UGRID).
     pub(crate) has_centers: bool,
 }

@@ -1,4 +1,4 @@
-//! Visitor for a second reading of a file: for arrays of point data.
+//! Visitor of a second reading, which collects arrays of point data.
 
 use crate::content::id_index::IdIndexBuilder;
 use crate::disk::source::Source;
@@ -19,16 +19,16 @@ pub(crate) enum FieldSelection<'n> {
     Real,
 }
 
-/// The arrays that were found.
+/// Arrays of point data in a file.
 #[derive(Default)]
 pub(crate) struct PointData {
-    /// The arrays that were looked for, in the order of the file. Several may have the same name.
+    /// The selected arrays in file order. Several arrays may have equal names.
     pub(crate) fields: Vec<PointField>,
-    /// The name of each array of the file, and whether its numbers are real.
+    /// Distinct names of all arrays in the file, each with whether its numbers are real.
     pub(crate) known: Vec<(String, bool)>,
 }
 
-/// Reads the arrays of point data that are wanted.
+/// Reads a file again, and returns the selected arrays of point data.
 pub(crate) fn point_data(
     reader: &ReaderFunctions,
     source: &Source,
@@ -43,11 +43,11 @@ pub(crate) fn point_data(
 /// Visitor that collects arrays of point data.
 struct PointDataVisitor<'n> {
     wanted: FieldSelection<'n>,
-    /// The name of the array that was announced last, and its number of components.
+    /// Name and number of components of the array announced last.
     last: (String, usize),
     ids: IdIndexBuilder,
     found: PointData,
-    /// The names in `found.known`. A damaged file may announce any number of them.
+    /// The names in `found.known` as a set, as a damaged file may announce very many names.
     named: HashSet<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The protocol of the reader of a format.
+//! Interface of the readers of formats.
 
 use crate::disk::source::Source;
 use crate::edit::numbers::ByteEdit;
@@ -7,29 +7,30 @@ use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use std::path::{Path, PathBuf};
 
-/// The reader of one or more formats. The methods besides `visit` handle meshes of several files.
+/// Reader of one or more formats. All methods but `visit` handle meshes of several files.
 pub(crate) trait FormatReader {
-    /// Names the file's list of vertices in messages.
+    /// Name of the file's list of vertices in messages.
     const VERTICES: &'static str;
     /// Loads the other files of the mesh that `given` belongs to. Returns the main file, with the other files as
     /// companions.
     ///
     /// # Errors
-    /// If `given` is damaged, or if another file is missing or cannot be read.
+    /// [`ReadError`] if `given` is damaged, or if another file is missing or cannot be read.
     fn load_companions(given: Source) -> Result<Source, ReadError> {
         Ok(given)
     }
-    /// Refuses bytes that were not read from a file, if the mesh has other files.
+    /// Checks that a mesh read from memory needs no other files.
     ///
     /// # Errors
-    /// If the mesh has other files, or if the bytes are damaged.
+    /// [`ReadError`] if the mesh has other files, or if the bytes are damaged.
     fn require_single(_source: &Source) -> Result<(), ReadError> {
         Ok(())
     }
-    /// Returns the files to which the mesh is written for `path`, in the order of [`Source::files`].
+    /// Returns the paths of the files that a write to `path` creates, in the order of [`Source::files`].
     ///
     /// # Errors
-    /// If `path` does not suit the format, or if a file of another mesh is in the way.
+    /// [`WriteError`] if `path` does not suit the format, or if readers would open a file of another mesh with the
+    /// written files.
     fn destinations(_source: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
         Ok(vec![path.to_owned()])
     }
@@ -37,7 +38,7 @@ pub(crate) trait FormatReader {
     fn renames(_source: &Source, _path: &Path) -> Vec<ByteEdit> {
         Vec::new()
     }
-    /// Calls `visitor` for all items of the mesh. Returns how and where the file stores coordinates.
+    /// Visits all items of the mesh. Returns the encoding and location of the coordinates.
     fn visit(
         source: &Source,
         visitor: &mut dyn MeshVisitor,

@@ -1,7 +1,7 @@
-//! Reads lists of binary records, all of one size, on all threads.
+//! Reads lists of binary records of equal size on all threads.
 //!
-//! A list is read in chunks, as long as these are plain. A reader hands on the other records one by one, and is the
-//! only one that returns errors.
+//! Threads read chunks of a list, up to the first chunk with an unusual record. The reader then passes the remaining
+//! records to the visitor one by one, and alone returns errors.
 
 use crate::binary::number_field::NumberField;
 use crate::content::id_index::{IdIndex, IdList};
@@ -17,13 +17,13 @@ pub(crate) const MIN_PARALLEL_RECORDS: usize = 1 << 14;
 /// The ids of the nodes of a binary list.
 #[derive(Clone, Copy)]
 pub(crate) enum NodeIds<'a> {
-    /// Consecutive ids from this one on.
+    /// Consecutive ids from the given id on.
     Consecutive(u64),
     Field(NumberField<'a>),
 }
 
 impl NodeIds<'_> {
-    /// Returns the id of a node by its index. The field must hold it.
+    /// Returns the id of the node with a 0-based index, which the field must hold.
     pub(super) fn of(self, index: usize) -> u64 {
         match self {
             NodeIds::Consecutive(first) => first + index as u64,
@@ -32,19 +32,21 @@ impl NodeIds<'_> {
     }
 }
 
-/// A list of nodes.
+/// Binary list of nodes.
 pub(crate) struct NodeRecords<'a> {
     pub(crate) count: usize,
-    /// The coordinates, single or double precision by the width of the fields.
+    /// Field of x. The fields of x and y are both 4 bytes wide (single precision) or both 8 (double).
     pub(crate) x: NumberField<'a>,
     pub(crate) y: NumberField<'a>,
-    /// The offset of the first node's x, in the bytes that are written again.
+    /// Byte offset of the first node's x in the file, or in the decoded bytes of encoded points.
     pub(crate) x_offset: usize,
     pub(crate) ids: NodeIds<'a>,
 }
 
 impl NodeRecords<'_> {
-    /// Reads nodes from the first one on, as long as they are plain. Returns how many were read.
+    /// Appends nodes from the start of the list, up to the first chunk with an infinite or NaN coordinate or a negative
+    /// id. Returns the number of appended nodes. Lists below [`MIN_PARALLEL_RECORDS`], and fields of unusual width or
+    /// insufficient length, return 0.
     pub(crate) fn read(
         &self,
         points: &mut Vec<[f64; 2]>,
@@ -103,22 +105,22 @@ pub(crate) enum FieldRule {
     Natural,
     /// This number in each record.
     Is(u64),
-    /// `first` in the first record, and `step` more in each that follows.
+    /// Arithmetic sequence: `first` in the first record, `step` more in every following record.
     Steps { first: u64, step: u64 },
 }
 
-/// One of the two numbers that name the region of a triangle.
+/// Source of one of the two integers that identify the region of a triangle.
 #[derive(Clone, Copy)]
 pub(crate) enum Region<'a> {
-    /// The same number for all triangles.
+    /// Equal integer for all triangles.
     Same(i64),
     Field(NumberField<'a>),
-    /// A number for each triangle; 0 for triangles beyond the end of the list.
+    /// An integer for each triangle; 0 for triangles beyond the end of the list.
     List(&'a [i64]),
 }
 
 impl Region<'_> {
-    /// Returns the number of a record. The field must hold it.
+    /// Returns the integer of a record, which the field must hold.
     pub(super) fn of(self, record: usize) -> i64 {
         match self {
             Region::Same(region) => region,
@@ -128,22 +130,23 @@ impl Region<'_> {
     }
 }
 
-/// A list of triangles.
+/// Binary list of triangles.
 pub(crate) struct TriangleRecords<'a> {
     pub(crate) count: usize,
-    /// The numbers of three nodes. Each must be less than `below`.
+    /// Field of three adjacent node numbers for each triangle. Numbers must be below `node_end`.
     pub(crate) nodes: NumberField<'a>,
-    /// This is added to a number to get the node's id.
+    /// Id of the node with number 0: the id of a node is its number plus `min_node`.
     pub(crate) min_node: u64,
     pub(crate) node_end: u64,
     pub(crate) regions: [Region<'a>; 2],
-    /// Further conditions for a record to be a triangle.
+    /// Conditions on further fields, which the record of a triangle meets.
     pub(crate) required_fields: &'a [(NumberField<'a>, FieldRule)],
 }
 
 impl TriangleRecords<'_> {
-    /// Reads triangles from the first one on, as long as they are plain. Hands regions to `region`, with how many
-    /// triangles have each. Returns how many triangles were read.
+    /// Appends triangles from the start of the list, up to the first chunk with a record that breaks a condition or has
+    /// an unknown or repeated node. Calls `region` with each region and the length of a run of triangles in the region.
+    /// Returns the number of appended triangles.
     pub(crate) fn read(
         &self,
         map: &IdIndex,
@@ -157,7 +160,7 @@ impl TriangleRecords<'_> {
             _ => true,
         });
         let fits = corners.has_records(count, 3) && fields.all(|field| field.has_records(count, 1));
-        // If the first chunk fails, it is not worth trying more.
+        // If the first chunk breaks a condition, the list is left to the reader without further tests.
         if count < MIN_PARALLEL_RECORDS
             || !fits
             || !has_regions
@@ -185,7 +188,8 @@ impl TriangleRecords<'_> {
         taken
     }
 
-    /// Fills in the indices of triangles' corners. Returns whether each triangle has three different corners.
+    /// Writes the vertex indices of the triangles. Returns false if a node number is out of range or unknown, or a
+    /// triangle repeats a node.
     fn fill(
         &self,
         records: Range<usize>,
@@ -227,7 +231,7 @@ impl TriangleRecords<'_> {
         })
     }
 
-    /// Returns the region of some triangles, if it is the same for all.
+    /// Returns the common region of some triangles; `None` if the triangles have different regions.
     fn same_region(&self, mut records: Range<usize>) -> Option<[i64; 2]> {
         let of = |record| self.regions.map(|region| region.of(record));
         let first = of(records.start);
@@ -237,8 +241,9 @@ impl TriangleRecords<'_> {
     }
 }
 
-/// Appends `count` items to a list. `fill` fills them in chunks on all threads, and items from the first chunk on for
-/// which it returns `None` are dropped. Returns how many items are left, and the range and result of each chunk.
+/// Appends `count` items to a list. `fill` writes chunks of items on all threads; the first chunk for which `fill`
+/// returns `None` is dropped with all later chunks. Returns the number of items kept, and the range and result of each
+/// chunk.
 fn append<T: Copy + Default + Send, R: Send, const N: usize>(
     list: &mut Vec<[T; N]>,
     count: usize,
@@ -246,7 +251,7 @@ fn append<T: Copy + Default + Send, R: Send, const N: usize>(
 ) -> (usize, Vec<(Range<usize>, R)>) {
     let before = list.len();
     match before {
-        // The system provides this memory filled with zeros, so it need not be written twice.
+        // The system provides new memory filled with zeros, which saves writing each item twice.
         0 => {
             *list = vec![[T::default(); N]; list.capacity().max(count)];
             list.truncate(count);

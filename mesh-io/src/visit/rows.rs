@@ -1,4 +1,4 @@
-//! Lists of a text file, row by row or on all threads.
+//! Reads lists of a text file, on all threads or row by row.
 
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -6,8 +6,9 @@ use crate::text::parallel_rows::take_rows;
 use crate::visit::items::CellKind;
 use crate::visit::visitor::MeshVisitor;
 
-/// Reads a list and hands its items, one in each row, to the visitor with their positions. Plain rows are read on all
-/// threads if the visitor allows it. The rest is read row by row, or as the cursor's syntax lays out items.
+/// Reads a list of `count` items, one in each row. `read` parses an item; `take` gets the visitor, the item's 0-based
+/// position and the item, in file order. If the visitor allows, plain rows are read on all threads. Remaining items are
+/// read row by row, or as the cursor's syntax lays out items. `what` names the items in errors.
 pub(crate) fn each_row<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -20,8 +21,8 @@ pub(crate) fn each_row<'a, T: Send>(
     each_item(cursor, count, visitor, next, |cursor, _| read(cursor), take)
 }
 
-/// Reads a list as [`each_row`] does. `next` moves to the next item, given how many were read. `read` may get the
-/// item's position, for messages.
+/// Reads a list as [`each_row`] does. `next` moves the cursor to the next item, given the number of items before.
+/// `read` gets the item's position for messages, or `None` on other threads.
 pub(crate) fn each_item<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -32,7 +33,8 @@ pub(crate) fn each_item<'a, T: Send>(
 ) -> Result<(), ReadError> {
     let mut done = 0;
     if visitor.allows_parallel() {
-        // The visitor uses this cursor for errors only. They are dropped here, as reading row by row meets them again.
+        // The visitor uses the cursor for errors alone. Errors are dropped here, as reading row by row meets them
+        // again.
         let nowhere = &Cursor::new(cursor.source);
         take_rows(
             cursor,
@@ -45,8 +47,8 @@ pub(crate) fn each_item<'a, T: Send>(
             },
         );
         if done > 0 {
-            // The cursor stands on the last row, before its words. A reader that continues by words must find none of
-            // them.
+            // The cursor is on the last row taken, before its words. A reader that continues by words must not read the
+            // row again.
             cursor.rest();
         }
     }
@@ -57,7 +59,8 @@ pub(crate) fn each_item<'a, T: Send>(
         let item = next(cursor, done).and_then(|()| cursor.item(read, &mut missing));
         match item.and_then(|item| take(cursor, visitor, done, item)) {
             Ok(()) => {}
-            // If one row among many lacks a number, the rows after it are read wrongly.
+            // If one row among many lacks a number, every later item starts at a wrong word. The first such row has the
+            // true error.
             Err(error) if is_plain => return Err(missing.unwrap_or(error)),
             Err(error) => return Err(error),
         }
@@ -67,8 +70,8 @@ pub(crate) fn each_item<'a, T: Send>(
     Ok(())
 }
 
-/// Reads all rows that follow, of any kind, and hands them to `take`. Long files are read on all threads if the visitor
-/// allows it.
+/// Reads all following rows, of any kind, and passes each to `take`. If the visitor allows, long files are read on all
+/// threads.
 pub(crate) fn all_rows<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     visitor: &mut dyn MeshVisitor,
@@ -86,7 +89,7 @@ pub(crate) fn all_rows<'a, T: Send>(
     Ok(())
 }
 
-/// Reads the numbers of an element's nodes.
+/// Reads the node ids of an element; unused entries are 0.
 #[inline]
 pub(crate) fn nodes(cursor: &mut Cursor<'_>, kind: CellKind) -> Result<[u64; 4], ReadError> {
     let mut nodes = [0; 4];
@@ -96,7 +99,7 @@ pub(crate) fn nodes(cursor: &mut Cursor<'_>, kind: CellKind) -> Result<[u64; 4],
     Ok(nodes)
 }
 
-/// Returns the error that a file holds elements of a volume.
+/// Returns the error for a file with volume elements, which `what` names.
 #[cold]
 pub(crate) fn volume(cursor: &Cursor<'_>, what: &str) -> ReadError {
     let problem = format!("{what} make this a volume mesh");

@@ -1,4 +1,4 @@
-//! Hands lists of binary records to a visitor: plain records of a long list at once, others one by one.
+//! Passes lists of binary records to a visitor: plain records of long lists in bulk, other records one by one.
 
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
@@ -7,12 +7,12 @@ use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{NodeRecords, Region, TriangleRecords};
 use crate::visit::visitor::MeshVisitor;
 
-/// The remedy for a coordinate that is not a finite number.
+/// Remedy in messages about coordinates that are not finite.
 pub(crate) const REWRITE: &str = "Write the mesh again";
 
 impl NodeRecords<'_> {
-    /// Hands on all nodes. The fields must hold them. `place` returns the location of a node by its
-    /// index, and `not_finite` the error if a coordinate of the node is not a finite number.
+    /// Passes all nodes to the visitor. The fields must hold `count` records. For a node's index, `place` returns a
+    /// cursor at the node, and `not_finite` the error for a coordinate that is not finite.
     pub(crate) fn send<'c>(
         &self,
         visitor: &mut dyn MeshVisitor,
@@ -33,22 +33,22 @@ impl NodeRecords<'_> {
     }
 }
 
-/// A list of elements of one kind, of which each record has the nodes of an element.
+/// Binary list of elements of one kind; each record holds the node ids of an element.
 pub(crate) struct ElementRecords<'a> {
     pub(crate) kind: CellKind,
     pub(crate) count: usize,
-    /// The id of the first element. Tags are consecutive.
+    /// Id of the first element; ids are consecutive.
     pub(crate) first_tag: u64,
-    /// The ids of an element's nodes, side by side.
+    /// Field of the adjacent node ids of each element.
     pub(crate) nodes: NumberField<'a>,
-    /// Whether ids of nodes are signed. A negative id becomes 0, which no node has.
+    /// Whether node ids are signed. Negative ids become 0, an id without a node.
     pub(crate) is_signed: bool,
     pub(crate) regions: [Region<'a>; 2],
 }
 
 impl ElementRecords<'_> {
-    /// Hands on all elements. The fields must hold them. `place` returns the location of an element by its index, and may tell
-    /// the visitor before which groups the element belongs to.
+    /// Passes all elements to the visitor. The fields must hold `count` records. For an element's index, `place`
+    /// returns a cursor at the element, and may announce the element's groups to the visitor before.
     pub(crate) fn send<'c>(
         &self,
         visitor: &mut dyn MeshVisitor,

@@ -1,10 +1,10 @@
-//! How and where a file stores coordinates and other numbers, known after it was read.
+//! Encodings and locations of coordinates and other numbers in a file, known after reading.
 
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding, Offsets};
 use crate::format::Format;
 use std::sync::Arc;
 
-/// Offsets and encoding of the numbers of an array, by which the numbers can be replaced.
+/// Offsets and encoding of an array's numbers, for replacing the numbers in a rewrite.
 pub(crate) struct ArrayLocation {
     pub(crate) offsets: Offsets,
     pub(crate) encoding: NumberEncoding,
@@ -14,7 +14,7 @@ pub(crate) struct ArrayLocation {
 }
 
 impl ArrayLocation {
-    /// Makes the value for numbers that stand in the file itself.
+    /// Returns the location, always `Some`, of numbers that the main file stores unencoded.
     pub(crate) fn in_place(offsets: Offsets, encoding: NumberEncoding) -> Option<ArrayLocation> {
         Some(ArrayLocation { offsets, encoding, space: ByteSpace::File, file_index: 0 })
     }
@@ -25,7 +25,7 @@ pub(crate) enum ByteSpace {
     File,
     /// The decoded bytes of the encoded points.
     Points,
-    /// Those of an array that is encoded itself, perhaps with other arrays.
+    /// The decoded bytes of other arrays that are encoded together.
     Encoded(Arc<dyn EncodedArrays>),
 }
 
@@ -33,7 +33,8 @@ pub(crate) enum ByteSpace {
 pub(crate) struct CoordinateStorage {
     pub(crate) format: Format,
     pub(crate) encoding: CoordinateEncoding,
-    /// The encoded points, if they are encoded. The offsets of coordinates are then those in its decoded bytes.
+    /// Encoded array of the points, if the file stores points in base64 or compressed. Offsets of coordinates then
+    /// refer to the decoded bytes.
     pub(crate) encoded: Option<Box<dyn EncodedArrays>>,
     /// All occurrences of coordinates, if the file may repeat a vertex; else `None`.
     pub(crate) repeated_vertices: Option<RepeatedVertices>,
@@ -46,12 +47,12 @@ pub(crate) struct CoordinateStorage {
 pub(crate) struct RepeatedVertices {
     /// The offset of each x, ascending.
     pub(crate) x_at: Vec<usize>,
-    /// The index of each x's vertex.
+    /// The vertex of each offset in `x_at`.
     pub(crate) vertices: Vec<u32>,
 }
 
 impl CoordinateStorage {
-    /// Makes the layout of a file that has its coordinates in place.
+    /// Returns the storage of a main file with unencoded coordinates, each vertex once.
     pub(crate) fn in_place(format: Format, numbers: CoordinateEncoding) -> CoordinateStorage {
         CoordinateStorage {
             format,

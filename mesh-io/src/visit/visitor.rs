@@ -1,4 +1,4 @@
-//! The visitor that readers call for each item of a file.
+//! Interface of the visitors that readers call for each item of a file.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
@@ -9,26 +9,25 @@ use crate::visit::items::{
 };
 use crate::visit::records::{NodeRecords, TriangleRecords};
 
-/// Visitor of the items of a mesh file. A reader calls the methods for all nodes first, then for all elements, each
-/// in file order.
+/// Visitor of the items of a mesh file. A reader visits all nodes, then all elements, both in file order.
 pub(crate) trait MeshVisitor {
-    /// Returns whether a list may be parsed on several threads. Items then arrive in file order, but the cursor
-    /// passed with an item has no valid location. If a call returns an error, the call must have no effect: the item
-    /// is parsed again, alone, to make the final error.
+    /// Returns whether a list may be parsed on several threads. Items then arrive in file order, but the cursor passed
+    /// with an item has no valid location. Calls with an error must leave the visitor unchanged: the reader parses the
+    /// item again, alone, for the final error.
     fn allows_parallel(&self) -> bool {
         false
     }
-    /// Returns whether the visitor uses nodes. If not, readers may leave out calls of [`node`](Self::node).
+    /// Returns whether the visitor uses nodes. For `false`, readers may skip calls of [`node`](Self::node).
     fn asks_for_nodes(&self) -> bool {
         true
     }
-    /// Announces about how many nodes follow.
+    /// Announces the approximate number of nodes, for reserving memory.
     fn expect_nodes(&mut self, _count: usize) {}
-    /// Takes a node that was just read. `x_at` is the offset of x, and `at` are x and y. `dimension` is that of the
-    /// model entity it lies on if the file tells it, else 2.
+    /// Visits a node. `x_at` is the byte offset of x; `at` holds x and y. `dimension` is the dimension of the node's
+    /// model entity (gmsh 4), or 2 in files without a model.
     fn node(&mut self, cursor: &Cursor<'_>, id: u64, dimension: u64, x_at: usize, at: [f64; 2]);
-    /// Takes nodes of a binary list from the first one on. Returns how many it took; the caller hands the others to
-    /// [`node`](Self::node).
+    /// Visits a binary list of nodes in bulk. Returns how many leading nodes the visitor has processed; the caller
+    /// passes the remaining nodes to [`node`](Self::node).
     fn node_records(&mut self, _records: &NodeRecords<'_>) -> usize {
         0
     }
@@ -36,18 +35,19 @@ pub(crate) trait MeshVisitor {
     fn end_nodes(&mut self, _cursor: &Cursor<'_>) -> Result<(), ReadError> {
         Ok(())
     }
-    /// Announces about how many elements follow.
+    /// Announces the approximate number of elements, for reserving memory.
     fn expect_elements(&mut self, _count: usize) {}
-    /// Takes an element that was just read. Visitors that need no elements ignore the call.
+    /// Visits an element. By default, elements are ignored.
     fn element(&mut self, _cursor: &Cursor<'_>, _element: &Element) -> Result<(), ReadError> {
         Ok(())
     }
-    /// Takes triangles of a binary list from the first one on. Returns how many it took; the caller hands the others to
-    /// [`element`](Self::element).
+    /// Visits a binary list of triangles in bulk. Returns how many leading triangles the visitor has processed; the
+    /// caller passes the remaining triangles to [`element`](Self::element).
     fn triangle_records(&mut self, _records: &TriangleRecords<'_>) -> usize {
         0
     }
-    /// Takes a polygon of more than four corners. Its vertices are constraints.
+    /// Visits a polygon of five or more corners. By default, each corner is visited as an element of kind
+    /// [`CellKind::Polygon`].
     fn polygon(
         &mut self,
         cursor: &Cursor<'_>,
@@ -60,7 +60,8 @@ pub(crate) trait MeshVisitor {
             self.element(cursor, &Element { id, kind: CellKind::Polygon, region, nodes })
         })
     }
-    /// Takes a line through any number of nodes, which are constraints.
+    /// Visits a polyline, a line through any number of nodes. By default, each node is visited as an element of kind
+    /// [`CellKind::Point`].
     fn polyline(
         &mut self,
         cursor: &Cursor<'_>,
@@ -73,17 +74,17 @@ pub(crate) trait MeshVisitor {
             self.element(cursor, &Element { id, kind: CellKind::Point, region, nodes })
         })
     }
-    /// Returns whether the visitor uses pairs of periodic nodes. If not, readers may leave out calls of
+    /// Returns whether the visitor uses pairs of periodic nodes. For `false`, readers may skip calls of
     /// [`periodic_pairs`](Self::periodic_pairs).
     fn asks_for_periodic_pairs(&self) -> bool {
         false
     }
-    /// Visits the pairs of periodic nodes of the file; `None` if the pairs could not be read.
+    /// Visits the pairs of periodic nodes in the file; `None` if a reader could not parse the pairs.
     fn periodic_pairs(&mut self, _pairs: Option<Vec<PeriodicNodes>>) {}
-    /// Takes a remark for the user.
+    /// Visits a remark for the user.
     fn remark(&mut self, _remark: Remark) {}
 
-    /// Returns whether the visitor uses groups. If not, readers may leave out calls of
+    /// Returns whether the visitor uses groups. For `false`, readers may skip calls of
     /// [`region_attributes`](Self::region_attributes), [`group_scopes`](Self::group_scopes),
     /// [`node_group`](Self::node_group) and [`group_name`](Self::group_name).
     fn asks_for_groups(&self) -> bool {
@@ -97,48 +98,48 @@ pub(crate) trait MeshVisitor {
     /// Visits a group of one node. `node` is the 0-based index of the node in file order, `kind` and `label` identify
     /// the group.
     fn node_group(&mut self, _node: u32, _kind: &str, _label: &GroupLabel) {}
-    /// Visits the name of the group with a kind and a tag. `dimension` is 0, 1 or 2; `None` if the name holds for all
+    /// Visits the name of groups, identified by kind and tag. `dimension` is 0, 1 or 2; `None` names the groups of all
     /// dimensions.
     fn group_name(&mut self, _kind: &str, _dimension: Option<u8>, _tag: i64, _name: &[u8]) {}
 
-    /// Whether the visitor asks for data that a plain reading may leave out: third coordinates that are all the same, and
-    /// lists after the elements.
+    /// Returns whether the visitor uses data. For `false`, readers may skip constant third coordinates, cell data,
+    /// lists after the elements, and calls of [`unsupported`](Self::unsupported).
     fn asks_for_data(&self) -> bool {
         false
     }
-    /// Takes the name of an array of point data, its numbers per point, and whether these are real, not whole. Third
-    /// coordinates are such an array too. Returns whether the visitor wants the numbers.
+    /// Announces an array of point data: its name, components per point, and whether its numbers are real (else whole).
+    /// Returns whether the visitor wants the numbers, in a call of [`point_numbers`](Self::point_numbers).
     fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
-    /// Takes notice that nodes have parameters on a surface of the model. Returns whether the visitor wants them, two
-    /// numbers for each node.
+    /// Announces the parameters of nodes on a surface of the model, two numbers for each node. Returns whether the
+    /// visitor wants the numbers, in a call of [`parameter_numbers`](Self::parameter_numbers).
     fn parameters(&mut self, _surface: i64) -> bool {
         false
     }
-    /// Takes the parameters that were announced last, if the visitor wants them.
+    /// Visits the parameters announced last, unless the visitor declined the numbers.
     fn parameter_numbers(&mut self, _numbers: PointNumbers) {}
-    /// Takes the name of an array that has a coordinate of the center of each of some elements: x for the axis 0, y for 1.
-    /// Returns whether the visitor wants the numbers.
+    /// Announces an array with one coordinate of the centers of elements: x for `axis` 0, y for 1. Returns whether the
+    /// visitor wants the numbers, in a call of [`center_numbers`](Self::center_numbers).
     fn center_array(&mut self, _name: &[u8], _axis: usize) -> bool {
         false
     }
-    /// Takes the centers that were announced last, if the visitor wants them.
+    /// Visits the centers announced last, unless the visitor declined the numbers.
     fn center_numbers(&mut self, _centers: Centers) {}
     /// Announces third coordinates or depths as an array of point data. Returns whether the visitor uses the numbers.
     fn z_array(&mut self, name: &[u8]) -> bool {
         self.point_array(name, 1, true)
     }
-    /// Takes the name of an array of cell data, with the same arguments and result as
-    /// [`point_array`](Self::point_array). Called only if the visitor asks for data.
+    /// Announces an array of cell data, with arguments and result as in [`point_array`](Self::point_array). Readers
+    /// call this method only if [`asks_for_data`](Self::asks_for_data) returns `true`.
     fn cell_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
-    /// Takes the numbers of the cell data that were announced last, if the visitor wants them. `tags` are those of the
-    /// elements that the numbers belong to; `None` if they belong to all.
+    /// Visits the numbers of the cell data announced last, unless the visitor declined. `tags` holds the element id of
+    /// each tuple; `None` if tuple `i` belongs to the element with id `i`.
     fn cell_numbers(&mut self, _numbers: Vec<f64>, _tags: Option<Vec<u64>>) {}
-    /// Visits a short description of a part of the file that the reader leaves out.
+    /// Visits a short description of content that the reader skips, such as a list of the file.
     fn unsupported(&mut self, _what: &str) {}
-    /// Takes the numbers of the point data that were announced last, if the visitor wants them.
+    /// Visits the numbers of the point data announced last, unless the visitor declined the numbers.
     fn point_numbers(&mut self, _numbers: PointNumbers) {}
 }

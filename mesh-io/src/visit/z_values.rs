@@ -1,4 +1,4 @@
-//! Third coordinates and depths, which are data of points.
+//! Third coordinates and depths, which count as point data.
 
 use crate::binary::number_field::NumberField;
 use crate::edit::numbers::{NumberEncoding, Offsets};
@@ -11,8 +11,8 @@ use crate::visit::records::MIN_PARALLEL_RECORDS;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
 use crate::visit::visitor::MeshVisitor;
 
-/// Notes whether the third coordinates of the nodes differ, and collects the coordinates if the visitor asks for
-/// data.
+/// Collector of third coordinates: detects whether the coordinates differ, and stores offsets and values if the visitor
+/// asks for data.
 pub(crate) struct ZValues {
     first: Option<f64>,
     differ: bool,
@@ -27,7 +27,7 @@ impl ZValues {
         ZValues { first: None, differ: false, collected, is_partial: false }
     }
 
-    /// Takes the third coordinate of the next point, with its offset in the file.
+    /// Adds the third coordinate of the next point, with its byte offset; [`NO_Z`] for a point without z.
     #[inline]
     pub(crate) fn push(&mut self, (at, z): (usize, f64)) {
         self.is_partial |= at == NO_Z.0;
@@ -41,7 +41,7 @@ impl ZValues {
         }
     }
 
-    /// Takes the third coordinates of all records of a binary list. `at` is the offset of the first.
+    /// Adds the third coordinates of `count` records of a binary list. `at` is the byte offset of the first coordinate.
     pub(crate) fn push_records(&mut self, z: NumberField<'_>, count: usize, at: usize) {
         if self.collected.is_some() || count < MIN_PARALLEL_RECORDS {
             z.real(0..count).enumerate().for_each(|(index, z_of)| {
@@ -53,12 +53,14 @@ impl ZValues {
         }
     }
 
-    /// Hands the numbers to the visitor under this name, if they differ or if the visitor asks for data.
+    /// Announces third coordinates of the main file as an array `name`, and passes the numbers if the visitor wants
+    /// them. Equal coordinates are announced only to visitors that ask for data.
     pub(crate) fn send(self, name: &str, encoding: NumberEncoding, visitor: &mut dyn MeshVisitor) {
         self.send_from(name, encoding, ByteSpace::File, 0, visitor);
     }
 
-    /// The same, if they stand elsewhere than in the file itself, or in this one of the files of the mesh.
+    /// Announces third coordinates as [`send`](Self::send) does, for numbers in the byte space `home` of the file with
+    /// index `file_index`.
     pub(crate) fn send_from(
         self,
         name: &str,
@@ -75,7 +77,7 @@ impl ZValues {
         {
             let precision = encoding.precision();
             numbers.iter_mut().for_each(|z| *z = precision.rounded(*z));
-            // There is no place for those that a file does not have.
+            // If some points lack z, the file has no bytes for their new values, and no number can be replaced.
             let stored = (!self.is_partial).then_some(ArrayLocation {
                 offsets: Offsets::List(offsets),
                 encoding,
@@ -87,7 +89,7 @@ impl ZValues {
     }
 }
 
-/// Collects numbers of a text with their offsets.
+/// Collector of the numbers of a text file, with their offsets.
 #[derive(Default)]
 pub(crate) struct TextNumbers {
     offsets: Vec<usize>,
@@ -104,7 +106,7 @@ impl TextNumbers {
         Ok(())
     }
 
-    /// Reads one number of each of `count` rows, after skipping `before` tokens.
+    /// Reads one number from each of `count` rows, after skipping `before` tokens of the row.
     pub(crate) fn column(
         &mut self,
         mut cursor: Cursor<'_>,
@@ -119,7 +121,8 @@ impl TextNumbers {
         Ok(())
     }
 
-    /// Returns all numbers. `nodes` are the nodes they belong to; `None` if they belong to all nodes in order.
+    /// Returns all numbers, rounded to `precision`. `nodes` holds the node id of each tuple; `None` if tuple `i`
+    /// belongs to node `i`.
     pub(crate) fn finish(self, precision: Precision, nodes: Option<Vec<u64>>) -> PointNumbers {
         let Self { offsets, mut numbers } = self;
         numbers.iter_mut().for_each(|number| *number = precision.rounded(*number));

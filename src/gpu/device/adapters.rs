@@ -28,19 +28,19 @@ impl AdapterSummary {
     }
 }
 
-/// Lists all adapters of this machine, in the order in which they would be chosen. The list is empty in a browser,
-/// where [`Gpu::open_async`](crate::gpu::Gpu::open_async) finds the only one.
+/// Lists the adapters of this machine that can compute, in order of preference, without opening any. In a browser the
+/// list is empty; [`Gpu::open_async`](crate::gpu::Gpu::open_async) finds the browser's only adapter.
 pub fn adapters() -> Vec<AdapterSummary> {
     ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
 }
 
-/// Lists the adapters that can compute, fastest kind first. Adapters of OpenGL are listed only if there are no others:
-/// they are the same devices again, and the driver is slow to start.
+/// Returns the adapters that can compute, fastest kind first. Adapters of OpenGL are listed only if other backends have
+/// none: they repeat the same devices, and their driver starts slowly.
 pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
     blocking(async { Ok::<_, GpuError>(ranked_adapters_async().await) }).unwrap_or_default()
 }
 
-/// Lists the adapters that can compute, like [`ranked_adapters`], without blocking.
+/// Returns the adapters that can compute like [`ranked_adapters`], without blocking.
 pub(crate) async fn ranked_adapters_async() -> Vec<wgpu::Adapter> {
     let native = usable_adapters(wgpu::Backends::PRIMARY).await;
     match native.is_empty() {

@@ -16,13 +16,13 @@ use crate::gpu::kernels::uniforms::{
 use crate::gpu::scope::scoped;
 
 impl Gpu {
-    /// Checks the arithmetic of the adapter. The check is made once; later calls return its result.
+    /// Checks the arithmetic of the adapter. The check is made once; later calls return the first result.
     ///
     /// The kernels hold positions in pairs of floats. A compiler that reorders sums, as WGSL permits, may drop the
-    /// second float of each. The kernels guard against it; this call runs one tiny kernel and compares its results
-    /// with exact ones. [`Gpu::open`] calls it, and so do the runs of [`Smoother`](crate::Smoother). An application that
-    /// encodes sweeps itself on a device of its own ([`Gpu::new`]) should call it when it starts. It may be called on any
-    /// thread, polls the device and blocks until all work submitted so far is done.
+    /// second float of each. The kernels guard against reordered sums; this call runs one tiny kernel and compares its
+    /// results with exact ones. [`Gpu::open`] and the runs of [`Smoother`](crate::Smoother) check the arithmetic
+    /// themselves. An application that encodes sweeps on its own device ([`Gpu::new`]) should call this method when it
+    /// starts. Any thread may call this method, which polls the device and blocks until all submitted work is done.
     ///
     /// # Errors
     /// [`GpuError::Arithmetic`] if digits are lost, or another [`GpuError`] if the device fails.
@@ -98,7 +98,7 @@ async fn fault(
     Ok(cases.iter().zip(&results).find_map(|(case, result)| case.fault(result)))
 }
 
-/// An input of the kernel, and what to check in the result.
+/// Input of one invocation of the kernel, with the property of the result to check.
 struct Case {
     input: ArithmeticInput,
     expected: Expected,
@@ -153,14 +153,14 @@ fn position([x, y]: [f64; 2]) -> [f32; 4] {
     [x, y, x_low, y_low]
 }
 
-/// The relative error allowed in a pair of floats. It has 48 bits, and some roundings are allowed for.
+/// Relative error allowed in a pair of floats: 2⁻⁴⁰, as a pair has 48 bits and some roundings are allowed for.
 const PAIR: f64 = 1.0 / (1u64 << 40) as f64;
-/// The relative error allowed in a float. It has 24 bits, and some roundings are allowed for.
+/// Relative error allowed in a float: 2⁻²⁰, as a float has 24 bits and some roundings are allowed for.
 const FLOAT: f64 = 1.0 / (1u64 << 20) as f64;
 
 impl Case {
-    /// Returns the operation whose result is wrong, if there is one. Comparisons are written so that NaN counts as
-    /// wrong.
+    /// Returns the first operation with a wrong result; `None` if all results are right. Comparisons are written so
+    /// that NaN counts as wrong.
     fn fault(&self, result: &ArithmeticResult) -> Option<&'static str> {
         if let Expected::Positive(positive) = self.expected {
             let found = result.is_positive != 0.0;
@@ -226,8 +226,8 @@ mod tests {
         gpu.check_arithmetic().unwrap();
     }
 
-    /// Each row: a sum as written, the form to which a compiler may simplify it if nothing prevents that, and the fault
-    /// then to be found.
+    /// Each row: a sum as written in the kernels, a form to which a compiler could simplify the sum, and the fault that
+    /// the check must report for this form.
     const FOLDED: [(&str, &str, &str); 6] = [
         (
             "opaque(a - aa) + opaque(b - bb)",
@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn a_nan_area_that_passes_for_positive_is_found() {
         let gpu = Gpu::open(None).unwrap();
-        // `!(x > 0)` as a compiler writes it that assumes there are no NaNs.
+        // `x > 0` in a form that a compiler may choose if it assumes that there are no NaNs.
         let careless = [("opaque_bits(x) - 1u < 0x7f7fffffu", "!(x <= 0.0)")];
         let operation = "an area that is inverted, flat or not a number passes for positive";
         assert_eq!(fault_after(&gpu, &careless), Some(operation));

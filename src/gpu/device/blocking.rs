@@ -5,8 +5,8 @@ use std::task::{Context, Poll, Waker};
 
 use crate::error::GpuError;
 
-/// Returns the result of a future, blocking the thread if need be. In a browser, which cannot block, it returns an
-/// error if the future is not ready at once.
+/// Returns the result of a future, blocking the thread if need be. In a browser, which cannot block, returns
+/// [`GpuError::WouldBlock`] if the future is not ready at once.
 pub(crate) fn blocking<T, E: From<GpuError>>(
     future: impl Future<Output = Result<T, E>>,
 ) -> Result<T, E> {

@@ -8,12 +8,12 @@ use wgpu::BufferUsages as Usage;
 use crate::gpu::device::Gpu;
 use crate::gpu::scope::poll;
 
-/// Binds a uniform that is read at a dynamic offset.
+/// Returns the binding of one uniform of type `T`, read at a dynamic offset.
 pub(crate) fn uniform<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
     bytes(buffer, 0..size_of::<T>() as u64)
 }
 
-/// Binds some rows of a buffer, each of `size` bytes.
+/// Returns the binding of a range of a buffer's rows, each of `size` bytes.
 pub(crate) fn rows<'b>(
     buffer: &'b wgpu::Buffer,
     range: &Range<u32>,
@@ -30,10 +30,10 @@ pub(crate) fn bytes(buffer: &wgpu::Buffer, range: Range<u64>) -> wgpu::BindingRe
     })
 }
 
-/// Bytes that are sent at once to a large buffer.
+/// Size of one write to a large buffer, in bytes.
 const PIECE: usize = 16 << 20;
-/// Number of pieces that may be in flight before one is waited for. With fewer than eight million vertices nothing
-/// waits.
+/// Limit of the pieces in flight: before a further write, the oldest is waited for. With fewer than eight million
+/// vertices nothing waits.
 const UNDER_WAY: usize = 8;
 
 /// Creates a buffer that holds `contents`. To be called in an error scope.
@@ -55,8 +55,8 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
         write_by_pieces(gpu, &buffer, 0, bytes);
         return buffer;
     }
-    // Mapping fails on a device that is lost or out of memory. The error scope or a later call reports that; wgpu's own
-    // `create_buffer_init` would panic.
+    // Mapping fails on a device that is lost or out of memory. The error scope or a later call reports the fault;
+    // wgpu's own `create_buffer_init` would panic.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
         view.slice(..bytes.len()).copy_from_slice(bytes);
     }
@@ -64,8 +64,8 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     buffer
 }
 
-/// Writes to a large buffer piece by piece, from the byte `first` on. A piece in flight takes its size in memory again,
-/// so only a few are in flight at once.
+/// Writes to a buffer in pieces, from the byte `first` on. A piece in flight takes its size in memory again, so at most
+/// [`UNDER_WAY`] pieces are in flight at once.
 pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, bytes: &[u8]) {
     let mut under_way = VecDeque::new();
     for (at, piece) in (first..).step_by(PIECE).zip(bytes.chunks(PIECE)) {

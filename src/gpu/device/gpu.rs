@@ -16,7 +16,7 @@ use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::run::Plan;
 
-/// A device with its pipelines. Created once, it serves many meshes. It is a handle: clones refer to the same device.
+/// A device with compiled pipelines, created once for many meshes. Clones of the handle refer to the same device.
 #[derive(Clone)]
 pub struct Gpu {
     pub(crate) device: wgpu::Device,
@@ -24,33 +24,35 @@ pub struct Gpu {
     pub(crate) pipelines: Arc<Pipelines>,
     summary: Arc<AdapterSummary>,
     lost: Arc<Mutex<Option<String>>>,
-    /// The operation that [`Gpu::check_arithmetic`] found to be wrong, if any. Not set before the first call.
+    /// Result of [`Gpu::check_arithmetic`]: the operation that the adapter computes wrongly, or `None` if all pass.
+    /// Unset before the first check.
     pub(super) arithmetic: Arc<OnceLock<Option<&'static str>>>,
 }
 
 impl Gpu {
-    /// Takes an application's own device and queue (both are handles, which can be cloned).
+    /// Creates a `Gpu` from the device and queue of an application. Both are handles and can be cloned.
     ///
-    /// The device has to be created with [`Self::required_limits`] or higher. Its callbacks for errors and for loss
-    /// stay the application's: this library catches the errors of its own calls in error scopes, and finds out about a
-    /// lost device when it reads back. Faults of an encoder that was passed in, for example one of another device or a
-    /// finished one, are reported by wgpu to the application when it finishes the encoder.
+    /// The device must be created with [`Self::required_limits`] or higher limits. The device's callbacks for errors
+    /// and for loss stay the application's. This library catches the errors of its own calls in error scopes, and
+    /// notices a lost device at the next readback. If the application passes an unusable encoder, for example a
+    /// finished one or one of another device, wgpu reports the fault when the application finishes the encoder.
     ///
-    /// Nothing is submitted and nothing waits, so this may be called on any thread. The device is polled once, which
-    /// may run callbacks of the application, to check that the queue belongs to it. While the device is busy this
-    /// cannot be checked, and wgpu reports a foreign queue later, to the error handler of the queue's own device.
+    /// Any thread may call this function. Nothing is submitted. A poll of the device, which may run callbacks of the
+    /// application, checks that the queue belongs to the device. A queue counts as foreign only after some 30 ms of
+    /// repeated polls. A busy device, or a browser, cannot check the queue: wgpu reports a foreign queue later, to the
+    /// error handler of the queue's own device.
     ///
-    /// The arithmetic of the adapter is not checked here, as that would wait: runs of [`Smoother`](crate::Smoother)
-    /// check it first, and an application that encodes sweeps itself calls [`Gpu::check_arithmetic`] or
-    /// [`Gpu::check_arithmetic_async`].
+    /// `new` does not check the adapter's arithmetic, as the check waits for the device. Runs of
+    /// [`Smoother`](crate::Smoother) check the arithmetic first. An application that encodes sweeps itself calls
+    /// [`Gpu::check_arithmetic`] or [`Gpu::check_arithmetic_async`].
     ///
     /// # Panics
-    /// This library does not panic, but wgpu itself does if resources of two *instances* are combined. An application
+    /// This library does not panic, but wgpu itself panics if resources of two *instances* are combined. An application
     /// should have one [`wgpu::Instance`].
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if the device binds too few storage buffers, [`GpuError::Queue`] if the queue belongs to
-    /// another device.
+    /// [`GpuError::Limit`], with the name of the limit, if the device has lower limits than the kernels need.
+    /// [`GpuError::Queue`] if the queue belongs to another device.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         if !is_own(&queue, &device) {
             return Err(GpuError::Queue);
@@ -59,10 +61,10 @@ impl Gpu {
         Self::with(device, queue, summary, Arc::default())
     }
 
-    /// Sets a pipeline cache of the application, with which kernels compile faster the next time. The application
-    /// creates it on its device, which has the feature `PIPELINE_CACHE` where the driver has caches (on Vulkan), and
-    /// saves its data ([`wgpu::PipelineCache::get_data`]). To be called first: kernels that are compiled already are
-    /// compiled again.
+    /// Sets a pipeline cache of the application, with which kernels compile faster when the application is started
+    /// again. The application creates the cache on its device, which has the feature `PIPELINE_CACHE` where the driver
+    /// has caches (on Vulkan), and saves the cache's data ([`wgpu::PipelineCache::get_data`]). Call this method before
+    /// any other: the returned handle compiles all kernels again.
     ///
     /// ```no_run
     /// # use gpu_smooth::{wgpu, Gpu, GpuError, Options, SmoothError};
@@ -90,15 +92,16 @@ impl Gpu {
         Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost, arithmetic })
     }
 
-    /// Compiles the kernels that meshes need with these options: those of sweeps, of objectives, and of the import and
-    /// export of vertices. Then neither [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer waits for
-    /// the compiler; a frame never does. Kernels that are compiled already cost nothing. May be called on another
-    /// thread.
+    /// Compiles the kernels that an application's frames need with these options: sweeps, objectives, import and export
+    /// of vertices, moves, masks, untangling and, for [multilevel](Options::is_multilevel) options, corrections.
+    /// Afterwards neither [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer waits for the compiler;
+    /// a frame never does. Kernels compiled earlier take no time. Any thread may call this method.
     ///
-    /// Meshes so large that their positions take two bindings need kernels of their own, which are not included.
+    /// Meshes with targets, and meshes so large that their positions take two bindings, need other kernels, which are
+    /// not included.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] for an option out of its range, or [`SmoothError::Gpu`] if the device fails.
+    /// [`SmoothError::Option`] if an option is out of its range, or [`SmoothError::Gpu`] if the device fails.
     pub fn prepare(&self, options: &Options) -> Result<(), SmoothError> {
         options.check_with(&[])?;
         let plan = Plan::new(options);
@@ -112,22 +115,24 @@ impl Gpu {
         Ok(())
     }
 
-    /// The device. It is a handle, which can be cloned.
+    /// Returns the device, a handle that the caller may clone.
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
-    /// The queue. It is a handle, which can be cloned.
+    /// Returns the queue, a handle that the caller may clone.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
 
-    /// The adapter in use.
+    /// Returns the name, driver, backend and kind of the adapter in use.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.summary
     }
 
-    /// Fails if the device is lost. Most calls on a lost device seem to succeed.
+    /// Returns [`GpuError::Lost`] if a device that this library opened was lost or has reported an uncaptured error.
+    /// Most wgpu calls on a lost device seem to succeed. An application's device always passes, as its callbacks are
+    /// the application's.
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         match &*self.lost.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(message) => Err(GpuError::Lost(message.clone())),
@@ -137,20 +142,21 @@ impl Gpu {
 }
 
 impl Gpu {
-    /// The features a device needs: none beyond core WebGPU.
+    /// Returns the features that a device needs: none beyond core WebGPU.
     pub fn required_features() -> wgpu::Features {
         wgpu::Features::empty()
     }
 
-    /// The optional features that this library uses: `TIMESTAMP_QUERY`, for [`Timestamps`](crate::gpu::Timestamps). An
-    /// application that wants it requests `adapter.features() & Gpu::optional_features()`.
+    /// Returns the optional features that this library uses: `TIMESTAMP_QUERY`, for
+    /// [`Timestamps`](crate::gpu::Timestamps) and [`Budget::timed_by`](crate::gpu::Budget::timed_by). To have
+    /// timestamps where the adapter supports them, request `adapter.features() & Gpu::optional_features()`.
     pub fn optional_features() -> wgpu::Features {
         wgpu::Features::TIMESTAMP_QUERY
     }
 
-    /// Returns the limits to create a device with, for meshes of up to `size` and an application that itself needs
-    /// `own`: `own`, raised where the kernels or the meshes need more. Buffers larger than the adapter can bind at once
-    /// are bound part by part; `max_storage_buffer_binding_size` is then the adapter's largest.
+    /// Returns the limits to request for the device of an application that itself needs `own` and has meshes of up to
+    /// `size`: `own`, raised where the kernels or the meshes need more. If a buffer is larger than the adapter can bind
+    /// at once, the buffer is bound part by part, and `max_storage_buffer_binding_size` is the adapter's maximum.
     ///
     /// ```no_run
     /// # use gpu_smooth::{wgpu, Gpu, GpuError, MeshSize, gpu::VertexBuffer};
@@ -173,14 +179,15 @@ impl Gpu {
     /// # }
     /// ```
     ///
-    /// The application's own buffers count as its own needs. A vertex buffer with a long stride may need more than the
-    /// mesh: raise `max_storage_buffer_binding_size` of `own` to
+    /// The application's buffers are part of `own`. A vertex buffer with a long stride may need more than the mesh:
+    /// raise `max_storage_buffer_binding_size` of `own` to
     /// [`VertexBuffer::binding_size`](crate::gpu::VertexBuffer::binding_size).
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if `available`, the adapter's limits, are too low for the kernels or the mesh; it names the
-    /// limit. [`GpuError::TooLarge`] for a mesh with more vertices or triangles than the kernels can number on any
-    /// device. `own` is not checked here; the adapter checks it when the device is requested.
+    /// [`GpuError::Limit`], with the name of the limit, if `available` (the adapter's limits) is too low for the
+    /// kernels or the mesh. [`GpuError::TooLarge`] if the mesh has more than 4,294,967,294 vertices or 715,827,882
+    /// triangles, the maxima of the kernels on any device. `own` is not checked here: the adapter checks the limits
+    /// when the device is requested.
     pub fn required_limits(
         own: wgpu::Limits,
         size: MeshSize,
@@ -189,20 +196,22 @@ impl Gpu {
         limits::required(own, size, available)
     }
 
-    /// Checks whether meshes of this size fit the device, bound part by part if need be. Allocates nothing.
+    /// Checks whether meshes of this size fit the limits of the device, bound part by part if need be. Allocates
+    /// nothing.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if not; it names the buffer and the limit. [`GpuError::TooLarge`] for a mesh with more
-    /// vertices or triangles than the kernels can number on any device.
+    /// [`GpuError::Limit`], with the names of buffer and limit, if the mesh does not fit. [`GpuError::TooLarge`] if the
+    /// mesh has more than 4,294,967,294 vertices or 715,827,882 triangles, the maxima of the kernels on any device.
     pub fn check_size(&self, size: MeshSize) -> Result<(), GpuError> {
         size.check(&self.device.limits())
     }
 }
 
-/// Whether the queue belongs to the device. True if this cannot be found out without waiting.
+/// Returns whether the queue belongs to the device. If the device is busy, the answer would need a wait, and the queue
+/// passes.
 ///
-/// Only polls of a queue's own device report that its work is done. So if a poll of an idle device brings no report,
-/// the queue belongs to another device. Browsers have no polls.
+/// Only polls of a queue's own device report that the queue's work is done. If polls of an idle device bring no report,
+/// the queue belongs to another device. Browsers have no polls, so there every queue passes.
 fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
     if cfg!(target_arch = "wasm32") {
         return true;

@@ -1,4 +1,4 @@
-//! The limits that an application's device must have.
+//! Checks and raises the limits of an application's device.
 
 use crate::error::GpuError;
 use crate::gpu::kernels::dispatch::FOLD;
@@ -7,7 +7,8 @@ use crate::gpu::kernels::layouts::storage_bindings;
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, WORKGROUP};
 use crate::mesh::MeshSize;
 
-/// The name of a limit, its field, the value that the kernels need, and what they need it for.
+/// One limit: its name, access to its field, the value that the kernels need, and the resource that needs it, for
+/// errors.
 type Row = (&'static str, fn(&mut wgpu::Limits) -> &mut u32, u32, &'static str);
 
 macro_rules! row {
@@ -16,8 +17,8 @@ macro_rules! row {
     };
 }
 
-/// The limits that the kernels need, given how the positions of a mesh are bound. Tests create a device with exactly
-/// these.
+/// Returns the limits that kernels need if they bind the positions of a mesh as `positions`. Tests create a device with
+/// exactly these limits.
 fn rows(positions: Positions) -> [Row; 11] {
     let storage = storage_bindings(positions);
     let largest = FINISH_WORKGROUP.max(WORKGROUP);
@@ -36,15 +37,15 @@ fn rows(positions: Positions) -> [Row; 11] {
     ]
 }
 
-/// Bytes of memory that a workgroup shares.
+/// Memory that a workgroup shares, in bytes: a pair of floats for each invocation of the kernels that complete sums.
 const SHARED: u32 = FINISH_WORKGROUP * size_of::<[f32; 2]>() as u32;
 
-/// Fails if the kernels cannot run with these limits.
+/// Returns [`GpuError::Limit`] if a limit is too low for kernels that bind positions whole.
 pub(crate) fn check(available: &wgpu::Limits) -> Result<(), GpuError> {
     raise(&mut available.clone(), available, Positions::Whole)
 }
 
-/// Raises limits to what the kernels need.
+/// Raises `limits` to the values that the kernels need. Returns [`GpuError::Limit`] if `available` has a lower value.
 fn raise(
     limits: &mut wgpu::Limits,
     available: &wgpu::Limits,

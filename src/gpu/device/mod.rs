@@ -1,4 +1,4 @@
-//! Adapters and devices: their limits and arithmetic, and memory on them.
+//! Adapters and devices: limits, arithmetic, buffers and readback.
 
 mod adapters;
 mod arithmetic;

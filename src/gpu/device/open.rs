@@ -11,19 +11,21 @@ use crate::gpu::device::readback::Waiting;
 use crate::gpu::scope::caught;
 
 impl Gpu {
-    /// Opens the best adapter, or the best of those whose name contains `name`, ignoring case. Discrete GPUs come
-    /// before integrated, virtual and software ones. An adapter that fails [`Gpu::check_arithmetic`] is skipped.
+    /// Opens the best adapter whose name contains `name` (case is ignored), or the best of all adapters for `None`.
+    /// Discrete GPUs are preferred to integrated, virtual, other and software adapters, in this order. An adapter that
+    /// fails [`Gpu::check_arithmetic`] is skipped. Blocks the thread, so a page in a browser calls
+    /// [`open_async`](Self::open_async) instead.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] if there is none, or none with this name; [`GpuError::NoDevice`] if the adapter refuses
-    /// to create a device; [`GpuError::Arithmetic`] of the best adapter if none passes the check; or another
-    /// [`GpuError`] if the device fails.
+    /// [`GpuError::NoAdapter`] if the machine has no adapter with this name; [`GpuError::NoDevice`] if the adapter
+    /// refuses to create a device; [`GpuError::Arithmetic`] for the best adapter if every adapter fails the check;
+    /// [`GpuError::WouldBlock`] in a browser; or another [`GpuError`] if the device fails.
     pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
         blocking(Self::open_async(name))
     }
 
-    /// Opens the best adapter like [`open`](Self::open), for a page in a browser, which cannot block. On other targets
-    /// it blocks, as `open` does, while the arithmetic is checked.
+    /// Opens the best adapter like [`open`](Self::open), without blocking a page in a browser. On other targets the
+    /// future blocks its thread while the arithmetic is checked, as `open` does.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], [`GpuError::Arithmetic`] or another [`GpuError`] if the device
@@ -45,7 +47,7 @@ impl Gpu {
         }
     }
 
-    /// Opens an adapter with the highest limits that it has, and checks its arithmetic.
+    /// Opens a device with all limits of the adapter, and checks the adapter's arithmetic.
     pub(crate) fn start(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         blocking(Self::start_async(adapter))
     }
@@ -69,13 +71,13 @@ impl Gpu {
             let text = if message.is_empty() { format!("{reason:?}") } else { message };
             *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
         });
-        // Every call is in an error scope. An error that still arrives here would otherwise panic.
+        // Every call is in an error scope. Without this handler, wgpu would panic on an error that still arrives.
         let flag = Arc::clone(&lost);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
         }));
         let gpu = Self::with(device, queue, summary, lost)?;
-        // A browser polls by itself. On other targets nobody else has the device to poll it.
+        // A browser polls its devices. On other targets only this library has the device, and polls it.
         let browser = cfg!(target_arch = "wasm32");
         let waiting = if browser { Waiting::Await } else { Waiting::Block };
         if let Err(error) = gpu.arithmetic_checked(waiting).await {
@@ -87,8 +89,8 @@ impl Gpu {
     }
 }
 
-/// Lists all adapters of this machine, in the order in which they would be chosen, each with the reason if it cannot be
-/// used. Each of them is opened, unlike by [`adapters`](crate::gpu::adapters).
+/// Opens and checks all adapters of this machine. Returns them in order of preference, each with the error if the
+/// adapter cannot be used. [`adapters`](crate::gpu::adapters) lists the adapters without opening any.
 pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
     let checked = |adapter: &wgpu::Adapter| {
         (AdapterSummary::new(&adapter.get_info()), Gpu::start(adapter).map(|_| ()))
@@ -96,8 +98,9 @@ pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
     ranked_adapters().iter().map(checked).collect()
 }
 
-/// Opens candidates until one has the right arithmetic. If none has, returns the error of the first, and `None` if
-/// there are no candidates.
+/// Opens candidates in order until one does not fail the check of its arithmetic, and returns its result: a device, or
+/// any other error. If every candidate fails the check, returns the error of the first candidate. `None` without
+/// candidates.
 async fn first_that_passes<A, G>(
     candidates: impl Iterator<Item = A>,
     open: impl AsyncFn(A) -> Result<G, GpuError>,

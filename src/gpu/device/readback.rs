@@ -14,7 +14,7 @@ use crate::gpu::scope::{poll, scoped};
 pub(crate) enum Waiting {
     /// This library, blocking the thread until the device is done.
     Block,
-    /// The application polls, as it does for its own work. The future completes after one of its polls.
+    /// The application, which polls the device anyway. The future completes after a poll that finds the copy done.
     Await,
 }
 
@@ -28,8 +28,8 @@ pub(crate) async fn read<T: Pod>(
     submit_and_copy::<T>(gpu, |_| {}, source, count)?.values(waiting).await
 }
 
-/// Submits what `encode` encodes and, in the same submission, a copy of `count` values from the start of `source`. A
-/// separate submission for the copy would make some drivers block the thread until the work before it is done.
+/// Submits what `encode` encodes and, in the same submission, a copy of `count` values from the start of `source`. With
+/// a separate submission for the copy, some drivers would block the thread until the earlier work is done.
 pub(crate) fn submit_and_copy<'g, T: Pod>(
     gpu: &'g Gpu,
     encode: impl FnOnce(&mut wgpu::CommandEncoder),
@@ -60,7 +60,7 @@ pub(crate) fn submit_and_copy<'g, T: Pod>(
     Ok(Copied { gpu, staging, arrival, values: PhantomData })
 }
 
-/// Values that are being copied to the host.
+/// Values in a staging buffer whose mapping to the host is under way.
 pub(crate) struct Copied<'g, T> {
     gpu: &'g Gpu,
     staging: wgpu::Buffer,
@@ -69,7 +69,8 @@ pub(crate) struct Copied<'g, T> {
 }
 
 impl<T: Pod> Copied<'_, T> {
-    /// Waits for the values and returns them.
+    /// Waits for the values and returns them. Returns [`GpuError::WouldBlock`] for [`Waiting::Block`] in a browser, and
+    /// [`GpuError::Lost`] if the device is lost.
     pub(crate) async fn values(self, waiting: Waiting) -> Result<Vec<T>, GpuError> {
         let Self { gpu, staging, arrival, .. } = self;
         if waiting == Waiting::Block {

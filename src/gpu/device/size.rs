@@ -6,20 +6,20 @@ use crate::gpu::kernels::layouts::storage_bindings;
 use crate::gpu::kernels::uniforms::{Control, HELD, SLOTS, WORKGROUP};
 use crate::mesh::MeshSize;
 
-/// The bytes that a buffer needs for a mesh.
+/// The size of one buffer of a mesh, with a name for errors.
 struct Need {
     what: &'static str,
     bytes: u64,
     spread: Spread,
 }
 
-/// How a buffer that is larger than a binding is bound.
+/// The rule by which a buffer larger than a binding is bound.
 enum Spread {
-    /// It cannot be bound, as it is always bound whole.
+    /// The buffer is bound whole, or the mesh does not fit.
     No,
-    /// In two bindings, half of the buffer in each.
+    /// Two bindings, with half of the buffer in each.
     Two,
-    /// Part by part, with one dispatch for each. A part has at least `least` bytes.
+    /// One dispatch per part of the buffer, with at least `least` bytes in each part.
     Parts { least: u64 },
 }
 
@@ -32,15 +32,15 @@ pub(crate) const TRIANGLE: u64 = size_of::<[u32; 3]>() as u64;
 /// Bytes of a vertex number.
 pub(crate) const NUMBER: u64 = size_of::<u32>() as u64;
 
-/// The most triangles that the kernels can number. The one-rings have at most one entry for each corner of a triangle,
-/// and the bit [`HELD`] of a ring start is in use.
+/// Largest number of triangles for the kernels. One-rings have at most one entry for each corner of a triangle, and the
+/// offsets of one-rings must stay below the bit [`HELD`] of a ring start.
 const MOST_TRIANGLES: usize = (HELD as usize - 1) / 3;
-/// The most vertices that the kernels can number. They number vertices, and the end of the one-rings, in 32 bits.
+/// Largest number of vertices for the kernels, which number the vertices, and the end of the one-rings, in 32 bits.
 const MOST_VERTICES: usize = u32::MAX as usize - 1;
 
 impl MeshSize {
-    /// Returns the bytes of each buffer. Two are upper bounds: one-rings hold each corner of a triangle at most once,
-    /// and best positions are stored for free vertices only.
+    /// Returns the size of each buffer. For one-rings and best positions, the sizes are upper bounds: one-rings hold
+    /// each corner of a triangle at most once, and best positions are stored for free vertices only.
     fn needs(self, positions: Positions) -> [Need; 6] {
         let room = if positions == Positions::InTwo { ALIGNMENT } else { 0 };
         let (vertices, triangles) = (self.vertices as u64, self.triangles as u64);
@@ -62,21 +62,21 @@ impl MeshSize {
         ]
     }
 
-    /// Returns an upper bound on the bytes of device memory for the mesh and sweeps on it: about 84 for each vertex. A
-    /// scheme whose last state is its best takes 68. Corrections from coarser levels take some 60 more for each vertex,
-    /// and another 40 while they are accelerated; they are not included. [`u64::MAX`] for a mesh that would take more
-    /// than that.
+    /// Returns an upper bound on the device memory for the mesh and its sweeps, in bytes: about 84 for each vertex.
+    /// Schemes that lower f in every sweep take 68 bytes per vertex. Corrections from coarser levels are not included:
+    /// some 60 bytes more for each vertex, and another 40 while corrections are accelerated. If the sum overflows,
+    /// returns [`u64::MAX`].
     pub fn bytes(self) -> u64 {
         self.needs(Positions::Whole).iter().fold(0, |sum, need| sum.saturating_add(need.bytes))
     }
 
-    /// The size of the largest buffer, in bytes.
+    /// Returns the size of the largest buffer, in bytes.
     pub(crate) fn largest(self, positions: Positions) -> u64 {
         self.needs(positions).iter().map(|need| need.bytes).fold(0, u64::max)
     }
 
-    /// Fails if the mesh has more vertices or triangles than the kernels can number, or does not fit the limits,
-    /// however it is bound.
+    /// Returns [`GpuError::TooLarge`] if the kernels cannot number the vertices or triangles, and [`GpuError::Limit`]
+    /// if a buffer exceeds the limits even when bound in parts.
     pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {
         let Self { vertices, triangles } = self;
         if triangles > MOST_TRIANGLES || vertices > MOST_VERTICES {
@@ -107,8 +107,8 @@ impl MeshSize {
     }
 }
 
-/// Fails if a buffer with this number of rows, each as large as a position, does not fit the limits, however it is
-/// bound.
+/// Returns [`GpuError::Limit`] if a buffer with this number of rows, each as large as a position, exceeds the limits
+/// even in two bindings.
 pub(crate) fn check_rows(rows: usize, limits: &wgpu::Limits) -> Result<(), GpuError> {
     let bytes = (rows as u64).saturating_mul(POSITION).saturating_add(ALIGNMENT);
     let what = || format!("the buffer of positions and targets ({rows} rows)");
@@ -121,7 +121,7 @@ pub(crate) fn check_rows(rows: usize, limits: &wgpu::Limits) -> Result<(), GpuEr
     check_limit("max_storage_buffer_binding_size", bound, &what, at_once)
 }
 
-/// Fails if more is needed than is available.
+/// Returns [`GpuError::Limit`] if `needed` exceeds `available`. `what` names the resource in the error.
 pub(crate) fn check_limit(
     limit: &'static str,
     available: u64,
@@ -134,8 +134,8 @@ pub(crate) fn check_limit(
     Ok(())
 }
 
-/// Number of invocations for a sum over the triangles: few enough to complete it in one workgroup, enough to fill a
-/// large GPU.
+/// Returns how many invocations sum over the triangles: few enough that one workgroup can complete the sum, enough to
+/// fill a large GPU.
 pub(crate) fn objective_invocations(triangles: usize) -> u32 {
     u32::try_from(triangles).unwrap_or(u32::MAX).div_ceil(2048).clamp(1, 1024) * WORKGROUP
 }

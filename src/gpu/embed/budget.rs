@@ -1,4 +1,4 @@
-//! Chooses how many sweeps a frame has time for.
+//! Fits the sweeps of a frame into a time budget.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -11,12 +11,12 @@ use crate::gpu::device::buffers::zeroed;
 use crate::gpu::embed::Readback;
 use crate::gpu::scope::scoped;
 
-/// The time that sweeps may take on the device in each frame. From the times of earlier frames it chooses the number of
-/// sweeps of the next one: at least one, and at most twice as many as in the last frame measured.
+/// A limit on the device's time for sweeps in each frame. Times of earlier frames determine the number of sweeps in the
+/// next frame: at least one sweep, and at most double the last measured frame's sweeps.
 ///
-/// With [`timed_by`](Self::timed_by) the device measures, and
-/// [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within) then does all the rest. Where the device has no clock,
-/// the application measures and calls [`record`](Self::record).
+/// With [`timed_by`](Self::timed_by), the device measures, and
+/// [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within) chooses, encodes and records. If the device has no
+/// timestamps, the application measures and calls [`record`](Self::record).
 ///
 /// ```
 /// # use std::time::Duration;
@@ -35,47 +35,49 @@ use crate::gpu::scope::scoped;
 pub struct Budget {
     time: Duration,
     most: u32,
-    /// Seconds for each sweep in the last frames that were measured, as a ring buffer.
+    /// Seconds per sweep in the last measured frames, as a ring buffer.
     measured: [f64; FRAMES],
-    /// Number of frames that were measured.
+    /// Number of measured frames, including overwritten ones.
     count: usize,
     /// Number of sweeps in the last measurement.
     last: u32,
     pub(crate) clock: Option<Clock>,
 }
 
-/// Number of frames that count. A sweep is expected to take as long as in the second slowest of them. That prefers too
-/// few sweeps to a late frame, but ignores a single late frame, such as the first one of a driver.
+/// Number of measured frames that the estimate uses. The estimate is the time per sweep in the second slowest frame.
+/// This rule prefers too few sweeps to a late frame, but ignores a single late frame, such as the first frame of a
+/// driver.
 const FRAMES: usize = 6;
-/// The most sweeps in a frame, unless the application sets another number.
+/// Default limit of the sweeps in a frame; see [`Budget::at_most`].
 const MOST: u32 = 100;
 
 impl Budget {
-    /// Makes a budget of this many microseconds for each frame.
+    /// Creates a budget of `micros` microseconds for each frame.
     pub fn micros(micros: u64) -> Self {
         Self::new(Duration::from_micros(micros))
     }
 
-    /// Makes a budget of this time for each frame.
+    /// Creates a budget of `time` for the sweeps of each frame.
     pub fn new(time: Duration) -> Self {
         Self { time, most: MOST, measured: [0.0; FRAMES], count: 0, last: 1, clock: None }
     }
 
-    /// Sets the most sweeps in a frame, whatever the budget: 100 by default, at least 1.
+    /// Sets the limit of the sweeps in a frame, whatever the budget. The default is 100, and 0 counts as 1.
     pub fn at_most(self, sweeps: u32) -> Self {
         Self { most: sweeps.max(1), ..self }
     }
 
-    /// Lets the device measure the sweeps of [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within), by its
-    /// timestamps. They are read without waiting, a frame or two later.
+    /// Lets the device measure the sweeps of [`Sweeps::encode_within`](crate::gpu::Sweeps::encode_within) by
+    /// timestamps, which are read without waiting, a frame or two later.
     ///
     /// # Errors
-    /// [`GpuError::Feature`] if the device was made without `TIMESTAMP_QUERY`; see [`Gpu::optional_features`].
+    /// [`GpuError::Feature`] if the device was created without `TIMESTAMP_QUERY`; see [`Gpu::optional_features`].
+    /// Another [`GpuError`] if the device fails.
     pub fn timed_by(self, gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { clock: Some(Clock::new(gpu)?), ..self })
     }
 
-    /// Returns the number of sweeps that the next frame has time for.
+    /// Returns the number of sweeps for which the next frame has time; 1 before the first measurement.
     pub fn sweeps(&self) -> u32 {
         let Some(each) = self.seconds() else { return 1 };
         // A float too large for an integer becomes the largest one.
@@ -83,8 +85,8 @@ impl Budget {
         fit.min(self.last.saturating_mul(2)).clamp(1, self.most)
     }
 
-    /// Records a measurement: `sweeps` sweeps have taken `time`. Not to be called for sweeps
-    /// [`until_converged`](crate::gpu::Sweeps::until_converged) that had already ended.
+    /// Records a measurement: `sweeps` sweeps took `time`. A frame with 0 sweeps is ignored. Exclude sweeps
+    /// [`until_converged`](crate::gpu::Sweeps::until_converged) that had already ended, as such sweeps take no time.
     pub fn record(&mut self, sweeps: u32, time: Duration) {
         if sweeps == 0 {
             return;
@@ -94,7 +96,7 @@ impl Budget {
         self.last = sweeps;
     }
 
-    /// Seconds that a sweep is expected to take.
+    /// Returns the expected time of a sweep in seconds; `None` before the first measurement.
     fn seconds(&self) -> Option<f64> {
         let mut measured = self.measured;
         let measured = &mut measured[..self.count.min(FRAMES)];
@@ -102,7 +104,7 @@ impl Budget {
         measured.get(measured.len().saturating_sub(2)).copied()
     }
 
-    /// Returns the time that a sweep is estimated to take; `None` before the first measurement.
+    /// Returns the expected time of a sweep; `None` before the first measurement.
     pub fn estimate(&self) -> Option<Duration> {
         self.seconds().map(Duration::from_secs_f64)
     }
@@ -119,13 +121,13 @@ impl Budget {
 #[derive(Debug)]
 pub(crate) struct Clock {
     queries: wgpu::QuerySet,
-    /// The times before and after the sweeps, and whether the sweeps had ended by the stop rule.
+    /// Timestamps before and after the sweeps, and a word that is nonzero if the sweeps had ended by the stop rule.
     times: wgpu::Buffer,
     readback: Readback<[u64; 3]>,
-    /// Copies in flight: the number of each, and the sweeps that it measures.
+    /// Copies in flight, as pairs of a copy's number and the number of measured sweeps.
     measuring: VecDeque<(u64, u32)>,
     taken: Option<u64>,
-    /// Seconds of a tick.
+    /// Duration of a clock tick, in seconds.
     period: f64,
 }
 
@@ -149,7 +151,7 @@ impl Clock {
         Ok(Self { queries, times, readback, measuring, taken, period })
     }
 
-    /// Returns where the pass of the sweeps writes its times.
+    /// Returns the queries to which the pass of the sweeps writes its times.
     pub(crate) fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -158,8 +160,8 @@ impl Clock {
         }
     }
 
-    /// Encodes the readback of the times, after the pass of the sweeps. The first word of `control` tells whether they
-    /// have ended.
+    /// Encodes the readback of the times, after the pass of the sweeps. The first word of `control` is nonzero if the
+    /// sweeps have ended.
     pub(crate) fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -173,8 +175,8 @@ impl Clock {
         }
     }
 
-    /// Returns the latest measurement if it is new. Sweeps that had ended by the stop rule give none, as they took no
-    /// time; nor does a lost device.
+    /// Returns the sweeps and time of the latest measurement, once. `None` for a lost device, and for sweeps that had
+    /// ended by the stop rule, as they took no time.
     fn measured(&mut self) -> Option<(u32, Duration)> {
         let &[[start, end, ended]] = self.readback.latest().ok()?? else { return None };
         let number = self.readback.arrived().filter(|&number| self.taken != Some(number))?;

@@ -19,24 +19,24 @@ use crate::gpu::scope::scoped_to_buffer;
 use crate::layout::Problem;
 use crate::run::multilevel::NONE;
 
-/// The largest bound on the inverse mean ratio that is accepted. Up to it, single precision surely tells a triangle
-/// from a flat one.
+/// Largest bound on the inverse mean ratio; higher bounds are lowered to this value. Up to this ratio, single precision
+/// reliably distinguishes a triangle from a flat one.
 const LARGEST_BOUND: f64 = 1e5;
 
 /// The vertices to be moved, and the bound on triangles.
 pub(crate) struct Moves {
-    /// For each vertex its number on the device, and the number of its target. If a vertex is listed twice, its last
+    /// Pairs of a vertex's device number and the index of the vertex's target. If a vertex is listed twice, the last
     /// target counts.
     pub(crate) ways: Vec<[u32; 2]>,
-    /// The number of targets.
+    /// Number of targets in the application's buffer, including unused targets.
     pub(crate) listed: usize,
-    /// No triangle gets an inverse mean ratio above this.
+    /// The bound on the inverse mean ratio of triangles.
     pub(crate) worst_imr: f64,
 }
 
 impl Moves {
-    /// Returns the triangles around vertices that move: for each the three corners, and then the index in `ways` of
-    /// each corner, or [`NONE`].
+    /// Returns the triangles with a moving corner: the three corners of each, then each corner's index in `ways`, or
+    /// [`NONE`]. Reduces `ways` to the last target of each vertex.
     fn corners(&mut self, problem: &Problem) -> Vec<[u32; 6]> {
         // The last target of each vertex counts.
         self.ways.reverse();
@@ -54,9 +54,8 @@ impl Moves {
     }
 }
 
-/// Vertices that an application moves, bound to a buffer of targets and to a word of a buffer that receives the share
-/// of their ways. Created by [`DeviceMesh::bind_move`](crate::gpu::DeviceMesh::bind_move); it can be used after the
-/// mesh is dropped.
+/// Vertices that an application moves, bound to a buffer of targets and to a word that receives the share of their
+/// ways. Created by [`DeviceMesh::bind_move`](crate::gpu::DeviceMesh::bind_move), and usable after the mesh is dropped.
 ///
 /// ```no_run
 /// # use gpu_smooth::{*, gpu::*};
@@ -144,15 +143,15 @@ impl BoundMove {
         Ok(Self { find_share, move_vertices, bind_group, count })
     }
 
-    /// Encodes the move. When the command buffer runs, the vertices go straight toward the targets that are then in the
-    /// buffer, all by the same share of their ways, as far as the triangles allow. The share is written to the buffer;
-    /// 1 means that the targets were reached.
+    /// Encodes the move. When the command buffer runs, the vertices go straight toward the targets then in the buffer,
+    /// all by an equal share of their ways, as far as the triangles allow. The share, an f32 from 0 to 1, is written to
+    /// the bound word; 1 means that the vertices reached their targets.
     ///
-    /// It is the move of [`Topology::move_clamped`](crate::Topology::move_clamped), with the positions on the device.
-    /// No triangle inverts or becomes flat, neither on the way nor at the end. None gets an inverse mean ratio above
-    /// the bound, except for rounding (a relative error of 5e-7 times the ratio). A triangle that already has a larger
-    /// one does not get worse. Triangles that are inverted beforehand, or have an inverse mean ratio above 500,000, do
-    /// not limit the move. If a target is not finite, its vertex stays.
+    /// The move follows the rules of [`Topology::move_clamped`](crate::Topology::move_clamped), with the positions on
+    /// the device. No triangle inverts or becomes flat, neither on the way nor at the end. No triangle gets an inverse
+    /// mean ratio above the bound, except for rounding (a relative error of 5e-7 times the ratio). Triangles already
+    /// beyond the bound never deteriorate. Triangles that are inverted beforehand, or have an inverse mean ratio above
+    /// 500,000, do not limit the move. If a target is not finite, its vertex stays.
     pub fn encode_move(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth move");
         passes.run(&self.find_share, None, |pass| {

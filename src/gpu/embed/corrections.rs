@@ -1,5 +1,5 @@
-//! Corrections from coarser levels, for sweeps that an application encodes. The line search along them runs on the
-//! device.
+//! Corrections from coarser levels, for sweeps that an application encodes. The line search along a correction runs on
+//! the device.
 
 use crate::error::GpuError;
 use crate::gpu::device::readback::Waiting;
@@ -15,8 +15,8 @@ use crate::gpu::scope::scoped;
 use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 
-/// Coarser levels of a mesh on the device, and a line search along their corrections that reads nothing back. It
-/// encodes a fixed number of trials; those after the last one needed do nothing.
+/// Coarser levels of a mesh on the device, and a line search along their corrections that reads nothing back. The
+/// search encodes a fixed number of trials; surplus trials do nothing.
 pub(crate) struct EncodedCorrections {
     levels: Levels,
     begin: Pipeline,
@@ -25,7 +25,7 @@ pub(crate) struct EncodedCorrections {
 }
 
 impl EncodedCorrections {
-    /// Builds the levels for the positions on the device, after all work submitted before has been done.
+    /// Builds the levels for the positions on the device, after waiting for all submitted work.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the levels are too large for the device, or another [`GpuError`] if the device fails.
@@ -53,7 +53,7 @@ impl EncodedCorrections {
         Ok(Self { levels, begin, judge, bind_group })
     }
 
-    /// Encodes one correction. It does nothing if the sweeps have ended by the stop rule.
+    /// Encodes one correction, which does nothing if the sweeps have ended by the stop rule.
     pub(crate) fn encode(&self, passes: &mut Passes<'_>) {
         self.run(passes, &self.begin);
         self.levels.encode_gradient(passes);

@@ -17,8 +17,8 @@ use crate::gpu::scope::scoped_to_buffer;
 use crate::layout::Problem;
 
 /// A vertex buffer bound to a mesh for import and export. Created by
-/// [`DeviceMesh::bind_vertices`](crate::gpu::DeviceMesh::bind_vertices). It keeps the buffer alive, and can be used after
-/// the mesh is dropped.
+/// [`DeviceMesh::bind_vertices`](crate::gpu::DeviceMesh::bind_vertices). A `BoundVertices` keeps the buffer alive, and
+/// is usable after the mesh is dropped.
 pub struct BoundVertices {
     import: Pipeline,
     export: Pipeline,
@@ -66,18 +66,18 @@ impl BoundVertices {
         Ok(Self { import: import?, export: export?, bind_group, count })
     }
 
-    /// Encodes the import. When the command buffer runs, the positions of all vertices, fixed ones included, are read
-    /// from the application's vertex buffer.
+    /// Encodes the import. When the command buffer runs, the positions of all vertices, including fixed vertices, are
+    /// read from the application's vertex buffer.
     ///
-    /// A vertex whose floats are those of the last export has not been moved by the application, and keeps its full
-    /// precision. Any other floats count as moved by the application. A position that is not finite is ignored, and the
-    /// vertex stays where it was.
+    /// A vertex whose floats equal its position as exported has not been moved by the application, and keeps its full
+    /// precision. Different floats count as a move by the application. Infinite and NaN coordinates are ignored, and
+    /// the vertex stays in place.
     ///
-    /// If several buffers show one mesh, import only the one that was exported to last. Two buffers that take turns,
-    /// each imported and exported in its own frames, would take the mesh back to where it was two frames ago.
+    /// If several buffers show one mesh, import only the buffer of the last export. If two buffers take turns, each
+    /// imported and exported in its own frames, the mesh would go back to its positions two frames ago.
     ///
-    /// The application may have inverted triangles. Sweeps then invert no others and improve the rest, and
-    /// [`UntanglingSweeps`](crate::gpu::UntanglingSweeps) turn them back.
+    /// The application may have inverted triangles. Sweeps then invert no further triangles and improve the rest, and
+    /// [`UntanglingSweeps`](crate::gpu::UntanglingSweeps) turn inverted triangles back.
     pub fn encode_import(&self, encoder: &mut impl Encoder) {
         self.encode(encoder, "gpu-smooth import", &self.import);
     }

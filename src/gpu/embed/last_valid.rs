@@ -19,12 +19,12 @@ use crate::layout::Problem;
 use crate::options::Options;
 use crate::run::Plan;
 
-/// The positions of a mesh when it was last valid. Created by
-/// [`DeviceMesh::keep_last_valid`](crate::gpu::DeviceMesh::keep_last_valid); it can be used after the mesh is dropped.
+/// The last valid positions of a mesh. Created by
+/// [`DeviceMesh::keep_last_valid`](crate::gpu::DeviceMesh::keep_last_valid), and usable after the mesh is dropped.
 pub struct LastValid {
     evaluation: Dispatches,
     restore: Pipeline,
-    /// A bind group and the number of vertices of each part of the mesh.
+    /// Bind group and number of vertices, per part of the mesh.
     parts: Vec<(wgpu::BindGroup, u32)>,
 }
 
@@ -55,12 +55,12 @@ impl LastValid {
         Ok(Self { evaluation, restore, parts })
     }
 
-    /// Encodes saving or restoring. When the command buffer runs, the positions of a mesh without inverted and flat
-    /// triangles are saved. A mesh with such triangles goes back to the positions that were saved last or, if none
-    /// were, to those that were uploaded. All its vertices go back, including those of the boundary. To be encoded
-    /// before the export, so that the application's vertices go back too.
+    /// Encodes saving or restoring. When the command buffer runs, the positions of a mesh without inverted or flat
+    /// triangles are saved. A mesh with inverted or flat triangles returns to the last saved positions or, before the
+    /// first save, to the uploaded positions. All vertices return, including the boundary. Encode this call before the
+    /// export, so that the application's vertices return too.
     ///
-    /// It takes an evaluation of f and a copy of the positions, which is less time than a sweep.
+    /// The call evaluates f and copies positions, which takes the device less time than a sweep.
     pub fn encode_restore_last_valid(&self, encoder: &mut impl Encoder) {
         let mut passes = encoder.passes("gpu-smooth restore");
         self.evaluation.encode_evaluation(&mut passes);

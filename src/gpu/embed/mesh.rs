@@ -29,49 +29,56 @@ use crate::run::Plan;
 use crate::run::multilevel::NONE;
 use crate::targets::Targets;
 
-/// A mesh on the device. Its triangles stay the same; its vertices are moved by [`Sweeps`](crate::gpu::Sweeps), or by the
-/// application through [`BoundVertices::encode_import`]. Several meshes can be on a device at once.
+/// A mesh on an application's device. The triangles never change. [`Sweeps`](crate::gpu::Sweeps) move the vertices, and
+/// so does the application through [`BoundVertices::encode_import`] and [`BoundMove::encode_move`]. A device may hold
+/// several meshes.
 ///
-/// AREA, RMS and SHAPE-SIZE measure by the mean area of the triangles as they were uploaded. Where the application makes
-/// the whole mesh larger or smaller, IMR, AR and EDGE suit better.
+/// Positions are stored with 48 bits per coordinate. Except in a browser, any thread may call the methods, and objects
+/// that are bound to the mesh may outlive the `DeviceMesh`.
+///
+/// AREA, RMS and SHAPE-SIZE compare triangles with their mean area at upload. If the application scales the whole mesh,
+/// IMR, AR and EDGE suit better.
 pub struct DeviceMesh {
     pub(crate) gpu: Gpu,
     pub(crate) problem: Problem,
     pub(crate) buffers: MeshBuffers,
-    /// The application's number of each vertex.
+    /// Map from device numbers to the application's vertex indices.
     numbers: wgpu::Buffer,
     vertex_count: usize,
-    /// The number on the device of each vertex of the application, or [`NONE`].
+    /// Map from the application's vertex indices to device numbers; [`NONE`] for a vertex of no triangle.
     places: Vec<u32>,
     pins: Pins,
-    /// The vertices that no triangle uses: they are not on the device.
+    /// Vertices that no triangle uses, with their points. The device does not store these vertices.
     unused: Vec<(u32, [f64; 2])>,
 }
 
 impl DeviceMesh {
-    /// Prepares a mesh and uploads it. Blocks while it colors the vertices.
+    /// Prepares a mesh and uploads it. Blocks the thread for about half a microsecond per vertex (on two cores), mostly
+    /// to color the vertices on the CPU.
     ///
-    /// The vertices of [`Mesh::fixed`] always stay, as those of the boundary do. [`pin`](Self::pin) holds others for a while.
+    /// Sweeps never move the vertices of [`Mesh::fixed`] and of the boundary. [`pin`](Self::pin) holds further vertices
+    /// for a while.
     ///
     /// # Errors
-    /// [`SmoothError::Mesh`] if the mesh cannot be smoothed, [`SmoothError::Gpu`] with
-    /// [`GpuError::Limit`] if it is too large for the device.
+    /// [`SmoothError::Mesh`] if the mesh cannot be smoothed. [`SmoothError::Gpu`] with [`GpuError::Limit`] or
+    /// [`GpuError::TooLarge`] if the mesh is too large for the device, or with another [`GpuError`] if the device
+    /// fails.
     pub fn new(gpu: &Gpu, mesh: &Mesh) -> Result<Self, SmoothError> {
         Self::made(gpu, mesh, None)
     }
 
-    /// Does what [`Self::new`] does, for a mesh whose elements are to look like `targets`, which has one for each vertex. Takes
-    /// 16 bytes more on the device for each vertex. f, and the worst inverse mean ratio, are those of the triangles as
-    /// targets show them.
+    /// Prepares and uploads a mesh like [`new`](Self::new), with a target shape and size for each vertex. Targets take
+    /// 16 more bytes on the device per vertex. f and the worst inverse mean ratio are measured on triangles transformed
+    /// by their target maps.
     ///
     /// # Errors
-    /// Those of [`Self::new`], and [`MeshError::ValueCount`] if there is not one target for each vertex.
+    /// The errors of [`new`](Self::new), and [`MeshError::ValueCount`] if the numbers of targets and vertices differ.
     pub fn with_targets(gpu: &Gpu, mesh: &Mesh, targets: &Targets) -> Result<Self, SmoothError> {
         Self::made(gpu, mesh, Some(targets))
     }
 
-    /// Does what [`Self::with_targets`] does, with the layout and the targets of a problem of the same mesh. Only a mesh with fixed vertices
-    /// is laid out again.
+    /// Uploads a mesh with the layout and the targets of `prepared`, a problem of the same mesh. Only meshes with fixed
+    /// vertices or without free vertices are laid out again.
     pub(crate) fn of(gpu: &Gpu, mesh: &Mesh, prepared: &Problem) -> Result<Self, SmoothError> {
         if mesh.fixed.is_empty() && prepared.free_count() > 0 {
             return Self::uploaded(gpu, mesh, prepared.clone());
@@ -116,30 +123,34 @@ impl DeviceMesh {
         Ok(Self { gpu, problem, buffers, numbers, vertex_count, places, pins, unused })
     }
 
-    /// Pins vertices (zero-based): sweeps leave them where they are, beside those of [`Mesh::fixed`] and of the boundary,
-    /// which always stay. Takes effect in what is submitted after the call. Only what changes is sent to the device.
+    /// Pins vertices, given by zero-based index: sweeps leave pinned vertices in place, like the vertices of
+    /// [`Mesh::fixed`] and of the boundary. Pins hold in submissions after the call. Only changed vertices are sent to
+    /// the device.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is pinned then.
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then nothing is pinned. [`SmoothError::Gpu`]
+    /// if the device fails.
     pub fn pin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
         self.change_pins(Change::Pin(&places))
     }
 
-    /// Lets go of vertices that were pinned. Those of [`Mesh::fixed`] and of the boundary stay all the same. Takes effect in
-    /// what is submitted after the call.
+    /// Unpins vertices in submissions after the call. Vertices of [`Mesh::fixed`] and of the boundary stay fixed. If a
+    /// mask holds an unpinned vertex, encode [`BoundMask::encode_mask`] again.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing is let go then.
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then nothing is unpinned. [`SmoothError::Gpu`]
+    /// if the device fails.
     pub fn unpin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
         self.change_pins(Change::Unpin(&places))
     }
 
-    /// Pins these vertices and lets go of all others that were pinned. Takes effect in what is submitted after the call.
+    /// Pins exactly the given vertices and unpins all others, in later submissions.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have; nothing changes then.
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then no pin changes. [`SmoothError::Gpu`] if
+    /// the device fails.
     pub fn set_pinned(&self, vertices: &[u32]) -> Result<(), SmoothError> {
         let places = self.free_places(vertices)?;
         self.change_pins(Change::PinThese(&places))
@@ -149,12 +160,14 @@ impl DeviceMesh {
         Ok(self.pins.change(&self.gpu, &self.problem, &self.buffers, change)?)
     }
 
-    /// Binds a mask that holds vertices, in a buffer of the application: a u32 for each vertex of the mesh, from byte
-    /// `offset` on, not 0 for a vertex that is to stay. Kernels of the application may write it.
+    /// Binds a mask in a buffer of the application: one u32 per vertex of the mesh from byte `offset` on, nonzero for a
+    /// vertex that must stay in place. `offset` is a multiple of 4. Kernels of the application may write the mask, and
+    /// [`BoundMask::encode_mask`] applies it.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`, [`GpuError::Limit`] if the
-    /// mask is larger than what the device binds at once.
+    /// [`GpuError::Buffer`] if the buffer is too small, was created without `STORAGE`, or belongs to another device, or
+    /// if `offset` is not a multiple of 4. [`GpuError::Limit`] if the mask exceeds the device's
+    /// `max_storage_buffer_binding_size`.
     pub fn bind_mask(&self, buffer: &wgpu::Buffer, offset: u64) -> Result<BoundMask, GpuError> {
         let Self { gpu, problem, buffers, numbers, pins, vertex_count, .. } = self;
         let bytes = (*vertex_count as u64).saturating_mul(size_of::<u32>() as u64);
@@ -162,50 +175,52 @@ impl DeviceMesh {
         BoundMask::new(gpu, problem, buffers, numbers, pins, &window)
     }
 
-    /// Keeps the positions of the mesh as long as it is valid, so that a frame in which the application has inverted
-    /// triangles can be taken back. Takes 16 bytes on the device for each vertex.
+    /// Creates a store for the last valid positions, to undo frames in which the application has inverted triangles.
+    /// Takes 16 bytes on the device per vertex.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// [`GpuError::OutOfMemory`], or another [`GpuError`] if the device fails.
     pub fn keep_last_valid(&self) -> Result<LastValid, GpuError> {
         LastValid::new(&self.gpu, &self.problem, &self.buffers)
     }
 
-    /// The numbers on the device of those of the vertices that could be moved by sweeps.
+    /// Returns the device numbers of the given vertices, without vertices of the boundary and of no triangle, which no
+    /// sweep moves.
     fn free_places(&self, vertices: &[u32]) -> Result<Vec<u32>, MeshError> {
         let free = self.problem.free_count() as u32;
         let places: Result<Vec<u32>, _> = vertices.iter().map(|&v| self.place_of(v)).collect();
         Ok(places?.into_iter().filter(|&place| place < free).collect())
     }
 
-    /// Number of vertices, those of no triangle too, and of triangles.
+    /// Returns the numbers of vertices, including vertices of no triangle, and of triangles.
     pub fn size(&self) -> MeshSize {
         MeshSize { vertices: self.vertex_count, triangles: self.problem.triangles().len() }
     }
 
-    /// Binds an application's vertex buffer to the mesh, so that encoding a frame makes no resources. Several buffers
+    /// Binds an application's vertex buffer to the mesh, so that encoding a frame creates no resources. Several buffers
     /// can be bound, for frames that overlap.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was made without `STORAGE`, or if rounding to single
-    /// precision would invert triangles of the mesh as it was uploaded,
-    /// [`GpuError::Limit`] if it is larger than what the device binds at once.
+    /// [`GpuError::Buffer`] if the buffer is too small, was created without `STORAGE`, or belongs to another device; if
+    /// stride, offset, origin or scale are out of range; or if rounding to single precision would invert triangles of
+    /// the uploaded mesh (the message names a remedy). [`GpuError::Limit`] if the vertices exceed the device's
+    /// `max_storage_buffer_binding_size`.
     pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
         BoundVertices::new(gpu, problem, *vertex_count, buffers, numbers, vertices)
     }
 
-    /// Binds a place for the objectives of the vertices as they are drawn: of the floats in an application's vertex buffer, in its
-    /// origin and scale, with all that their rounding does to triangles. [`BoundObjective::encode_objective`] is to be encoded
-    /// behind the export, and writes [`ObjectiveValues`](crate::gpu::ObjectiveValues) to byte `values.1` of the buffer `values.0`, those
-    /// that `options` track; of no sweeps, so that [`stop`](crate::gpu::ObjectiveValues::stop) is 0.
+    /// Binds the objectives of the vertices as drawn: of the floats in an application's vertex buffer, whose rounding
+    /// may distort or invert triangles. Encode [`BoundObjective::encode_objective`] after the export. The objectives
+    /// that `options` track are written as [`ObjectiveValues`](crate::gpu::ObjectiveValues) to byte `values.1` of the
+    /// buffer `values.0`. No sweeps belong to these values, so [`stop`](crate::gpu::ObjectiveValues::stop) is 0.
     ///
-    /// Takes 16 bytes on the device for each vertex, 32 with targets. A vertex whose floats are not finite is judged as it was when they
-    /// last were.
+    /// Takes 16 more bytes on the device per vertex, 32 with targets. If a vertex has floats that are not finite, its
+    /// last finite floats are evaluated.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] for an option out of its range, and those of [`bind_vertices`](Self::bind_vertices) and
-    /// [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective).
+    /// [`SmoothError::Option`] if an option is out of its range, and the errors of
+    /// [`bind_vertices`](Self::bind_vertices) and [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective).
     pub fn bind_drawn_objective(
         &self,
         vertices: &VertexBuffer<'_>,
@@ -214,7 +229,8 @@ impl DeviceMesh {
     ) -> Result<BoundObjective, SmoothError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
         options.check_with(&self.features())?;
-        // An import passes over a vertex whose floats are those that its position has in the buffer: no vertex is here.
+        // An import skips a vertex whose floats equal its exported position. No vertex is drawn at this point, so the
+        // first import skips none.
         let nowhere = vec![DVec2::splat(1e30); problem.positions().len()];
         let drawn = buffers.with_positions(gpu, problem, &nowhere)?;
         let bound = BoundVertices::new(gpu, problem, *vertex_count, &drawn, numbers, vertices)?;
@@ -223,36 +239,39 @@ impl DeviceMesh {
         Ok(BoundObjective::new(gpu, &run, Some(bound), values.0, values.1)?)
     }
 
-    /// Lists the features that sweeps have by this mesh.
+    /// Lists the features that the mesh adds to sweeps: targets, if present.
     pub(super) fn features(&self) -> Vec<Feature> {
         Feature::present([(Feature::Targets, self.problem.targets().is_some())])
     }
 
-    /// The vertices of a triangle, counter-clockwise, given its number on the device
-    /// ([`ObjectiveValues::worst_triangle`](crate::gpu::ObjectiveValues::worst_triangle)). `None` if there is no such triangle.
+    /// Returns the application's vertex indices of a triangle, counter-clockwise, given the triangle's device number
+    /// ([`ObjectiveValues::worst_triangle`](crate::gpu::ObjectiveValues::worst_triangle)). `None` for a number out of
+    /// range.
     pub fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
         let corners = self.problem.triangles().get(triangle as usize)?;
         Some(corners.map(|v| self.problem.vertices()[v as usize]))
     }
 
     /// Binds vertices that the application moves toward targets, as far as the triangles allow: for handles, holes and
-    /// boundaries that a user drags. Target i, of `vertices[i]`, is vertex i of the buffer `targets`, in the coordinates
-    /// that its origin and scale say. When the command buffer of a frame runs, the share of the ways that was gone is
-    /// written to byte `share.1` of the buffer `share.0`, as an f32 from 0 to 1.
+    /// boundaries that a user drags. The target of `vertices[i]` is vertex i of the buffer `targets`, in the
+    /// coordinates of its origin and scale. When a frame's command buffer runs, the share of the ways that the vertices
+    /// have gone is written to byte `share.1` of the buffer `share.0`, as an f32 from 0 to 1.
     ///
-    /// To be called when a drag begins; as it goes on, the application writes the targets and encodes
-    /// [`BoundMove::encode_move`]. Fixed vertices and those of the boundary can be moved too. Sweeps move a free
-    /// vertex on from where it was dragged, unless it is [pinned](Self::pin). If a vertex is listed twice,
-    /// its last target counts. A vertex of no triangle is not on the device, and no target moves it.
+    /// Call this method when a drag begins. During the drag, the application writes targets and encodes
+    /// [`BoundMove::encode_move`] in each frame. Fixed vertices and vertices of the boundary can be moved too. Unless a
+    /// free vertex is [pinned](Self::pin), sweeps move it away from its target. If a vertex is listed twice, the last
+    /// target counts. Vertices without triangles stay, as the device does not store them.
     ///
-    /// No triangle gets an inverse mean ratio above `worst_imr`. One of about 8 leaves room for sweeps, and for the
-    /// rounding of vertex buffers; above 100,000 it counts as 100,000, which single precision surely tells from flat.
+    /// No triangle gets an inverse mean ratio above `worst_imr`. A bound of about 8 leaves room for sweeps and for the
+    /// rounding of vertex buffers. Bounds above 100,000 count as 100,000, up to which single precision reliably
+    /// distinguishes a triangle from a flat one.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] for a vertex that the mesh does not have, [`MeshError::BoundNotANumber`] if
-    /// `worst_imr` is NaN, [`GpuError::Buffer`] if a buffer is too small, misaligned or was made without `STORAGE`, if both
-    /// are the same, or if the origin or the scale is not usable; [`GpuError::Limit`] if the vertices have more triangles
-    /// than the device binds at once, with 24 bytes for each.
+    /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex. [`MeshError::BoundNotANumber`] if `worst_imr`
+    /// is NaN. [`GpuError::Buffer`] if a buffer is too small, misaligned, was created without `STORAGE`, or belongs to
+    /// another device; if targets and share use one buffer; or if the origin or the scale is invalid.
+    /// [`GpuError::Limit`] if the triangles around the vertices, at 24 bytes each, exceed the device's
+    /// `max_storage_buffer_binding_size`.
     pub fn bind_move(
         &self,
         vertices: &[u32],
@@ -275,15 +294,15 @@ impl DeviceMesh {
         Ok(BoundMove::new(gpu, problem, buffers, moves, targets, share.0, share.1)?)
     }
 
-    /// The number on the device of a vertex of the application, or [`NONE`].
+    /// Returns the device number of a vertex of the application; [`NONE`] for a vertex of no triangle.
     fn place_of(&self, vertex: u32) -> Result<u32, MeshError> {
         let vertices = self.vertex_count;
         let place = self.places.get(vertex as usize).copied();
         place.ok_or(MeshError::IndexOutOfRange { triangle: None, vertex, vertices })
     }
 
-    /// Reads the positions back, in the order and unit of the mesh; blocks until the device has done all that was
-    /// submitted. A vertex of no triangle is where the mesh had it.
+    /// Returns the positions in the order and unit of the mesh. Polls the device and blocks until it has finished all
+    /// submitted work. A vertex of no triangle has its position at upload.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -291,8 +310,8 @@ impl DeviceMesh {
         blocking(self.wait_for_points(Waiting::Block))
     }
 
-    /// As [`read_points`](Self::read_points), without blocking: completes once the application has polled the device.
-    /// The copy is submitted when the future is first polled.
+    /// Returns the positions like [`read_points`](Self::read_points), without blocking. The copy is submitted when the
+    /// future is first polled; the future completes after the application has polled the device.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -313,7 +332,7 @@ impl DeviceMesh {
     }
 }
 
-/// Returns the mesh without fixed vertices: on a device they are laid out as free ones, and held by pins.
+/// Returns the mesh without fixed vertices, which a device lays out as free vertices and holds by pins.
 fn unconstrained(mesh: &Mesh) -> Cow<'_, Mesh> {
     match mesh.fixed.is_empty() {
         true => Cow::Borrowed(mesh),
@@ -325,7 +344,7 @@ fn unconstrained(mesh: &Mesh) -> Cow<'_, Mesh> {
     }
 }
 
-/// Returns the number in the problem of each vertex of the mesh; [`NONE`] for one that no triangle uses.
+/// Returns the number of each mesh vertex in the problem; [`NONE`] for a vertex of no triangle.
 fn places(mesh: &Mesh, problem: &Problem) -> Vec<u32> {
     let mut places = vec![NONE; mesh.points.len()];
     for (place, &v) in (0..).zip(problem.vertices()) {

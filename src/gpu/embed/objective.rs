@@ -1,4 +1,4 @@
-//! Writes objectives into a buffer of the application.
+//! Evaluates objectives and writes them into a buffer of the application.
 
 use std::sync::Arc;
 
@@ -23,8 +23,8 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::{Plan, Stop};
 
-/// The values that [`BoundObjective::encode_objective`] writes: how good the mesh is at that point of the command
-/// buffer. The application casts the bytes that it reads back to this struct, or declares it in its shaders:
+/// Objectives and quality of a mesh at one point of a command buffer, as [`BoundObjective::encode_objective`] writes
+/// them. An application casts the bytes that it reads back to this struct, or declares the struct in its shaders:
 ///
 /// ```wgsl
 /// struct ObjectiveValues {
@@ -39,24 +39,26 @@ use crate::run::{Plan, Stop};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ObjectiveValues {
-    /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]. Only the scheme's base metric is evaluated, and
-    /// the others are 0, unless [`Options::track_all`](crate::Options::track_all) is set. While triangles are inverted,
-    /// f by a metric with a barrier ([`Metric::has_barrier`]) is meaningless.
+    /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`]. Without
+    /// [`Options::track_all`](crate::Options::track_all), only the scheme's base metric is evaluated, and all other
+    /// values are 0. While triangles are inverted, f by a metric with a barrier ([`Metric::has_barrier`]) is
+    /// meaningless.
     pub f: [f32; Metric::ALL.len()],
-    /// Number of triangles that are inverted or flat, in single precision.
+    /// Number of triangles that are inverted or flat in single precision.
     pub inverted: u32,
-    /// The largest inverse mean ratio of a triangle, 1 for an equilateral one; infinite while triangles are inverted.
+    /// The largest inverse mean ratio of a triangle: at least 1, the ratio of an equilateral triangle. Infinite while
+    /// triangles are inverted or flat.
     pub worst_imr: f32,
-    /// The reason why sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) have ended, so that further ones
-    /// do nothing: 1 for [`Stop::Reached`], 2 for [`Stop::Converged`], 3 for [`Stop::Stalled`] and 4 for
-    /// [`Stop::MaxSweeps`]; see [`stop`](Self::stop). 0 if they have not ended, and always for sweeps that do not end
-    /// by the stop rule.
+    /// The code of the reason why sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) have ended, so that
+    /// further sweeps do nothing: 1 for [`Stop::Reached`], 2 for [`Stop::Converged`], 3 for [`Stop::Stalled`] and 4 for
+    /// [`Stop::MaxSweeps`]; see [`stop`](Self::stop). 0 while sweeps continue, and for sweeps without a stop rule.
     pub stop: u32,
-    /// Number of sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) since they began, or began again
-    /// because the mesh was changed. Always 0 for sweeps that do not end by the stop rule.
+    /// Number of sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) since their start or the last restart
+    /// by a change of the mesh. Always 0 for sweeps without a stop rule.
     pub sweeps: u32,
-    /// The number on the device of the triangle with the largest inverse mean ratio or, while there are inverted or
-    /// flat triangles, of one of these. [`DeviceMesh::corners`](crate::gpu::DeviceMesh::corners) returns its vertices.
+    /// Device number of the triangle with the largest inverse mean ratio. While there are inverted or flat triangles,
+    /// the number of an inverted or flat triangle. [`DeviceMesh::corners`](crate::gpu::DeviceMesh::corners) returns its
+    /// vertices.
     pub worst_triangle: u32,
 }
 
@@ -66,43 +68,44 @@ impl ObjectiveValues {
         self.f[metric as usize]
     }
 
-    /// Returns why the sweeps have ended, so that further ones do nothing; `None` if they have not ended.
+    /// Returns the reason why the sweeps have ended, so that further sweeps do nothing; `None` while the sweeps go on.
     pub fn stop(&self) -> Option<Stop> {
         Stop::from_code(self.stop)
     }
 
-    /// Whether the sweeps have ended because f is as near to its limit as
-    /// [`Stopping::Tolerance`](crate::Stopping::Tolerance) asks.
+    /// Returns whether the sweeps have ended by convergence: f is within
+    /// [`Stopping::Tolerance`](crate::Stopping::Tolerance) of its limit, or no longer changes.
     pub fn has_converged(&self) -> bool {
         self.stop() == Some(Stop::Converged)
     }
 }
 
-/// Part of a buffer of the application that receives objectives: those of one [`Sweeps`](crate::gpu::Sweeps), or those
-/// of the vertices as they are drawn. Created by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
-/// [`DeviceMesh::bind_drawn_objective`](crate::gpu::DeviceMesh::bind_drawn_objective); it can be used after these are
-/// dropped.
+/// Objectives bound to a range of an application's buffer: objectives of the device's mesh or of the vertices as drawn.
+/// Created by [`Sweeps::bind_objective`](crate::gpu::Sweeps::bind_objective) or
+/// [`DeviceMesh::bind_drawn_objective`](crate::gpu::DeviceMesh::bind_drawn_objective); usable after the sweeps and the
+/// mesh are dropped.
 pub struct BoundObjective {
     evaluation: Arc<Dispatches>,
     publish: Pipeline,
     bind_group: wgpu::BindGroup,
-    /// The application's vertices, if these are evaluated instead of the positions of the mesh.
+    /// The application's vertices, if the objectives are of the vertices as drawn. `None` for the positions of the
+    /// mesh.
     drawn: Option<BoundVertices>,
 }
 
-/// The data that sweeps and objectives of one scheme on one mesh share.
+/// Sweeps and evaluations of one scheme on one mesh.
 pub(crate) struct Run {
-    /// The dispatches of the sweeps, and of the evaluations by which they are judged.
+    /// Dispatches of the sweeps and, for sweeps with a stop rule, of the evaluation after each sweep.
     pub(crate) dispatches: Arc<Dispatches>,
-    /// The dispatches of evaluations that the application asks for. They are separate if sweeps are judged, as the
-    /// history of a judged run has one evaluation for each sweep.
+    /// Dispatches of evaluations that the application encodes. Sweeps with a stop rule need separate ones, as their
+    /// history has exactly one evaluation per sweep.
     pub(crate) evaluation: Arc<Dispatches>,
     pub(crate) changes: Changes,
     pub(crate) triangles: usize,
 }
 
 impl Run {
-    /// Makes a run with evaluations only.
+    /// Creates a run without sweeps, for evaluations alone.
     pub(crate) fn of_no_sweeps(
         gpu: &Gpu,
         problem: &Problem,
@@ -114,14 +117,14 @@ impl Run {
         Ok(Self { dispatches: Arc::clone(&evaluation), evaluation, changes, triangles })
     }
 
-    /// Whether the sweeps end by a stop rule.
+    /// Returns whether the sweeps end by the stop rule.
     pub(crate) fn is_judged(&self) -> bool {
         !Arc::ptr_eq(&self.dispatches, &self.evaluation)
     }
 }
 
 impl BoundObjective {
-    /// Binds the evaluation of the mesh or, if given, of the vertices that `drawn` imports.
+    /// Binds the evaluation of the mesh, or of the vertices that `drawn` imports, to byte `offset` of `buffer`.
     pub(crate) fn new(
         gpu: &Gpu,
         run: &Run,
@@ -158,10 +161,10 @@ impl BoundObjective {
         Ok(Self { evaluation: Arc::clone(evaluation), publish, bind_group, drawn })
     }
 
-    /// Encodes an evaluation, and the writing of its [`ObjectiveValues`]. It evaluates the mesh as it is at this point
-    /// of the command buffer, or, if made by
-    /// [`DeviceMesh::bind_drawn_objective`](crate::gpu::DeviceMesh::bind_drawn_objective), the vertices in the vertex buffer
-    /// at this point.
+    /// Encodes an evaluation of the mesh at this point of the command buffer, and the writing of its
+    /// [`ObjectiveValues`]. If the objective was made by
+    /// [`DeviceMesh::bind_drawn_objective`](crate::gpu::DeviceMesh::bind_drawn_objective), the vertices that the vertex
+    /// buffer then holds are evaluated instead.
     pub fn encode_objective(&self, encoder: &mut impl Encoder) {
         if let Some(drawn) = &self.drawn {
             drawn.encode_import(encoder);

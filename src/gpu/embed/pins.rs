@@ -1,4 +1,4 @@
-//! Vertices that are held in place, by the host or by a mask of the application.
+//! Holds vertices in place, by pins of the host and by masks of the application.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -19,26 +19,26 @@ use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::{scoped, scoped_to_buffer};
 use crate::layout::Problem;
 
-/// The vertices that the host holds, by their numbers on the device.
+/// Vertices that the host holds in place, by device number.
 pub(crate) struct Pins {
-    /// For each vertex that is free or held, the flags [`FIXED`] and [`PINNED`].
+    /// The flags [`FIXED`] and [`PINNED`] of each free or held vertex.
     flags: Mutex<Vec<u8>>,
     /// On the device: one bit for each vertex, set if it is fixed or pinned.
     bits: wgpu::Buffer,
 }
 
-/// A vertex of [`Mesh::fixed`](crate::Mesh::fixed), which always stays.
+/// Flag of the vertices of [`Mesh::fixed`](crate::Mesh::fixed), which stay whatever the pins.
 const FIXED: u8 = 1;
 const PINNED: u8 = 2;
 
-/// Changes with at most this number of unchanged vertices between them are sent in one write, together with these
-/// vertices. A separate write would cost more.
+/// Largest difference between the numbers of two changed vertices that are sent in one write, together with the
+/// unchanged vertices between them. A separate write would cost more.
 const GAP: u32 = 64;
-/// The most writes in one call. More changes than that are sent as one range.
+/// Upper limit of ranges per call. If changes are in more ranges, a single range spans all of them.
 const WRITES: usize = 32;
 
 impl Pins {
-    /// Holds the fixed vertices of a mesh.
+    /// Creates pins that hold the vertices with the device numbers `fixed`.
     pub(crate) fn new(
         gpu: &Gpu,
         problem: &Problem,
@@ -61,7 +61,8 @@ impl Pins {
         self.flags.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Pins vertices and unpins others, and sends what has changed to the device.
+    /// Applies a change, sends the changed vertices to the device, and counts a change of the mesh. Does nothing if no
+    /// vertex changes.
     pub(crate) fn change(
         &self,
         gpu: &Gpu,
@@ -102,7 +103,7 @@ impl Pins {
         mesh.changes.count(gpu)
     }
 
-    /// Sends the flags of vertices that have changed to the device. `changed` is in ascending order.
+    /// Sends ring starts and bits of the vertices in `changed`, which is in ascending order, to the device.
     fn send(
         &self,
         gpu: &Gpu,
@@ -131,21 +132,21 @@ impl Pins {
     }
 }
 
-/// A change of which vertices are pinned, named by their numbers on the device.
+/// A change of the pinned vertices, given by device numbers.
 pub(crate) enum Change<'a> {
     Pin(&'a [u32]),
     Unpin(&'a [u32]),
-    /// Pin these and unpin all others.
+    /// Pins exactly these vertices and unpins all others.
     PinThese(&'a [u32]),
 }
 
-/// Returns the vertices that have a flag, in ascending order.
+/// Returns the vertices with a flag, in ascending order.
 fn with(flags: &[u8], flag: u8) -> Vec<u32> {
     let has = |&(_, flags): &(u32, &u8)| flags & flag != 0;
     (0..).zip(flags).filter(has).map(|(place, _)| place).collect()
 }
 
-/// Returns the ranges, ends included, in which these vertices are sent.
+/// Returns the ranges, with inclusive ends, in which these vertices are sent.
 fn ranges(places: &[u32]) -> Vec<(u32, u32)> {
     let parts = places.chunk_by(|&a, &b| b - a <= GAP);
     let ends = |part: &[u32]| part.first().copied().zip(part.last().copied());
@@ -156,8 +157,8 @@ fn ranges(places: &[u32]) -> Vec<(u32, u32)> {
     }
 }
 
-/// A mask in a buffer of the application, which holds vertices. Created by
-/// [`DeviceMesh::bind_mask`](crate::gpu::DeviceMesh::bind_mask); it can be used after the mesh is dropped.
+/// A mask in an application's buffer, which holds vertices in place. Created by
+/// [`DeviceMesh::bind_mask`](crate::gpu::DeviceMesh::bind_mask), and usable after the mesh is dropped.
 pub struct BoundMask {
     pipeline: Pipeline,
     bind_group: wgpu::BindGroup,
@@ -191,10 +192,10 @@ impl BoundMask {
         Ok(Self { pipeline, bind_group, count })
     }
 
-    /// Encodes the holding of vertices by the mask. When the command buffer runs, vertices whose word in the mask is
-    /// not 0 are held from then on, and the others are released. Vertices of [`Mesh::fixed`](crate::Mesh::fixed) and
-    /// those that are [pinned](crate::gpu::DeviceMesh::pin) stay held. To be encoded again after the mask has changed,
-    /// and after a vertex that the mask holds was unpinned.
+    /// Encodes the holding of vertices by the mask. When the command buffer runs, vertices with a nonzero word in the
+    /// mask become held, and all other vertices are released. Vertices of [`Mesh::fixed`](crate::Mesh::fixed) and
+    /// [pinned](crate::gpu::DeviceMesh::pin) vertices stay held. Encode this call again after any change of the mask,
+    /// and after unpinning a masked vertex.
     pub fn encode_mask(&self, encoder: &mut impl Encoder) {
         encoder.passes("gpu-smooth mask").run(&self.pipeline, None, |pass| {
             pass.set_bind_group(0, &self.bind_group, &[]);

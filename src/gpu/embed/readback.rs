@@ -11,12 +11,12 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
 use crate::gpu::scope::{scoped, scoped_to_buffer};
 
-/// The most copies in flight. A device that is further behind gets no more until one arrives.
+/// Limit of the copies in flight. A device with three copies in flight gets no further copy.
 const COPIES: usize = 3;
 
-/// Reads part of a buffer in each frame, such as [`ObjectiveValues`](crate::gpu::ObjectiveValues), the vertices or the
-/// share of a move. Neither call ever waits: [`latest`](Self::latest) returns the values that have arrived, usually
-/// those of a frame or two ago. The application polls the device, as it does for its own work.
+/// Reads a range of a buffer in each frame: [`ObjectiveValues`](crate::gpu::ObjectiveValues), the vertices or the share
+/// of a move. Calls in a frame never wait: [`latest`](Self::latest) returns the values that have arrived, usually from
+/// a frame or two ago. The application polls the device, as for its own work.
 ///
 /// ```no_run
 /// # use gpu_smooth::{*, gpu::*};
@@ -40,10 +40,10 @@ pub struct Readback<T> {
     offset: u64,
     bytes: u64,
     copies: Vec<Staged>,
-    /// Number of copies that were encoded.
+    /// Number of copies encoded so far.
     encoded: u64,
     latest: Vec<T>,
-    /// The number of the latest copy that has arrived.
+    /// Number of the latest copy that has arrived, counted from 0.
     arrived: Option<u64>,
 }
 
@@ -52,7 +52,7 @@ pub struct Readback<T> {
 struct Staged {
     staging: wgpu::Buffer,
     state: Arc<AtomicU8>,
-    /// The number of the copy that it holds.
+    /// Number of the copy in the staging buffer.
     number: u64,
 }
 
@@ -61,8 +61,8 @@ const UNDER_WAY: u8 = 1;
 const ARRIVED: u8 = 2;
 const LOST: u8 = 3;
 
-/// Reports that a copy has arrived. If it never will, as the command buffer was dropped, its staging buffer becomes
-/// free again.
+/// Reports the arrival of a copy. If the copy never arrives, as the command buffer was dropped, the staging buffer
+/// becomes free again.
 struct Arrival(Arc<AtomicU8>);
 
 impl Arrival {
@@ -81,12 +81,13 @@ impl Drop for Arrival {
 }
 
 impl<T: Pod> Readback<T> {
-    /// Reads `count` values from byte `offset` on, of a buffer of the application. Staging takes three times their size
-    /// on the device.
+    /// Creates a readback of `count` values from byte `offset` of an application's buffer. Three staging buffers take
+    /// three times the size of the values.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, was created without `COPY_SRC` or belongs to another device, or
-    /// if the offset or the size of a value is not a multiple of 4. Another [`GpuError`] if the device fails.
+    /// [`GpuError::Buffer`] if the buffer is too small, was created without `COPY_SRC`, or belongs to another device;
+    /// if the offset or the total size, in bytes, is no multiple of 4; or if the size is 0. Another [`GpuError`] if the
+    /// device fails.
     pub fn new(
         gpu: &Gpu,
         buffer: &wgpu::Buffer,
@@ -119,7 +120,7 @@ impl<T: Pod> Readback<T> {
             };
             (0..COPIES).map(copy).collect()
         })?;
-        // A copy that is never submitted: it finds a buffer of another device now, not in a frame.
+        // This copy is never submitted, and finds a buffer of another device now, not in a frame.
         scoped_to_buffer(&gpu.device, || {
             let descriptor = wgpu::CommandEncoderDescriptor::default();
             let mut encoder = gpu.device.create_command_encoder(&descriptor);
@@ -130,14 +131,14 @@ impl<T: Pod> Readback<T> {
         Ok(Self { source, offset, bytes, copies, encoded, latest, arrived })
     }
 
-    /// Encodes a copy of the buffer as it is at this point of the command buffer. Does nothing while three copies are
-    /// in flight, because the device is behind or nobody polls it. A copy in an encoder that is not submitted has no
-    /// effect.
+    /// Encodes a copy of the bound range at this point of the command buffer. Does nothing while three copies are in
+    /// flight, because the device is behind or nobody polls the device. Copies in encoders that are never submitted
+    /// have no effect.
     pub fn encode_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
         self.encode(encoder);
     }
 
-    /// Encodes a copy if fewer than three are in flight, and returns its number, from 0 on.
+    /// Encodes a copy and returns its number, counted from 0; `None` while three copies are in flight.
     pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Option<u64> {
         let Self { source, offset, bytes, copies, encoded, .. } = self;
         let copy = copies.iter_mut().find(|copy| copy.state.load(Ordering::Acquire) == FREE)?;
@@ -151,7 +152,7 @@ impl<T: Pod> Readback<T> {
         Some(copy.number)
     }
 
-    /// Returns the values that have arrived last; `None` before the first have arrived.
+    /// Returns the values of the latest copy that has arrived; `None` before the first arrival. Never waits.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -160,17 +161,18 @@ impl<T: Pod> Readback<T> {
         Ok(self.arrived.is_some().then_some(&self.latest[..]))
     }
 
-    /// Returns the number of copies encoded after the one that [`latest`](Self::latest) has returned.
+    /// Returns how many copies were encoded after the copy that [`latest`](Self::latest) returned: 0 for the newest.
+    /// `None` before the first arrival.
     pub fn age(&self) -> Option<u64> {
         self.arrived.map(|number| self.encoded - 1 - number)
     }
 
-    /// Returns the number of the copy that has arrived last.
+    /// Returns the number of the latest copy that has arrived, counted from 0.
     pub(crate) fn arrived(&self) -> Option<u64> {
         self.arrived
     }
 
-    /// Reads the copies that have arrived.
+    /// Takes the values of the copies that have arrived, and frees their staging buffers.
     fn collect(&mut self) -> Result<(), GpuError> {
         let lost = || GpuError::Lost("a buffer could not be read back".into());
         for copy in &self.copies {

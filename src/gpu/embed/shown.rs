@@ -1,4 +1,4 @@
-//! Debug output of the handles: their name and what tells one from another, but not their buffers.
+//! Debug output of handles: the type's name and distinguishing values, without buffers.
 
 use std::fmt;
 

@@ -21,8 +21,8 @@ use crate::options::{Feature, Method, Options};
 use crate::run::corrections::plan_steps::OMEGA_BETWEEN;
 use crate::run::{Plan, Step};
 
-/// A scheme bound to a mesh on the device. It encodes sweeps into the application's command encoder; it never submits
-/// and never reads back. Sweeps made by [`new`](Self::new) never end. Those made by
+/// A scheme bound to a mesh on the device. Its methods encode sweeps into the application's command encoder, and
+/// neither submit nor read back. Sweeps made by [`new`](Self::new) never end. Sweeps made by
 /// [`until_converged`](Self::until_converged) do nothing once they have converged.
 ///
 /// Several schemes can be bound to one mesh, and the sweeps of several meshes interleaved in one encoder.
@@ -48,30 +48,31 @@ impl Sweeps {
     /// Binds the scheme, relaxation and derivatives of `options` to a mesh.
     ///
     /// The stop rule and the goal of `options` have no effect. Metrics without a barrier (RMS, EDGE, AREA) leave no
-    /// triangle with an inverse mean ratio above 30 unless its patch had a worse one.
+    /// triangle with an inverse mean ratio above 30, unless the patch already had a larger ratio.
     ///
-    /// With [`Method::Multilevel`] each sweep is followed by a correction from coarser levels. A large mesh is near its
-    /// optimum after a dozen of these pairs instead of hundreds of sweeps, and a pair takes as long as some four
-    /// sweeps. The default, [`Method::Auto`], means sweeps alone here. A correction is taken only if it lowers f,
-    /// inverts no triangle and breaks no shape guard; while a triangle is inverted, there are no corrections. EDGE and
-    /// alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)).
+    /// With [`Method::Multilevel`], a correction from coarser levels follows each sweep. A large mesh is near its
+    /// optimum after a dozen corrected sweeps instead of hundreds of sweeps alone. A corrected sweep takes as long as
+    /// some four sweeps alone. The default, [`Method::Auto`], means sweeps alone here. A correction is taken only if it
+    /// lowers f, inverts no triangle and breaks no shape guard; corrections pause while a triangle is inverted. EDGE
+    /// and alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)).
     ///
-    /// The levels are built for the positions that are on the device at the call, which waits for all work submitted
-    /// before. Their aggregates stay the same; each correction fits the levels to the present sizes of elements. Levels
-    /// take some 70 bytes on the device for each vertex.
+    /// The call builds the levels for the positions on the device, after it has waited for all submitted work and read
+    /// back a number for each free vertex. The aggregates of the levels never change; each correction fits the levels
+    /// to the present sizes of elements. Levels take some 70 bytes on the device per vertex.
     ///
-    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] does so beforehand.
+    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] compiles kernels beforehand. Any thread may call
+    /// this function.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] for an option out of its range, or for corrections of a scheme that has none;
-    /// [`GpuError::Limit`] if the levels are too large for the device; another [`GpuError`] if the device fails. A
-    /// browser returns an error for sweeps with corrections, which only [`new_async`](Self::new_async) makes there.
+    /// [`SmoothError::Option`] for an option out of range, or a scheme whose corrections cannot be encoded;
+    /// [`GpuError::Limit`] if the levels are too large for the device; [`GpuError::WouldBlock`] for corrected sweeps in
+    /// a browser, where [`new_async`](Self::new_async) makes them; another [`GpuError`] if the device fails.
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         blocking(Self::by(mesh, options, Ending::Never, Waiting::Block))
     }
 
-    /// Binds options to a mesh like [`new`](Self::new), without blocking. If the sweeps are to be corrected, the future
-    /// completes once the application has polled the device; otherwise it completes at once.
+    /// Binds options to a mesh like [`new`](Self::new), without blocking. If the sweeps are corrected, the future
+    /// completes after the application has polled the device, otherwise at once.
     ///
     /// # Errors
     /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
@@ -79,16 +80,17 @@ impl Sweeps {
         Self::by(mesh, options, Ending::Never, Waiting::Await).await
     }
 
-    /// Binds options to a mesh like [`new`](Self::new), but the sweeps end by the stop rule, judged on the device: once
-    /// f is within [`Stopping::Tolerance`](crate::Stopping::Tolerance) of its limit, or after [`Options::max_sweeps`], encoded sweeps do nothing.
-    /// [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) tells whether they have ended. Sweeps
-    /// that do nothing take a GPU next to no time; a software driver, which starts
-    /// every kernel all the same, takes a fifth of the usual time for them.
+    /// Binds options to a mesh like [`new`](Self::new), for sweeps that end by the stop rule on the device. Once f is
+    /// within [`Stopping::Tolerance`](crate::Stopping::Tolerance) of its limit, or after [`Options::max_sweeps`],
+    /// encoded sweeps do nothing. [`ObjectiveValues::stop`](crate::gpu::ObjectiveValues::stop) reports the end. Ended
+    /// sweeps take a GPU next to no time; a software driver still starts every kernel, and takes a fifth of the usual
+    /// time.
     ///
-    /// The sweeps begin again when the application changes the mesh: when an import finds a vertex that was moved,
-    /// after a move with a share above 0, after [`DeviceMesh::pin`] and similar calls, after a change of a mask, and
-    /// after [`restart`](Self::restart). Sweeps of another scheme on the mesh do not count as a change. Each sweep is
-    /// followed by an evaluation of f, which takes about a sixth of its time.
+    /// The sweeps begin again when the application changes the mesh: an import finds a moved vertex, a move has a share
+    /// above 0, [`UntanglingSweeps`](crate::gpu::UntanglingSweeps) find inverted triangles,
+    /// [`LastValid`](crate::gpu::LastValid) restores positions, a mask or the pins change, or
+    /// [`restart`](Self::restart) is called. Sweeps of other schemes on the mesh restart nothing. An evaluation of f
+    /// follows each sweep and takes about a sixth of the sweep's time.
     ///
     /// # Errors
     /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
@@ -96,8 +98,8 @@ impl Sweeps {
         blocking(Self::by(mesh, options, Ending::Judged, Waiting::Block))
     }
 
-    /// Binds options to a mesh like [`until_converged`](Self::until_converged), without blocking. If the sweeps are to
-    /// be corrected, the future completes once the application has polled the device; otherwise it completes at once.
+    /// Binds options to a mesh like [`until_converged`](Self::until_converged), without blocking. If the sweeps are
+    /// corrected, the future completes after the application has polled the device, otherwise at once.
     ///
     /// # Errors
     /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
@@ -145,15 +147,15 @@ impl Sweeps {
         Ok(Self { gpu: gpu.clone(), run, judged, corrections, done: 0 })
     }
 
-    /// Encodes `sweeps` further sweeps, each followed by its correction if the sweeps are corrected. The scheme
-    /// continues where the last call left it, even if that encoder was not submitted: alternating metrics and
-    /// over-relaxation count the sweeps that were encoded.
+    /// Encodes `sweeps` further sweeps, each followed by a correction if the sweeps are corrected. Alternating metrics
+    /// and over-relaxation count encoded sweeps, so the scheme continues from the last call even if that call's encoder
+    /// was never submitted.
     pub fn encode_sweeps(&mut self, encoder: &mut impl Encoder, sweeps: u32) {
         self.encode(&mut encoder.passes(LABEL), sweeps);
     }
 
-    /// Encodes as many sweeps as a budget has time for, and returns their number. They are measured if the budget
-    /// is [timed](Budget::timed_by) by the device.
+    /// Encodes as many sweeps as a budget allows, and returns their number. The device measures the sweeps if the
+    /// budget is [timed](Budget::timed_by) by the device. Never waits.
     pub fn encode_within(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -193,27 +195,28 @@ impl Sweeps {
         }
     }
 
-    /// The scheme of the sweeps.
+    /// Returns the scheme of the sweeps.
     pub fn scheme(&self) -> &Scheme {
         &self.run.dispatches.plan.scheme
     }
 
-    /// Starts the scheme again, with plain sweeps before over-relaxed ones. To be called when the application has moved
-    /// vertices far. Sweeps [`until_converged`](Self::until_converged), of all schemes on the mesh, begin again in
-    /// submissions after the call.
+    /// Starts the scheme again, with plain sweeps before over-relaxed sweeps. Call this method after the application
+    /// has moved vertices far. For sweeps [`until_converged`](Self::until_converged), later submissions restart the
+    /// stop rule of all schemes on the mesh.
     pub fn restart(&mut self) {
         self.done = 0;
         if self.judged.is_some() {
-            // Only a lost device refuses this, and no sweep begins on it.
+            // Only a lost device refuses the write, and no sweep runs on a lost device.
             let _ = self.run.changes.count(&self.gpu);
         }
     }
 
-    /// Binds a part of a buffer of the application for the objectives: the bytes of
-    /// [`ObjectiveValues`](crate::gpu::ObjectiveValues) from byte `offset` on.
+    /// Binds a range of an application's buffer for the objectives: [`ObjectiveValues`](crate::gpu::ObjectiveValues)
+    /// from byte `offset` on, a multiple of 4.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, misaligned or was created without `STORAGE`.
+    /// [`GpuError::Buffer`] if the buffer is too small, was created without `STORAGE`, or belongs to another device, or
+    /// if `offset` is not a multiple of 4. Another [`GpuError`] if the device fails.
     pub fn bind_objective(
         &self,
         buffer: &wgpu::Buffer,
@@ -223,7 +226,7 @@ impl Sweeps {
     }
 }
 
-/// The step of sweeps between corrections.
+/// Returns the step of sweeps between corrections.
 fn between(plan: &Plan) -> Step {
     plan.base_step(OMEGA_BETWEEN)
 }

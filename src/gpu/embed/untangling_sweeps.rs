@@ -17,12 +17,12 @@ use crate::gpu::mesh::Parts;
 use crate::gpu::scope::scoped;
 use crate::layout::{Problem, target_areas};
 
-/// Number of vertices or triangles that an invocation visits.
+/// Vertices or triangles that one invocation visits, as software drivers are slow to start invocations.
 const EACH: u32 = 8;
 
-/// Sweeps that turn inverted triangles back, bound to a mesh on the device. They serve frames in which the application
-/// has moved vertices so that triangles are inverted. They may be encoded in every frame, before ordinary sweeps. If no
-/// triangle is inverted or flat, they check the triangles once and leave every position as it is, bit by bit.
+/// Sweeps that turn inverted triangles back, bound to a mesh on the device. Frames in which the application may invert
+/// triangles encode them before ordinary sweeps. If no triangle is inverted or flat, untangling sweeps check the
+/// triangles once and change no bit of any position.
 ///
 /// ```no_run
 /// # use gpu_smooth::{*, gpu::*};
@@ -40,34 +40,34 @@ const EACH: u32 = 8;
 /// # }
 /// ```
 ///
-/// A sweep moves vertices by Newton steps on the energy of [`untangle`](crate::untangle()), at first those around
-/// inverted triangles, and with each further sweep also those one edge farther off. Held vertices stay. A triangle
-/// whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
+/// A sweep moves vertices by Newton steps on the energy of [`untangle`](crate::untangle()): at first the vertices of
+/// inverted triangles, and in each further sweep also the vertices one edge farther off. Held vertices stay in place. A
+/// triangle whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
 ///
-/// There is no proof that every mesh that can be untangled is.
-/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) tells how many triangles are left. Inverted means
-/// the same as there: the area is not positive in single precision.
+/// No proof guarantees that sweeps untangle every mesh that can be untangled.
+/// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. Sweeps and
+/// values count areas that are not positive in single precision as inverted.
 pub struct UntanglingSweeps {
     find: Pipeline,
     regularize: Pipeline,
     untangle: Pipeline,
-    /// One bind group, or one for each part of the mesh.
+    /// Bind groups by part of the mesh.
     bind_groups: Vec<wgpu::BindGroup>,
     dispatches: Dispatches,
 }
 
-/// The dispatches, with one uniform each, in this order: those of the triangles for the first of the sweeps that are
-/// encoded together, those of the triangles for further sweeps, and those of the vertices.
+/// Uniforms of all dispatches, in this order: triangle parts in a call's first sweep, triangle parts in further sweeps,
+/// vertex parts by color.
 struct Dispatches {
     triangles: Vec<Range<u32>>,
-    /// The color, the part of the mesh and the vertices of each dispatch.
+    /// Color, part of the mesh and vertex range of each dispatch.
     vertices: Vec<(u32, usize, Range<u32>)>,
-    /// Bytes from one uniform to the next.
+    /// Distance between successive uniforms, in bytes.
     stride: u32,
 }
 
 impl Dispatches {
-    /// Lists the dispatches, and returns them with the bytes of their uniforms.
+    /// Returns the dispatches, and the bytes of their uniforms.
     fn new(problem: &Problem, parts: &Parts, alignment: u32) -> (Self, Vec<u8>) {
         let stride = alignment.max(size_of::<UntanglePart>() as u32);
         let free = problem.free_count() as u32;
@@ -104,14 +104,14 @@ impl Dispatches {
 }
 
 impl UntanglingSweeps {
-    /// Binds untangling to a mesh on the device, where it takes 8 more bytes for each vertex. The areas that triangles
-    /// should have are those of the mesh as it was uploaded. Only their ratios matter, and only while triangles are
-    /// inverted.
+    /// Binds untangling to a mesh on the device, at 8 more bytes per vertex. The desired areas of triangles follow the
+    /// areas at upload. Only ratios of desired areas matter, and only while triangles are inverted.
     ///
-    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`](crate::Gpu::prepare) does so beforehand.
+    /// Compiles kernels that are not compiled yet; [`Gpu::prepare`](crate::Gpu::prepare) compiles kernels beforehand.
+    /// Any thread may call this function.
     ///
     /// # Errors
-    /// A [`GpuError`] if the device fails or is out of memory.
+    /// [`GpuError::OutOfMemory`], or another [`GpuError`] if the device fails.
     pub fn new(mesh: &DeviceMesh) -> Result<Self, GpuError> {
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
         let form = buffers.parts.form();
@@ -125,7 +125,7 @@ impl UntanglingSweeps {
         let vertices: Vec<TangledVertex> = vertices.collect();
         let targets = problem.positions().len() as u32;
         let params = Params::outside_runs(targets);
-        // Vertices are marked by numbers of sweeps, from 1 on. None is marked yet.
+        // Vertices are marked by numbers of sweeps, from 1 on. No vertex is marked yet.
         let tangle = Tangle { valid: 0, inverted: 0, depth: 0, epsilon: 0.0, sweep: 1, since: 1 };
         let bind_groups = scoped(&gpu.device, || {
             let params = filled(gpu, "untangling params", &[params], Usage::UNIFORM);
@@ -152,8 +152,8 @@ impl UntanglingSweeps {
         Ok(Self { find, regularize, untangle, bind_groups, dispatches })
     }
 
-    /// Encodes at most this many sweeps. When the command buffer runs, they end as soon as no triangle is inverted or
-    /// flat.
+    /// Encodes this many untangling sweeps. When the command buffer runs, the sweeps do nothing once no triangle is
+    /// inverted or flat.
     ///
     /// Each sweep begins with a check of all triangles. Sweeps that find inverted triangles count as a change of the
     /// mesh: sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) begin again.
@@ -174,7 +174,8 @@ impl UntanglingSweeps {
         }
     }
 
-    /// Encodes one dispatch, in the given part of the mesh, with the uniform of the given number.
+    /// Encodes a dispatch that visits `invocations` vertices or triangles, [`EACH`] per invocation, with the bind group
+    /// `part` and the uniform `uniform`, both by index.
     fn run(
         &self,
         passes: &mut Passes<'_>,

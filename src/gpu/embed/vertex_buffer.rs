@@ -9,8 +9,8 @@ use crate::gpu::embed::window::Window;
 use crate::layout::Problem;
 use crate::topology::predicates::not_positive;
 
-/// The layout and coordinates of an application's vertex buffer: x and y of vertex i are two f32, the first at byte
-/// `offset + i * stride`. Made by [`new`](Self::new); all else has defaults.
+/// The layout and coordinates of an application's vertex buffer: x and y of vertex i are two f32 from byte
+/// `offset + i * stride` on. [`new`](Self::new) sets buffer and stride; all other values have defaults.
 ///
 /// Data behind y within the stride, such as a z, are neither read nor written.
 #[derive(Clone, Copy, Debug)]
@@ -23,19 +23,21 @@ pub struct VertexBuffer<'a> {
 }
 
 impl<'a> VertexBuffer<'a> {
-    /// Describes vertices in `buffer`, which has usage `STORAGE` in addition to what the application needs. `stride` is
-    /// the number of bytes from one vertex to the next, a multiple of 4, at least 8.
+    /// Describes vertices in `buffer`, which needs the usage `STORAGE` in addition to the application's usages.
+    /// `stride` is the distance between successive vertices in bytes: a multiple of 4, at least 8. Binding calls check
+    /// both values.
     pub fn new(buffer: &'a wgpu::Buffer, stride: u64) -> Self {
         Self { buffer, stride, offset: 0, origin: [0.0; 2], scale: 1.0 }
     }
 
-    /// Sets the number of bytes before the x of vertex 0, a multiple of 4. 0 by default.
+    /// Sets the offset of vertex 0 in bytes: a multiple of 4, 0 by default.
     pub fn offset(self, offset: u64) -> Self {
         Self { offset, ..self }
     }
 
     /// Sets the point of the mesh, in its unit, that becomes 0, 0 in the buffer: (0, 0) by default. Coordinates far
-    /// from it have few digits in an f32: a mesh of a town, in meters of a country's grid, needs an origin in the town.
+    /// from the origin have few digits in an f32: a mesh of a town, in meters of a country's grid, needs an origin in
+    /// the town.
     pub fn origin(self, origin: [f64; 2]) -> Self {
         Self { origin, ..self }
     }
@@ -46,9 +48,9 @@ impl<'a> VertexBuffer<'a> {
     }
 
     /// Returns the `max_storage_buffer_binding_size`, in bytes, that a device needs to bind the coordinates of this
-    /// many vertices, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). If a buffer holds many meshes one
-    /// after the other, only the part of this mesh is bound, so `offset` hardly matters. [`u64::MAX`] if no device can
-    /// bind it.
+    /// many vertices, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). If a buffer holds several meshes,
+    /// only the vertices of this mesh are bound, so `offset` matters only modulo 256. If the size overflows, returns
+    /// [`u64::MAX`].
     pub fn binding_size(vertices: usize, stride: u64, offset: u64) -> u64 {
         // A binding starts at a multiple of the device's alignment, at most 256 bytes.
         (vertices.saturating_sub(1) as u64)
@@ -56,11 +58,11 @@ impl<'a> VertexBuffer<'a> {
             .saturating_add(8 + offset % ALIGNMENT)
     }
 
-    /// Returns the coordinates of the buffer.
+    /// Returns the coordinate system of the buffer, after a check of the problem's triangles in single precision.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the origin or the scale is not usable, or if rounding to single precision would invert
-    /// or flatten a triangle of the problem.
+    /// [`GpuError::Buffer`] if the origin is not finite, if the scale is not positive and finite, or if rounding to
+    /// single precision would invert or flatten a triangle of the problem.
     pub(crate) fn coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
         let given = self.unjudged_coordinates(problem)?;
         let (center, size) = problem.normalization();
@@ -84,10 +86,10 @@ impl<'a> VertexBuffer<'a> {
         Err(GpuError::Buffer(format!("{problem_text}: {remedy}")))
     }
 
-    /// Returns the coordinates of the buffer, even if rounding inverts triangles of the problem.
+    /// Returns the coordinate system of the buffer, even if rounding inverts triangles of the problem.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the origin or the scale is not usable.
+    /// [`GpuError::Buffer`] unless the origin is finite and the scale is positive and finite.
     pub(crate) fn unjudged_coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
         let refuse = |problem: String| Err(GpuError::Buffer(problem));
         let Self { origin, scale, .. } = *self;
@@ -102,10 +104,10 @@ impl<'a> VertexBuffer<'a> {
         Ok(Coordinates { center, scale: size / scale })
     }
 
-    /// Returns the number of words from one vertex to the next.
+    /// Returns the stride in words of four bytes.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the stride is not a multiple of 4, or out of its range.
+    /// [`GpuError::Buffer`] if the stride is not a multiple of 4, below 8 bytes, or above 16 GiB.
     pub(crate) fn words(&self) -> Result<u32, GpuError> {
         let stride = self.stride;
         if !stride.is_multiple_of(4) || stride < 8 {
@@ -118,10 +120,10 @@ impl<'a> VertexBuffer<'a> {
         })
     }
 
-    /// Returns the part of the buffer that holds this many vertices.
+    /// Returns the window on this many vertices of the buffer.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] or [`GpuError::Limit`] if this part cannot be bound.
+    /// [`GpuError::Buffer`] or [`GpuError::Limit`] if the window cannot be bound.
     pub(crate) fn window(&self, gpu: &Gpu, vertices: usize) -> Result<Window<'a>, GpuError> {
         let steps = vertices.saturating_sub(1) as u64;
         let bytes = steps.saturating_mul(self.stride).saturating_add(8);
@@ -129,7 +131,7 @@ impl<'a> VertexBuffer<'a> {
     }
 }
 
-/// How normalized positions p are stored in a vertex buffer: as `center + p / scale`.
+/// The coordinate system of a vertex buffer, in which a normalized position p is stored as `center + p / scale`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coordinates {
     pub(crate) center: DVec2,
@@ -137,8 +139,8 @@ pub(crate) struct Coordinates {
 }
 
 impl Coordinates {
-    /// Counts the triangles that are counter-clockwise, but no longer so once their vertices are rounded to single
-    /// precision. `None` if a number is then not finite, or the scale vanishes.
+    /// Counts the triangles that are counter-clockwise until rounding to single precision inverts or flattens them.
+    /// `None` if a rounded coordinate is not finite, or if the scale or its reciprocal is no normal float.
     fn inverted_by_rounding(&self, problem: &Problem) -> Option<usize> {
         let is_usable = |x: f64| (x as f32).is_normal();
         if !is_usable(self.scale) || !is_usable(1.0 / self.scale) {

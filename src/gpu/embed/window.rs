@@ -1,4 +1,4 @@
-//! The part of an application's buffer that a kernel can access.
+//! Checks and binds the range of an application's buffer that a kernel accesses.
 
 use wgpu::BufferUsages as Usage;
 
@@ -10,12 +10,13 @@ pub(crate) struct Window<'a> {
     buffer: &'a wgpu::Buffer,
     start: u64,
     size: u64,
-    /// Number of words from the start of the binding to the range.
+    /// Offset of the range in the binding, in words.
     pub(crate) offset: u32,
 }
 
 impl<'a> Window<'a> {
-    /// Checks that `bytes` bytes from `offset` on can be bound as storage.
+    /// Checks that `bytes` bytes from `offset` on can be bound as storage. Returns [`GpuError::Buffer`] if the usage,
+    /// the alignment or the size is wrong, and [`GpuError::Limit`] if the range exceeds a binding.
     pub(crate) fn new(
         gpu: &Gpu,
         buffer: &'a wgpu::Buffer,

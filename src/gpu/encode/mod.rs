@@ -1,4 +1,4 @@
-//! Encodes kernels: all in one pass, or each in a pass that is timed.
+//! Encodes kernels into one pass, or each kernel into a timed pass.
 
 mod passes;
 mod timestamps;

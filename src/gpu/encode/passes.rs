@@ -1,4 +1,4 @@
-//! Compute passes: one for all kernels, or one for each that is timed.
+//! Compute passes: a single pass for a call, or a timed pass per kernel.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,11 +6,11 @@ use crate::error::GpuError;
 use crate::gpu::encode::timestamps::{Spans, Timestamps};
 use crate::gpu::kernels::pipelines::Pipeline;
 
-/// A target for the kernels of this library: an application's [`wgpu::CommandEncoder`], a [`wgpu::ComputePass`] that it
+/// A destination for kernels: an application's [`wgpu::CommandEncoder`], a [`wgpu::ComputePass`] that the application
 /// has begun, or an encoder whose kernels are timed, made by [`Timestamps::time`].
 ///
-/// In a pass of the application, each call sets another pipeline and bind group 0. A dispatch sees what earlier ones
-/// have written, including the application's own.
+/// In a pass of the application, each call sets another pipeline and bind group 0. A dispatch sees all writes of
+/// earlier dispatches, including the application's own.
 pub trait Encoder: sealed::Target {}
 
 impl Encoder for wgpu::CommandEncoder {}
@@ -54,22 +54,22 @@ impl Given for wgpu::ComputePass<'_> {
     }
 }
 
-/// The compute passes that the kernels of one call are encoded into.
+/// The compute passes into which one call encodes its kernels.
 pub struct Passes<'e>(State<'e>);
 
-// Not boxed, as it lives on the stack during one call, and a box would cost more than the space.
+// Not boxed: the value lives on the stack during one call, and a box would cost more than the space.
 #[allow(clippy::large_enum_variant)]
 enum State<'e> {
-    /// All kernels in one pass. `set` is the pipeline that is set in it.
+    /// All kernels in one pass. `set` is the current pipeline of the pass.
     One { pass: wgpu::ComputePass<'e>, set: Option<wgpu::ComputePipeline> },
-    /// All kernels in a pass of the application.
+    /// All kernels in the application's pass. `set` holds the pipeline last set by this call.
     Given { pass: &'e mut (dyn Given + 'e), set: Option<wgpu::ComputePipeline> },
-    /// Each kernel in a pass of its own, as core WebGPU takes timestamps only at the ends of a pass.
+    /// Each kernel in its own pass, as core WebGPU takes timestamps only at the ends of passes.
     Timed { encoder: &'e mut wgpu::CommandEncoder, timestamps: &'e mut Timestamps },
 }
 
 impl<'e> Passes<'e> {
-    /// Begins one pass for all kernels, which is timed as a whole.
+    /// Begins one pass for all kernels, with timestamps at the two ends of the pass.
     pub(crate) fn clocked(
         encoder: &'e mut wgpu::CommandEncoder,
         label: &'static str,
@@ -89,7 +89,7 @@ impl<'e> Passes<'e> {
         Self(State::Timed { encoder, timestamps })
     }
 
-    /// Encodes a kernel: `dispatch` binds and dispatches.
+    /// Encodes a kernel: `dispatch` binds and dispatches. `color` is the color of a sweep, for timestamps.
     pub(crate) fn run(
         &mut self,
         pipeline: &Pipeline,
@@ -133,8 +133,8 @@ impl<'e> Passes<'e> {
     }
 }
 
-/// An application's encoder in which the kernels of this library are timed. All calls of this library that take an
-/// encoder accept it. It dereferences to the encoder, so that the application can encode untimed work of its own.
+/// An application's encoder in which the kernels of this library are timed. All encoding calls of this library accept a
+/// `Timed`. A `Timed` dereferences to the encoder, so that the application can encode untimed work of its own.
 pub struct Timed<'t> {
     encoder: &'t mut wgpu::CommandEncoder,
     timestamps: &'t mut Timestamps,
@@ -161,7 +161,8 @@ impl sealed::Target for Timed<'_> {
 }
 
 impl Timestamps {
-    /// Times the kernels that this library encodes into the application's encoder from now on. Submits nothing.
+    /// Returns an encoder in which the kernels of this library are timed. Forgets the times of an earlier encoder.
+    /// Submits nothing.
     pub fn time<'t>(&'t mut self, encoder: &'t mut wgpu::CommandEncoder) -> Timed<'t> {
         self.restart();
         Timed { encoder, timestamps: self }
@@ -169,10 +170,11 @@ impl Timestamps {
 }
 
 impl Timed<'_> {
-    /// Ends the timing and encodes the copy of the times into a buffer. Without this call only the times are lost.
+    /// Ends the timing and encodes the copy of the times into a buffer. Without this call, kernels run, but their times
+    /// are lost.
     ///
     /// # Errors
-    /// A [`GpuError`] if the device fails or is out of memory.
+    /// [`GpuError::OutOfMemory`], or another [`GpuError`] if the device fails.
     pub fn resolve(self) -> Result<Spans, GpuError> {
         self.timestamps.resolve(self.encoder)
     }

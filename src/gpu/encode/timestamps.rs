@@ -1,4 +1,4 @@
-//! Measures how long the device takes for each kernel.
+//! Measures the device's time for each kernel.
 
 use wgpu::BufferUsages as Usage;
 
@@ -15,11 +15,10 @@ const SET: usize = 1024;
 /// Bytes of a span: two timestamps.
 const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 
-/// Times the kernels that this library encodes, by the device's clock. It needs a device with
+/// Measures by the device's clock how long the kernels of this library take. Needs a device with
 /// [`Features::TIMESTAMP_QUERY`](wgpu::Features::TIMESTAMP_QUERY), see [`Gpu::optional_features`].
 ///
-/// Every timed kernel gets a pass of its own, and so does each color of a sweep. A timed frame therefore takes a little
-/// longer.
+/// Each timed kernel, and each color of a sweep, gets its own pass. A timed frame therefore takes a little longer.
 ///
 /// ```no_run
 /// # use gpu_smooth::{*, gpu::*};
@@ -42,7 +41,7 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// ```
 pub struct Timestamps {
     gpu: Gpu,
-    /// The query sets. They are reused for the next encoder, and more are created when more spans are taken.
+    /// Query sets, reused for each encoder. Another set is created when the spans of an encoder exceed the sets.
     sets: Vec<wgpu::QuerySet>,
     /// The timed kernels in the order of encoding, with their colors.
     taken: Vec<(Kernel, Option<u32>)>,
@@ -50,7 +49,7 @@ pub struct Timestamps {
 }
 
 impl Timestamps {
-    /// Makes timestamps for one device. They serve any number of encoders, one after the other.
+    /// Creates timestamps for one device. The object can time many encoders in succession.
     ///
     /// # Errors
     /// [`GpuError::Feature`] if the device was created without `TIMESTAMP_QUERY`.
@@ -88,7 +87,8 @@ impl Timestamps {
         Ok(Spans { gpu: gpu.clone(), times, taken })
     }
 
-    /// Returns where a pass that is about to be encoded writes its times.
+    /// Returns the queries to which the next pass, with this kernel, writes its times. `None` if a query set could not
+    /// be created; [`resolve`](Self::resolve) then returns the error.
     pub(crate) fn next(
         &mut self,
         kernel: &Kernel,
@@ -125,21 +125,21 @@ pub struct Spans {
     taken: Vec<(Kernel, Option<u32>)>,
 }
 
-/// The time that one kernel took.
+/// The measured time of a kernel's pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
     /// The kernel; [`Kernel::label`] names it.
     pub kernel: Kernel,
-    /// The color of the vertices, from 0 on, if it is a sweep.
+    /// Color of the swept vertices, from 0 on; `None` for kernels that sweep no color.
     pub color: Option<u32>,
-    /// From the start of the first timed kernel to the start of this one, in nanoseconds.
+    /// Time from the start of the first timed kernel to the start of this kernel, in nanoseconds.
     pub start: f64,
-    /// From the start of this kernel's pass to its end, in nanoseconds.
+    /// Time from the start to the end of this kernel's pass, in nanoseconds.
     pub nanoseconds: f64,
 }
 
 impl Spans {
-    /// Reads the times, in the order of encoding. Blocks until the device has done all work submitted so far.
+    /// Returns the times in the order of encoding. Blocks until the device has finished all submitted work.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
@@ -147,7 +147,7 @@ impl Spans {
         blocking(self.wait(Waiting::Block))
     }
 
-    /// Reads the times like [`read`](Self::read), without blocking. The future completes once the application has
+    /// Returns the times like [`read`](Self::read), without blocking. The future completes once the application has
     /// polled the device.
     ///
     /// # Errors

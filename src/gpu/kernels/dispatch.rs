@@ -2,7 +2,7 @@
 
 use crate::gpu::kernels::uniforms::WORKGROUP;
 
-/// Number of workgroups along x of a dispatch that is too long for one dimension.
+/// Workgroups along x if a dispatch is too long for one dimension.
 pub(crate) const FOLD: u32 = 32768;
 
 /// Dispatches enough workgroups for `invocations`, in two dimensions if one is too short.

@@ -1,4 +1,4 @@
-//! The bind layouts: what kernels bind, each list declared once for Rust and WGSL.
+//! The bind layouts of kernels, each list of bindings declared once for Rust and WGSL.
 
 use std::fmt::Write;
 
@@ -6,16 +6,16 @@ use crate::gpu::kernels::form::Positions;
 
 /// A binding of group 0.
 pub(crate) struct Binding {
-    /// The name in WGSL, and of the field in Rust.
+    /// The name of the variable in WGSL and of the field in Rust.
     pub(crate) name: &'static str,
     pub(crate) access: Access,
-    /// The type in WGSL. It is empty for positions, whose type depends on the form of the mesh.
+    /// The type in WGSL. Empty for positions, whose type depends on the form of the mesh.
     ty: &'static str,
     /// Comment lines in WGSL.
     comment: &'static str,
 }
 
-/// How kernels access a binding.
+/// The access of kernels to a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Access {
     /// A uniform.
@@ -51,9 +51,9 @@ impl Access {
 
 /// The positions of a mesh, as kernels bind them.
 pub(crate) struct BoundPositions<'a> {
-    /// All positions or, if they take two bindings, the high parts.
+    /// The whole buffer of positions, or the high parts if positions take two bindings.
     pub(crate) whole_or_high: wgpu::BindingResource<'a>,
-    /// The low parts of positions that need two bindings. This binding follows all others.
+    /// The low parts if positions take two bindings. This binding follows all others.
     pub(crate) low: Option<wgpu::BindingResource<'a>>,
 }
 
@@ -68,7 +68,7 @@ pub(crate) trait Bindings<'a> {
 
 /// A field of [`Bindings`].
 trait Field<'a> {
-    /// Returns the resource, and adds that of low positions to `low` if there is one.
+    /// Returns the resource. If positions take two bindings, appends the low parts to `low`.
     fn resource(self, low: &mut Vec<wgpu::BindingResource<'a>>) -> wgpu::BindingResource<'a>;
 }
 
@@ -107,7 +107,7 @@ macro_rules! bind_layouts {
         impl BindLayout {
             pub(crate) const ALL: &[Self] = &[$(BindLayout::$layout),*];
 
-            /// Returns the bindings in order, without that of low positions, which comes last.
+            /// Returns the bindings in order, without the low parts of positions, whose binding follows all others.
             pub(crate) fn bindings(self) -> &'static [Binding] {
                 match self {
                     $(BindLayout::$layout => &[$(Binding {
@@ -155,7 +155,7 @@ bind_layouts! {
         params: Uniform Params,
         part: DynamicUniform Part,
         positions: Positions,
-        /// HELD is set where the vertex must stay.
+        /// Start of each free vertex's one-ring. The bit HELD is set if the vertex must stay.
         ring_start: Read array<u32>,
         ring: Read array<u32>,
         triangles: Read array<u32>,
@@ -171,7 +171,7 @@ bind_layouts! {
         /// The application's number of each vertex.
         numbers: Read array<u32>,
         vertex_buffer: ReadWrite array<f32>,
-        /// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: ReadWrite array<atomic<u32>, 2>,
     }
 
@@ -182,7 +182,7 @@ bind_layouts! {
         control: Read Control,
         /// The control of the sweeps.
         sweeps: Read Control,
-        /// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: Read array<u32, 2>,
         destination: ReadWrite array<u32>,
     }
@@ -190,47 +190,47 @@ bind_layouts! {
     /// The control of judged sweeps, and the changes of a mesh.
     Reopen, ReopenBindings, ["judged/common.wgsl"] {
         control: ReadWrite Control,
-        /// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: Read array<u32, 2>,
     }
 
-    /// A mesh, and its positions when it was valid.
+    /// A mesh, and the last valid positions of its vertices.
     Restore, RestoreBindings, ["pairs.wgsl"] {
         restore: Uniform Restore,
         positions: Positions,
         valid_positions: ReadWrite array<vec4f>,
         /// Holds the number of inverted triangles from an evaluation encoded just before.
         control: Read Control,
-        /// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: ReadWrite array<atomic<u32>, 2>,
     }
 
-    /// The vertices that are held, and a mask of an application.
+    /// Held vertices of a mesh, and a mask of an application.
     Mask, MaskBindings, [] {
         to_hold: Uniform Mask,
-        /// HELD is set where the vertex must stay.
+        /// Start of each free vertex's one-ring. The bit HELD is set if the vertex must stay.
         ring_start: ReadWrite array<u32>,
         /// The application's number of each vertex.
         numbers: Read array<u32>,
         /// One bit for each vertex, set where the host holds it.
         pins: Read array<u32>,
         mask: Read array<u32>,
-        /// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: ReadWrite array<atomic<u32>, 2>,
     }
 
-    /// A mesh, and vertices of it that an application moves.
+    /// A mesh, and the vertices that an application moves toward targets.
     Move, MoveBindings, ["pairs.wgsl", "patch.wgsl", "clamp/common.wgsl"] {
         movement: Uniform Movement,
         positions: Positions,
-        /// Six numbers for each triangle: its three vertices, counter-clockwise, and for each of them the index in
-        /// `ways`, or NONE where the vertex stays.
+        /// Six numbers for each triangle: its three vertices, counter-clockwise, then for each vertex the index in
+        /// `ways`, or NONE if the vertex stays.
         corners: Read array<u32>,
-        /// For each way: the vertex that moves, and the number of its target.
+        /// Pairs of a moving vertex and the index of the vertex's target.
         ways: Read array<vec2u>,
         targets: Read array<f32>,
         shares: ReadWrite array<f32>,
-        /// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: ReadWrite array<atomic<u32>, 2>,
     }
 
@@ -241,13 +241,13 @@ bind_layouts! {
         params: Uniform Params,
         part: DynamicUniform UntanglePart,
         positions: Positions,
-        /// HELD is set where the vertex must stay.
+        /// Start of each free vertex's one-ring. The bit HELD is set if the vertex must stay.
         ring_start: Read array<u32>,
         ring: Read array<u32>,
         triangles: Read array<u32>,
         tangle: ReadWrite Tangle,
         vertices: ReadWrite array<TangledVertex>,
-        /// Two counters: of changes by kernels to the mesh, and of changes by the host to what may move.
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: ReadWrite array<u32, 2>,
     }
 
@@ -258,7 +258,7 @@ bind_layouts! {
         params: Uniform Params,
         op: DynamicUniform FineOp,
         positions: Positions,
-        /// HELD is set where the vertex must stay.
+        /// Start of each free vertex's one-ring. The bit HELD is set if the vertex must stay.
         ring_start: Read array<u32>,
         ring: Read array<u32>,
         triangles: Read array<u32>,
@@ -274,7 +274,7 @@ bind_layouts! {
     ] {
         params: Uniform Params,
         op: DynamicUniform TransferOp,
-        /// HELD is set where the vertex must stay.
+        /// Start of each free vertex's one-ring. The bit HELD is set if the vertex must stay.
         ring_start: Read array<u32>,
         ring: Read array<u32>,
         structure: Read array<u32>,
@@ -311,14 +311,15 @@ bind_layouts! {
         positions: Positions,
         gradient: ReadWrite array<vec2f>,
         direction: ReadWrite array<vec2f>,
-        /// How far the vertices moved from one correction to the next. For an open pair: the high parts of their
-        /// positions at its start.
+        /// Moves of the free vertices from one correction to the next. For an open pair: the positions' high parts at
+        /// the start of the pair.
         steps: ReadWrite array<vec2f>,
-        /// How the gradient changed from one correction to the next. For an open pair: minus the gradient at its start.
+        /// Changes of the gradient from one correction to the next. For an open pair: minus the gradient at the start
+        /// of the pair.
         changes: ReadWrite array<vec2f>,
         /// The low parts of the vertices' positions at the start of the open pair.
         low_starts: ReadWrite array<vec2f>,
-        /// The scalars of the pairs, and behind them the partial sums.
+        /// The scalars of the pairs, followed by the partial sums.
         sums: ReadWrite array<vec2f>,
     }
 
@@ -331,18 +332,18 @@ bind_layouts! {
 }
 
 impl BindLayout {
-    /// Whether kernels of this layout bind the positions of a mesh.
+    /// Returns whether kernels of this layout bind the positions of a mesh.
     pub(crate) fn has_positions(self) -> bool {
         self.bindings().iter().any(|binding| binding.access == Access::Positions)
     }
 
-    /// How the kernels of this layout bind the positions, given the form `positions` that the mesh needs. Layouts
-    /// without positions have one form only.
+    /// Returns the form in which kernels of this layout bind positions, for a mesh that needs the form `positions`.
+    /// Layouts without positions have one form only, [`Positions::Whole`].
     pub(crate) fn sees(self, positions: Positions) -> Positions {
         if self.has_positions() { positions } else { Positions::Whole }
     }
 
-    /// Returns the access of each binding in order, including that of low positions.
+    /// Returns the access of each binding in order, including the binding of low parts.
     pub(crate) fn accesses(self, positions: Positions) -> Vec<Access> {
         let mut accesses: Vec<Access> = self.bindings().iter().map(|b| b.access).collect();
         if self.sees(positions) == Positions::InTwo {
@@ -351,7 +352,7 @@ impl BindLayout {
         accesses
     }
 
-    /// Whether a binding has this type in WGSL, or an array of it.
+    /// Returns whether a binding has the WGSL type `name`, or is an array of this type.
     pub(crate) fn has_type(self, name: &str) -> bool {
         let names = |ty: &'static str| ty.split(|c: char| !c.is_alphanumeric());
         self.bindings().iter().any(|binding| names(binding.ty).any(|found| found == name))
@@ -382,7 +383,7 @@ impl BindLayout {
     }
 }
 
-/// The most storage buffers that a kernel binds.
+/// Returns the largest number of storage buffers that a kernel binds.
 pub(crate) fn storage_bindings(positions: Positions) -> u32 {
     let count = |layout: &BindLayout| {
         layout.accesses(positions).iter().filter(|access| access.is_storage()).count() as u32

@@ -1,4 +1,4 @@
-//! The kernels: a table of them, what they bind, the structs they share with Rust, their WGSL, and their pipelines.
+//! The kernels: their table, bind layouts, structs shared with Rust, WGSL sources and pipelines.
 
 mod codes;
 pub(crate) mod dispatch;

@@ -16,7 +16,7 @@ pub(crate) struct Pipeline {
     pub(crate) raw: wgpu::ComputePipeline,
 }
 
-/// The pipelines of a device, each created when it is first requested.
+/// Pipelines of a device, each compiled at the first request.
 #[derive(Default)]
 pub(crate) struct Pipelines {
     layouts: [[OnceLock<Layout>; Positions::ALL.len()]; BindLayout::ALL.len()],
@@ -25,7 +25,7 @@ pub(crate) struct Pipelines {
     cache: Option<wgpu::PipelineCache>,
 }
 
-/// The layouts that wgpu makes of one [`BindLayout`].
+/// wgpu's bind group layout and pipeline layout for one [`BindLayout`].
 struct Layout {
     bindings: wgpu::BindGroupLayout,
     pipeline: wgpu::PipelineLayout,
@@ -59,19 +59,19 @@ impl Layout {
 }
 
 impl Pipelines {
-    /// Makes an empty set of pipelines, which will be compiled with the given cache.
+    /// Creates an empty set of pipelines, with a cache of the application for their compilation.
     pub(crate) fn with_cache(cache: wgpu::PipelineCache) -> Self {
         Self { cache: Some(cache), ..Self::default() }
     }
 
-    /// To be called in an error scope.
+    /// Returns wgpu's layouts for a bind layout, created at the first request. Must be called in an error scope.
     fn layout(&self, device: &wgpu::Device, layout: BindLayout, positions: Positions) -> &Layout {
         let positions = layout.sees(positions);
         self.layouts[layout as usize][positions as usize]
             .get_or_init(|| Layout::new(device, layout, positions))
     }
 
-    /// Binds the resources of a bind layout. To be called in an error scope.
+    /// Creates the bind group of a bind layout from its resources. Must be called in an error scope.
     pub(crate) fn bind<'a, B: Bindings<'a>>(
         &self,
         device: &wgpu::Device,
@@ -91,7 +91,7 @@ impl Pipelines {
         })
     }
 
-    /// Returns the pipeline of a kernel, which is compiled when it is first requested.
+    /// Returns the pipeline of a kernel for meshes of this form, compiled at the first request.
     pub(crate) fn get(
         &self,
         device: &wgpu::Device,
@@ -109,7 +109,7 @@ impl Pipelines {
         Ok(Pipeline { kernel: kernel.clone(), raw })
     }
 
-    /// Compiles `wgsl` with the entry point and the bindings of a kernel. To be called in an error scope.
+    /// Compiles `wgsl` with the entry point and the bindings of a kernel. Must be called in an error scope.
     pub(crate) fn compile(
         &self,
         device: &wgpu::Device,

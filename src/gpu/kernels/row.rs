@@ -12,21 +12,21 @@ pub(crate) struct Row {
     pub(crate) layout: BindLayout,
     /// Number of invocations in a workgroup.
     pub(crate) width: u32,
-    /// Whether the kernel uses target maps if there are any.
+    /// Whether the kernel's source differs for meshes with target maps.
     pub(crate) sees_targets: bool,
     pub(crate) user: User,
-    /// The source, beside that of the layout.
+    /// Sources of the kernel, appended to the files of its layout.
     pub(crate) source: &'static [Source],
 }
 
-/// The work that needs a kernel, for which the kernel is compiled beforehand.
+/// The work that needs a kernel. [`Gpu::prepare`](crate::gpu::Gpu::prepare) compiles the kernels of a user beforehand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum User {
-    /// Sweeps, and whatever else an application's frame may encode, without corrections.
+    /// Sweeps, and all other calls that an application's frame may encode, except corrections.
     Sweeps,
     /// Corrections from coarser levels.
     Corrections,
-    /// The check of the arithmetic, which is made once.
+    /// The arithmetic check of an adapter, made once.
     Check,
 }
 
@@ -44,9 +44,9 @@ pub(crate) enum Source {
     UntanglingEnergy,
 }
 
-/// Values of the arguments of a kernel, such as the metric of a sweep.
+/// Values that a kernel's arguments may take, such as the metrics of sweeps.
 pub(super) trait Arguments: Sized {
-    /// Lists the values that a run by this plan needs or, without a plan, those that tests try.
+    /// Lists the values that a run by this plan needs. Without a plan, lists the values that tests try.
     fn list(plan: Option<&Plan>) -> Vec<Self>;
 }
 
@@ -87,9 +87,9 @@ impl Arguments for Vec<Metric> {
     }
 }
 
-/// The arguments of a kernel, in one form for all kernels.
+/// Arguments of any kernel, in the form that the composition of its source reads.
 pub(crate) struct Composition {
-    /// The metrics of the kernel, which may be none.
+    /// The metrics of the kernel. Empty for kernels without a metric.
     pub(crate) metrics: Vec<Metric>,
     /// Analytic if the kernel has no choice.
     pub(crate) derivatives: Derivatives,

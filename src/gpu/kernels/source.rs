@@ -36,8 +36,8 @@ impl Kernel {
         self.composed(Positions::Whole.into())
     }
 
-    /// Returns the complete WGSL module for a mesh whose positions take two bindings, as they are more than the device
-    /// binds at once.
+    /// Returns the complete WGSL module for a mesh with too many positions for one binding, in two bindings of high and
+    /// low parts.
     pub fn wgsl_for_large_meshes(&self) -> String {
         self.composed(Positions::InTwo.into())
     }
@@ -47,8 +47,8 @@ impl Kernel {
         self.composed(MeshForm { positions: Positions::Whole, has_targets: true })
     }
 
-    /// Composes the WGSL module: first the declarations that are made of Rust's, then the files of the bind layout, then
-    /// those of the kernel.
+    /// Composes the WGSL module: constants, structs and bindings that Rust declares, then the files of the bind layout,
+    /// the access to positions and target maps, and the sources of the kernel's row.
     pub(crate) fn composed(&self, form: MeshForm) -> String {
         let mut source = constants();
         let layout = self.layout();
@@ -80,7 +80,7 @@ impl Kernel {
     }
 }
 
-/// Returns the constants that kernels share with Rust.
+/// Returns the WGSL declarations of constants that kernels share with Rust.
 fn constants() -> String {
     let mut text = String::new();
     for (name, value) in [
@@ -195,7 +195,8 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
     text
 }
 
-/// Returns the constant of the energy that untangles, which is a variant of the inverse mean ratio.
+/// Returns the eigenvalue floor for the energy of untangling: that of imr, as the energy is a variant of the inverse
+/// mean ratio.
 fn untangling_energy() -> String {
     let floor = Metric::Imr.properties().eigenvalue_floor;
     format!("const EIGENVALUE_FLOOR: f32 = {floor:?}f;\n")
@@ -237,7 +238,7 @@ fn wgsl_name(metric: Metric) -> String {
     metric.name().replace('-', "_")
 }
 
-/// Returns the slots of the history that the tracked sums belong to.
+/// Returns the WGSL constants that assign tracked sums to slots of the history.
 fn tracked_slots(metrics: &[Metric]) -> String {
     let slots: Vec<String> = metrics
         .iter()

@@ -21,8 +21,8 @@ macro_rules! source {
     };
 }
 
-/// Generates the enum of kernels and what tells their rows apart. A row has the kernel's arguments and the members of
-/// [`Row`].
+/// Generates the enum of kernels, and the functions that read the rows. A row has the kernel's arguments and the
+/// members of [`Row`].
 macro_rules! kernels {
     ($(
         $(#[doc = $doc:literal])*
@@ -63,7 +63,7 @@ macro_rules! kernels {
                 }
             }
 
-            /// Lists the kernels of a plan or, without a plan, all kernels with the arguments that tests try.
+            /// Lists the kernels of a plan. Without a plan, lists all kernels with the arguments that tests try.
             #[allow(unused_parens)]
             fn list(plan: Option<&Plan>) -> Vec<Kernel> {
                 let mut kernels = Vec::new();
@@ -110,7 +110,7 @@ kernels! {
         source: [TrackedSlots, "finish.wgsl"],
     }
 
-    /// Keeps a copy of the positions if they are the best so far.
+    /// Copies the positions of the free vertices if the base objective is the lowest so far.
     KeepBest {
         entry_point: "keep_best",
         layout: Run,
@@ -150,7 +150,8 @@ kernels! {
         source: ["publish.wgsl"],
     }
 
-    /// Makes judged sweeps begin again if an application has changed the mesh.
+    /// Restarts the stop rule of sweeps if an application has changed the mesh. Otherwise makes a run in progress skip
+    /// the next evaluation.
     Reopen {
         entry_point: "reopen",
         layout: Reopen,
@@ -160,7 +161,7 @@ kernels! {
         source: ["judged/reopen.wgsl"],
     }
 
-    /// Lets judged sweeps continue after [`Reopen`](Self::Reopen) and the evaluation that follows it.
+    /// Lets the run continue that [`Reopen`](Self::Reopen) has made skip an evaluation.
     Resume {
         entry_point: "resume",
         layout: Reopen,
@@ -190,7 +191,8 @@ kernels! {
         source: ["mask.wgsl"],
     }
 
-    /// Finds the share of its way that an application's move can go before a triangle gets inverted or too flat.
+    /// Finds the share of the ways to their targets that an application's vertices can go before a triangle inverts or
+    /// gets too flat.
     FindShare {
         entry_point: "find_share",
         layout: Move,
@@ -200,7 +202,7 @@ kernels! {
         source: ["clamp/find_share.wgsl"],
     }
 
-    /// Moves vertices by the share that [`FindShare`](Self::FindShare) has found.
+    /// Moves vertices toward their targets by the share that [`FindShare`](Self::FindShare) has found.
     MoveVertices {
         entry_point: "move_vertices",
         layout: Move,
@@ -210,7 +212,7 @@ kernels! {
         source: ["clamp/move_vertices.wgsl"],
     }
 
-    /// Finds the triangles that are inverted, and the most inverted one.
+    /// Counts inverted and flat triangles, finds the most inverted triangle, and marks the vertices of all.
     FindInverted {
         entry_point: "find_inverted",
         layout: Untangle,
@@ -283,7 +285,7 @@ kernels! {
         source: ["levels/neighbors.wgsl", "levels/prolong.wgsl"],
     }
 
-    /// A matrix times a vector, plus a vector, on a coarse level.
+    /// Multiplies a vector by a matrix and adds a vector, on a coarse level.
     MatrixVector {
         entry_point: "matrix_vector",
         layout: Coarse,
@@ -418,7 +420,7 @@ kernels! {
         source: ["secants/sum_secants.wgsl"],
     }
 
-    /// Subtracts what the secant pairs account for from the gradient, before the levels are applied.
+    /// Subtracts the part that the secant pairs account for from the gradient, before the levels are applied.
     BendGradient {
         entry_point: "bend_gradient",
         layout: Secants,
@@ -460,20 +462,21 @@ kernels! {
 }
 
 impl Kernel {
-    /// Returns all kernels: for each metric where a kernel is for one metric, and for each metric and for all metrics
-    /// where a kernel sums objectives.
+    /// Returns all kernels. A kernel of one metric is listed for each metric; the sweep kernel with analytic
+    /// derivatives and with differences. A kernel that sums objectives is listed for each metric alone and for all
+    /// metrics together.
     pub fn all() -> Vec<Kernel> {
         Self::list(None)
     }
 
-    /// Lists the kernels that a user may need, with the metrics of this plan.
+    /// Lists the kernels that a user may need for the metrics of this plan.
     pub(crate) fn needed_by(plan: &Plan, user: User) -> Vec<Kernel> {
         let mut kernels = Self::list(Some(plan));
         kernels.retain(|kernel| kernel.row().user == user);
         kernels
     }
 
-    /// Returns the form of the mesh as far as the kernel depends on it.
+    /// Returns `form` without the properties on which the kernel does not depend, so that meshes share pipelines.
     pub(crate) fn sees(&self, form: MeshForm) -> MeshForm {
         let positions = self.layout().sees(form.positions);
         MeshForm { positions, has_targets: form.has_targets && self.row().sees_targets }
@@ -489,7 +492,7 @@ impl Kernel {
         self.row().layout
     }
 
-    /// Returns the number of invocations in a workgroup.
+    /// Returns the size of a workgroup, in invocations.
     pub fn workgroup_size(&self) -> u32 {
         self.row().width
     }

@@ -5,28 +5,28 @@ use glam::DVec2;
 
 use crate::metric::{Metric, Smoothing};
 
-/// Number of evaluations that the device stores. The host reads them before they are overwritten.
+/// Length of the history of evaluations on the device. The host reads entries before the device overwrites them.
 pub(crate) const HISTORY: u32 = 256;
-/// Number of invocations in a workgroup of most kernels.
+/// Workgroup size of most kernels, in invocations.
 pub(crate) const WORKGROUP: u32 = 64;
-/// Number of invocations in a workgroup of the kernels that run in one workgroup, whose invocations share sums.
+/// Workgroup size, in invocations, of the kernels that run in one workgroup and share sums in its memory.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
 
 /// Number of values stored for an evaluation: the sum of q² - ideal² for every metric, the number of inverted
 /// triangles, and the largest imr² - 1.
 pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
-/// Number of vectors of four that hold a value for each slot.
+/// Number of four-component vectors that hold a value for each slot.
 pub(crate) const SLOT_VECTORS: usize = SLOTS.div_ceil(4);
-/// The slot of the number of inverted triangles.
+/// Slot of the count of inverted and flat triangles.
 pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
-/// The slot of the largest imr² - 1.
+/// Slot of the largest imr² - 1 of a triangle.
 pub(crate) const WORST: u32 = INVERTED + 1;
-/// The bits of the least float that is neither zero nor denormal.
+/// Bits of the smallest positive normal float.
 pub(crate) const LEAST_NORMAL: u32 = 0x0080_0000;
 /// The bit that is set in the ring start of a free vertex that the application holds in place. Ring starts themselves
 /// are smaller.
 pub(crate) const HELD: u32 = 1 << 31;
-/// The shape guard of steps without one: larger than any inverse mean ratio, and finite in single precision.
+/// Shape guard that allows any step: larger than any inverse mean ratio, and finite in single precision.
 pub(crate) const NO_GUARD: f64 = 1e38;
 
 /// Number of lengths tried along each correction that an application encodes.
@@ -46,7 +46,7 @@ type vec4f = [f32; 4];
 type array<T, const LENGTH: usize> = [T; LENGTH];
 #[allow(non_camel_case_types)]
 type atomic<T> = T;
-/// The values of each evaluation (modulo [`HISTORY`]) and slot. WGSL has them in one array, without rows.
+/// Values by evaluation (modulo [`HISTORY`]) and slot. WGSL declares a single array without rows.
 type History = [[vec2f; SLOTS]; HISTORY as usize];
 
 /// A struct that Rust and the kernels share.
@@ -61,9 +61,9 @@ pub(crate) struct SharedStruct {
     offsets: &'static [(&'static str, usize)],
 }
 
-/// Declares structs in Rust and in WGSL from one list of members. The types of members have the same names in both
-/// languages. The lists name padding, as bytes between members are not allowed in structs that are copied to a device.
-/// There is no `Default`: a literal must name every member.
+/// Declares structs in Rust and in WGSL from one list of members. Member types have equal names in both languages. The
+/// lists name padding, as bytes between members are not allowed in structs that are copied to a device. There is no
+/// `Default`: a literal must name every member.
 macro_rules! shared_structs {
     ($(
         $(#[doc = $doc:literal])*
@@ -108,7 +108,7 @@ shared_structs! {
         triangles: u32,
         /// Number of invocations of the objective kernel.
         partials: u32,
-        /// The most Newton steps per visit of a vertex.
+        /// Limit of the Newton steps per visit of a vertex.
         inner: u32,
         /// The number of the base metric. This member and those up to `tolerance` are for the stop rule in finish.wgsl.
         base: u32,
@@ -138,104 +138,103 @@ shared_structs! {
         sharpness: u32,
         /// Up to this inverse mean ratio any step may flatten a triangle. NO_GUARD allows any ratio.
         shape_guard: f32,
-        /// Number of entries of `ring` before the start of the binding.
+        /// Offset of the binding in the buffer of one-rings, in entries.
         ring_base: u32,
-        /// How many times as long as Newton's a step may be tried where nearly flat triangles make up most of a patch's
-        /// objective; 1 for never.
+        /// Limit of the factor by which a Newton step is lengthened where nearly flat triangles dominate a patch's
+        /// objective; 1 for no lengthening.
         longest: f32,
-        /// One over the shape guard that a penalty keeps EDGE off, 0 for none.
+        /// Reciprocal of the inverse mean ratio toward which EDGE's penalty grows; 0 without a penalty.
         over_guard: f32,
     }
 
-    /// An operation on the mesh itself, for a correction from coarser levels. Places count from the start of the
-    /// binding.
+    /// An operation of a correction on the free vertices or triangles of the mesh. Offsets are relative to the binding.
     FineOp {
-        /// Number of free vertices or triangles of this dispatch. More invocations than these may be started.
+        /// Number of free vertices or triangles of this dispatch. Invocations beyond them do nothing.
         rows: u32,
         /// The free vertex or triangle of the first invocation.
         first: u32,
         /// Number of free vertices.
         free: u32,
-        /// Number of entries of `ring` before the start of the binding.
+        /// Offset of the binding in the buffer of one-rings, in entries.
         ring_base: u32,
-        /// Where in `vectors` find_gradient leaves the square roots of the present stiffness, to which the levels are
-        /// fitted; NONE if they are not.
+        /// Offset in `vectors` where find_gradient writes the square roots of the present stiffness, to which the
+        /// levels are fitted; NONE for levels that are not fitted.
         present_roots: u32,
-        /// Where in `vectors` find_broken leaves the correction without the vertices of broken triangles.
+        /// Offset in `vectors` where find_broken writes the correction, zero at the vertices of broken triangles.
         unbroken: u32,
-        /// Where in `vectors` objective_along_correction leaves its partial sums.
+        /// Offset in `vectors` where objective_along_correction writes its partial sums.
         partial_sums: u32,
-        /// The step length along the correction; 0 if the line search on the device finds it.
+        /// The step length along the correction; 0 if a line search on the device finds the length.
         length: f32,
         /// Up to this inverse mean ratio a correction may flatten a triangle. NO_GUARD allows any ratio.
         shape_guard: f32,
         /// log2 of the exponent of EDGE's p-norm.
         sharpness: u32,
-        /// One over the shape guard that a penalty keeps EDGE off, 0 for none.
+        /// Reciprocal of the inverse mean ratio toward which EDGE's penalty grows; 0 without a penalty.
         over_guard: f32,
         padding: u32,
     }
 
-    /// An operation between the free vertices and the first coarse level. Places count from the start of the binding.
+    /// An operation between the free vertices and the first coarse level. Offsets are relative to the binding.
     TransferOp {
-        /// Number of free vertices or aggregates of this dispatch. More invocations than these may be started.
+        /// Number of free vertices or aggregates of this dispatch. Invocations beyond them do nothing.
         rows: u32,
         /// The free vertex of the first invocation.
         first: u32,
         /// Number of free vertices.
         free: u32,
-        /// Number of entries of `ring` before the start of the binding.
+        /// Offset of the binding in the buffer of one-rings, in entries.
         ring_base: u32,
-        /// Where in `structure` the number of each free vertex's aggregate begins.
+        /// Offset in `structure` of the aggregate numbers of the free vertices; NONE for a vertex in no aggregate.
         aggregate_of: u32,
-        /// Where in `structure` the starts of the aggregates' members begin. They count from `members`.
+        /// Offset in `structure` of the start of each aggregate's members. Starts count from `members`.
         member_starts: u32,
-        /// Where in `structure` the members of the aggregates begin.
+        /// Offset in `structure` of the members of all aggregates.
         members: u32,
-        /// Where in `values` the square roots of the free vertices' weights begin.
+        /// Offset in `values` of the root r(v) of each free vertex. The edge between v and w weighs r(v) r(w).
         roots: u32,
-        /// Where in `values` the reciprocal diagonal begins.
+        /// Offset in `values` of the reciprocal diagonal of the free vertices' matrix.
         diagonal: u32,
-        /// Where in `vectors` the square roots of the present stiffness begin, to which the levels are fitted; NONE if
-        /// they are not.
+        /// Offset in `vectors` of the square roots of the present stiffness, to which the levels are fitted; NONE for
+        /// levels that are not fitted.
         present_roots: u32,
-        /// Where in `vectors` the right-hand side of the first coarse level begins.
+        /// Offset in `vectors` of the right-hand side of the first coarse level.
         right: u32,
-        /// Where in `vectors` the solution of the first coarse level begins.
+        /// Offset in `vectors` of the solution of the first coarse level.
         solution: u32,
     }
 
-    /// An operation on the vectors of a coarse level. Places count from the start of the binding.
+    /// An operation on the vectors of a coarse level. Offsets are relative to the binding.
     CoarseOp {
-        /// Number of rows, or of partial sums. More invocations than these may be started.
+        /// Number of rows or partial sums. Invocations beyond them do nothing.
         rows: u32,
-        /// Where in `structure` the row starts begin. Row starts count from `columns` and `entries`.
+        /// Offset in `structure` of the row starts, which count from `columns` and `entries`.
         starts: u32,
-        /// Where in `structure` the column numbers begin.
+        /// Offset in `structure` of the column numbers of the matrix.
         columns: u32,
-        /// Where in `values` the matrix entries begin, one for each column number.
+        /// Offset in `values` of the matrix entries, one for each column number.
         entries: u32,
-        /// Where in `values` the reciprocal diagonal begins.
+        /// Offset in `values` of the reciprocal diagonal of the level's matrix.
         diagonal: u32,
-        /// Where in `vectors` the vector to be multiplied begins; NONE for a vector of zeros.
+        /// Offset in `vectors` of the vector to be multiplied; NONE for a vector of zeros.
         x: u32,
-        /// Where in `vectors` the right-hand side, or the vector to be added, begins; NONE for a vector of zeros.
+        /// Offset in `vectors` of the right-hand side or the vector to be added; NONE for a vector of zeros.
         right: u32,
-        /// Where in `vectors` the last step of Chebyshev's iteration begins.
+        /// Offset in `vectors` of the last step of Chebyshev's iteration.
         last_step: u32,
-        /// Where in `vectors` the result begins.
+        /// Offset in `vectors` of the result.
         out: u32,
-        /// The factor of the last step in Chebyshev's iteration.
+        /// Factor of the last step in Chebyshev's iteration.
         last_step_factor: f32,
-        /// The factor of the residual in Chebyshev's iteration.
+        /// Factor of the residual in Chebyshev's iteration.
         residual_factor: f32,
-        /// The factor of the vector that is added to a product.
+        /// Factor of the vector added to a product.
         right_factor: f32,
-        /// The factor of a product.
+        /// Factor of a product of matrix and vector.
         product_factor: f32,
-        /// Where in `vectors` the partial sums begin.
+        /// Offset in `vectors` of the partial sums.
         partial_sums: u32,
-        /// Where in `vectors` the totals begin.
+        /// Offset in `vectors` of the four totals.
         totals: u32,
         padding: u32,
     }
@@ -244,36 +243,38 @@ shared_structs! {
     SecantOp {
         /// Number of free vertices.
         free: u32,
-        /// Where the newer pair begins in `steps` and `changes`.
+        /// Offset of the newer pair in `steps` and `changes`.
         newer: u32,
-        /// Where the older pair begins in `steps` and `changes`.
+        /// Offset of the older pair in `steps` and `changes`.
         older: u32,
-        /// Number of pairs, 0 to 2. If it is 1, only the newer one exists.
+        /// Number of pairs, 0 to 2. With one pair, only the newer exists.
         pairs: u32,
-        /// Number of invocations that leave partial sums.
+        /// Number of invocations that write partial sums.
         partials: u32,
-        /// Not zero if sum_secants.wgsl is to sum products with the correction, zero for products with the gradient.
+        /// 1 if sum_secants.wgsl sums products with the correction, 0 for products with the gradient.
         is_after: u32,
         padding: vec2u,
     }
 
-    /// The state of a run. Written by finish.wgsl, and by judged/reopen.wgsl where an application encodes the sweeps.
+    /// The state of a run. Written by finish.wgsl, and by the kernels of judged/ for sweeps that an application
+    /// encodes.
     Control {
-        /// Not zero when the run has ended: every kernel then leaves everything as it is.
+        /// 0 while the run goes on. Otherwise kernels change nothing, and the value is the code of the reason to stop,
+        /// or PASSED while one evaluation is skipped.
         done: u32,
         /// Number of evaluations of the objective. The first evaluation precedes all sweeps.
         evaluated: u32,
-        /// Whether the last evaluation found the least objective so far.
+        /// 1 if the last evaluation found the lowest base objective so far, else 0.
         improved: u32,
         best_sweep: u32,
         best_sum: vec2f,
-        /// Number of changes that the application had made to the mesh when this run began.
+        /// Sum of the mesh's two counters of changes when this run began.
         changes: u32,
         padding: u32,
-        /// One entry for each evaluation (modulo HISTORY) and slot. The slot of a metric holds its sum as a pair of
-        /// floats. The slot INVERTED holds the number of triangles that are inverted or flat in single precision, also
-        /// as a pair. The slot WORST holds the largest imr² - 1 in x, and in y, as bits, the number of that triangle
-        /// plus LEAST_NORMAL.
+        /// One entry for each evaluation (modulo HISTORY) and slot. The slot of a metric holds the metric's sum as a
+        /// pair of floats. The slot INVERTED holds the number of triangles that are inverted or flat in single
+        /// precision, also as a pair. The slot WORST holds the largest imr² - 1 in x, and in y, as bits, the number of
+        /// the worst triangle plus LEAST_NORMAL.
         history: History,
     }
 
@@ -282,9 +283,9 @@ shared_structs! {
         /// Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
         zero: u32,
         vertices: u32,
-        /// Floats before the first vertex, from the start of the binding.
+        /// Offset of the first vertex in the binding, in floats.
         offset: u32,
-        /// Floats from one vertex to the next.
+        /// Distance between successive vertices, in floats.
         stride: u32,
         /// The normalized position is (x - center) * scale. The center is held in pairs of floats, xy + zw.
         center: vec4f,
@@ -306,28 +307,28 @@ shared_structs! {
 
     /// An application's mask of held vertices.
     Mask {
-        /// Number of vertices that are free or held. Those behind them are on the boundary.
+        /// Number of free and held vertices. All further vertices are on the boundary.
         vertices: u32,
-        /// Words before the first vertex, from the start of the binding.
+        /// Offset of the first vertex in the binding, in words.
         offset: u32,
         padding: vec2u,
     }
 
-    /// Vertices that an application moves, and the coordinates of their targets.
+    /// Vertices that an application moves, and the coordinate system of their targets.
     Movement {
         /// Always zero, which the compiler cannot know; see `opaque` in pairs.wgsl.
         zero: u32,
         /// Number of vertices to be moved.
         vertices: u32,
-        /// Number of triangles with a corner that moves.
+        /// Number of triangles with a moving corner.
         triangles: u32,
         /// The bound on the inverse mean ratio of triangles.
         worst_imr: f32,
-        /// Floats before the first target, from the start of the binding.
+        /// Offset of the first target in the binding, in floats.
         offset: u32,
-        /// Floats from one target to the next.
+        /// Distance between successive targets, in floats.
         stride: u32,
-        /// Index of the word in `shares` that receives the share.
+        /// Index in `shares` of the word that receives the share of the ways.
         share: u32,
         /// The normalized target is (x - center) * scale. The center is held in pairs of floats, xy + zw.
         scale: f32,
@@ -338,12 +339,11 @@ shared_structs! {
     UntanglePart {
         first: u32,
         count: u32,
-        /// Number of entries of `ring` before the start of the binding.
+        /// Offset of the binding in the buffer of one-rings, in entries.
         ring_base: u32,
-        /// Number of vertices that are free or held. Those behind them are on the boundary.
+        /// Number of free and held vertices. All further vertices are on the boundary.
         free: u32,
-        /// Not zero for the first of the sweeps that are encoded together, which examines the mesh even if it was valid
-        /// before.
+        /// 1 for a call's first sweep, which examines a valid mesh too; 0 for further sweeps.
         begins: u32,
         padding: u32,
         more_padding: vec2u,
@@ -351,37 +351,39 @@ shared_structs! {
 
     /// The inverted triangles of a mesh.
     Tangle {
-        /// Not zero if no triangle was found inverted. The kernels then do nothing until the mesh is examined again.
+        /// 1 if no triangle that sweeps can repair was found inverted or flat. Kernels then do nothing until the mesh
+        /// is examined again.
         valid: u32,
-        /// Number of triangles that are inverted or flat and have a vertex that may move.
+        /// Number of inverted and flat triangles with a movable vertex.
         inverted: atomic<u32>,
-        /// The bits of the largest negative area of these triangles, without its sign, relative to the area that the
-        /// triangle should have. The bits of non-negative floats compare as the floats do.
+        /// Bits of the largest ratio -area / desired area of inverted triangles. The bits of non-negative floats
+        /// compare as the floats do.
         depth: atomic<u32>,
         epsilon: f32,
-        /// The number of the last sweep.
+        /// Number of the last sweep; 1 before the first sweep.
         sweep: u32,
-        /// The number of the last sweep before the present tangle.
+        /// Value of `sweep` at the start of the present tangle. Vertices marked with smaller numbers do not move.
         since: u32,
     }
 
-    /// A vertex of a mesh that is untangled.
+    /// The state of a vertex while a mesh is untangled.
     TangledVertex {
-        /// The area that triangles around the vertex should have.
+        /// The desired area of triangles around the vertex.
         area: f32,
-        /// The number of the sweep in which the vertex began to move.
+        /// Marks a moving vertex by a sweep's number: the last sweep before a check that found an inverted triangle at
+        /// the vertex, or the sweep that added the vertex. 0 for an unmarked vertex.
         reached: atomic<u32>,
     }
 
-    /// The part of an application's buffer that receives objectives.
+    /// The place in an application's buffer that receives objectives.
     Publish {
-        /// Where the values begin, in words from the start of the binding.
+        /// Offset of the values in the binding, in words.
         offset: u32,
         triangles: u32,
-        /// Not zero if the sweeps are judged by the stop rule, and so have a reason to stop and a count of sweeps.
+        /// 1 if the sweeps end by the stop rule, and therefore have a reason to stop and a count of sweeps; else 0.
         judged: u32,
         padding: u32,
-        /// ideal² of each metric, which the sums leave out for each triangle; 0 for a metric that is not tracked.
+        /// ideal² of each metric, which the sums of q² - ideal² lack for each triangle; 0 for untracked metrics.
         ideal_squared: array<vec4f, SLOT_VECTORS>,
     }
 
@@ -391,7 +393,7 @@ shared_structs! {
         b: vec4f,
     }
 
-    /// What check_arithmetic.wgsl computes from two positions.
+    /// Results of check_arithmetic.wgsl for two positions.
     ArithmeticResult {
         two_sum: vec2f,
         pair_add: vec2f,
@@ -405,7 +407,8 @@ shared_structs! {
 }
 
 impl Params {
-    /// Returns the constants for kernels outside of a run, which use no other members than `zero` and `targets`.
+    /// Returns the constants for kernels outside of a run, which use only `zero` and the index `targets` of the first
+    /// target map.
     pub(crate) fn outside_runs(targets: u32) -> Self {
         Self {
             zero: 0,
@@ -434,24 +437,24 @@ impl FineOp {
     }
 }
 
-/// A double as the sum of two floats.
+/// Returns a double as the sum of two floats, the larger first.
 pub(crate) fn pair(x: f64) -> [f32; 2] {
     let high = x as f32;
     [high, (x - f64::from(high)) as f32]
 }
 
-/// The value of a pair of floats.
+/// Returns the value of a pair of floats.
 pub(crate) fn unpair([high, low]: [f32; 2]) -> f64 {
     f64::from(high) + f64::from(low)
 }
 
-/// A point as pairs of floats, laid out xy + zw.
+/// Returns a point as pairs of floats: x and y in xy, their low parts in zw.
 pub(crate) fn split(p: DVec2) -> [f32; 4] {
     let ([x, x_low], [y, y_low]) = (pair(p.x), pair(p.y));
     [x, y, x_low, y_low]
 }
 
-/// The point that pairs of floats represent: the inverse of [`split`].
+/// Returns the point that pairs of floats represent: the inverse of [`split`].
 pub(crate) fn join([x, y, x_low, y_low]: [f32; 4]) -> DVec2 {
     DVec2::new(unpair([x, x_low]), unpair([y, y_low]))
 }
@@ -463,8 +466,8 @@ mod tests {
     use super::*;
     use crate::gpu::Kernel;
 
-    /// Returns the size of a struct as naga lays it out, and the name and offset of each member; `None` if the module
-    /// does not declare it.
+    /// Returns the size of a struct in naga's layout, and the name and offset of each member; `None` if the module does
+    /// not declare the struct.
     fn reflected(module: &naga::Module, name: &str) -> Option<(usize, Vec<(String, usize)>)> {
         let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
         let naga::TypeInner::Struct { members, span } = &ty.inner else {

@@ -1,4 +1,4 @@
-//! A mesh on the device.
+//! Creates, binds, reads and writes the buffers of a mesh on a device.
 
 use glam::DVec2;
 use wgpu::BufferUsages as Usage;
@@ -20,9 +20,9 @@ pub(crate) struct MeshBuffers {
     pub(crate) ring_start: wgpu::Buffer,
     pub(crate) ring: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
-    /// Counters of the changes that an application has made to the mesh.
+    /// Counters of the application's changes to the mesh.
     pub(crate) changes: Changes,
-    /// How the buffers are bound.
+    /// Ranges of the buffers that are bound at once.
     pub(crate) parts: Parts,
 }
 
@@ -51,10 +51,10 @@ impl MeshBuffers {
         })
     }
 
-    /// Makes the same mesh with its own positions and its own counters of changes.
+    /// Creates a mesh at other `positions`, with its own counters of changes. Both meshes share all other buffers.
     ///
     /// # Errors
-    /// A [`GpuError`] if the device fails or is out of memory.
+    /// [`GpuError::OutOfMemory`], or another [`GpuError`] if the device fails.
     pub(crate) fn with_positions(
         &self,
         gpu: &Gpu,
@@ -73,7 +73,7 @@ impl MeshBuffers {
         })
     }
 
-    /// Returns the binding of the positions or, if they take two bindings, both.
+    /// Returns the binding of the positions, or both bindings if the positions take two.
     pub(crate) fn bind_positions(&self) -> BoundPositions<'_> {
         let whole = &self.positions;
         match self.parts.low_positions {
@@ -85,7 +85,7 @@ impl MeshBuffers {
         }
     }
 
-    /// Reads back the first `count` positions, after everything submitted so far.
+    /// Reads back the first `count` positions after all work submitted so far: x and y, then the low parts of x and y.
     pub(crate) async fn read_positions(
         &self,
         gpu: &Gpu,
@@ -102,7 +102,7 @@ impl MeshBuffers {
         Ok(joined.collect())
     }
 
-    /// Writes the first positions, in the form that [`read_positions`](Self::read_positions) returns.
+    /// Writes the positions of the first vertices, in the form that [`read_positions`](Self::read_positions) returns.
     pub(crate) fn write_positions(
         &self,
         gpu: &Gpu,
@@ -120,7 +120,8 @@ impl MeshBuffers {
         })
     }
 
-    /// Writes the target maps of a problem, over those of a problem that had targets too.
+    /// Overwrites the target maps with the maps of another problem of the same layout. Does nothing for a problem
+    /// without targets.
     pub(crate) fn write_targets(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
         let Some(maps) = problem.targets() else { return Ok(()) };
         let first = problem.positions().len() as u64;
@@ -150,22 +151,23 @@ impl MeshBuffers {
         })
     }
 
-    /// Returns the binding of the one-rings of a part.
+    /// Returns the binding of the mesh's one-rings in one part.
     pub(crate) fn bind_ring(&self, part: usize) -> wgpu::BindingResource<'_> {
         rows(&self.ring, &of_part(&self.parts.rings, part).entries, NUMBER)
     }
 
-    /// Returns the binding of the triangles of a part.
+    /// Returns the binding of the mesh's triangles in one part.
     pub(crate) fn bind_triangles(&self, part: usize) -> wgpu::BindingResource<'_> {
         rows(&self.triangles, of_part(&self.parts.triangles, part), TRIANGLE)
     }
 }
 
-/// Bytes of the high parts of a position. Its low parts take as many.
+/// Size of the high parts of a position, in bytes. The low parts have equal size.
 const PART: u64 = POSITION / 2;
 
-/// Returns the content of the buffer of positions: high and low parts of one vertex after the other, or, with `low`,
-/// first all high parts and from that byte on all low parts. Target maps follow the positions in the same form.
+/// Returns the content of the buffer of positions. Without `low`, the low parts of each vertex follow its high parts.
+/// With `low`, all high parts come first, and all low parts start at byte `low`. Target maps follow the positions in
+/// the same form.
 fn laid_out(positions: &[DVec2], targets: Option<&[[f32; 3]]>, low: Option<u64>) -> Vec<[f32; 2]> {
     let count = positions.len() + targets.map_or(0, <[_]>::len);
     let (step, low, length) = match low {

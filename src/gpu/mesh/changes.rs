@@ -1,4 +1,4 @@
-//! Counts the changes that an application makes to a mesh, so that judged sweeps know when to begin again.
+//! Counts the changes that an application makes to a mesh, so that sweeps with a stop rule begin again after a change.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -9,8 +9,8 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
 use crate::gpu::scope::scoped;
 
-/// Two counters on the device: of changes by kernels, such as vertices that an application moves, and of changes by the
-/// host. It is a handle.
+/// A handle to two counters on the device: changes by kernels, such as vertices that an application moves, and changes
+/// by the host, such as pins.
 #[derive(Clone)]
 pub(crate) struct Changes {
     pub(crate) buffer: wgpu::Buffer,
@@ -18,14 +18,14 @@ pub(crate) struct Changes {
 }
 
 impl Changes {
-    /// Creates counters that are zero. To be called in an error scope.
+    /// Creates both counters with the value 0. Must be called in an error scope.
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let bytes = 2 * size_of::<u32>() as u64;
         let buffer = zeroed(gpu, "changes", bytes, Usage::STORAGE | Usage::COPY_DST);
         Self { buffer, by_host: Arc::default() }
     }
 
-    /// Counts a change by the host, which takes effect in submissions after the call.
+    /// Counts a change by the host. Later submissions see the new count.
     ///
     /// # Errors
     /// A [`GpuError`] if the device fails.

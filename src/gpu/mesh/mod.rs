@@ -1,4 +1,4 @@
-//! A mesh on a device: its buffers, and how they are bound where they are larger than a binding.
+//! A mesh on a device: buffers, the parts in which large buffers are bound, and counters of changes.
 
 mod buffers;
 mod changes;

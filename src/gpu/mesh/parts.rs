@@ -1,9 +1,9 @@
-//! How a mesh is bound where its buffers are larger than a binding: part by part.
+//! Cuts a mesh into parts if its buffers are larger than a binding.
 //!
 //! Buffers stay whole. A sweep over a color is one dispatch, or several if the one-rings of the color do not fit one
-//! binding; each dispatch binds the one-rings of its own vertices. Likewise the objective takes a dispatch for each
-//! part of the triangles. A kernel may read any position, so every kernel binds all of them, if need be in two
-//! bindings: the high parts and the low parts.
+//! binding; each dispatch binds the one-rings of its own vertices. Likewise, each part of the triangles takes a
+//! dispatch of the objective kernel. A kernel may read any position, so every kernel binds all positions, if need be in
+//! two bindings: the high parts and the low parts.
 
 use std::ops::Range;
 
@@ -16,29 +16,30 @@ use crate::gpu::kernels::uniforms::WORKGROUP;
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
 
-/// The parts into which the data of a mesh are cut, for each kind of data. A kind that fits one binding has one part.
+/// Ranges of a mesh's data that a device can bind at once. Data smaller than a binding form a single part.
 #[derive(Clone)]
 pub(crate) struct Parts {
-    /// The byte at which the low parts start in the buffer of positions, if they take a binding of their own.
+    /// Byte offset of the low parts in the buffer of positions. `None` if positions take a single binding.
     pub(crate) low_positions: Option<u64>,
     /// Whether target maps follow the positions in their buffer.
     has_targets: bool,
-    /// The parts of the one-rings.
+    /// Parts of the one-rings, cut between vertices.
     pub(crate) rings: Vec<RingPart>,
-    /// The parts of the triangles.
+    /// Parts of the triangles, as ranges of triangle numbers.
     pub(crate) triangles: Vec<Range<u32>>,
-    /// The parts of the free vertices, for buffers that hold a position for each.
+    /// Parts of the free vertices, for buffers with a position per free vertex.
     pub(crate) free: Vec<Range<u32>>,
-    /// The parts of all vertices, for buffers that hold a position for each.
+    /// Parts of all vertices, for buffers with a position per vertex.
     pub(crate) vertices: Vec<Range<u32>>,
 }
 
-/// The one-rings that are bound at once.
+/// One-rings that a kernel binds at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RingPart {
-    /// The vertices inside these one-rings.
+    /// Range of the vertices inside these one-rings.
     pub(crate) vertices: Range<u32>,
-    /// The range of the buffer of one-rings that is bound, in entries. Its start is aligned.
+    /// Bound range of the buffer of one-rings, in entries. The start is rounded down to the device's alignment, so the
+    /// range may begin inside the previous part.
     pub(crate) entries: Range<u32>,
 }
 
@@ -46,7 +47,8 @@ impl Parts {
     /// Cuts a mesh into parts that fit the limits.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if the mesh cannot be cut into parts that fit.
+    /// [`GpuError::TooLarge`] if the kernels cannot number the vertices or triangles, [`GpuError::Limit`] if the mesh
+    /// cannot be cut into parts that fit.
     pub(crate) fn new(problem: &Problem, limits: &wgpu::Limits) -> Result<Self, GpuError> {
         let triangles = problem.triangles().len();
         let size = MeshSize { vertices: problem.positions().len(), triangles };
@@ -56,8 +58,8 @@ impl Parts {
         check_rows(rows, limits)?;
         let free = problem.free_count() as u32;
         // A part consists of whole rounds of the objective's invocations, so that the sums do not depend on the parts.
-        // A binding may start after any round, as the bytes of 64 triangles are a multiple of the alignment; so are
-        // those of 64 positions.
+        // A binding may start after any round, as the bytes of 64 triangles are a multiple of the alignment, and so are
+        // the bytes of 64 positions.
         let round = objective_invocations(triangles);
         Ok(Self {
             low_positions: low_positions(rows, limits),
@@ -69,12 +71,13 @@ impl Parts {
         })
     }
 
-    /// Returns the number of parts of the kind that has the most.
+    /// Returns the number of bind groups that cover all one-rings, triangles and free vertices: the largest of their
+    /// part counts.
     pub(crate) fn count(&self) -> usize {
         self.rings.len().max(self.triangles.len()).max(self.free.len())
     }
 
-    /// Returns the form of the mesh, for kernels.
+    /// Returns the form of the mesh for which kernels are composed.
     pub(crate) fn form(&self) -> MeshForm {
         let in_two = self.low_positions.is_some();
         let positions = if in_two { Positions::InTwo } else { Positions::Whole };
@@ -82,19 +85,21 @@ impl Parts {
     }
 }
 
-/// Returns the part with this number, or the last part of a kind that has fewer.
+/// Returns `parts[part]`, or the last part if the list is shorter.
 pub(crate) fn of_part<T>(parts: &[T], part: usize) -> &T {
     &parts[part.min(parts.len() - 1)]
 }
 
-/// Returns the byte at which the low parts of this number of positions start, if they take a binding of their own.
+/// Returns the aligned byte offset of the low parts for this number of positions. `None` if the positions fit one
+/// binding.
 fn low_positions(vertices: usize, limits: &wgpu::Limits) -> Option<u64> {
     let in_two = Positions::of(vertices, limits) == Positions::InTwo;
     let alignment = u64::from(limits.min_storage_buffer_offset_alignment);
     in_two.then(|| (vertices as u64 * POSITION / 2).next_multiple_of(alignment))
 }
 
-/// Cuts `count` rows of `bytes` each into parts that fit a binding. All but the last have a multiple of `step` rows.
+/// Cuts `count` rows of `bytes` each into parts that fit a binding. Each part except the last has a multiple of `step`
+/// rows.
 fn ranges(count: u32, bytes: u64, step: u32, limits: &wgpu::Limits) -> Vec<Range<u32>> {
     let most = limits.max_storage_buffer_binding_size;
     let per_part = match u64::from(count) * bytes <= most {
@@ -105,7 +110,8 @@ fn ranges(count: u32, bytes: u64, step: u32, limits: &wgpu::Limits) -> Vec<Range
     starts.map(|start| start..start.saturating_add(per_part).min(count)).collect()
 }
 
-/// Cuts the one-rings into parts.
+/// Cuts the one-rings between vertices into parts that fit a binding. Returns [`GpuError::Limit`] if a single one-ring
+/// does not fit.
 fn rings(start: &[u32], limits: &wgpu::Limits) -> Result<Vec<RingPart>, GpuError> {
     let most = limits.max_storage_buffer_binding_size;
     let aligned = (u64::from(limits.min_storage_buffer_offset_alignment) / NUMBER) as u32;

@@ -1,4 +1,4 @@
-//! The dispatches of a run: the kernels that a sweep and an evaluation consist of.
+//! The dispatches of a run: kernels for sweeps and for evaluations.
 
 use std::ops::Range;
 
@@ -22,13 +22,14 @@ use crate::metric::Metric;
 use crate::options::Derivatives;
 use crate::run::{Plan, Step, StopRule};
 
-/// The dispatches of a plan, bound to a mesh on the device. They encode sweeps and evaluations, and submit nothing.
+/// The dispatches of a plan, bound to a mesh on the device. The methods encode sweeps and evaluations, and submit
+/// nothing.
 pub(crate) struct Dispatches {
     pub(crate) plan: Plan,
     pub(crate) control: wgpu::Buffer,
     pub(crate) best: wgpu::Buffer,
     pub(crate) params: wgpu::Buffer,
-    /// One bind group, or one for each part of the mesh; see [`Parts`].
+    /// Bind groups by part of the mesh; see [`Parts`].
     bind_groups: Vec<wgpu::BindGroup>,
     sweeps: Vec<(Metric, Derivatives, Pipeline)>,
     objective: Pipeline,
@@ -38,23 +39,23 @@ pub(crate) struct Dispatches {
     uniforms: Uniforms,
 }
 
-/// The uniforms of all dispatches, one for each: first those of sweeps, by step, then by color and part; then those of
-/// the triangles; then those of the free vertices.
+/// Uniforms of all dispatches, in this order: sweeps by step, color and part; parts of the triangles; parts of the free
+/// vertices.
 struct Uniforms {
-    /// Every different step of the run.
+    /// Distinct steps of the run.
     steps: Vec<Step>,
-    /// The dispatches of a sweep.
+    /// Dispatches of one sweep, ordered by color and part.
     sweep: Vec<ColorPart>,
     triangles: Vec<Range<u32>>,
     free: Vec<Range<u32>>,
-    /// Bytes from one uniform to the next.
+    /// Distance between successive uniforms, in bytes.
     stride: u32,
 }
 
 /// Free vertices of one color whose one-rings fit one binding.
 struct ColorPart {
     color: u32,
-    /// The number of the part of the mesh.
+    /// Index of the bind group that holds these one-rings.
     part: usize,
     vertices: Range<u32>,
     ring_base: u32,
@@ -112,7 +113,7 @@ impl Uniforms {
         bytes
     }
 
-    /// Returns the number of the first uniform of a step, if it is one of the run's steps.
+    /// Returns the index of a step's first uniform; `None` for a step outside of the run.
     fn of_step(&self, step: &Step) -> Option<usize> {
         Some(self.steps.iter().position(|known| known == step)? * self.sweep.len())
     }
@@ -127,8 +128,8 @@ impl Uniforms {
 }
 
 impl Dispatches {
-    /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, an evaluation
-    /// copies the best positions.
+    /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, each evaluation
+    /// copies the positions of a new lowest objective.
     pub(crate) fn new(
         gpu: &Gpu,
         problem: &Problem,
@@ -206,7 +207,7 @@ impl Dispatches {
         })
     }
 
-    /// Writes the uniform of the run again, for a problem with other targets.
+    /// Rewrites the uniform of the run for a problem with other targets, and so another mean area.
     pub(crate) fn write_params(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
         let partials = objective_invocations(problem.triangles().len());
         let params = params(problem, &self.plan, partials);
@@ -232,8 +233,8 @@ impl Dispatches {
         }
     }
 
-    /// Encodes the evaluation of the objectives, the decision whether the run ends, and the copy of the positions if
-    /// they are the best so far.
+    /// Encodes an evaluation: the sums of the objectives, the stop rule, and the copy of the best positions if the run
+    /// keeps them.
     pub(crate) fn encode_evaluation(&self, passes: &mut Passes<'_>) {
         for part in 0..self.uniforms.triangles.len() {
             passes.run(&self.objective, None, |pass| {

@@ -1,4 +1,4 @@
-//! The wgpu engine. It submits several sweeps at a time, which are judged on the device.
+//! The wgpu engine. One submission holds several sweeps, and the device itself applies the stop rule between them.
 
 use std::borrow::Cow;
 
@@ -22,28 +22,28 @@ use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Step, Stop};
 
-/// If a sum of q² - ideal² is at least this large, a triangle is not finite.
+/// Least sum of q² - ideal² over a mesh with a triangle whose edges are not finite.
 const LEAST_NOT_FINITE: f64 = 1e38;
-/// Number of totals that the kernels of the objective along a correction compute.
+/// Number of totals along a correction: objective before and after the step, broken triangles, and slope.
 const TOTALS: usize = 4;
 
-/// Names of the data in a saved state of this engine: the free vertices' positions as pairs of floats, those of the
-/// best state, and the control block.
+/// Names of the data in a saved state of this engine: the free vertices' positions as pairs of floats, the positions of
+/// the best state, and the control block.
 const POSITIONS: &str = "positions";
 const BEST: &str = "best positions";
 const CONTROL: &str = "control";
 
-/// The state of a run on a device.
+/// A run on a device: mesh, dispatches, and the coarser levels of corrections.
 pub(crate) struct GpuEngine<'a> {
     gpu: &'a Gpu,
     problem: Problem,
-    /// The positions that the host gave last.
+    /// Positions of all vertices in double precision, as the host last set them.
     start: Vec<DVec2>,
     mesh: MeshBuffers,
     dispatches: Dispatches,
     levels: Option<Levels>,
     secants: Option<Secants>,
-    /// The hierarchy that the levels were made from.
+    /// Source of `levels`: the hierarchy on the host.
     hierarchy: Option<Hierarchy>,
     waiting: Waiting,
     /// Number of evaluations read back so far.
@@ -51,9 +51,9 @@ pub(crate) struct GpuEngine<'a> {
 }
 
 impl<'a> GpuEngine<'a> {
-    /// Uploads the problem with its vertices at `start`, which is normalized and in the problem's order, and creates
-    /// the pipelines of `steps`: all steps that a run by the plan may take. The device ends [`Engine::sweeps`] by the
-    /// plan's stop rule.
+    /// Uploads the problem with its vertices at the normalized positions `start`, in the problem's order. Creates the
+    /// pipelines for `steps`, all possible steps of a run by the plan. The device ends [`Engine::sweeps`] by the plan's
+    /// stop rule.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
@@ -117,7 +117,7 @@ impl<'a> GpuEngine<'a> {
         control.first().copied().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
     }
 
-    /// Submits sweeps, preceded by an evaluation if there was none yet, and adds the device's results to the history.
+    /// Submits sweeps, preceded by an evaluation if the history is empty, and records the device's results.
     async fn batch(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
         let sweeps = |passes: &mut Passes<'_>| {
             if self.evaluated == 0 {
@@ -138,7 +138,7 @@ impl<'a> GpuEngine<'a> {
         Ok(())
     }
 
-    /// Returns the objectives, given the sums of one evaluation.
+    /// Returns the objectives of an evaluation, given its sums.
     fn objectives_of(&self, sums: &[[f32; 2]; SLOTS]) -> Objectives {
         let mut values = Objectives::untracked();
         for metric in self.dispatches.plan.tracked() {
@@ -152,8 +152,8 @@ impl<'a> GpuEngine<'a> {
         values
     }
 
-    /// Returns all positions, given those of the free vertices on the device. A vertex that has not moved keeps the
-    /// bits of its start, of which the device's pairs of floats do not hold all.
+    /// Returns the positions of all vertices, given the free vertices' positions on the device. A vertex that has not
+    /// moved keeps the bits of `start`, as the device's pairs of floats hold only 48 bits.
     fn moved(&self, free: Vec<[f32; 4]>) -> Vec<DVec2> {
         let mut positions = self.start.clone();
         for (position, now) in positions.iter_mut().zip(free) {
@@ -205,7 +205,7 @@ impl Engine for GpuEngine<'_> {
 
     fn set_positions(&mut self, positions: &[DVec2]) -> Result<(), GpuError> {
         let free = self.problem.free_count();
-        // A vertex that the host has not moved keeps the bits that it has on the device.
+        // Unless the host has moved a fixed vertex, only the positions of free vertices are written.
         let is_fixed = self.start[free..] == positions[free..];
         let count = if is_fixed { free } else { positions.len() };
         let written: Vec<[f32; 4]> = positions[..count].iter().map(|&p| split(p)).collect();

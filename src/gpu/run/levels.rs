@@ -1,4 +1,4 @@
-//! The levels of a hierarchy on the device, and the dispatches of a correction.
+//! Coarse levels of a mesh on the device, and the dispatches of a correction.
 
 use wgpu::BufferUsages as Usage;
 
@@ -25,19 +25,20 @@ use crate::metric::Smoothing;
 use crate::run::LEFT_OUT;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
-/// A hierarchy bound to a mesh on the device. It encodes corrections and submits nothing.
+/// A hierarchy bound to a mesh on the device. The methods encode corrections and submit nothing.
 pub(crate) struct Levels {
     bind_groups: Vec<wgpu::BindGroup>,
     ops: wgpu::Buffer,
-    /// Bytes from one uniform to the next.
+    /// Distance between successive uniforms, in bytes.
     stride: u32,
-    /// How the uniforms have EDGE made smooth.
+    /// The smoothing of EDGE that the uniforms hold.
     smoothing: Smoothing,
-    /// What computes the gradient from the positions.
+    /// The dispatches that compute the gradient from the positions.
     find_gradient: Vec<Dispatch>,
     /// The dispatches that compute the correction from the gradient.
     correction: Vec<Dispatch>,
-    /// The dispatches that leave vertices of broken triangles out of the correction, once.
+    /// The dispatches that exclude vertices of broken triangles from the correction, once. Empty for runs without a
+    /// shape guard.
     left_out: Vec<Dispatch>,
     objective: Vec<Dispatch>,
     sum: Dispatch,
@@ -49,7 +50,7 @@ pub(crate) struct Levels {
     pub(crate) direction: wgpu::Buffer,
 }
 
-/// When the levels are fitted to the present stiffness of the mesh.
+/// The occasion on which levels are fitted to the present stiffness of the mesh.
 pub(crate) enum Fitting {
     /// When the host provides new levels.
     ByHost,
@@ -60,14 +61,14 @@ pub(crate) enum Fitting {
 struct Dispatch {
     pipeline: Pipeline,
     op: Op,
-    /// The number of its uniform.
+    /// Index of the dispatch's uniform.
     number: u32,
-    /// The number of its bind group.
+    /// Index of the dispatch's bind group.
     bind_group: usize,
     groups: Groups,
 }
 
-/// An operation of a kernel: its uniform.
+/// The uniform of a dispatch, by bind layout.
 #[derive(Clone, Copy)]
 enum Op {
     Fine(FineOp),
@@ -120,7 +121,7 @@ enum Groups {
     Just(u32),
 }
 
-/// The resources that a dispatch binds: a part of the mesh, or pages of the structure and of the values, or both.
+/// Indices of a bind group's resources: mesh part, structure page and value page.
 #[derive(Clone, Copy, PartialEq)]
 enum Bound {
     Fine { part: usize },
@@ -128,9 +129,9 @@ enum Bound {
     Coarse { structure: usize, values: usize },
 }
 
-/// Where the four totals are in `vectors`: at the start, as they are read back from there.
+/// Offset of the four totals in `vectors`: 0, as readbacks copy the start of the buffer.
 const TOTALS: u32 = 0;
-/// Where the partial sums begin in `vectors`. The vectors of the coarse levels follow.
+/// Offset of the partial sums in `vectors`. The vectors of the coarse levels follow the sums.
 const SUMS: u32 = SEARCH_STATE;
 
 /// The content of the kernels' arrays, collected while the dispatches are listed.
@@ -151,7 +152,8 @@ impl Listing<'_> {
         at
     }
 
-    /// Stores a matrix and the reciprocals of its diagonal, which may be empty.
+    /// Stores a matrix and the reciprocals of its diagonal, an empty slice for none. Returns the pages and offsets of
+    /// both.
     fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, CoarseOp), GpuError> {
         let (structure, [starts, columns]) =
             self.structure.place([matrix.starts(), matrix.columns()])?;
@@ -179,8 +181,8 @@ impl Listing<'_> {
         Ok(Dispatch { pipeline, op, number, bind_group, groups })
     }
 
-    /// Lists the dispatches of one V-cycle over the levels. `right` is where the right-hand side begins in `vectors`;
-    /// returns where the solution begins.
+    /// Appends the dispatches of one V-cycle over the levels to `list`. `right` is the offset of the right-hand side in
+    /// `vectors`. Returns the offset of the solution.
     fn solve(
         &mut self,
         levels: &[Level],
@@ -232,7 +234,7 @@ impl Listing<'_> {
         Ok(end)
     }
 
-    /// Lists the dispatch of out = right + M x.
+    /// Returns the dispatch of out = right + M x, with offsets in `vectors` for all three.
     fn matrix_vector(
         &mut self,
         matrix: &Sparse,
@@ -245,7 +247,7 @@ impl Listing<'_> {
         self.step(Kernel::MatrixVector, bound, Groups::ForRows, Op::Coarse(op))
     }
 
-    /// Creates the buffers, and the bind groups of the listed dispatches. `params` are those of the run on `mesh`.
+    /// Creates the buffers, and the bind groups of the listed dispatches. `params` is the uniform of the run on `mesh`.
     fn upload(&self, mesh: &MeshBuffers, free: u32, params: &wgpu::Buffer, ops: &[u8]) -> Uploaded {
         let gpu = self.gpu;
         let ops = filled(gpu, "level steps", ops, Usage::UNIFORM | Usage::COPY_DST);
@@ -319,7 +321,7 @@ impl Levels {
     /// Uploads a hierarchy and creates the pipelines for corrections of a run by its base metric.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if it is too large for the device.
+    /// [`GpuError::Limit`] if the levels are too large for the device, or another [`GpuError`] if the device fails.
     pub(crate) fn new(
         gpu: &Gpu,
         problem: &Problem,
@@ -419,7 +421,7 @@ impl Levels {
         let mut left_out = Vec::new();
         let (whole, everywhere) = (Bound::Fine { part: 0 }, Op::Fine(fine));
         if guard < NO_GUARD as f32 {
-            // Between cycles these vectors hold nothing that is still needed.
+            // Between V-cycles, `vectors` from SUMS on holds nothing that is still needed.
             listing.vectors = listing.vectors.max(SUMS + free);
             fine_by_rings(&mut listing, &mut left_out, Kernel::FindBroken)?;
             let kernel = Kernel::LeaveOutBroken;
@@ -483,13 +485,14 @@ impl Levels {
         self.find_gradient.iter().for_each(|step| self.encode(passes, step));
     }
 
-    /// Encodes the computation of the correction from the gradient, or from the vector that replaces it.
+    /// Encodes one V-cycle: computes the correction from the gradient, or from the vector by which secant pairs replace
+    /// the gradient.
     pub(crate) fn encode_cycle(&self, passes: &mut Passes<'_>) {
         self.correction.iter().for_each(|step| self.encode(passes, step));
     }
 
-    /// Encodes that vertices of triangles which the correction would break are left out of it. With `anew`, the
-    /// correction is first computed again without the gradients of these vertices.
+    /// Encodes the exclusion of vertices from the correction, [`LEFT_OUT`] times: the vertices of triangles that the
+    /// correction would break. With `anew`, the correction is first recomputed without the gradients of these vertices.
     pub(crate) fn encode_left_out(&self, passes: &mut Passes<'_>, anew: bool) {
         let leave_out = |passes: &mut Passes<'_>| {
             self.left_out.iter().for_each(|step| self.encode(passes, step));
@@ -501,7 +504,7 @@ impl Levels {
         (0..LEFT_OUT).for_each(|_| leave_out(passes));
     }
 
-    /// Encodes the evaluation of the objective along the correction. The totals are then at the start of `vectors`.
+    /// Encodes the evaluation of the objective along the correction. `vectors` then begins with the four totals.
     pub(crate) fn encode_objective(&self, passes: &mut Passes<'_>) {
         self.objective.iter().for_each(|step| self.encode(passes, step));
         self.encode(passes, &self.sum);
@@ -512,7 +515,8 @@ impl Levels {
         self.encode(passes, &self.movement);
     }
 
-    /// Sets how EDGE is made smooth in what is submitted next, and how far that goes along the correction, as a multiple of it.
+    /// Sets the smoothing of EDGE and the step length along the correction for later submissions. Length 1 is the whole
+    /// correction.
     pub(crate) fn set_step(
         &mut self,
         gpu: &Gpu,
@@ -539,7 +543,7 @@ impl Levels {
     fn write(&self, gpu: &Gpu, step: &Dispatch, length: f32) {
         let op = match step.op {
             Op::Fine(op) => Op::Fine(FineOp { length, ..op }.smoothed(self.smoothing)),
-            // These have neither a length nor a metric.
+            // These operations have neither a length nor a metric.
             Op::Transfer(_) | Op::Coarse(_) => step.op,
         };
         let at = u64::from(step.number * self.stride);

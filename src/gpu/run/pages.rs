@@ -1,4 +1,4 @@
-//! Stores many arrays in few buffers, none larger than a binding of the device may be.
+//! Packs many arrays into few buffers, each no larger than the device's largest binding.
 
 use wgpu::BufferUsages as Usage;
 
@@ -16,18 +16,18 @@ pub(crate) struct Pages<T> {
 }
 
 impl<T: bytemuck::NoUninit> Pages<T> {
-    /// Makes pages without any arrays. `what` names their content in labels and errors.
+    /// Creates an empty set of pages. `what` names the content in labels and errors.
     pub(crate) fn new(gpu: &Gpu, what: &'static str) -> Self {
         let limits = gpu.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         Self { what, most, pages: vec![Vec::new()] }
     }
 
-    /// Places arrays that a kernel binds together. Returns the number of their page, and where in it each of them
-    /// starts.
+    /// Places arrays that a kernel binds together in one page. Returns the index of the page, and the offset of each
+    /// array in the page, in elements.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if they do not fit one page.
+    /// [`GpuError::Limit`] if the arrays together exceed a page.
     pub(crate) fn place<const N: usize>(
         &mut self,
         arrays: [&[T]; N],

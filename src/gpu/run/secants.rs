@@ -25,13 +25,13 @@ const SCALARS: u32 = 4;
 const STEPS: &str = "steps";
 const OP: &str = "secants";
 
-/// Two secant pairs bound to a mesh and its levels. They encode dispatches and submit nothing.
+/// Two secant pairs bound to a mesh and its levels. The methods encode dispatches and submit nothing.
 pub(crate) struct Secants {
     bind_group: wgpu::BindGroup,
     ops: wgpu::Buffer,
     /// Steps, changes, low starts and sums.
     buffers: [wgpu::Buffer; 4],
-    /// Bytes from the first uniform to the second.
+    /// Distance between the two uniforms, in bytes.
     stride: u32,
     close: Pipeline,
     sum: Pipeline,
@@ -42,7 +42,7 @@ pub(crate) struct Secants {
 }
 
 impl Secants {
-    /// Creates an empty set of pairs; `None` if the device cannot bind them.
+    /// Creates an empty set of pairs; `None` if the vectors of two pairs exceed a binding of the device.
     pub(crate) fn new(
         gpu: &Gpu,
         mesh: &MeshBuffers,
@@ -63,7 +63,7 @@ impl Secants {
         let multiply = pipeline(Kernel::MultiplyCorrection)?;
         let open = pipeline(Kernel::OpenSecant)?;
         let partials = objective_invocations(free as usize);
-        // The first pair opens in the slot of the older one.
+        // The first pair opens in the slot of the older pair.
         let op = SecantOp {
             free,
             newer: free,
@@ -108,8 +108,7 @@ impl Secants {
         Ok(())
     }
 
-    /// The names of the buffers in a saved state of the engine, and the number of pairs of floats that it holds of
-    /// each.
+    /// Returns each buffer's name in a saved state of the engine, and its saved length in pairs of floats.
     fn parts(&self) -> [(&'static str, usize); 4] {
         let free = self.op.free as usize;
         // Of the sums, only the scalars are needed after a correction.
@@ -130,13 +129,13 @@ impl Secants {
         Ok(())
     }
 
-    /// Whether a saved state of the engine holds pairs.
+    /// Returns whether a saved state of the engine holds secant pairs.
     pub(crate) fn are_in(state: &EngineState) -> bool {
         state.own.iter().any(|(name, _)| name == STEPS)
     }
 
-    /// Restores the pairs from a saved state of the engine. Returns whether it holds them for the same number of
-    /// vertices.
+    /// Restores the pairs from a saved state of the engine. Returns false if the state has no pairs for this number of
+    /// free vertices.
     pub(crate) fn restore(&mut self, gpu: &Gpu, state: &EngineState) -> Result<bool, GpuError> {
         let Some([op]) = state.own::<SecantOp>(OP, 1).and_then(|ops| <[_; 1]>::try_from(ops).ok())
         else {

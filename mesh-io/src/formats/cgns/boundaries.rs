@@ -1,4 +1,4 @@
-//! Boundary conditions of a zone, and the families that these are of: groups of elements or of vertices.
+//! Boundary conditions of a zone and their families, as groups of elements or vertices.
 
 use super::file::{File, labeled};
 use crate::content::group_label::GroupLabel;
@@ -9,20 +9,21 @@ use std::cell::RefCell;
 use std::collections::HashSet;
 use std::ops::RangeInclusive;
 
-/// The groups of elements by their numbers.
+/// Boundary conditions of elements, found by element number.
 #[derive(Default)]
 pub(super) struct Boundaries {
     all: Vec<Boundary>,
-    /// Those of the element that was told last.
+    /// Indices in `all` of the last visited element's boundary conditions.
     last: RefCell<Vec<usize>>,
 }
 
 struct Boundary {
-    /// What it is called: by itself, and as a family.
+    /// Kind and name of each group: the boundary condition itself, and its families.
     names: Vec<(&'static str, String)>,
     elements: Elements,
 }
 
+/// Numbers of the elements or vertices of a boundary condition.
 enum Elements {
     Range(RangeInclusive<i64>),
     List(HashSet<i64>),
@@ -38,7 +39,8 @@ impl Elements {
 }
 
 impl Boundaries {
-    /// Tells the groups of the element that follows, where they are not those of the one before.
+    /// Visits the boundary conditions of the element `tag` as groups, unless they equal those of the last visited
+    /// element.
     pub(super) fn of_element(&self, tag: u64, visitor: &mut dyn MeshVisitor) {
         if self.all.is_empty() {
             return;
@@ -62,7 +64,8 @@ impl Boundaries {
 }
 
 impl<'a> File<'a> {
-    /// Reads the boundary conditions. Hands on those of vertices, and returns those of elements. What is damaged is left out.
+    /// Reads all boundary conditions. Boundary conditions on vertices are visited as groups, those on elements are
+    /// returned. Boundary conditions without a readable list or range are left out.
     pub(super) fn boundaries(&self, vertices: usize, visitor: &mut dyn MeshVisitor) -> Boundaries {
         let mut boundaries = Boundaries::default();
         let mut tag = 0;
@@ -105,7 +108,8 @@ impl<'a> File<'a> {
         boundaries
     }
 
-    /// What a boundary condition is called, its family, and the names that this has.
+    /// Returns the kinds and names of a boundary condition's groups: the boundary condition, the names of its family,
+    /// and the family.
     fn names(&self, name: &[u8], node: &'a Object) -> Vec<(&'static str, String)> {
         let text = |name: &[u8]| String::from_utf8_lossy(name).into_owned();
         let mut names = vec![("boundary", text(name))];

@@ -1,11 +1,11 @@
-//! A CGNS file with one zone, and what its nodes hold.
+//! A CGNS file with one zone, and access to the content of its nodes.
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::{Dataset, DatasetArray, Datatype, Hdf5, Object};
 use crate::text::cursor::Cursor;
 
-/// A file with its base and its one zone.
+/// A CGNS file with its base and its only zone.
 pub(super) struct File<'a> {
     pub(super) source: &'a Source,
     pub(super) hdf5: &'a Hdf5<'a>,
@@ -41,24 +41,27 @@ impl<'a> File<'a> {
         Cursor::at_byte_offset(self.source, object.at)
     }
 
-    /// The content of a node.
+    /// Returns the dataset with the content of a node; `None` if the node has no content.
     pub(super) fn data(&self, node: &'a Object) -> Option<&'a Object> {
         self.hdf5.child(node, b" data")
     }
 
-    /// The whole numbers of a node; none if it has none.
+    /// Returns the integers of a node; `None` if the node has no integers.
     pub(super) fn integers(&self, node: &'a Object) -> Option<Vec<i64>> {
         self.hdf5.integers(self.data(node)?)
     }
 
-    /// The letters of a node.
+    /// Returns the text of a node, without blanks around it. CGNS stores each character as an integer of 8 bits.
     pub(super) fn text(&self, node: &'a Object) -> Option<Vec<u8>> {
         let letters = self.integers(node)?;
         let text: Vec<u8> = letters.into_iter().map(|letter| letter as u8).collect();
         Some(text.trim_ascii().to_vec())
     }
 
-    /// The real numbers of a node, and what they are.
+    /// Returns the dataset and the content of a node with real numbers; `None` if the node has no real numbers.
+    ///
+    /// # Errors
+    /// If the dataset is damaged.
     pub(super) fn reals(
         &self,
         node: &'a Object,
@@ -71,7 +74,7 @@ impl<'a> File<'a> {
     }
 }
 
-/// The nodes of a label in another, by name.
+/// Returns the children of a node with a CGNS label, such as `Zone_t`, each with its name.
 pub(super) fn labeled<'h>(
     file: &'h Hdf5<'_>,
     of: &'h Object,

@@ -1,8 +1,8 @@
-//! CGNS in HDF5, with one unstructured zone.
+//! CGNS in HDF5, with a single unstructured zone.
 //!
-//! The format: <https://cgns.github.io/standard/SIDS/CGNS_SIDS.html>, and how it is laid out in HDF5:
-//! <https://cgns.github.io/standard/filemap/hdf5.html>. Each node is a group with a label, and a dataset called ` data`. Elements
-//! stand in sections, each with a range of numbers that all of them share.
+//! The format: <https://cgns.github.io/standard/SIDS/CGNS_SIDS.html>, and its mapping to HDF5:
+//! <https://cgns.github.io/standard/filemap/hdf5.html>. A node is an HDF5 group with a label attribute and a dataset
+//! called ` data`. Elements form sections, each with a range of the element numbers of the zone.
 
 mod boundaries;
 mod file;
@@ -24,7 +24,10 @@ use std::sync::Arc;
 
 pub(crate) struct Cgns;
 
-/// Whether a file is CGNS in HDF5.
+/// Returns whether a file is CGNS in HDF5.
+///
+/// # Errors
+/// If the file is damaged HDF5.
 pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
     Ok(source.bytes.starts_with(SIGNATURE)
         && Hdf5::open(source)?.find(b"CGNSLibraryVersion").is_some())
@@ -54,12 +57,15 @@ impl<'a> File<'a> {
         Ok(layout)
     }
 
-    /// The coordinates, and how many vertices there are.
+    /// Locates the coordinates of the zone. Returns the coordinates and the number of vertices.
+    ///
+    /// # Errors
+    /// If the arrays of x and y are missing, or differ in number type or length.
     fn axes(&self) -> Result<(Axes<'a>, usize), ReadError> {
         let grids = labeled(self.hdf5, self.zone, b"GridCoordinates_t");
         let mut read = Vec::new();
         for name in [b"CoordinateX", b"CoordinateY", b"CoordinateZ"] {
-            // The first grid is that of the mesh; others are those of later times.
+            // The first grid is that of the mesh; further grids are those of later times.
             let node = grids.first().and_then(|(_, grid)| self.hdf5.child(grid, name));
             let Some(node) = node else { break };
             read.extend(self.reals(node)?);
@@ -81,7 +87,7 @@ impl<'a> File<'a> {
         Ok((Axes::of_arrays(self.hdf5, form, arrays, axes, count), count))
     }
 
-    /// Hands on data of vertices.
+    /// Visits the data of vertices. Data of elements are only reported as unsupported.
     fn solutions(&self, vertices: usize, visitor: &mut dyn MeshVisitor) {
         for (_, solution) in labeled(self.hdf5, self.zone, b"FlowSolution_t") {
             let location =

@@ -1,4 +1,4 @@
-//! The sections of elements of a zone.
+//! The element sections of a zone.
 
 use super::boundaries::Boundaries;
 use super::file::{File, labeled};
@@ -15,21 +15,22 @@ use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
 use crate::visit::visitor::MeshVisitor;
 
-/// What the numbers of types stand for: a kind of elements, or several, each of which has its type before it.
+/// Type number of a section with several element types, in which a type number precedes the nodes of each element.
 const MIXED: i64 = 20;
 
-/// A section with the elements that it announces.
+/// An element section.
 struct Section<'n, 'a> {
     name: &'n [u8],
     object: &'a Object,
-    /// The place among the sections, counted from one.
+    /// Position of the section, from 1, in the order of element numbers; also the tag of its group.
     number: i64,
-    /// The number of the first element, and how many elements follow it and itself.
+    /// Number of the first element.
     first: u64,
+    /// Number of elements, from the announced range.
     count: usize,
 }
 
-/// The list of nodes of a section.
+/// Connectivity of a section: integers of `size` bytes.
 struct Nodes<'a> {
     array: DatasetArray<'a>,
     size: usize,
@@ -44,7 +45,10 @@ impl Nodes<'_> {
 }
 
 impl<'a> File<'a> {
-    /// Hands on the elements of all sections.
+    /// Visits the elements of all sections, in the order of element numbers.
+    ///
+    /// # Errors
+    /// If a section does not hold the elements that its range announces, or has element types that cannot be read.
     pub(super) fn sections(
         &self,
         boundaries: &Boundaries,

@@ -1,4 +1,4 @@
-//! The blocks of elements of an Exodus file.
+//! The element blocks of an Exodus file.
 
 use super::File;
 use crate::binary::byte_order::ByteOrder;
@@ -13,24 +13,26 @@ use crate::visit::rows::volume;
 use crate::visit::send::ElementRecords;
 use crate::visit::visitor::MeshVisitor;
 
-/// Elements of one type.
+/// A block of elements of one type.
 pub(super) struct Block<'a> {
-    /// Its place among the blocks, counted from one.
+    /// Position of the block, from 1, which is part of its variables' names.
     pub(super) number: usize,
     pub(super) kind: CellKind,
-    /// Whether its first two sides are its faces, as those of shells are.
+    /// Whether sides 1 and 2 of an element are its two faces, as for shells. Edges then start at side 3.
     pub(super) is_shell: bool,
-    /// How many elements stand before it, and how many it has.
+    /// Number of elements in all earlier blocks.
     pub(super) before: u64,
+    /// Number of elements of the block.
     pub(super) count: u64,
-    /// Its elements, how many bytes the number of a node has, and in which order.
+    /// Connectivity: the node numbers of each element, as signed integers of `width` bytes.
     items: Items<'a>,
     width: usize,
     order: ByteOrder,
 }
 
 impl Block<'_> {
-    /// The nodes of an element by its place in the block, and where it stands.
+    /// Returns the nodes of an element, given its index in the block from 0, and the offset of the element in the file.
+    /// A negative node number becomes 0, which no node has.
     pub(super) fn element(&self, place: u64) -> ([u64; 4], usize) {
         let at = self.items.range(0).start + place as usize * self.kind.nodes() * self.width;
         let mut nodes = [0; 4];
@@ -43,7 +45,12 @@ impl Block<'_> {
 }
 
 impl<'a> File<'a> {
-    /// Hands on the elements of all blocks.
+    /// Visits the elements of all blocks, and the names of the blocks. Returns the blocks, to which side sets and data
+    /// refer.
+    ///
+    /// # Errors
+    /// If a connectivity variable is damaged, or its elements are not first-order points, lines, triangles or
+    /// quadrilaterals.
     pub(super) fn blocks(
         &self,
         visitor: &mut dyn MeshVisitor,
@@ -118,13 +125,14 @@ impl<'a> File<'a> {
         Ok(Block { number, kind, is_shell, before, count, items, width, order })
     }
 
-    /// The numbers that are properties of blocks or sets, by their places.
+    /// Returns the ids of blocks or sets in file order, from the property variable `name`; empty if the file lacks the
+    /// variable.
     pub(super) fn ids(&self, name: &str) -> Vec<i64> {
         let variable = self.header.variable(name).filter(|variable| !variable.is_record);
         variable.and_then(|ids| self.header.integers(ids)).unwrap_or_default()
     }
 
-    /// The number of a block or set; its place if it has none.
+    /// Returns the id of the block or set at position `number`, from 1; the position itself if the file gives no id.
     pub(super) fn id(&self, ids: &[i64], number: usize) -> i64 {
         ids.get(number - 1).copied().unwrap_or(number as i64)
     }

@@ -1,4 +1,4 @@
-//! The results in an Exodus file: numbers of nodes and elements in each time step.
+//! Results in an Exodus file: variables of nodes and elements, with numbers for each time step.
 
 use super::File;
 use super::blocks::Block;
@@ -7,8 +7,8 @@ use crate::netcdf::Variable;
 use crate::visit::visitor::MeshVisitor;
 
 impl File<'_> {
-    /// Hands on data of nodes and elements, and tells what is not handed on. The mesh does not depend on them: what has not
-    /// the lengths it should have is passed over.
+    /// Visits data of nodes and elements, and reports content that a conversion loses. Variables of the wrong length
+    /// are skipped, as the mesh does not depend on data.
     pub(super) fn data(&self, blocks: &[Block<'_>], visitor: &mut dyn MeshVisitor) {
         self.of_nodes(visitor);
         if visitor.asks_for_data() {
@@ -35,7 +35,7 @@ impl File<'_> {
             let own = each
                 .iter()
                 .find(|(number, variable)| *number == place + 1 && variable.shape == [nodes]);
-            // In older files one variable has the numbers of all of these.
+            // In older files, a single variable contains the numbers of all node variables.
             let all = self.header.variable("vals_nod_var");
             let all = all.filter(|all| all.shape == [names.len() as u64, nodes]);
             let found = match (own, all) {
@@ -83,7 +83,8 @@ impl File<'_> {
         }
     }
 
-    /// The real numbers of a variable in each time step; none if they are others.
+    /// Returns the real numbers of a variable, time step by time step. Whole numbers and text yield empty time steps,
+    /// an unreadable variable no time step.
     fn steps(&self, variable: &Variable) -> Vec<Vec<f64>> {
         let Ok(items) = self.header.items(variable) else { return Vec::new() };
         let steps = 0..self.header.steps(variable);
@@ -106,7 +107,7 @@ impl File<'_> {
                 visitor.unsupported(what);
             }
         }
-        // A single step at the time zero is what data without a time stand in.
+        // Data without a time have a single time step at the time zero.
         let has_times = self.header.variable("time_whole").is_some_and(|times| {
             let steps = self.steps(times);
             steps.len() > 1 || steps.iter().flatten().any(|&time| time != 0.0)

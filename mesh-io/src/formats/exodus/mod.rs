@@ -1,7 +1,8 @@
 //! Exodus II, in netCDF's classic formats and in netCDF-4.
 //!
-//! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model". Elements stand in blocks, each of one type, and
-//! are numbered through all of them from one. A side set lists sides of elements, a node set nodes.
+//! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model". Elements form blocks of one type
+//! each; element numbers start at 1 and continue from block to block. A side set lists sides of elements, a node set
+//! lists nodes.
 
 mod blocks;
 mod data;
@@ -24,15 +25,15 @@ use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Exodus;
 
-/// A file with its header.
+/// An Exodus file with its header.
 struct File<'a> {
     source: &'a Source,
     header: Header<'a>,
-    /// How many nodes there are.
+    /// Number of nodes.
     nodes: usize,
 }
 
-/// Stands for the block of what is in no block.
+/// Region number of elements outside of all blocks: the lines of side sets.
 const NO_BLOCK: i64 = i64::MIN;
 
 impl FormatReader for Exodus {
@@ -79,7 +80,10 @@ impl FormatReader for Exodus {
 }
 
 impl<'a> File<'a> {
-    /// How the coordinates stand, of each axis by itself.
+    /// Locates the coordinates: the variables `coordx`, `coordy` and `coordz`, or else the table `coord`.
+    ///
+    /// # Errors
+    /// If the coordinates do not have two or three axes of one number type, or cannot be read.
     fn axes(&self) -> Result<Axes<'a>, ReadError> {
         let header = &self.header;
         let nodes = self.nodes as u64;
@@ -90,7 +94,7 @@ impl<'a> File<'a> {
             &[own] => own == nodes && !variable.is_record,
             _ => false,
         };
-        // The coordinates of all axes in one table, or each in one of its own.
+        // Newer files have a variable per axis, older files a table of all axes.
         let (count, variables) = match all.map(|all| (all, &all.shape[..], all.is_record)) {
             Some((all, &[count, own], false)) if own == nodes => (count as usize, vec![all]),
             _ => {

@@ -1,4 +1,4 @@
-//! The side sets and node sets of an Exodus file.
+//! Side sets and node sets of an Exodus file.
 
 use super::blocks::Block;
 use super::{File, NO_BLOCK};
@@ -9,7 +9,10 @@ use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 
 impl File<'_> {
-    /// Hands on the sides of triangles and quadrilaterals in side sets as lines.
+    /// Visits the sides of triangles and quadrilaterals in side sets as lines.
+    ///
+    /// # Errors
+    /// If a side set has lists of different lengths, or names a side that does not exist.
     pub(super) fn side_sets(
         &self,
         blocks: &[Block<'_>],
@@ -48,7 +51,8 @@ impl File<'_> {
         Ok(())
     }
 
-    /// The ends of a side; none if it is no line, such as the face of a shell. None at all if there is no such side.
+    /// Returns the nodes at the ends of a side, both numbers counted from 1. `Some(None)` if the side is not an edge: a
+    /// face of a shell, or a side of a bar or sphere. `None` if the element or side does not exist.
     fn side(&self, blocks: &[Block<'_>], element: i64, side: i64) -> Option<Option<[u64; 2]>> {
         let place = u64::try_from(element).ok()?.checked_sub(1)?;
         let block = &blocks[blocks.partition_point(|block| block.before + block.count <= place)..];
@@ -68,7 +72,10 @@ impl File<'_> {
         (side < corners).then(|| Some([nodes[side], nodes[(side + 1) % corners]]))
     }
 
-    /// Hands on which nodes are in which node sets.
+    /// Visits the nodes of all node sets.
+    ///
+    /// # Errors
+    /// If a node set names a node that does not exist.
     pub(super) fn node_sets(&self, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
         let ids = self.named("nodeset", ["ns_prop1", "ns_names"], 0, visitor);
         for (number, variable) in self.header.numbered("node_ns") {
@@ -88,7 +95,7 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Hands on the names of sets of a dimension. Returns their numbers.
+    /// Visits the names of all side sets (dimension 1) or node sets (dimension 0). Returns the ids of the sets.
     fn named(
         &self,
         what: &str,

@@ -1,4 +1,5 @@
-//! Writes Exodus II: elements in blocks by kind and group, lines of groups as side sets, groups of vertices as node sets.
+//! Writer of Exodus II: element blocks by kind and group, side sets for grouped lines, node sets for groups of
+//! vertices.
 //!
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
 
@@ -10,24 +11,26 @@ use crate::netcdf::write::{NetCdfWriter, Values};
 use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 
-/// The dimension of time steps.
+/// Name of the dimension of time steps, the record dimension.
 const RECORDS: &str = "time_step";
 
-/// Elements of one kind and group.
+/// An element block: the cells of one kind and group.
 struct Block {
     kind: CellKind,
     group: Option<u32>,
     cells: Vec<usize>,
 }
 
-/// The lines of one group, as sides of elements.
+/// A side set: the lines of a group, as sides of elements.
 struct SideSet {
     group: u32,
+    /// Element number of each side, from 1 through all blocks.
     elements: Vec<i32>,
+    /// Number of each side within its element, from 1.
     sides: Vec<i32>,
 }
 
-/// Returns the Exodus name of a type of elements, and its number of nodes.
+/// Returns the Exodus name of an element type, and the number of nodes per element.
 fn type_of(kind: CellKind) -> (&'static str, usize) {
     let name = match kind {
         CellKind::Point | CellKind::Polygon => "SPHERE",
@@ -38,7 +41,8 @@ fn type_of(kind: CellKind) -> (&'static str, usize) {
     (name, kind.nodes())
 }
 
-/// Returns the group that names the block or side set of a cell.
+/// Returns the group that determines block or side set of a cell: the cell's most important group, else a group of the
+/// kind `block`.
 fn group_of(input: &WriterInput<'_>, cell: usize) -> Option<u32> {
     let of_any = || {
         let set = &input.content.sets[input.content.cells.sets[cell] as usize];
@@ -79,8 +83,8 @@ pub(crate) fn write_exodus(input: &WriterInput<'_>) -> Vec<u8> {
     out.bytes()
 }
 
-/// Makes the blocks, in the order in which the file first has an element of each: first triangles and quadrilaterals,
-/// then lines, then points.
+/// Sorts cells into blocks by kind and group. Blocks of triangles and quadrilaterals come first, then lines, then
+/// points; within a dimension, blocks are in the order of their first cell.
 fn blocks(input: &WriterInput<'_>, sides: &HashSet<usize>) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut places: HashMap<(u8, Option<u32>), usize> = HashMap::new();
@@ -139,7 +143,7 @@ fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) 
     sets
 }
 
-/// Makes an attribute.
+/// Returns a netCDF attribute with a text.
 fn text(name: &'static str, content: &str) -> (&'static str, Values) {
     (name, Values::Text(content.as_bytes().to_vec()))
 }
@@ -162,7 +166,8 @@ fn points(out: &mut NetCdfWriter, input: &WriterInput<'_>, width: usize) {
     out.variable("coor_names", &["num_dim", "len_name"], Vec::new(), names);
 }
 
-/// Gives groups distinct numbers. A group keeps its own number unless an earlier group has it.
+/// Assigns distinct 32-bit numbers to groups. The smallest unused numbers from 1 on replace missing, larger and
+/// repeated ones.
 fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
     let wanted: Vec<Option<i32>> =
         wanted.map(|own| own.and_then(|own| i32::try_from(own).ok())).collect();
@@ -180,7 +185,7 @@ fn numbers(wanted: impl Iterator<Item = Option<i64>>) -> Vec<i32> {
     wanted.iter().map(number).collect()
 }
 
-/// Adds the status, numbers and names of blocks or sets.
+/// Adds count, status, ids and names of blocks or sets. `width` is the length of a name with its terminating zero.
 fn named(
     out: &mut NetCdfWriter,
     [count, status, property, names]: [&str; 4],

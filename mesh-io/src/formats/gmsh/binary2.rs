@@ -1,5 +1,5 @@
-//! The sections of version 2.2 in binary. The counts are text. After them come the nodes one by one, and the elements
-//! in blocks of one kind.
+//! Sections of version 2.2 in binary. Counts are text; after them, nodes are single records and elements form blocks of
+//! one type.
 
 use super::kind::kind_of;
 use super::lists::{block_fits, row};
@@ -47,7 +47,7 @@ pub(super) fn nodes(
         visitor.node(cursor, tag, 2, cursor.last_taken() + TAG, [x, y]);
         z_values.push((cursor.last_taken() + TAG + 16, z));
         if parametric {
-            // The dimension of the node's entity, the entity's tag, and one parameter for each dimension.
+            // The dimension of the node's entity, the entity's tag, and a parameter for each dimension.
             let entity = &mut Words::take(cursor, order, 8, progress)?;
             let parameters = match entity.int() {
                 1 => 8,
@@ -104,7 +104,7 @@ pub(super) fn elements(
             let tag = words.natural(cursor, "an element tag")?;
             let mut region = [0; 2];
             region[..groups.min(2)].fill_with(|| i64::from(words.int()));
-            // The tags after the second one are those of mesh partitions.
+            // Tags after the second list mesh partitions.
             words.skip(4 * groups.saturating_sub(2));
             let mut nodes = [0; 4];
             for node in &mut nodes[..kind.nodes()] {

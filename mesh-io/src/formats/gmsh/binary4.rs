@@ -1,4 +1,5 @@
-//! The sections of version 4.1 in binary, and the elements of 4.0. There is a block for each entity of the model.
+//! Sections of version 4.1 in binary, and the elements of 4.0. Nodes and elements form blocks, a block for each entity
+//! of the model.
 
 use super::encoding::{Version, form};
 use super::kind::kind_of;
@@ -16,7 +17,7 @@ use crate::visit::storage::ArrayLocation;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
-/// The size of a block's header in bytes: three `int`, and a `size_t` (an `unsigned long` in 4.0).
+/// Size of a block header in bytes: three `int`, and a `size_t` (in 4.0 an `unsigned long`).
 pub(super) const BLOCK_HEADER: usize = 20;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
@@ -96,7 +97,7 @@ pub(super) fn elements(
     for block in 0..blocks {
         let progress = Progress::new(block, blocks, "element blocks");
         let words = &mut Words::take(cursor, order, BLOCK_HEADER, progress)?;
-        // In 4.0 the entity's tag comes first, in 4.1 its dimension.
+        // The entity's tag comes first in 4.0, the entity's dimension in 4.1.
         let [first, second] = [words.int(), words.int()];
         let entity = if version == Version::V40 { first } else { second };
         let region = [i64::from(entity), 0];
@@ -143,13 +144,13 @@ pub(super) fn elements(
     Ok(count)
 }
 
-/// Reads the number of blocks of a section, and the number of nodes or elements in all of them.
+/// Reads the counts at the start of a section: blocks, and nodes or elements in all blocks together.
 pub(super) fn counts(
     cursor: &mut Cursor<'_>,
     version: Version,
     order: ByteOrder,
 ) -> Result<[u64; 2], ReadError> {
-    // In 4.1 the least and the greatest tag follow.
+    // In 4.1, the smallest and largest tag follow.
     let bytes = if version == Version::V40 { 16 } else { 32 };
     let progress = Progress::new(0, 1, "counts");
     let words = &mut Words::take(cursor, order, bytes, progress)?;

@@ -1,5 +1,5 @@
-//! The nodes of version 4.0 in binary. There is a block for each entity of the model, and each node has a tag of four
-//! bytes before its coordinates.
+//! Nodes of version 4.0 in binary, in a block for each entity of the model. A tag of four bytes precedes the
+//! coordinates of each node.
 
 use super::binary4::{BLOCK_HEADER, counts};
 use super::encoding::Version;
@@ -11,7 +11,7 @@ use crate::text::cursor::Cursor;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
-/// The size of a tag in bytes.
+/// Size of a node tag in bytes.
 const TAG: usize = 4;
 
 /// Reads `$Nodes` after its first line. Returns the number of nodes.
@@ -36,7 +36,7 @@ pub(super) fn nodes(
         }
         let size = words.size();
         block_fits(cursor, size, count - done, "nodes")?;
-        // Nodes of points and of volumes have no parameters.
+        // Nodes on points and in volumes have no parameters.
         let parameters = if parametric && dimension < 3 { dimension as usize } else { 0 };
         for at in 0..size {
             let progress = Progress::new(done + at, count, "nodes");

@@ -1,4 +1,4 @@
-//! Data of nodes and elements: `$NodeData` and `$ElementData`.
+//! Data of nodes and elements: the sections `$NodeData` and `$ElementData`.
 
 use super::encoding::form;
 use crate::binary::byte_order::ByteOrder;
@@ -11,12 +11,13 @@ use crate::visit::storage::ArrayLocation;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
 
-/// Data of nodes are skipped if fewer than one in this number of nodes has them.
+/// Reciprocal of the smallest share of nodes with a value. Node data with a smaller share are skipped.
 const MIN_NODE_SHARE: u64 = 16;
 
-/// Announces the data of a section after its first line, and reads them if the visitor wants them. The cursor does not
-/// move. `nodes` is the number of nodes, for data of nodes. Damaged data are skipped, as the mesh does not depend on
-/// them. So are data of very few nodes, as a number for each node would take many times the memory of the file.
+/// Announces the data of a section after its first line, and reads the data if the visitor wants them. The cursor does
+/// not move. `nodes` is the number of nodes for node data, `None` for element data. Damaged data are skipped, as the
+/// mesh does not depend on data. Data of very few nodes are skipped too, as an array with a value per node would need
+/// many times the memory of the file.
 pub(super) fn read(
     cursor: &Cursor<'_>,
     nodes: Option<u64>,
@@ -46,7 +47,8 @@ pub(super) fn read(
     }
 }
 
-/// Reads the name, how many numbers each node or element has, and how many of these have data.
+/// Reads the tags of a section: the name, the components per node or element, and the number of nodes or elements with
+/// data. `None` if a tag is damaged, or if there are not 1 to 9 components.
 fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
     let mut name = None;
     for place in 0..count(cursor)? {
@@ -56,7 +58,7 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
             name = Some(unquoted(text));
         }
     }
-    // Real tags, of which the first is a time.
+    // The first real tag is a time. No real tag is used.
     for _ in 0..count(cursor)? {
         cursor.next_row().then_some(())?;
     }
@@ -69,7 +71,7 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
         }
     }
     let [_, components, nodes] = integers;
-    // Scalars, vectors and tensors, padded or not.
+    // Scalars, vectors and tensors, with or without padding.
     (1..=9).contains(&components).then_some((name?, components, nodes))
 }
 

@@ -1,10 +1,10 @@
-//! The version of a file and how its numbers are stored.
+//! Version and number encoding of a gmsh file.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::edit::numbers::NumberEncoding;
 use crate::precision::Precision;
 
-/// The version of the format.
+/// Version of the format. `V2` stands for 2.0 to 2.2, `V40` for 4 and 4.0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Version {
     V2,
@@ -12,15 +12,15 @@ pub(super) enum Version {
     V41,
 }
 
-/// Version of the format, and byte order if the file is binary.
+/// Version of the format, and the byte order of binary files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FileEncoding {
     pub(super) version: Version,
-    /// The byte order of binary numbers; `None` for text.
+    /// Byte order of binary numbers; `None` for text.
     pub(super) order: Option<ByteOrder>,
 }
 
-/// Returns how a number is stored in the file.
+/// Returns the encoding of a floating-point number in the file; text if `order` is `None`.
 pub(super) fn form(order: Option<ByteOrder>) -> NumberEncoding {
     match order {
         None => NumberEncoding::Text(Precision::Double),

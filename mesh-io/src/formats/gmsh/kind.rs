@@ -1,10 +1,13 @@
-//! The element types of gmsh that can be read.
+//! gmsh's element types.
 
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::items::CellKind;
 
-/// Returns the kind of an element by its number in gmsh, or an error on the current line.
+/// Returns the kind of an element by gmsh's type number.
+///
+/// # Errors
+/// At the cursor's line, if the type belongs to a volume, is of higher order, or is unknown.
 pub(super) fn kind_of(cursor: &Cursor<'_>, number: u64) -> Result<CellKind, ReadError> {
     match number {
         15 => Ok(CellKind::Point),
@@ -33,7 +36,7 @@ fn refusal(cursor: &Cursor<'_>, number: u64) -> ReadError {
     }
 }
 
-/// Reads the node tags at the end of an element's row, as many as the kind has. The other places of the array are 0.
+/// Reads the node tags at the end of an element's row. Array entries beyond the kind's node count are 0.
 #[inline]
 pub(super) fn node_tags(
     cursor: &mut Cursor<'_>,

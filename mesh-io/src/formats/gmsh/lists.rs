@@ -1,4 +1,4 @@
-//! The lists and blocks of a section: their counts, their rows, and how these are laid out.
+//! Lists and blocks of a section: counts, block headers, and the layout of items on rows of text.
 
 use super::words::Progress;
 use crate::content::remark::Remark;
@@ -9,18 +9,18 @@ use crate::text::syntax::Syntax;
 use crate::visit::rows::each_item;
 use crate::visit::visitor::MeshVisitor;
 
-/// A remark for the user on parameters that cannot be updated.
+/// Remark for the user: a rewrite cannot update the parameters of moved nodes.
 const PARAMETRIC: &str =
     "nodes have parameters on surfaces of the model, which stay as they are where nodes move";
 
-/// Chooses how the rest of a section is read: by rows if it has this many rows, else by words as gmsh does.
+/// Chooses the layout of the rest of a section: row by row if `rows` rows follow, else word by word, as gmsh parses.
 fn lay_out(cursor: &mut Cursor<'_>, rows: u64) {
     let (bytes, at) = (&cursor.source.bytes, cursor.at());
     let end = memchr::memmem::find(&bytes[at..], b"$End").map_or(bytes.len(), |end| at + end);
     cursor.syntax = of_rows_or_words(cursor, end, rows);
 }
 
-/// Reads a list by rows if `is_so`: each item then has a row of its own, with parameters at its end.
+/// Reads a list. If `is_so`, items are read row by row, and the parameters at the end of each row are skipped.
 pub(super) fn by_rows<'a, T>(
     cursor: &mut Cursor<'a>,
     is_so: bool,
@@ -38,20 +38,22 @@ pub(super) fn by_rows<'a, T>(
     Ok(list)
 }
 
-/// Tells the visitor that nodes have parameters, which stay as they are.
+/// Remarks that nodes have parameters, which a rewrite leaves unchanged.
 pub(super) fn note_parameters(visitor: &mut dyn MeshVisitor) {
     visitor.remark(Remark::Text(PARAMETRIC.into()));
     visitor.unsupported("parameters of nodes on surfaces");
 }
 
-/// Announces that nodes have parameters on a surface. Returns whether the visitor wants them.
+/// Announces that nodes have parameters on a surface of the model. Returns whether the visitor wants the parameters.
 pub(super) fn has_parameters(visitor: &mut dyn MeshVisitor, surface: i64) -> bool {
     visitor.unsupported("parameters of nodes on surfaces");
     visitor.parameters(surface)
 }
 
-/// Moves to the next of `count` items of a section, after `done` were read. Returns an error if the section ends before
-/// it.
+/// Moves to the next item of a section, of which `done` of `count` were read.
+///
+/// # Errors
+/// If the section or the file ends first.
 #[inline]
 pub(super) fn row(
     cursor: &mut Cursor<'_>,
@@ -67,7 +69,7 @@ pub(super) fn row(
     Ok(())
 }
 
-/// Hands on the next `count` items of a section. As in gmsh, items may stand anywhere on lines.
+/// Visits the next `count` items of a section. As in gmsh, items may be anywhere on lines.
 pub(super) fn each<'a, T: Send>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -81,8 +83,8 @@ pub(super) fn each<'a, T: Send>(
     each_item(cursor, count, visitor, next, read, take)
 }
 
-/// Reads the counts at the start of a section, and chooses how the rest is read. `rows` returns how many rows it should
-/// have.
+/// Reads the counts at the start of a section, and chooses the layout of the rest. `rows` returns the number of rows
+/// for these counts if each item has a row.
 pub(super) fn counts<'a, T: Copy>(
     cursor: &mut Cursor<'a>,
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError>,
@@ -94,7 +96,7 @@ pub(super) fn counts<'a, T: Copy>(
     Ok(counts)
 }
 
-/// Reads the header of the next list or block.
+/// Reads the header of the next list or block of a section.
 pub(super) fn head<'a, T>(
     cursor: &mut Cursor<'a>,
     Progress { done, count, what }: Progress<'_>,
@@ -104,7 +106,7 @@ pub(super) fn head<'a, T>(
     cursor.item(read, &mut None)
 }
 
-/// Checks that a block of `size` items is not larger than what the section's count leaves for it.
+/// Checks that a block of `size` items does not exceed the `left` items that the section's count leaves.
 pub(super) fn block_fits(
     cursor: &Cursor<'_>,
     size: u64,
@@ -118,6 +120,7 @@ pub(super) fn block_fits(
     Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
 }
 
+/// Checks that the blocks of a section hold as many items as the section's count announces.
 pub(super) fn all_in_blocks(
     cursor: &Cursor<'_>,
     done: u64,

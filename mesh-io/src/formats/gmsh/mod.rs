@@ -1,9 +1,9 @@
 //! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary.
 //!
-//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. To read a mesh, only `$MeshFormat`,
-//! `$Nodes` and `$Elements` are needed. `$PhysicalNames` and `$Entities`, which from version 4 on lists the physical
-//! groups of each entity, are read only for groups. Regions do not need them, as all triangles of an entity have the
-//! same groups.
+//! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Reading a mesh requires only
+//! `$MeshFormat`, `$Nodes` and `$Elements`. `$PhysicalNames` and `$Entities`, which lists the physical groups of each
+//! entity from version 4 on, are read only for groups. Regions do not depend on these sections, as all triangles of an
+//! entity have the same physical groups.
 
 mod binary2;
 mod binary4;

@@ -1,4 +1,4 @@
-//! The names of physical groups, and the entities of the model with their physical groups.
+//! Names of physical groups, and entities of the model with their physical groups.
 
 use super::encoding::{FileEncoding, Version};
 use super::lists::row;
@@ -12,7 +12,7 @@ use crate::visit::items::{CellKind, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
-/// Reads `$PhysicalNames` after its first line and hands on the names. Returns how many there are.
+/// Reads `$PhysicalNames` after its first line and visits the names. Returns the number of names.
 pub(super) fn physical_names(
     cursor: &mut Cursor<'_>,
     visitor: &mut dyn MeshVisitor,
@@ -26,7 +26,7 @@ pub(super) fn physical_names(
         let (dimension, tag) = match cursor.is_at(b'"') {
             true => (None, first),
             false => {
-                // Groups of volumes belong to no element of the mesh.
+                // Volumes have no elements in the mesh, so names of dimension 3 are skipped below.
                 let dimension = u8::try_from(first).unwrap_or(u8::MAX);
                 (Some(dimension), cursor.signed("the tag of a physical group")?)
             }
@@ -40,7 +40,7 @@ pub(super) fn physical_names(
     Ok(count)
 }
 
-/// The entities of the model, which the format has from version 4 on.
+/// Entities of the model by dimension and tag. Files have entities from version 4 on.
 #[derive(Default)]
 pub(super) struct Model {
     entities: HashMap<(u8, i64), Entity>,
@@ -48,13 +48,15 @@ pub(super) struct Model {
 
 #[derive(Default)]
 struct Entity {
-    /// The entity's tag. In a partitioned mesh it is the tag of the whole entity that this one is part of.
+    /// Tag of the entity; for a part of an entity in a partitioned mesh, the tag of the whole entity.
     tag: i64,
+    /// Tags of the entity's physical groups.
     physical: Vec<i64>,
 }
 
 impl Model {
-    /// Returns the groups of an entity's elements. Physical groups are known only after `$Entities` was read.
+    /// Returns the groups of the elements of `kind` in an entity block: the entity's physical groups, known only after
+    /// `$Entities`, and the entity itself.
     pub(super) fn groups_of(&self, kind: CellKind, entity: i64) -> Vec<GroupScope<'static>> {
         let known = self.entities.get(&(kind.dimension(), entity));
         let within = |what, tag: i64| GroupScope {
@@ -71,14 +73,14 @@ impl Model {
         groups
     }
 
-    /// Reads `$Entities` after its first line, or `$PartitionedEntities`.
+    /// Reads `$Entities` or `$PartitionedEntities` after its first line.
     pub(super) fn read(
         &mut self,
         cursor: &mut Cursor<'_>,
         FileEncoding { version, order }: FileEncoding,
         partitioned: bool,
     ) -> Result<(), ReadError> {
-        // A point has three coordinates in 4.1. All other entities, and points in 4.0, have a bounding box.
+        // Points have three coordinates in 4.1. Points in 4.0, and entities of higher dimension, have a bounding box.
         let numbers = |dimension| match (version, dimension) {
             (Version::V41, 0) => 3,
             _ => 6,
@@ -110,7 +112,7 @@ impl Model {
     }
 }
 
-/// Reads the number of entities of each dimension.
+/// Reads the number of entities in each dimension. A partitioned mesh lists its ghost entities before the counts.
 fn text_counts(cursor: &mut Cursor<'_>, partitioned: bool) -> Result<[u64; 4], ReadError> {
     if partitioned {
         row(cursor, 0, 1, "numbers of partitions")?;
@@ -128,7 +130,8 @@ fn text_counts(cursor: &mut Cursor<'_>, partitioned: bool) -> Result<[u64; 4], R
     Ok(counts)
 }
 
-/// Reads the row of an entity up to its physical groups. The bounding entities that follow are left.
+/// Reads the row of an entity up to its physical groups, without the bounding entities after them. Returns the tag in
+/// the file and the entity.
 fn text_entity(
     cursor: &mut Cursor<'_>,
     partitioned: bool,
@@ -152,13 +155,14 @@ fn text_entity(
     }
     let mut physical = Vec::new();
     for _ in 0..cursor.integer("the number of an entity's physical groups")? {
-        // The sign gives the direction of a curve.
+        // The sign is the orientation of a curve.
         physical.push(cursor.signed("a physical group")?.saturating_abs());
     }
     Ok((tag, Entity { tag: whole, physical }))
 }
 
-/// Returns the entity that a part belongs to. This is its parent, unless the part is a new boundary between partitions.
+/// Returns the tag of the whole entity to which a part belongs: the parent. A new boundary between partitions, whose
+/// parent has another dimension, is whole by itself.
 fn whole_of(tag: i64, dimension: u8, parent: i64, parent_dimension: i64) -> i64 {
     if parent_dimension == i64::from(dimension) { parent } else { tag }
 }
@@ -191,7 +195,7 @@ fn binary_entity(
     let int = |cursor: &mut Cursor<'_>| {
         Words::take(cursor, order, 4, progress).map(|mut words| i64::from(words.int()))
     };
-    // Reads a count, and as many numbers of four bytes.
+    // Reads a count, then as many integers of four bytes.
     let ints = |cursor: &mut Cursor<'_>| {
         let count = Words::take(cursor, order, 8, progress)?.size();
         let bytes = usize::try_from(count).unwrap_or(usize::MAX).saturating_mul(4);
@@ -209,7 +213,7 @@ fn binary_entity(
     Words::take(cursor, order, 8 * numbers, progress)?;
     let physical = ints(cursor)?.into_iter().map(i64::abs).collect();
     if !is_point {
-        // The bounding entities.
+        // Bounding entities.
         ints(cursor)?;
     }
     Ok((tag, Entity { tag: whole, physical }))

@@ -1,4 +1,4 @@
-//! The nodes that belong together in pairs, from the section `$Periodic`.
+//! Pairs of periodic nodes, from the section `$Periodic`.
 
 use super::encoding::{FileEncoding, Version};
 use crate::binary::byte_order::ByteOrder;
@@ -8,18 +8,18 @@ use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
 use crate::visit::items::PeriodicNodes;
 
-/// The numbers of a motion of space: a matrix of four by four, row by row.
+/// Number of entries of an affine motion: a 4 × 4 matrix, row by row.
 const AFFINE: usize = 16;
 
-/// Reads a section after its first line. The cursor does not move. `None` if the section is not as gmsh writes it; the
-/// mesh does not depend on it.
+/// Reads a section after its first line. The cursor does not move. `None` if the section differs from gmsh's own
+/// layout, as the mesh does not depend on periodic pairs.
 pub(super) fn read(
     cursor: &Cursor<'_>,
     FileEncoding { version, order }: FileEncoding,
 ) -> Option<Vec<PeriodicNodes>> {
     let cursor = &mut cursor.clone();
     let found = match (version, order) {
-        // In version 2.2 this section is text in binary files, too.
+        // Binary files of version 2.2 have this section as text, too.
         (Version::V2, _) | (_, None) => text(cursor, version)?,
         (_, Some(order)) => binary(cursor, version, order)?,
     };
@@ -27,13 +27,13 @@ pub(super) fn read(
     is_end.then_some(found)
 }
 
-/// Returns what a motion of space does in the plane, if it is complete.
+/// Returns the part of an affine motion in the plane of x and y. `None` if the matrix does not have 16 entries.
 fn in_plane(numbers: &[f64]) -> Option<Affine> {
     let all: &[f64; AFFINE] = numbers.try_into().ok()?;
     Some([[all[0], all[1], all[3]], [all[4], all[5], all[7]]])
 }
 
-/// Makes pairs of nodes with their motion; `None` if there is no pair.
+/// Combines pairs of nodes with their motion; `None` without pairs.
 fn pairs(motion: Option<Affine>, nodes: Vec<[u64; 2]>) -> Option<PeriodicNodes> {
     (!nodes.is_empty()).then_some(PeriodicNodes { motion, nodes })
 }
@@ -46,12 +46,12 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>>
     let links = number(cursor)?;
     let mut found = Vec::new();
     for _ in 0..links {
-        // The row with the dimension and the tags of both entities.
+        // The row has the dimension and the tags of both entities.
         (cursor.next_row() && !cursor.is_at(b'$')).then_some(())?;
         cursor.next_row().then_some(())?;
         let first = cursor.token()?;
-        // From 4.1 on, a row has the count of the motion's numbers and the numbers. Before, the row starts with
-        // `Affine`, or there is none.
+        // In 4.1, a row has the entry count of the motion and the entries. In earlier versions, the row starts with
+        // `Affine` or is missing.
         let has_row = version == Version::V41 || first == b"Affine";
         let mut numbers = Vec::new();
         if has_row {
@@ -72,7 +72,7 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>>
     Some(found)
 }
 
-/// Takes `count` items of `size` bytes from the file.
+/// Takes `count` items of `size` bytes from the file; `None` if the file ends first.
 fn take<'a>(cursor: &mut Cursor<'a>, count: u64, size: usize) -> Option<&'a [u8]> {
     cursor.take(usize::try_from(count).ok()?.checked_mul(size)?)
 }
@@ -93,7 +93,8 @@ fn binary(
         take(cursor, 3, 4)?;
         let mut count = size(cursor)?;
         let mut numbers = Vec::new();
-        // From 4.1 on, this is the count of the motion's numbers. Before, it is negative if a motion follows.
+        // In 4.1, `count` is the entry count of the motion. In 4.0, a negative `count` announces a motion of 16
+        // entries.
         if !is_40 || count > i64::MAX as u64 {
             let has = if is_40 { AFFINE as u64 } else { count };
             let real = |bytes: &[u8]| order.real(Precision::Double, bytes);
@@ -127,7 +128,7 @@ mod tests {
         read(&cursor, FileEncoding { version, order })
     }
 
-    /// Version 4.0 in binary has narrower numbers than 4.1, and marks a motion by a negative count.
+    /// Version 4.0 in binary has narrower integers than 4.1, and announces a motion by a negative count.
     #[test]
     fn binary_of_version_4_0_is_read_in_both_byte_orders() {
         for order in [ByteOrder::Little, ByteOrder::Big] {

@@ -1,4 +1,4 @@
-//! The sections of a file, one after another, and the version that tells how they are read.
+//! Reads the sections of a file in order, each by its version and encoding.
 
 use super::encoding::{FileEncoding, Version, form};
 use super::lists::{note_parameters, row};
@@ -17,7 +17,7 @@ use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
-/// The reader of gmsh's `.msh`.
+/// Reader of gmsh's `.msh`.
 pub(crate) struct Gmsh;
 
 impl FormatReader for Gmsh {
@@ -44,7 +44,11 @@ impl FormatReader for Gmsh {
     }
 }
 
-/// Hands a file's nodes and elements to the visitor.
+/// Visits the nodes, elements and data of a file, and on request groups and periodic pairs. Returns version and byte
+/// order.
+///
+/// # Errors
+/// If a section that the mesh needs is missing, repeated or damaged, or out of order.
 fn visit_sections(
     source: &Source,
     visitor: &mut dyn MeshVisitor,
@@ -55,7 +59,7 @@ fn visit_sections(
     let mut node_count = 0;
     let mut model = Model::default();
     while cursor.next_row() {
-        // Like gmsh, ignore all text between sections.
+        // gmsh ignores text between sections.
         let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
             continue;
         };
@@ -159,6 +163,7 @@ fn visit_sections(
     }
 }
 
+/// Reads `$MeshFormat` after its first line: version, and the byte order of a binary file.
 fn mesh_format(cursor: &mut Cursor<'_>) -> Result<FileEncoding, ReadError> {
     row(cursor, 0, 1, "format lines")?;
     let name = cursor.token().unwrap_or_default();
@@ -189,11 +194,13 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<FileEncoding, ReadError> {
     }
 }
 
+/// Returns the encoding that `$MeshFormat` gave, or an error if the section is missing so far.
 fn known(cursor: &Cursor<'_>, encoding: Option<FileEncoding>) -> Result<FileEncoding, ReadError> {
     let problem = "no $MeshFormat section stands before this one";
     encoding.ok_or_else(|| cursor.error(problem, "Save the mesh again with gmsh"))
 }
 
+/// Returns an error if a section named `name` was read before; else records it in `seen`.
 fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {
     if std::mem::replace(seen, true) {
         let problem = format!("this is the second ${name} section");
@@ -202,7 +209,10 @@ fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadErro
     Ok(())
 }
 
-/// Moves past the line that ends a section, after all announced rows were read.
+/// Moves past the last line of a section, after all announced items were read.
+///
+/// # Errors
+/// If further items follow, or if the last line is not `$End` and the section's name.
 fn end_of_section(
     cursor: &mut Cursor<'_>,
     name: &str,
@@ -220,6 +230,7 @@ fn end_of_section(
     }
 }
 
+/// Moves past the last line of a section without reading the section.
 fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: Location) -> Result<(), ReadError> {
     while cursor.next_row() {
         if cursor.is_at(b'$') && cursor.token().and_then(|t| t.strip_prefix(b"$End")) == Some(name)

@@ -1,4 +1,4 @@
-//! The sections of version 2.2 as text: one line for each node and element.
+//! Sections of version 2.2 as text, with a line for each node and element.
 
 use super::kind::{kind_of, node_tags};
 use super::lists::{counts, each};
@@ -33,7 +33,7 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Returns the meaning of the first two tags of an element.
+/// Returns the meaning of an element's first two tags: physical group and entity, with 0 for none.
 pub(super) fn columns() -> Vec<RegionAttribute> {
     ["physical", "entity"].map(RegionAttribute::tags_from_one).into()
 }
@@ -55,7 +55,7 @@ pub(super) fn elements(
     Ok(count)
 }
 
-/// A node's tag, the offset of x with x and y, and the offset of z with z.
+/// Tag of a node, offset of x with x and y, and offset of z with z.
 type Node = (u64, (usize, [f64; 2]), (usize, f64));
 
 #[inline]
@@ -75,7 +75,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     for number in region.iter_mut().take(usize::try_from(groups).unwrap_or(usize::MAX)) {
         *number = cursor.signed(format_args!("a tag of element {tag}"))?;
     }
-    // The tags after the second one are those of mesh partitions.
+    // Tags after the second list mesh partitions.
     for _ in 2..groups {
         if cursor.token().is_none() {
             let problem = format!("element {tag} announces {groups} tags, but its line has fewer");

@@ -1,4 +1,5 @@
-//! The sections of version 4.1 as text, and the elements of 4.0. There is a block for each entity of the model.
+//! Sections of version 4.1 as text, and the elements of 4.0. Nodes and elements form blocks, a block for each entity of
+//! the model.
 
 use super::encoding::Version;
 use super::kind::{kind_of, node_tags};
@@ -86,13 +87,14 @@ pub(super) fn nodes(
     Ok(count)
 }
 
-/// Skips the smallest and the largest tag of a section, which are not needed.
+/// Skips the smallest and largest tag of a section, which readers do not need.
 fn skip_min_and_max(cursor: &mut Cursor<'_>) {
     cursor.token();
     cursor.token();
 }
 
-/// Reads the parameters at the end of the rows of these nodes.
+/// Reads the two parameters at the end of each node's row, and visits them. `cursor` precedes the coordinate rows of a
+/// block.
 #[cold]
 fn parameters(
     mut cursor: Cursor<'_>,
@@ -111,7 +113,7 @@ fn parameters(
     Ok(())
 }
 
-/// Reads `$Elements` of version 4.0 or 4.1 after its first line. The two differ in the header of a block. Returns the
+/// Reads `$Elements` of version 4.0 or 4.1, which differ in the header of a block, after its first line. Returns the
 /// number of elements.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
@@ -133,7 +135,8 @@ pub(super) fn elements(
     let mut done = 0;
     for block in 0..blocks {
         let read = |cursor: &mut Cursor<'_>| {
-            // The entity's dimension is not needed. It stands before the tag in 4.1, and after it in 4.0.
+            // The dimension of the entity is skipped; its place is before the entity's tag in 4.1, and behind the tag
+            // in 4.0.
             if version == Version::V41 {
                 cursor.token();
             }
@@ -163,10 +166,10 @@ pub(super) fn elements(
     Ok(count)
 }
 
-/// The offset of x with x and y, and the offset of z with z.
+/// Offset of x with x and y, and offset of z with z.
 type Point = ((usize, [f64; 2]), (usize, f64));
 
-/// Reads a node's coordinates.
+/// Reads the coordinates of a node, called `owner` in messages.
 #[inline]
 fn point(cursor: &mut Cursor<'_>, owner: impl Display + Copy) -> Result<Point, ReadError> {
     Ok((cursor.point(owner)?, cursor.z(owner)?))

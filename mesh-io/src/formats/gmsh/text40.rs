@@ -1,5 +1,5 @@
-//! The nodes of version 4.0 as text. There is a block for each entity of the model, and each node has its tag before
-//! its coordinates.
+//! Nodes of version 4.0 as text, in a block for each entity of the model. The tag of each node precedes its
+//! coordinates.
 
 use super::lists::{all_in_blocks, block_fits, by_rows, counts, each, head, note_parameters};
 use super::words::Progress;
@@ -38,7 +38,7 @@ pub(super) fn nodes(
             let point = cursor.point(format_args!("node {tag}"))?;
             Ok((tag, point, cursor.z(format_args!("node {tag}"))?))
         };
-        // Parameters follow at the end of the row.
+        // Parameters end the row of a node.
         by_rows(cursor, parametric, |cursor| {
             let progress = Progress::new(done, count, "nodes");
             each(

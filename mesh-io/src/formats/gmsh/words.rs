@@ -1,20 +1,21 @@
-//! The numbers of a binary file between its lines of text.
+//! Binary numbers of a file, between its lines of text.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::error::ReadError;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use std::fmt::Display;
 
-/// The remedy for a number that makes no sense.
+/// Remedy for a number outside of its valid range.
 const DAMAGED: &str = "The file is damaged: copy it again as binary, or save the mesh again";
 
-/// How many items of a section were read, for messages.
+/// Position in a section, for messages.
 #[derive(Clone, Copy)]
 pub(super) struct Progress<'w> {
+    /// Number of items read so far.
     pub(super) done: u64,
-    /// How many items the section has.
+    /// Number of items in the section.
     pub(super) count: u64,
-    /// What the items are called.
+    /// Name of the items in the plural, such as `nodes`.
     pub(super) what: &'w str,
 }
 
@@ -24,14 +25,17 @@ impl<'w> Progress<'w> {
     }
 }
 
-/// Bytes of a binary file that hold numbers, which are read one after the other.
+/// Bytes of a binary file with numbers, read from front to back. Reading beyond the last byte panics.
 pub(super) struct Words<'a> {
     order: ByteOrder,
     bytes: &'a [u8],
 }
 
 impl<'a> Words<'a> {
-    /// Takes the next `size` bytes of the file, which hold the next item.
+    /// Takes the next `size` bytes of the file, which contain the next item.
+    ///
+    /// # Errors
+    /// If the file ends first.
     #[inline]
     pub(super) fn take(
         cursor: &mut Cursor<'a>,
@@ -49,7 +53,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Returns the next bytes. There must be as many left, as the caller took all that it reads.
+    /// Returns the next `N` bytes. The caller must have taken as many bytes as it reads.
     #[inline]
     fn next<const N: usize>(&mut self) -> [u8; N] {
         let (next, rest) = self.bytes.split_first_chunk().expect("as many words as were taken");
@@ -57,7 +61,7 @@ impl<'a> Words<'a> {
         *next
     }
 
-    /// Returns the bytes that were not read yet.
+    /// Returns the bytes that are still unread.
     pub(super) fn left(&self) -> &'a [u8] {
         self.bytes
     }
@@ -72,7 +76,7 @@ impl<'a> Words<'a> {
         self.order.i32(self.next())
     }
 
-    /// Reads an `int` that must not be negative, called `what` in messages.
+    /// Reads an `int`, called `what` in messages. A negative one is an error.
     #[inline]
     pub(super) fn natural(
         &mut self,
@@ -96,7 +100,7 @@ impl<'a> Words<'a> {
         self.order.f64(self.next())
     }
 
-    /// Reads x, y and z of a node. z need not be finite.
+    /// Reads the coordinates of a node. x and y must be finite, z need not be.
     #[inline]
     pub(super) fn point(&mut self, cursor: &Cursor<'_>, tag: u64) -> Result<[f64; 3], ReadError> {
         let point: [f64; 3] = std::array::from_fn(|_| self.order.f64(self.next()));
@@ -110,7 +114,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Reads gmsh's mark of the byte order, the `int` 1.
+/// Reads gmsh's byte-order mark, the `int` 1, and returns the byte order.
 pub(super) fn byte_order(cursor: &mut Cursor<'_>) -> Result<ByteOrder, ReadError> {
     match cursor.take(4) {
         Some([1, 0, 0, 0]) => Ok(ByteOrder::Little),

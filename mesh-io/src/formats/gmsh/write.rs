@@ -1,4 +1,4 @@
-//! Writes gmsh's `.msh`, as text of the versions 2.2 and 4.1.
+//! Writer of gmsh's `.msh`, as text of versions 2.2 and 4.1.
 
 use crate::export::content::DataArray;
 use crate::export::put;
@@ -7,7 +7,7 @@ use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
-/// Returns gmsh's number for a kind of element.
+/// Returns gmsh's type number for an element kind.
 fn kind_of(kind: CellKind) -> u32 {
     match kind {
         CellKind::Point => 15,
@@ -46,7 +46,7 @@ pub(crate) fn write_41(input: &WriterInput<'_>) -> String {
     let points = content.points.len();
     let numbers = || (0..points).map(|vertex| input.vertex_id(vertex));
     let (least, most) = (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0));
-    // All nodes are written as nodes of a surface. The line elements tell which nodes lie on curves.
+    // All nodes are written as nodes of one surface. The line elements show which nodes are on curves.
     let surface = entities.first_surface();
     put!(out, "$Nodes\n1 {points} {least} {most}\n2 {surface} 0 {points}\n");
     numbers().for_each(|number| put!(out, "{number}\n"));
@@ -69,7 +69,7 @@ pub(crate) fn write_41(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Returns the physical group of a cell, or 0.
+/// Returns the tag of a cell's physical group; 0 if the most important group is an entity or missing.
 fn physical(input: &WriterInput<'_>, cell: usize) -> i64 {
     match input.group(cell) {
         Some(group) if group.kind != "entity" => input.group_number(cell),
@@ -103,11 +103,12 @@ fn names(input: &WriterInput<'_>, out: &mut String) {
     }
 }
 
-/// The entities of the model that cells belong to. In each dimension there is one for each pair of an entity of the
-/// mesh and a physical group.
+/// Entities of the model, to which the cells belong. Cells of equal dimension, entity in the mesh and physical group
+/// share an entity.
 struct Entities {
+    /// For each cell, the index of its group of the kind `entity` in the content.
     column: Vec<Option<u32>>,
-    /// The entity's number by its dimension, the entity of the mesh, and its physical group.
+    /// Tag of each written entity, by dimension, entity of the mesh, and physical group.
     numbers: HashMap<(u8, Option<u32>, i64), i64>,
 }
 
@@ -126,7 +127,8 @@ impl Entities {
             if numbers.contains_key(&(dimension, entity, physical)) {
                 continue;
             }
-            // The entity keeps its own number, or gets that of its physical group.
+            // An entity keeps its tag, or gets the tag of its physical group. If an earlier entity has that tag, or if
+            // it is below 1, the entity gets an unused tag after the loop.
             let wanted = entity.map_or(physical, |entity| input.group_numbers.number(entity));
             let number = if wanted > 0 && taken.insert((dimension, wanted)) { wanted } else { 0 };
             numbers.insert((dimension, entity, physical), number);
@@ -182,7 +184,7 @@ impl Entities {
                 0 => out.push('0'),
                 physical => put!(out, "1 {physical}"),
             }
-            // The bounding entities are not known.
+            // The bounding entities are unknown.
             out.push_str(if dimension > 0 { " 0\n" } else { "\n" });
         }
         out.push_str("$EndEntities\n");
@@ -200,7 +202,8 @@ fn data(input: &WriterInput<'_>, out: &mut String) {
     }
 }
 
-/// Writes the data of the items at these places. `numbers` are the items' numbers in the file.
+/// Writes a section with the data of the vertices or cells `places`. `numbers` are their numbers in the file. Items
+/// with only NaN are left out.
 fn section(
     data: &DataArray,
     name: &str,
@@ -208,7 +211,7 @@ fn section(
     places: Vec<usize>,
     out: &mut String,
 ) {
-    // gmsh shows data of one, three or nine numbers.
+    // gmsh displays data of 1, 3 or 9 components, so others are padded with zeros.
     let each = data.components;
     let padded = [1, 3, 9].into_iter().find(|&size| size >= each).unwrap_or(each);
     let of = |place: usize| data.values.get(place * each..(place + 1) * each).unwrap_or_default();

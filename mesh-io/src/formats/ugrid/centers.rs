@@ -1,4 +1,4 @@
-//! Places of faces and edges in a UGRID file, and of the corners of each.
+//! Centers and corner coordinates of faces and edges in a UGRID file, which depend on the node coordinates.
 
 use super::mesh::{Mesh, axis_of};
 use super::table::{Table, TableKind};
@@ -7,38 +7,42 @@ use crate::netcdf::{NumberType, Variable};
 use crate::visit::items::Centers;
 use crate::visit::visitor::MeshVisitor;
 
-/// The nodes of the faces of a mesh, and those of its edges if the file has edges.
+/// Connectivity tables of a mesh.
 pub(super) struct Tables<'h, 'a> {
     pub(super) faces: Table<'h, 'a>,
+    /// Table of edges; `None` if the file has no edges or a damaged table.
     edges: Option<Table<'h, 'a>>,
 }
 
-/// A variable with one coordinate of the centers of faces or edges.
+/// A variable with one coordinate of the centers or corners of faces or edges.
 pub(super) struct CenterVariable<'h> {
     pub(super) variable: &'h Variable,
+    /// The elements that the variable describes.
     of: TableKind,
-    /// x for 0, y for 1; others are not known.
+    /// Axis of the coordinate: 0 for x, 1 for y; other coordinates have a larger number.
     axis: usize,
-    /// Whether it has a number for each corner, not for each face or edge.
+    /// Whether the variable has a number per corner, not per element.
     of_corners: bool,
 }
 
 impl<'h, 'a> Mesh<'h, 'a> {
-    /// Adds the nodes of edges to those of faces.
+    /// Combines the table of faces with that of edges, if the file has edges.
     pub(super) fn tables(&self, faces: Table<'h, 'a>) -> Tables<'h, 'a> {
         let edges = self.named("edge_node_connectivity").into_iter().next();
         let edges = edges.and_then(|edges| Table::find(self, edges, TableKind::Edges).ok());
         Tables { faces, edges }
     }
 
-    /// Finds the places of faces and edges: variables that the mesh names, and others as long that say that they are coordinates.
+    /// Finds the variables with coordinates of faces and edges. The mesh names some; others have an axis attribute and
+    /// the length of faces or edges. The `bounds` variables of either kind have corner coordinates.
     pub(super) fn center_variables(&self, tables: &Tables<'h, 'a>) -> Vec<CenterVariable<'h>> {
         let mut found: Vec<CenterVariable<'h>> = Vec::new();
         for (of, attribute) in
             [(TableKind::Faces, "face_coordinates"), (TableKind::Edges, "edge_coordinates")]
         {
             for (place, variable) in self.named(attribute).into_iter().enumerate() {
-                // What they say of themselves comes before their order. Third and further ones are other coordinates.
+                // The axis of the first two variables follows from their attributes, else from their order. Further
+                // variables have neither x nor y.
                 let axis = if place < 2 { axis_of(variable).unwrap_or(place) } else { place };
                 found.push(CenterVariable { variable, of, axis, of_corners: false });
             }
@@ -68,7 +72,8 @@ impl<'h, 'a> Mesh<'h, 'a> {
         found
     }
 
-    /// Hands on the places of faces and edges. Returns the variables that are not handed on.
+    /// Visits centers and corner coordinates of faces and edges. Returns the variables that do not fit the mesh, which
+    /// a rewrite leaves unchanged.
     pub(super) fn centers(
         &self,
         tables: &Tables<'h, 'a>,
@@ -88,8 +93,8 @@ impl<'h, 'a> Mesh<'h, 'a> {
     }
 }
 
-/// Hands on one coordinate of places, one for each element of a table or one for each of its corners. `None` if there are
-/// not so many numbers. `first` is the id of the first node.
+/// Visits a variable with a number per element of a table, or per corner. `first` is the id of the first node. `None`
+/// if the variable is no list of real x or y coordinates of the right shape, or if an element of the table is damaged.
 fn send<'h, 'a>(
     table: &Table<'h, 'a>,
     first: u64,

@@ -1,4 +1,4 @@
-//! Data of nodes and faces in a UGRID file.
+//! Node and face data of a UGRID file.
 
 use super::centers::Tables;
 use super::mesh::Mesh;
@@ -8,7 +8,7 @@ use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};
 use crate::visit::visitor::MeshVisitor;
 
-/// What a variable has numbers for.
+/// Owners of the numbers of a variable.
 #[derive(Clone, Copy, PartialEq)]
 enum DataLocation {
     Nodes,
@@ -16,7 +16,8 @@ enum DataLocation {
 }
 
 impl<'h, 'a> Mesh<'h, 'a> {
-    /// Hands on data of nodes and faces, and tells what is not handed on. The mesh does not depend on them.
+    /// Visits data of nodes and faces, then the coordinates of faces and edges. Variables with coordinates that stay
+    /// unchanged become a remark. Damaged data are skipped, as the mesh does not depend on data.
     pub(super) fn data(&self, tables: &Tables<'h, 'a>, visitor: &mut dyn MeshVisitor) {
         let faces = &tables.faces;
         let lengths = [self.nodes as u64, faces.count as u64];
@@ -57,8 +58,9 @@ impl<'h, 'a> Mesh<'h, 'a> {
         }
     }
 
-    /// What a variable has numbers for, and how its records consist of parts. None if it is of something else, or if that is not
-    /// known.
+    /// Returns the owners of a variable's numbers and the layout of its records. `lengths` are the numbers of nodes and
+    /// faces. `None` for text, for variables of edges or of another mesh, and if the shape fits neither nodes nor
+    /// faces, or both.
     fn located(
         &self,
         variable: &Variable,
@@ -110,8 +112,8 @@ impl<'h, 'a> Mesh<'h, 'a> {
         }
     }
 
-    /// Tells what is in no mesh of another format. Edges, neighbors and places of faces follow from the mesh; attributes of variables
-    /// are like comments.
+    /// Reports content that a conversion loses. Edges, neighbors and coordinates of faces follow from the mesh, and
+    /// attributes of variables are comments, so neither is reported.
     fn left_out(&self, visitor: &mut dyn MeshVisitor) {
         let variables = &self.header.variables;
         if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {

@@ -1,4 +1,4 @@
-//! The faces of a UGRID mesh, handed on.
+//! Visits the faces of a UGRID mesh.
 
 use super::table::Table;
 use crate::binary::number_field::NumberField;
@@ -8,7 +8,7 @@ use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{Region, TriangleRecords};
 use crate::visit::visitor::MeshVisitor;
 
-/// Hands on all faces.
+/// Visits all faces. A table of 32- or 64-bit integers with a row of three corners per face is visited in bulk.
 pub(super) fn send(faces: &Table<'_, '_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
     visitor.expect_elements(faces.count);
     let mut taken = 0;

@@ -1,4 +1,4 @@
-//! The mesh of a UGRID file: which variables it consists of.
+//! The mesh of a UGRID file: the variables of its coordinates and faces.
 
 use crate::error::ReadError;
 use crate::formats::axes::{Axes, BinaryReals};
@@ -7,20 +7,22 @@ use crate::netcdf::{Header, NumberType, Variable};
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
 
-/// A mesh of faces.
+/// A two-dimensional mesh and its variables.
 pub(super) struct Mesh<'h, 'a> {
     pub(super) header: &'h Header<'a>,
-    /// The variable that stands for it.
+    /// The mesh variable, with the `cf_role` `mesh_topology`.
     pub(super) own: &'h Variable,
+    /// Variable of x or longitude, with a number per node.
     pub(super) x: &'h Variable,
+    /// Variable of y or latitude, of the same type, byte order and shape as `x`.
     pub(super) y: &'h Variable,
-    /// How many nodes there are.
+    /// Number of nodes.
     pub(super) nodes: usize,
-    /// Which nodes each face has.
+    /// Connectivity variable: the nodes of each face.
     pub(super) face_nodes: &'h Variable,
 }
 
-/// Whether a variable stands for a mesh, of any dimension.
+/// Returns whether a variable is the mesh variable of a UGRID mesh, of any dimension.
 pub(super) fn is_mesh(variable: &Variable) -> bool {
     variable.text("cf_role") == Some(b"mesh_topology")
 }
@@ -28,7 +30,10 @@ pub(super) fn is_mesh(variable: &Variable) -> bool {
 const REMEDY: &str = "Write it again by the UGRID conventions, or save the mesh in another format";
 
 impl<'h, 'a> Mesh<'h, 'a> {
-    /// Finds the one mesh of faces of a file.
+    /// Finds the two-dimensional mesh of a file. A mesh without `topology_dimension` counts as two-dimensional.
+    ///
+    /// # Errors
+    /// If the file has no such mesh or several, or if variables of coordinates or faces are missing or unsuitable.
     pub(super) fn find(header: &'h Header<'a>) -> Result<Mesh<'h, 'a>, ReadError> {
         let has_faces = |variable: &&Variable| {
             variable.whole("topology_dimension").is_none_or(|dimension| dimension == 2)
@@ -69,7 +74,10 @@ impl<'h, 'a> Mesh<'h, 'a> {
         Ok(Mesh { header, own, x, y, nodes, face_nodes })
     }
 
-    /// The coordinates of the nodes.
+    /// Locates the coordinates of the nodes.
+    ///
+    /// # Errors
+    /// If the content of a coordinate variable cannot be read.
     pub(super) fn axes(&self) -> Result<Axes<'a>, ReadError> {
         let Mesh { header, x, y, nodes, .. } = self;
         let NumberType::Real(precision) = x.number else {
@@ -78,7 +86,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         axes(header, &[x, y], BinaryReals { order: x.order, precision }, 2, *nodes)
     }
 
-    /// The variables that an attribute of the mesh names.
+    /// Returns the variables named by an attribute of the mesh variable, without names that the file lacks.
     pub(super) fn named(&self, attribute: &str) -> Vec<&'h Variable> {
         names(self.own, attribute).filter_map(|name| self.variable(name)).collect()
     }
@@ -88,7 +96,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
     }
 }
 
-/// The names that an attribute lists.
+/// Returns the words of an attribute: names of variables, separated by blanks.
 fn names<'v>(variable: &'v Variable, attribute: &str) -> impl Iterator<Item = &'v [u8]> + use<'v> {
     let text = variable.text(attribute).unwrap_or_default();
     text.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty())
@@ -98,7 +106,8 @@ fn variable<'h>(header: &'h Header<'_>, name: &[u8]) -> Option<&'h Variable> {
     header.variables.iter().find(|variable| variable.name == name)
 }
 
-/// The variables of x and y, or of longitude and latitude. If nodes have further coordinates, those named first are meant.
+/// Returns the variables of x and y, or of longitude and latitude, in this order. If `node_coordinates` names more than
+/// two variables, the first two count.
 fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variable; 2], ReadError> {
     let named = names(own, "node_coordinates").filter_map(|name| variable(header, name));
     let found: Vec<_> = named.take(2).collect();
@@ -118,7 +127,8 @@ fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variab
     }
 }
 
-/// Returns the axis that the attributes of a variable name: 0 for x or longitude, 1 for y or latitude.
+/// Returns the axis of a coordinate variable by its attributes: 0 for x or longitude, 1 for y or latitude, `None` if no
+/// attribute names an axis.
 pub(super) fn axis_of(variable: &Variable) -> Option<usize> {
     const AXIS_ATTRIBUTES: [(&str, [&[&[u8]]; 2]); 3] = [
         (

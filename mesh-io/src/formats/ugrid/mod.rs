@@ -1,7 +1,8 @@
-//! UGRID, in netCDF's classic formats and in netCDF-4: the convention of coastal and atmospheric models.
+//! UGRID, the convention of coastal and atmospheric models, in netCDF's classic formats and in netCDF-4.
 //!
-//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. A variable without numbers of its own stands
-//! for the mesh; its attributes name the variables of its parts. Faces are triangles, quadrilaterals and larger polygons.
+//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. The mesh variable has no numbers;
+//! its attributes name the variables of coordinates and connectivity. Faces are triangles, quadrilaterals and larger
+//! polygons.
 
 mod centers;
 mod data;
@@ -23,10 +24,10 @@ use table::{Table, TableKind};
 
 pub(crate) struct Ugrid;
 
-/// Whether a file of netCDF has meshes of UGRID.
+/// Returns whether a netCDF file has a UGRID mesh.
 ///
 /// # Errors
-/// If its header is damaged.
+/// If the header of the file is damaged.
 pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
     let header = netcdf::open(source)?;
     Ok(header.variables.iter().any(mesh::is_mesh))

@@ -1,4 +1,4 @@
-//! Tables of the nodes that faces or edges have.
+//! Connectivity tables: the nodes of faces or edges.
 
 use super::mesh::Mesh;
 use crate::error::ReadError;
@@ -6,25 +6,25 @@ use crate::netcdf::{Header, Items, NumberType, Variable};
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
 
-/// The nodes of faces or edges: a row for each of them, or a column.
+/// Connectivity table of faces or edges, with a row or a column per element.
 pub(super) struct Table<'h, 'a> {
     header: &'h Header<'a>,
     kind: TableKind,
     pub(super) variable: &'h Variable,
     pub(super) items: Items<'a>,
-    /// How many faces or edges there are.
+    /// Number of faces or edges.
     pub(super) count: usize,
-    /// How many nodes each has at most.
+    /// Number of corners in the table per element. Faces with fewer corners have missing ones at the end.
     pub(super) corners: usize,
-    /// Whether the nodes of each stand side by side.
+    /// Whether the table has a row per element, not a column.
     pub(super) has_rows: bool,
-    /// What stands in the place of a node that a face does not have.
+    /// Value that marks a missing corner, from the attribute `_FillValue` or `missing_value`.
     missing: Option<f64>,
-    /// The number of the first node, which is that of the first face or edge too.
+    /// Start index of the numbers of nodes, faces and edges in the file: 0 or 1.
     pub(super) first: u64,
 }
 
-/// The elements that a connectivity table lists.
+/// Elements of a connectivity table.
 #[derive(Clone, Copy)]
 pub(super) enum TableKind {
     Faces,
@@ -32,7 +32,8 @@ pub(super) enum TableKind {
 }
 
 impl TableKind {
-    /// The words for one and for several, the attribute that names their dimension, and how few nodes each has.
+    /// Returns singular and plural for messages, the attribute that names the element dimension, and the minimum of
+    /// nodes per element.
     fn words(self) -> (&'static str, &'static str, &'static str, u64) {
         match self {
             TableKind::Faces => ("face", "faces", "face_dimension", 3),
@@ -41,20 +42,22 @@ impl TableKind {
     }
 }
 
-/// What stands in the place of a node.
+/// An entry of a connectivity table.
 enum Corner {
+    /// Number of a node, counted from the start index.
     Node(u64),
-    /// The face has fewer corners.
+    /// Entry of a face with fewer corners than the table has.
     Missing,
-    /// No number of a node.
+    /// Invalid entry: no node has this number.
     Other(f64),
 }
 
 impl<'h, 'a> Table<'h, 'a> {
-    /// Finds the nodes of the faces or edges of a mesh, which this variable has.
+    /// Finds the connectivity table of faces or edges in a variable.
     ///
     /// # Errors
-    /// If that is no table of numbers, or what it holds cannot be read.
+    /// If the variable is no table of numbers with enough corners per element, has an unknown start index, or cannot be
+    /// read.
     pub(super) fn find(
         mesh: &Mesh<'h, 'a>,
         variable: &'h Variable,
@@ -72,7 +75,8 @@ impl<'h, 'a> Table<'h, 'a> {
         else {
             return Err(wrong("are not a table of numbers"));
         };
-        // The dimension of faces comes second if the mesh says so, or if there are more of it than a face has corners.
+        // The mesh may name the dimension of its elements. Otherwise the longer dimension counts elements, as the
+        // shorter one counts corners.
         let dimension = mesh.own.text(dimension).and_then(|name| str::from_utf8(name).ok());
         let has_rows = match dimension.and_then(|name| header.dimension(name)) {
             Some(length) if (length == rows) != (length == columns) => length == rows,
@@ -104,10 +108,10 @@ impl<'h, 'a> Table<'h, 'a> {
         Ok(Table { first, ..table })
     }
 
-    /// Reads the nodes of a face or an edge.
+    /// Reads the node numbers of a face or an edge into `nodes`.
     ///
     /// # Errors
-    /// If it has too few, or numbers of none.
+    /// If the element has too few nodes, an invalid entry, or a node after a missing corner.
     pub(super) fn nodes(&self, element: usize, nodes: &mut Vec<u64>) -> Result<(), ReadError> {
         nodes.clear();
         let (one, .., least) = self.kind.words();
@@ -134,12 +138,12 @@ impl<'h, 'a> Table<'h, 'a> {
         }
     }
 
-    /// The place of a face or an edge in the file.
+    /// Returns a cursor at the first entry of a face or an edge, for messages.
     pub(super) fn cursor(&self, element: usize) -> Cursor<'a> {
         Cursor::at_byte_offset(self.header.source, self.items.byte_of(self.position(element, 0)))
     }
 
-    /// Where the number of a corner stands among the bytes.
+    /// Returns the offset of an entry in the bytes of the variable.
     fn position(&self, element: usize, corner: usize) -> usize {
         let item = match self.has_rows {
             true => element * self.corners + corner,
@@ -156,7 +160,8 @@ impl<'h, 'a> Table<'h, 'a> {
             _ => self.variable.order.signed(own) as f64,
         };
         let is_missing = number.is_nan() || Some(number) == self.missing;
-        // Without a value for what is missing, negative numbers stand for it, which no node has.
+        // Some files name no fill value. A negative entry from the fourth corner on, which no node has as its number,
+        // then marks a missing corner.
         if is_missing || (number < 0.0 && corner >= 3) {
             return Corner::Missing;
         }
@@ -164,8 +169,8 @@ impl<'h, 'a> Table<'h, 'a> {
         if is_node { Corner::Node(number as u64) } else { Corner::Other(number) }
     }
 
-    /// The number of the first node where the file does not say it: 0 by the conventions, but 1 if the numbers go from 1 to as
-    /// many as there are nodes.
+    /// Guesses the start index of a file without `start_index`: 1 if node numbers range from at least 1 to at least
+    /// `nodes`, else 0, the default of the conventions.
     fn likely_first(&self, nodes: u64) -> u64 {
         let (mut least, mut most) = (u64::MAX, 0);
         for element in 0..self.count {

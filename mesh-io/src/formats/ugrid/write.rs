@@ -1,13 +1,13 @@
-//! Writes UGRID in netCDF's classic format with 64-bit offsets.
+//! Writer of UGRID in netCDF's classic format with 64-bit offsets.
 //!
-//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. Names are those that programs of this format
-//! give the variables of their mesh; numbers of nodes start at one.
+//! The format: <https://ugrid-conventions.github.io/ugrid-conventions>, version 1.0. Variables have the names that
+//! programs of this format usually give them. Node numbers start at 1.
 
 use crate::export::content::DataArray;
 use crate::export::writer_input::WriterInput;
 use crate::netcdf::write::{NetCdfWriter, Values};
 
-/// The names of variables that a mesh consists of, which no data may have.
+/// Names of the mesh variable, coordinates and faces. Data variables must have other names.
 pub(crate) const NAMES: [&str; 4] =
     ["mesh2d", "mesh2d_node_x", "mesh2d_node_y", "mesh2d_face_nodes"];
 
@@ -19,7 +19,7 @@ const NODE_COUNT: &str = "mesh2d_nNodes";
 const FACE_COUNT: &str = "mesh2d_nFaces";
 const CORNERS: &str = "mesh2d_nMax_face_nodes";
 
-/// What stands in the place of a corner that a face does not have.
+/// Fill value of a connectivity table: marks the missing corners of a face.
 const MISSING: i32 = -999;
 
 pub(crate) fn write_ugrid(input: &WriterInput<'_>) -> Vec<u8> {
@@ -71,7 +71,7 @@ pub(crate) fn write_ugrid(input: &WriterInput<'_>) -> Vec<u8> {
     out.bytes()
 }
 
-/// Adds numbers for each node or face.
+/// Adds a variable with data of `count` nodes or faces.
 fn data(out: &mut NetCdfWriter, data: &DataArray, count: &str, location: &str, values: Vec<f64>) {
     let attributes = vec![("mesh", text(MESH)), ("location", text(location))];
     let is_whole = |x: &f64| f64::from(*x as i32) == *x;

@@ -1,4 +1,4 @@
-//! Cells of VTK, by the numbers of their types.
+//! Cells by VTK's type numbers, as VTK's formats and XDMF have them.
 
 use crate::binary::int_array::IntArray;
 use crate::binary::number_field::NumberField;
@@ -11,20 +11,26 @@ use crate::visit::rows::volume;
 use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 
-/// A cell of one of VTK's formats.
+/// A cell of a VTK or XDMF file.
 #[derive(Clone, Copy)]
 pub(crate) struct Cell<'a> {
-    /// The position of the cell in the file.
+    /// Position of the cell in the file, from 0.
     pub(crate) id: u64,
-    /// VTK's number for the type of the cell.
+    /// VTK's type number, such as 5 for a triangle.
     pub(crate) cell_type: u64,
+    /// Ids of the cell's points.
     pub(crate) points: &'a [u64],
+    /// Numbers of the cell in the region arrays; 0 without an array.
     pub(crate) region: [i64; 2],
 }
 
 impl Cell<'_> {
-    /// Hands the cell to the visitor. The points of cells without a kind of their own, such as polylines and polygons of
-    /// more than four corners, stay fixed.
+    /// Visits the cell. Polygons of more than four corners and polylines go to [`MeshVisitor::polygon`] and
+    /// [`MeshVisitor::polyline`]; a point set becomes a point element per point.
+    ///
+    /// # Errors
+    /// If the cell is a triangle strip, a volume cell or of higher order, or if its number of points is wrong for its
+    /// type.
     pub(crate) fn send(
         &self,
         cursor: &Cursor<'_>,
@@ -48,27 +54,29 @@ impl Cell<'_> {
     }
 }
 
-/// The cells from a triangle on. Those up to the next cell of another kind are handed on at once.
+/// Cells from a triangle to the end of a list, whose leading triangles are visited in bulk.
 pub(crate) struct Triangles<'a> {
-    /// How many cells there are from the first triangle on.
+    /// Number of cells, the first triangle and all later cells of the list.
     pub(crate) count: usize,
-    /// The points of all cells, and the range of the first triangle's points.
+    /// Point indices of all cells of the list, and the range of the first triangle's indices.
     pub(crate) numbers: &'a IntArray<'a>,
     pub(crate) own: Range<usize>,
-    /// The ends of the cells' points, from the first triangle on. `None` if each cell's number of points stands before
-    /// its points.
+    /// End of each cell's indices in `numbers`, from the first triangle on. `None` if each cell starts with its point
+    /// count.
     pub(crate) ends: Option<NumberField<'a>>,
-    /// The types of the cells from the first triangle on. `None` if all are polygons.
+    /// Type numbers of the cells, from the first triangle on. `None` if the list has only polygons.
     pub(crate) types: Option<NumberField<'a>>,
-    /// The number that is added to each point.
+    /// Id of the point with the index 0, which is added to each index.
     pub(crate) first: u64,
-    /// The bound that each point must be less than.
+    /// Exclusive upper bound of the point indices, before `first` is added.
     pub(crate) below: u64,
+    /// Region numbers of the cells, from the first triangle on.
     pub(crate) regions: [Region<'a>; 2],
 }
 
 impl Triangles<'_> {
-    /// Hands on triangles. Returns how many the visitor has taken, and where the points of the last one end.
+    /// Visits triangles in bulk. Returns the number of triangles that the visitor took, and the end of their point
+    /// indices in `numbers`.
     pub(crate) fn send(self, visitor: &mut dyn MeshVisitor) -> (usize, usize) {
         let Triangles { count, numbers, own, ends, types, first, below, regions } = self;
         let (stride, counts) = match ends {
@@ -93,8 +101,8 @@ impl Triangles<'_> {
     }
 }
 
-/// Decides at which cells triangles are visited in bulk: at most ten times, and not again among the
-/// [`MIN_PARALLEL_RECORDS`] cells after the last time.
+/// Limits the bulk visits of a list, which cost time where cell types alternate: ten tries per list. After a try, at
+/// least [`MIN_PARALLEL_RECORDS`] cells pass before the next.
 pub(crate) struct BulkBackoff {
     left: usize,
     next: usize,
@@ -107,15 +115,18 @@ impl BulkBackoff {
         self.left > 0 && cell >= self.next
     }
 
-    /// Records a try at a cell, and how many triangles were handed on.
+    /// Records a try at index `cell`, at which the visitor took `taken` triangles.
     pub(crate) fn done(&mut self, cell: usize, taken: usize) {
         self.left -= 1;
         self.next = cell + taken + MIN_PARALLEL_RECORDS;
     }
 }
 
-/// Returns the kind of a cell by VTK's number of its type. For cells of any number of points that stay fixed, it is
-/// that of a single point.
+/// Returns the element kind of a cell with VTK's type number `cell_type`. Empty cells, point sets and polylines are of
+/// the kind `Point`, as each of their points is a constraint.
+///
+/// # Errors
+/// If the type cannot be read, or if its cells do not have `points` points.
 fn kind_of(
     cursor: &Cursor<'_>,
     id: u64,

@@ -1,4 +1,4 @@
-//! VTK files: the legacy format, the XML formats, and the writers of both.
+//! VTK files: the legacy format, the XML formats, and the writers for both.
 
 pub(crate) mod cells;
 pub(crate) mod legacy;

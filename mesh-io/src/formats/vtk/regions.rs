@@ -1,12 +1,12 @@
-//! Arrays of cell data that tell the regions of cells, in VTK's formats and in XDMF.
+//! Arrays of cell data that number the regions of a mesh, in VTK's formats and in XDMF.
 
 use crate::visit::records::Region;
 
-/// The most arrays of a file that tell regions.
+/// Limit on the region arrays of a file. Further ones are read as plain cell data.
 pub(crate) const MAX_ARRAYS: usize = 2;
 
-/// Names of arrays that tell the regions of cells, in lower case. They are those of gmsh and meshio, of VTK's own
-/// readers, and of solvers, which call regions materials.
+/// Names of region arrays, in lower case. gmsh, meshio, VTK's own readers and solvers write them; solvers call regions
+/// materials.
 const NAMES: [&[u8]; 18] = [
     b"gmsh:physical",
     b"gmsh:geometrical",
@@ -28,13 +28,12 @@ const NAMES: [&[u8]; 18] = [
     b"reference",
 ];
 
-/// Whether an array of cell data with this name tells the regions of cells.
+/// Returns whether cell data of this name, in any case, number regions.
 pub(crate) fn names_regions(name: &[u8]) -> bool {
     NAMES.contains(&name.to_ascii_lowercase().as_slice())
 }
 
-/// The numbers of cells in the arrays that tell their regions, array by array. Cells beyond the end of an array have the
-/// number 0 there.
+/// Region numbers of all cells of a list, array by array. A cell beyond the end of an array has the number 0.
 pub(crate) struct RegionNumbers(Vec<Vec<i64>>);
 
 impl FromIterator<Vec<i64>> for RegionNumbers {
@@ -44,13 +43,13 @@ impl FromIterator<Vec<i64>> for RegionNumbers {
 }
 
 impl RegionNumbers {
-    /// Returns the numbers of a cell. A number without an array is 0.
+    /// Returns the region numbers of a cell; 0 for each array that the file lacks.
     pub(crate) fn of(&self, cell: usize) -> [i64; MAX_ARRAYS] {
         let number = |array| self.array(array)?.get(cell).copied();
         std::array::from_fn(|array| number(array).unwrap_or(0))
     }
 
-    /// Returns the numbers of all cells from one on.
+    /// Returns the region numbers from a cell to the end of the list, for bulk visits of triangles.
     pub(crate) fn from(&self, cell: usize) -> [Region<'_>; MAX_ARRAYS] {
         std::array::from_fn(|array| match self.array(array) {
             Some(numbers) => Region::List(numbers.get(cell..).unwrap_or_default()),

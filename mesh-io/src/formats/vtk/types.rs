@@ -1,8 +1,8 @@
-//! VTK's numbers of the types of cells, which SU2 uses too.
+//! VTK's numbers of cell types, which SU2 uses too.
 
 use crate::visit::items::CellKind;
 
-/// An empty cell, which has no vertices.
+/// An empty cell, without vertices.
 pub(crate) const EMPTY: u64 = 0;
 pub(crate) const VERTEX: u64 = 1;
 pub(crate) const POLY_VERTEX: u64 = 2;
@@ -18,13 +18,13 @@ pub(crate) const HEXAHEDRON: u64 = 12;
 pub(crate) const WEDGE: u64 = 13;
 pub(crate) const PYRAMID: u64 = 14;
 
-/// Whether cells of the type are of first order and belong to a volume: from tetrahedra to hexagonal prisms, sets of points
-/// (41) and polyhedra (42).
+/// Returns whether cells of the type are first-order volume cells: tetrahedra (10) to hexagonal prisms (16), convex
+/// point sets (41) and polyhedra (42).
 pub(crate) fn is_of_volume(number: u64) -> bool {
     matches!(number, TETRA..=16 | 41 | 42)
 }
 
-/// Returns the number of the cell that a kind of element is.
+/// Returns VTK's cell type for an element kind.
 pub(crate) fn number_of(kind: CellKind) -> u64 {
     match kind {
         CellKind::Point => VERTEX,
@@ -35,8 +35,8 @@ pub(crate) fn number_of(kind: CellKind) -> u64 {
     }
 }
 
-/// Returns the kind of an element by the number of its cell; `None` if cells of the type may have any number of vertices,
-/// belong to a volume or are not of first order.
+/// Returns the element kind for VTK's cell type. `None` for types with a variable number of vertices, volume cells and
+/// cells of higher order.
 #[inline]
 pub(crate) fn kind_of(number: u64) -> Option<CellKind> {
     match number {

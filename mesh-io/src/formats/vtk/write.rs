@@ -1,4 +1,4 @@
-//! Writes VTK's formats: the legacy `.vtk` as text, and `.vtu` with arrays in base64.
+//! Writer of VTK's formats: legacy `.vtk` as text, and `.vtu` with base64 arrays.
 
 use crate::export::content::DataArray;
 use crate::export::put;
@@ -8,7 +8,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;
 
-/// Returns the name that an array usually has for a kind of group.
+/// Returns the usual array name for a kind of group, by which other programs recognize regions. Other group kinds name
+/// their array themselves.
 fn array_name(what: &str) -> &str {
     match what {
         "physical" => "gmsh:physical",
@@ -22,20 +23,23 @@ fn array_name(what: &str) -> &str {
     }
 }
 
-/// An array to be written, of real or whole numbers.
+/// An array of real or whole numbers for the written file.
 pub(crate) struct Array {
     pub(crate) name: String,
+    /// Numbers per vertex or cell.
     pub(crate) components: usize,
     pub(crate) numbers: ArrayValues,
 }
 
-/// The values of an array.
+/// Values of an array, tuple by tuple.
 pub(crate) enum ArrayValues {
     Real(Vec<f64>),
     Whole(Vec<i64>),
 }
 
 impl Array {
+    /// Copies data in file order, or the tuples of the cells `places`. Whole numbers become real ones if some value is
+    /// not finite, as integers have no NaN.
     fn of(data: &DataArray, places: Option<&[usize]>) -> Array {
         let each = data.components;
         let values: Vec<f64> = match places {
@@ -58,7 +62,7 @@ impl Array {
     }
 }
 
-/// Makes the arrays of the vertices.
+/// Makes the point data: the mesh's own arrays, then an array of vertex groups if the mesh has any.
 pub(crate) fn of_points(input: &WriterInput<'_>) -> Vec<Array> {
     let mut arrays: Vec<Array> = input.point_data().map(|data| Array::of(data, None)).collect();
     if !input.content.vertex_groups.is_empty() {
@@ -68,7 +72,8 @@ pub(crate) fn of_points(input: &WriterInput<'_>) -> Vec<Array> {
     arrays
 }
 
-/// Makes the arrays of the cells: one for each kind of group, and the data.
+/// Makes the cell data: an array of group numbers per kind of group, then the mesh's own arrays. `cells` are the
+/// written cells in order.
 pub(crate) fn of_cells(input: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
     let mut kinds: Vec<&str> = Vec::new();
     for what in (0..3).rev().flat_map(|dimension| input.content.group_kinds(dimension)) {
@@ -76,7 +81,7 @@ pub(crate) fn of_cells(input: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
             kinds.push(what);
         }
     }
-    // The order of the usual arrays is always the same.
+    // Arrays with usual names come first, in a fixed order, whichever group the mesh lists first.
     const FIRST: [&str; 5] =
         ["gmsh:physical", "gmsh:geometrical", "medit:ref", "MaterialIDs", "region"];
     kinds.sort_by_key(|what| {
@@ -139,7 +144,8 @@ pub(crate) fn write_legacy(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Encodes a name as one word, as VTK does.
+/// Encodes a name as a single word: bytes outside of `!` to `~`, quotes and percent signs become `%` and two
+/// hexadecimal digits, as in VTK.
 fn encoded(name: &str) -> String {
     let mut encoded = String::new();
     for byte in name.bytes() {

@@ -14,10 +14,10 @@ use crate::visit::items::RegionAttribute;
 use crate::visit::records::TriangleRecords;
 use crate::visit::visitor::MeshVisitor;
 
-/// The integers of a Topology, in the XML or in another file.
+/// Stream of the integers of a Topology, in the XML or in a companion file.
 enum CellNumbers<'a> {
     Text(Cursor<'a>),
-    /// Those of a file beside the XML, and how many of them were taken.
+    /// Integers of a companion file: `taken` of them were taken, each is `size` bytes wide.
     Heavy {
         numbers: Box<heavy::HeavyArray<'a>>,
         whole: IntArray<'a>,
@@ -27,7 +27,7 @@ enum CellNumbers<'a> {
 }
 
 impl<'a> CellNumbers<'a> {
-    /// Stands where the number is that is taken next, or was taken last in text.
+    /// Returns a cursor for messages: at the next integer in a companion file, at the current word in the XML.
     fn cursor(&self) -> Cursor<'a> {
         match self {
             CellNumbers::Text(cursor) => cursor.clone(),
@@ -35,7 +35,7 @@ impl<'a> CellNumbers<'a> {
         }
     }
 
-    /// Returns whether another number follows.
+    /// Returns whether another integer follows. In the XML, the cursor moves to the next word.
     fn has_next(&mut self) -> bool {
         match self {
             CellNumbers::Text(cursor) => cursor.next_word(),
@@ -43,7 +43,7 @@ impl<'a> CellNumbers<'a> {
         }
     }
 
-    /// Takes the number that it stands on.
+    /// Takes the next integer, called `what` in messages. A companion file must have one left.
     fn take(&mut self, what: &str) -> Result<u64, ReadError> {
         match self {
             CellNumbers::Text(cursor) => cursor.integer(what),
@@ -61,7 +61,10 @@ impl<'a> CellNumbers<'a> {
 }
 
 impl<'a> File<'a> {
-    /// Hands on the elements and their data.
+    /// Visits the elements of a Topology with their region numbers, and cell data if the visitor asks for data.
+    ///
+    /// # Errors
+    /// If the Topology is damaged, or if its attributes announce other counts of elements or integers.
     pub(super) fn elements(
         &self,
         item: &Item,
@@ -129,8 +132,8 @@ impl<'a> File<'a> {
         Ok(CellNumbers::Heavy { numbers: Box::new(numbers), whole, taken: 0, size })
     }
 
-    /// Hands triangles of a file beside the XML to the visitor in bulk. Returns the count of triangles that the visitor took,
-    /// and the count of their integers.
+    /// Visits triangles of a companion file in bulk. Returns the number of triangles taken by the visitor, and the
+    /// number of Topology integers consumed.
     fn triangles(
         &self,
         item: &Item,
@@ -159,7 +162,8 @@ impl<'a> File<'a> {
         (found as u64, *taken as u64)
     }
 
-    /// The type in VTK of the elements of a kind, and how many nodes each has.
+    /// Returns VTK's cell type and the number of nodes for all elements of a Topology of one `kind`. Polyvertices,
+    /// polylines and polygons have as many nodes as `NodesPerElement`, else the second dimension, announces.
     fn uniform(&self, item: &Item, kind: &str) -> Result<(u64, u64), ReadError> {
         let several = item.corners.or_else(|| item.dimensions.get(1).copied());
         Ok(match kind {
@@ -181,7 +185,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// Hands on the data of cells but for those that tell regions.
+    /// Visits the arrays of cell data that the visitor wants, except the region arrays `regions`.
     fn cell_data(&self, regions: &[&Item], cells: u64, visitor: &mut dyn MeshVisitor) {
         for item in self.attributes("cell") {
             let is_region = regions.iter().any(|own| own.at == item.at);
@@ -217,7 +221,8 @@ impl<'a> File<'a> {
     }
 }
 
-/// Reads the type of an element among others, and how many nodes it has.
+/// Reads the type of the next element of a mixed Topology. Returns VTK's cell type and the number of nodes; adds the
+/// integers read to `count`.
 fn mixed(words: &mut CellNumbers<'_>, count: &mut u64) -> Result<(u64, u64), ReadError> {
     *count += 1;
     let place = words.cursor();
@@ -245,7 +250,8 @@ fn mixed(words: &mut CellNumbers<'_>, count: &mut u64) -> Result<(u64, u64), Rea
     })
 }
 
-/// The type in VTK of an element of any number of nodes: points, a line through them or a polygon. Returns that number too.
+/// Returns VTK's cell type for an element with XDMF's type `number` (1 a polyvertex, 2 a polyline, 3 a polygon), and
+/// passes on the number of nodes.
 fn of_several(number: u64, nodes: u64) -> (u64, u64) {
     let cell_type = match (number, nodes) {
         (1, 1) => types::VERTEX,

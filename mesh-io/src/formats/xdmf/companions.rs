@@ -1,4 +1,4 @@
-//! The files of numbers that an XDMF file refers to: their loading, and their names when the mesh is written.
+//! The companion files with the numbers of an XDMF file: loading, and file names in a rewrite.
 
 use crate::compress::file::Compression;
 use crate::disk::paths::same_file;
@@ -11,18 +11,18 @@ use quick_xml::escape::escape;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The name of another file in the main file of a mesh.
+/// Name of a companion file in the main file of a mesh.
 pub(super) struct Reference {
     pub(super) name: String,
-    /// The bytes of the main file that hold the name.
+    /// Range of the main file with the name.
     pub(super) at: Range<usize>,
 }
 
 /// Loads the files that `main` refers to, each once, and adds them to the companions of `main`.
 ///
 /// # Errors
-/// If a file is missing or cannot be read, is outside of the directory of `main` without leave, is compressed, or is `main` itself, and if `main` is compressed but refers to
-/// other files.
+/// If a file is missing, unreadable, compressed or `main` itself, or outside of the directory of `main` although the
+/// options forbid other directories. Also if `main` is compressed but refers to other files.
 pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), ReadError> {
     if !references.is_empty() && main.compressed.is_some() {
         let problem = "it is compressed, but a mesh of several files";
@@ -40,7 +40,7 @@ pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), 
             return Err(main.error_at(place, problem, CORRECT));
         }
         main.check_inside(main, &path, &quoted(name.as_bytes()), at.start)?;
-        // Two names may stand for the same file.
+        // Different names, such as `a.h5` and `./a.h5`, may denote the same file.
         if let Some(known) =
             main.companions.iter_mut().find(|own| same_file(&own.source.path, &path))
         {
@@ -66,13 +66,14 @@ pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), 
     Ok(())
 }
 
-/// Returns the files to which the mesh is written for `path`: `path`, then one file for each companion.
+/// Returns the files of a rewrite to `path`: `path` itself, then one file per companion.
 ///
-/// Companions keep their paths if `path` is the file that was read. Otherwise `in.h5` beside `in.xdmf` becomes `out.h5`,
-/// and the name of any other companion is prefixed: `mesh.h5` becomes `out_mesh.h5`.
+/// Companions keep their paths if `path` is the file that was read. Otherwise `in.h5` beside `in.xdmf` becomes
+/// `out.h5`, and the name of any other companion is prefixed: `mesh.h5` becomes `out_mesh.h5`.
 ///
 /// # Errors
-/// If `path` is that of a compressed file, or if a file would replace another file of the mesh that was read.
+/// If the mesh has companions and `path` names a compressed file, or if a file would replace another file of the mesh
+/// that was read.
 pub(super) fn destinations(source: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
     let refused = |problem: String, remedy: &str| {
         Err(WriteError::Format { path: path.to_owned(), problem, remedy: remedy.into() })
@@ -118,7 +119,7 @@ fn paths(source: &Source, path: &Path) -> Vec<PathBuf> {
     all
 }
 
-/// Returns the edits of the main file that name its companions as they are written for `path`.
+/// Returns the edits of the main file that replace the names of companions by their names in a rewrite to `path`.
 pub(super) fn renames(source: &Source, path: &Path) -> Vec<ByteEdit> {
     if same_file(&source.path, path) {
         return Vec::new();

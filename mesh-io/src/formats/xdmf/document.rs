@@ -1,4 +1,4 @@
-//! The items of an XDMF file: what its tags say of them, and where their text stands.
+//! The items of an XDMF file: attributes of their tags, and the location of their numbers.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
@@ -11,44 +11,47 @@ use crate::text::token::quoted;
 use crate::xml::{XmlTag, XmlTags, plain_text};
 use std::ops::Range;
 
-/// Where the numbers of an item stand.
+/// Location of an item's numbers.
 pub(super) enum Content {
-    /// In the XML, in this range.
+    /// Range of the XML with the numbers as text.
     Text(Range<usize>),
-    /// In HDF5: the name of the file and the path in it.
+    /// HDF5: file name, dataset path, and the range of the XML with the file name.
     Hdf5 { file: String, path: String, named_at: Range<usize> },
-    /// In a file of the name, from a byte on.
+    /// A raw file: file name, offset of the numbers in bytes, number type, and the range of the XML with the file name.
     Raw { file: String, seek: u64, number: Datatype, named_at: Range<usize> },
 }
 
-/// A `DataItem` with numbers.
+/// A `DataItem` with coordinates, topology or data of a mesh.
 pub(super) struct Item {
-    /// `Geometry`, `Topology` or `Attribute`.
+    /// Section around the item: `Geometry`, `Topology` or `Attribute`.
     pub(super) section: String,
-    /// The type that the section names, such as `XYZ` or `Triangle`, in small letters.
+    /// Type that the section names, such as `xyz` or `triangle`, in lower case.
     pub(super) kind: String,
-    /// Of an attribute what it is called, and what it belongs to, in small letters.
+    /// Name of an `Attribute`; empty if it has none.
     pub(super) name: String,
+    /// Owners of the numbers of an `Attribute`, such as `node` or `cell`, in lower case.
     pub(super) center: String,
-    /// How many elements a topology announces, and how many nodes each has where its kind does not tell.
+    /// `NumberOfElements` of a `Topology`.
     pub(super) elements: Option<u64>,
+    /// `NodesPerElement` of a `Topology` of polyvertices, polylines or polygons.
     pub(super) corners: Option<u64>,
+    /// `Dimensions` of the item; empty if the tag lacks the attribute.
     pub(super) dimensions: Vec<u64>,
-    /// How many digits the numbers have, if they are real.
+    /// Precision of real numbers, single by default; `None` for whole numbers.
     pub(super) precision: Option<Precision>,
     pub(super) content: Content,
-    /// Where its tag starts.
+    /// Offset of the item's tag in the XML.
     pub(super) at: usize,
 }
 
 impl Item {
-    /// How many numbers it announces, if it does.
+    /// Returns the number of numbers that `Dimensions` announces, at most `u64::MAX`; `None` without `Dimensions`.
     pub(super) fn announced(&self) -> Option<u64> {
         let product = || self.dimensions.iter().try_fold(1_u64, |n, &length| n.checked_mul(length));
         (!self.dimensions.is_empty()).then(|| product().unwrap_or(u64::MAX))
     }
 
-    /// Returns the reference to the file that holds the numbers. `None` if the XML itself holds them.
+    /// Returns the reference to the companion file with the numbers. `None` if the XML contains the numbers.
     pub(super) fn reference(self) -> Option<Reference> {
         match self.content {
             Content::Text(_) => None,
@@ -59,7 +62,7 @@ impl Item {
     }
 }
 
-/// An element with its attributes.
+/// Name and attributes of an element.
 struct Section {
     name: String,
     attributes: Vec<(String, String)>,
@@ -77,14 +80,18 @@ impl Section {
         })
     }
 
-    /// Returns the value of the first attribute that has one of these names.
+    /// Returns the value of the element's first attribute whose name is among `names`.
     fn value(&self, names: &[&str]) -> Option<&str> {
         let found = self.attributes.iter().find(|(name, _)| names.contains(&name.as_str()));
         found.map(|(_, value)| value.as_str())
     }
 }
 
-/// Returns the items of a file in order, without those that refer to others.
+/// Returns the items of geometries, topologies and attributes in file order. Items that refer to another item are left
+/// out, as are empty ones.
+///
+/// # Errors
+/// If the file is not XML or has no `Xdmf` element, or if a tag is damaged or describes numbers that cannot be read.
 pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
     let mut tags = XmlTags::new(source);
     let mut items = Vec::new();
@@ -107,7 +114,7 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
     }
 }
 
-/// Reads an item, given its attributes and the section that it is in.
+/// Reads an item: `tag` has its attributes, `of` those of the section around it.
 fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Result<Item, ReadError> {
     let text = xml.text().ok_or_else(|| xml.error("the file ends within a DataItem", CUT_OFF))?;
     let number = |text: &str| {
@@ -176,10 +183,11 @@ fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Resul
     })
 }
 
-/// What to do about numbers that are not read.
+/// Remedy for numbers that cannot be read.
 const SAVE: &str = "Save with the numbers in the XML, as meshio does by data_format=\"XML\"";
 
-/// The name of a file that a text is, and where that stands without blanks.
+/// Returns the file name that a text contains, with XML entities decoded, and the range of the name without blanks
+/// around it.
 fn name(source: &Source, text: Range<usize>) -> (String, Range<usize>) {
     let own = &source.bytes[text.clone()];
     let start = text.start + (own.len() - own.trim_ascii_start().len());
@@ -187,7 +195,10 @@ fn name(source: &Source, text: Range<usize>) -> (String, Range<usize>) {
     (plain_text(name), start..start + name.len())
 }
 
-/// A file and the path of a dataset in it, with a colon between.
+/// Splits a text such as `mesh.h5:/path` into file name and dataset path.
+///
+/// # Errors
+/// If the text has no colon, or an empty file name before the colon.
 fn in_hdf5(source: &Source, text: Range<usize>) -> Result<Content, ReadError> {
     let (_, all) = name(source, text);
     let own = &source.bytes[all.clone()];

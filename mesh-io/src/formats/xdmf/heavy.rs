@@ -1,4 +1,4 @@
-//! Numbers that do not stand in the XML: in HDF5 or raw, in files companion it.
+//! Numbers outside of the XML: in HDF5 or raw companion files.
 
 use super::document::{Content, Item};
 use crate::binary::byte_order::ByteOrder;
@@ -13,29 +13,36 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The companion files with heavy data, each opened if it is HDF5.
+/// The companion files of an XDMF file.
 pub(super) struct HeavyData<'a> {
-    /// Each with its tree, if it is HDF5.
+    /// Each companion, with its object tree if the file is HDF5.
     files: Vec<(&'a Companion, Option<Hdf5<'a>>)>,
 }
 
-/// The numbers of an item in a companion file.
+/// Numbers of an item in a companion file.
 pub(super) struct HeavyArray<'a> {
-    /// The file that they stand in, and which of the files of the mesh that is.
+    /// The companion file.
     pub(super) source: &'a Source,
+    /// Index of the file in the order of [`Source::files`], from 1 for companions.
     pub(super) file_index: usize,
     pub(super) number: Datatype,
+    /// The numbers in binary, decoded.
     pub(super) bytes: Cow<'a, [u8]>,
-    /// Where they start in the file, if they stand there as they are.
+    /// Offset of the first number. `None` if the file does not store the numbers as a single range of plain bytes.
     pub(super) start: Option<usize>,
-    /// Near which byte they start, for messages.
+    /// Offset that messages name: start of the numbers, or of the dataset's first chunk.
     at: usize,
+    /// The HDF5 dataset, until [`HeavyData::encoding`] takes it; `None` in a raw file.
     array: Option<DatasetArray<'a>>,
+    /// Index of the file in [`HeavyData::files`].
     file: usize,
 }
 
 impl<'a> HeavyData<'a> {
-    /// Opens the companions of a source.
+    /// Opens all companions of a source.
+    ///
+    /// # Errors
+    /// If an HDF5 file is damaged.
     pub(super) fn open(source: &'a Source) -> Result<HeavyData<'a>, ReadError> {
         let mut files = Vec::new();
         for companion in &source.companions {
@@ -44,12 +51,13 @@ impl<'a> HeavyData<'a> {
         Ok(HeavyData { files })
     }
 
-    /// The file of a name.
+    /// Returns the index of the companion that the XML calls `name`.
     fn file(&self, name: &str) -> Option<usize> {
         self.files.iter().position(|(companion, _)| companion.names.iter().any(|own| own == name))
     }
 
-    /// The type of the numbers of an item that does not stand in the XML. None if it is not known.
+    /// Returns the number type of an item in a companion file. `None` if the XML contains the numbers, or if the
+    /// dataset is missing or cannot be read.
     pub(super) fn number(&self, item: &Item) -> Option<Datatype> {
         match &item.content {
             Content::Text(_) => None,
@@ -61,7 +69,10 @@ impl<'a> HeavyData<'a> {
         }
     }
 
-    /// The numbers of an item; none if they stand in the XML. `cursor` stands on its tag.
+    /// Reads the numbers of an item; `None` if the XML contains the numbers. `cursor` is on the line of the item's tag.
+    ///
+    /// # Errors
+    /// If the file or dataset is missing or damaged, or has fewer or more numbers than `Dimensions` announces.
     pub(super) fn read(
         &self,
         item: &Item,
@@ -144,8 +155,9 @@ impl<'a> HeavyData<'a> {
         }
     }
 
-    /// The file and the bytes that the numbers of an item take there, of those in chunks the first one of their header. None if they
-    /// stand in the XML or cannot be read.
+    /// Returns file index and byte range that identify an item's numbers: in a raw file the bytes of the numbers, in
+    /// HDF5 the first byte of the dataset's header. `None` if the XML contains the numbers, or if the item cannot be
+    /// located.
     pub(super) fn range_of(&self, item: &Item) -> Option<(usize, Range<usize>)> {
         let (Content::Hdf5 { file, .. } | Content::Raw { file, .. }) = &item.content else {
             return None;
@@ -166,7 +178,7 @@ impl<'a> HeavyData<'a> {
         Some((index + 1, range))
     }
 
-    /// What becomes of the files when numbers that are not where they could be replaced as they are change.
+    /// Makes the encoding of changed numbers of an HDF5 dataset, to which the numbers move. `None` for raw files.
     pub(super) fn encoding(&self, numbers: &mut HeavyArray<'_>) -> Option<Hdf5Arrays> {
         let mut array = numbers.array.take()?;
         array.bytes = std::mem::take(&mut numbers.bytes);
@@ -174,7 +186,7 @@ impl<'a> HeavyData<'a> {
         Some(Hdf5Arrays::new(tree, vec![array]))
     }
 
-    /// Checks that no parts of a file overlap.
+    /// Checks that no two objects of an HDF5 file share bytes, as an edit of one would damage the other.
     pub(super) fn check_no_overlaps(&self) -> Result<(), ReadError> {
         self.files
             .iter()
@@ -188,13 +200,14 @@ fn number_size(number: Datatype) -> usize {
 }
 
 impl<'a> HeavyArray<'a> {
-    /// Stands at or near the byte of the file at which one of the bytes stands.
+    /// Returns a cursor at the byte `at` of the decoded numbers, for messages. Numbers that are not plain bytes have
+    /// the cursor of their dataset.
     pub(super) fn cursor(&self, at: usize) -> Cursor<'a> {
         let at = if self.start.is_some() { self.at + at } else { self.at };
         Cursor::at_byte_offset(self.source, at)
     }
 
-    /// All of them, real or whole.
+    /// Returns all numbers as real ones; `None` for a type that is neither real nor whole.
     pub(super) fn reals(&self) -> Option<Vec<f64>> {
         match self.number {
             Datatype::Real(precision, order) => {
@@ -205,13 +218,13 @@ impl<'a> HeavyArray<'a> {
         }
     }
 
-    /// All of them, if they are whole.
+    /// Returns all numbers as signed integers; `None` for other types than integers.
     pub(super) fn integers(&self) -> Option<Vec<i64>> {
         let (size, order) = self.whole()?;
         Some(self.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
     }
 
-    /// How many bytes each has, and in which order, if they are whole.
+    /// Returns width in bytes and byte order of integers; `None` for other types.
     pub(super) fn whole(&self) -> Option<(usize, ByteOrder)> {
         match self.number {
             Datatype::Whole(size, order) => Some((size, order)),
@@ -220,7 +233,7 @@ impl<'a> HeavyArray<'a> {
     }
 }
 
-/// Where real numbers of data stand, so that they can be replaced.
+/// Returns the location of real numbers of data, by which a rewrite replaces them; `None` for other types.
 pub(super) fn stored(numbers: &mut HeavyArray<'_>, heavy: &HeavyData<'_>) -> Option<ArrayLocation> {
     let Datatype::Real(precision, order) = numbers.number else { return None };
     let (encoding, file_index, stride) =

@@ -1,7 +1,7 @@
-//! XDMF, versions 2 and 3, with its numbers in the XML or in files beside it, HDF5 or raw.
+//! XDMF, versions 2 and 3, with its numbers in the XML or in companion files, HDF5 or raw.
 //!
-//! The format: <https://www.xdmf.org/index.php/XDMF_Model_and_Format>. A file has one mesh; data of it may be of several time steps,
-//! whose grids refer to the one with the mesh.
+//! The format: <https://www.xdmf.org/index.php/XDMF_Model_and_Format>. A file has a single mesh. Data may have several
+//! time steps, in grids that refer to the grid with the mesh.
 
 mod cells;
 mod companions;
@@ -71,7 +71,7 @@ impl FormatReader for Xdmf {
     }
 }
 
-/// A file with its items.
+/// An XDMF file with its items and companion files.
 struct File<'a> {
     source: &'a Source,
     items: Vec<Item>,
@@ -79,14 +79,17 @@ struct File<'a> {
 }
 
 impl Item {
-    /// How many numbers each of so many owners has.
+    /// Returns the numbers per owner of data of `owners` points or cells: at least 1, and 1 if `Dimensions` is missing.
     fn components(&self, owners: u64) -> u64 {
         self.announced().and_then(|count| count.checked_div(owners)).unwrap_or(1).max(1)
     }
 }
 
 impl<'a> File<'a> {
-    /// The item of a section that a mesh has once.
+    /// Returns the sole item of a section.
+    ///
+    /// # Errors
+    /// If the section has no item with numbers, or several in the file.
     fn only(&self, section: &str) -> Result<&Item, ReadError> {
         let mut items = self.items.iter().filter(|item| item.section == section);
         match (items.next(), items.next()) {
@@ -103,7 +106,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// The data of nodes or cells.
+    /// Returns the items with data of `center`: `node` or `cell`.
     fn attributes(&self, center: &str) -> impl Iterator<Item = &Item> {
         self.items.iter().filter(move |item| item.section == "Attribute" && item.center == center)
     }
@@ -112,7 +115,8 @@ impl<'a> File<'a> {
         Cursor::on_line_of(self.source, item.at)
     }
 
-    /// Stands before the numbers of an item in the XML.
+    /// Returns a cursor before the numbers of an item in the XML. The cursor of an item in a companion file has no
+    /// words.
     fn content(&self, item: &Item) -> Cursor<'a> {
         let range = match &item.content {
             Content::Text(range) => range.clone(),
@@ -121,7 +125,7 @@ impl<'a> File<'a> {
         Cursor::within(self.source, range)
     }
 
-    /// Whether the numbers of an item are real ones, not whole.
+    /// Returns whether an item has real numbers. In a companion file, the type of the dataset decides, not the tag.
     fn is_real(&self, item: &Item) -> bool {
         match self.heavy.number(item) {
             Some(number) => matches!(number, Datatype::Real(..)),
@@ -129,9 +133,10 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Hands on the data of so many points.
+    /// Visits the data of `points` points.
     fn point_data(&self, points: u64, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
-        // What stands in a file twice is replaced once.
+        // Only the first of several items with the same bytes can be rewritten, and none with the bytes of the mesh:
+        // edits must not overlap.
         let mut known: Vec<(usize, Range<usize>)> = Vec::new();
         for section in ["Geometry", "Topology"] {
             let numbers = match visitor.asks_for_data() {
@@ -160,7 +165,7 @@ impl<'a> File<'a> {
         Ok(())
     }
 
-    /// The numbers of an item of data.
+    /// Reads the numbers of an item with data. Only real numbers can be rewritten.
     fn numbers(&self, item: &Item) -> Result<PointNumbers, ReadError> {
         if let Some(mut numbers) = self.heavy.read(item, &self.cursor(item))? {
             let reals = numbers.reals();

@@ -18,7 +18,8 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
 impl File<'_> {
-    /// Hands on the points. Returns how they stand, and how many there are.
+    /// Visits the points of a Geometry. Returns encoding and location of the coordinates for a rewrite, and the number
+    /// of points.
     pub(super) fn points(
         &self,
         item: &Item,
@@ -96,7 +97,7 @@ impl File<'_> {
         Ok((CoordinateStorage::in_place(Format::Xdmf, numbers), index))
     }
 
-    /// Points of a file beside the XML.
+    /// Visits the points of a companion file.
     fn heavy_points(
         &self,
         item: &Item,
@@ -119,7 +120,7 @@ impl File<'_> {
         }
         let count = numbers.bytes.len() / stride;
         self.cursor(item).check_vertex_count(count as u64)?;
-        // Numbers that stand in the file are replaced there, all others encoded again.
+        // Plain bytes of the file are replaced in place; a dataset with chunks or filters is encoded again.
         let (start, file_index) = (numbers.start.unwrap_or(0), numbers.file_index);
         let encoded: Option<Hdf5Arrays> = match numbers.start {
             Some(_) => None,

@@ -1,4 +1,4 @@
-//! Writes XDMF with the numbers in the XML.
+//! Writer of XDMF with all numbers in the XML.
 
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
@@ -34,7 +34,7 @@ pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Writes a cell: XDMF's number of its type, its number of vertices if the type does not tell, and its vertices.
+/// Formats a cell: XDMF's type number, the vertex count of points, lines and polygons, and the vertices.
 fn row(input: &WriterInput<'_>, cell: usize) -> String {
     let vertices = input.positions(cell, 0);
     match input.content.cells.kinds[cell] {
@@ -46,7 +46,7 @@ fn row(input: &WriterInput<'_>, cell: usize) -> String {
     }
 }
 
-/// Adds data of nodes or cells.
+/// Appends an `Attribute` with the data of `count` nodes or cells.
 fn attribute(array: &Array, center: &str, count: usize, out: &mut String) {
     let Array { name, components, numbers } = array;
     let name = quick_xml::escape::escape(name);
@@ -57,7 +57,7 @@ fn attribute(array: &Array, center: &str, count: usize, out: &mut String) {
         _ => "Matrix",
     };
     let (number, words): (_, Vec<String>) = match numbers {
-        // NaN is written so that readers in C parse it.
+        // NaN becomes `nan`, as C prints NaN, so that readers in C parse the text.
         ArrayValues::Real(numbers) => {
             ("Float", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
         }

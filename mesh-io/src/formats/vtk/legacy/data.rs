@@ -1,5 +1,5 @@
-//! Data of points and cells of a legacy VTK file. Arrays that name regions, and those that the visitor wants, are read.
-//! Others are skipped.
+//! Point and cell data of a legacy VTK file. Region arrays and arrays that the visitor wants are read, all others are
+//! skipped.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::content::group_label::GroupLabel;
@@ -14,17 +14,19 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
 use std::borrow::Cow;
 
-/// The arrays that tell the regions of cells.
+/// Region arrays of a file, at most [`MAX_ARRAYS`].
 #[derive(Default)]
 pub(super) struct RegionArrays {
-    /// The meaning of each array's numbers.
+    /// Array names, with a function from region numbers to labels.
     pub(super) columns: Vec<RegionAttribute>,
-    /// The number of each cell in each array.
+    /// Region number of each cell, array by array. In text, and in binary arrays of real numbers, the number is the
+    /// bits of a real number.
     pub(super) numbers: Vec<Vec<i64>>,
 }
 
-/// Reads the regions of cells by the first two arrays that tell them, after a POINT_DATA or CELL_DATA that was just
-/// read. Damaged or unknown data end the search without an error, as the mesh does not depend on them.
+/// Reads point and cell data to the end of the file. `keyword` is the POINT_DATA or CELL_DATA before the cursor.
+/// Returns the first two region arrays; arrays that the visitor wants go to the visitor. A damaged or unknown attribute
+/// ends the reading without an error, as the mesh does not depend on data.
 pub(super) fn regions(
     cursor: &mut Cursor<'_>,
     binary: bool,
@@ -47,14 +49,16 @@ pub(super) fn regions(
 
 struct Data<'s> {
     binary: bool,
+    /// Whether the current attributes belong to cells, not to points.
     of_cells: bool,
+    /// Number of points or cells that the current attributes belong to.
     count: u64,
     found: RegionArrays,
     visitor: &'s mut dyn MeshVisitor,
 }
 
 impl Data<'_> {
-    /// Reads one attribute. `None` if it is damaged or unknown.
+    /// Reads the attribute at the cursor. `None` if the attribute is damaged or its keyword unknown.
     fn attribute(&mut self, cursor: &mut Cursor<'_>) -> Option<()> {
         let keyword = cursor.token()?.to_ascii_uppercase();
         match keyword.as_slice() {
@@ -116,7 +120,8 @@ impl Data<'_> {
         Some(())
     }
 
-    /// Reads an array if it tells regions or is wanted, else skips it.
+    /// Reads an array of regions, or an array that the visitor wants; skips any other array. `None` if the array is
+    /// damaged.
     fn array(
         &mut self,
         cursor: &mut Cursor<'_>,
@@ -153,11 +158,11 @@ impl Data<'_> {
             return skip_section(cursor, self.binary, kind, count).ok();
         }
         let what = String::from_utf8_lossy(name).into_owned();
-        // The number of each cell's region, or the bits of the number if the array has real numbers.
+        // Region number of each cell: an integer, or the bits of a real number.
         let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<GroupLabel>);
         if self.binary {
             let size = size_of(kind)?;
-            // Real numbers are told apart by their bits, but a negative zero is zero.
+            // Bits identify real numbers. Negative zero differs from zero in its bits but names the same region.
             let negative_zero = precision.map(|_| i64::MIN >> (64 - 8 * size));
             let positive = |bits: i64| if Some(bits) == negative_zero { 0 } else { bits };
             let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
@@ -176,7 +181,8 @@ impl Data<'_> {
         Some(())
     }
 
-    /// Reads numbers of any type.
+    /// Reads `count` numbers of any type as real numbers. Only `float` and `double` arrays can be rewritten, so other
+    /// types get no location.
     fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<PointNumbers> {
         let precision = precision_of(kind);
         if self.binary {
@@ -199,7 +205,7 @@ impl Data<'_> {
     }
 }
 
-/// Returns the precision of numbers of this type, if they are real.
+/// Returns the precision of a number type; `None` for types of whole numbers.
 fn precision_of(kind: &[u8]) -> Option<Precision> {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => Some(Precision::Single),
@@ -208,7 +214,7 @@ fn precision_of(kind: &[u8]) -> Option<Precision> {
     }
 }
 
-/// Decodes the bytes of a name that VTK writes as a percent sign and two hexadecimal digits.
+/// Decodes a name: VTK writes some bytes as a percent sign and two hexadecimal digits.
 fn decoded(name: &[u8]) -> Cow<'_, [u8]> {
     if !name.contains(&b'%') {
         return Cow::Borrowed(name);
@@ -236,7 +242,8 @@ fn number_of_bits(bits: i64) -> Option<GroupLabel> {
     Some(GroupLabel::number(f64::from_bits(bits.cast_unsigned())))
 }
 
-/// Returns a function from the bits of a number of this type, as a signed whole number, to its label.
+/// Returns a function that maps a region number to its label. The argument holds the bits of a number of this type,
+/// sign-extended to 64 bits.
 fn label_of(kind: &[u8]) -> fn(i64) -> Option<GroupLabel> {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => |bits| Some(GroupLabel::number(f64::from(f32::from_bits(bits as u32)))),
@@ -248,7 +255,7 @@ fn label_of(kind: &[u8]) -> fn(i64) -> Option<GroupLabel> {
     }
 }
 
-/// Returns a function from the bits of a number of this type, as a signed whole number, to its value.
+/// Returns a function that maps the bits of a number of this type, sign-extended to 64 bits, to its value.
 fn value_of(kind: &[u8]) -> fn(i64) -> f64 {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => |bits| f64::from(f32::from_bits(bits as u32)),

@@ -1,4 +1,4 @@
-//! Lists of cells of a legacy VTK file.
+//! Cell lists of a legacy VTK file.
 
 use super::skip::take;
 use crate::binary::byte_order::ByteOrder;
@@ -13,35 +13,35 @@ use crate::text::token::quoted;
 use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
 
-/// A list of cells.
+/// A cell list: CELLS of an unstructured grid, or a list of polygonal data.
 pub(super) struct Cells<'a> {
     pub(super) count: usize,
-    /// The points of all cells. Without offsets, each cell's number of points stands before its points.
+    /// Point indices of all cells, cell after cell. Before version 5, each cell starts with its point count.
     numbers: IntArray<'a>,
-    /// The start of each cell's points, and the end of the last one's.
+    /// Start of each cell's indices in `numbers`, then the end of the last cell's. `None` before version 5.
     offsets: Option<IntArray<'a>>,
-    /// The type of each cell. `None` for polygonal data.
+    /// VTK's type number of each cell. `None` for polygonal data, and for CELLS before CELL_TYPES is read.
     pub(super) types: Option<IntArray<'a>>,
     kind: List,
-    /// The cursor at the first cell.
+    /// Cursor at the first cell.
     first: Cursor<'a>,
-    /// The bytes of a binary number. `None` for text.
+    /// Width of a binary integer in bytes; `None` for text.
     width: Option<usize>,
 }
 
-/// The kind of a list of cells.
+/// Keyword of a cell list.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum List {
-    /// Cells of the types that CELL_TYPES lists.
+    /// Cells of an unstructured grid, whose types CELL_TYPES lists.
     Cells,
     Polygons,
     Strips,
     Lines,
-    /// Points (VERTICES).
+    /// VERTICES: points of polygonal data.
     Others,
 }
 
-/// Reads a list of `count` whole numbers, of `size` bytes each. `None` for text.
+/// Reads `count` integers: binary ones of `size` bytes, or text if `size` is `None`.
 pub(super) fn integers<'a>(
     cursor: &mut Cursor<'a>,
     count: u64,
@@ -69,10 +69,11 @@ pub(super) fn integers<'a>(
     }
 }
 
-/// Reads whole rows of numbers on all threads, as long as they are plain and have no more than `count` numbers in all.
+/// Reads rows of integers on all threads. Stops before the first row with another word, or with which the integers
+/// would exceed `count`.
 fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut IntArray<'_>) {
-    /// Limit on the numbers of a row that is read on all threads. Rows with more numbers, or with numbers of more
-    /// than 32 bits, are read one by one.
+    /// Limit on the integers of a row that is read on all threads. A longer row, or an integer above 32 bits, is left
+    /// to the serial reader.
     const MAX_ROW_NUMBERS: usize = 10;
     let read = |cursor: &mut Cursor<'_>| -> Result<([u32; MAX_ROW_NUMBERS], u8), ReadError> {
         let mut row = ([0; MAX_ROW_NUMBERS], 0);
@@ -95,13 +96,13 @@ fn whole_rows(cursor: &mut Cursor<'_>, count: u64, numbers: &mut IntArray<'_>) {
         fits
     });
     if done > 0 {
-        // The cursor stands on the last row, before its words, which were read.
+        // The cursor is before the words of the last row taken, which must not be read twice.
         cursor.rest();
     }
 }
 
-/// Reads a list of cells. Before version 5, it has each cell's number of points and its points. From version 5 on, it
-/// has the offset of each cell and then all points.
+/// Reads a cell list after its keyword. Up to version 4, each cell is its point count and its point indices. From
+/// version 5 on, OFFSETS lists the start of each cell in the point indices of CONNECTIVITY.
 pub(super) fn read<'a>(
     cursor: &mut Cursor<'a>,
     binary: bool,
@@ -147,7 +148,7 @@ pub(super) fn read<'a>(
     Ok(Cells { count, numbers, offsets: None, types: None, kind, first, width })
 }
 
-/// Returns a cursor at the numbers that are read next.
+/// Returns a cursor at the integers that follow, for messages on cells.
 fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
     match binary {
         true => Cursor::at_byte_offset(cursor.source, cursor.at_byte()),
@@ -155,7 +156,7 @@ fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
     }
 }
 
-/// Returns the size of a number of the type in this row, in bytes.
+/// Reads the name of an integer type. Returns the width of the type in bytes.
 fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
     match cursor.token().unwrap_or_default().to_ascii_lowercase().as_slice() {
         b"vtktypeint64" | b"vtktypeuint64" | b"vtkidtype" | b"long" => Ok(8),
@@ -168,7 +169,7 @@ fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
 }
 
 impl Cells<'_> {
-    /// Hands the cells to the visitor. `id` is that of the first cell, and becomes that of the next list's first cell.
+    /// Visits the cells. `id` is the id of the list's first cell on entry, and of the next list's first cell on return.
     pub(super) fn send(
         &self,
         cursor: &Cursor<'_>,
@@ -180,7 +181,8 @@ impl Cells<'_> {
         if self.kind == List::Cells && self.types.is_none() && self.count > 0 {
             return Err(cursor.error("CELLS without CELL_TYPES", CUT_OFF));
         }
-        // The location of a cell is found only for a visitor that uses it.
+        // A visitor that allows parallel reading uses locations only for errors, so the cell is located after an error
+        // alone.
         let mut place = self.first.clone();
         let mut tries = BulkBackoff::NEW;
         let (mut index, mut end) = (0, 0);
@@ -220,7 +222,8 @@ impl Cells<'_> {
         Ok(())
     }
 
-    /// Returns the triangles from a cell of three points on.
+    /// Returns the triangles from cell `index` on, which has three points, for a bulk visit. `None` for lists of
+    /// strips, lines or vertices.
     fn triangles<'c>(
         &'c self,
         index: usize,
@@ -245,7 +248,8 @@ impl Cells<'_> {
         })
     }
 
-    /// Returns the range of a cell's points. `end` is the end of the previous cell's points.
+    /// Returns the range of a cell's point indices in `numbers`. `end` is the end of the previous cell's range, 0 for
+    /// the first cell.
     fn points(&self, index: usize, end: usize) -> Range<usize> {
         match &self.offsets {
             Some(offsets) => offsets.at(index) as usize..offsets.at(index + 1) as usize,
@@ -253,7 +257,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Returns the type of a cell. Polygonal data has no types; its lists are of polygons, strips, lines and points.
+    /// Returns VTK's type number of a cell. Polygonal data list no types: the keyword of a list determines the type.
     fn cell_type(&self, index: usize) -> u64 {
         match (&self.types, self.kind) {
             (Some(types), _) => types.at(index),
@@ -264,7 +268,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Moves from the first cell to another one.
+    /// Moves the cursor from the first cell to the cell `index`.
     #[cold]
     fn seek_cell(&self, place: &mut Cursor<'_>, index: usize) {
         let mut end = 0;
@@ -276,14 +280,14 @@ impl Cells<'_> {
         self.seek_next(place);
     }
 
-    /// Moves to the start of the next cell, over blanks in text.
+    /// Moves the cursor to the first word of the next cell in text. Binary cells are adjacent.
     fn seek_next(&self, place: &mut Cursor<'_>) {
         if self.width.is_none() {
             place.next_word();
         }
     }
 
-    /// Moves from the start of a cell with this many points to its end.
+    /// Moves the cursor from the start of a cell with `points` points to the end of the cell.
     fn skip_cell(&self, place: &mut Cursor<'_>, points: usize) {
         let numbers = points + usize::from(self.offsets.is_none());
         match self.width {

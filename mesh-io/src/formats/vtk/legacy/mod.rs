@@ -1,8 +1,8 @@
 //! VTK's legacy `.vtk`: unstructured grids and polygonal data, as text and in binary.
 //!
 //! The format: <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>, versions 1.0 to 5.1. Binary
-//! numbers are big-endian. Points of the type `float` have single precision in text too, as VTK reads them so. Arrays
-//! that name the cells' regions are read with the mesh, other data when they are asked for.
+//! numbers are big-endian. Points of the type `float` have single precision in text too, as VTK parses them. Region
+//! arrays of cells are read with the mesh, other point and cell data on request.
 
 mod data;
 mod lists;
@@ -96,7 +96,7 @@ impl FormatReader for Vtk {
                     visitor.unsupported("field data");
                     skip::skip_field(cursor, binary)?;
                 }
-                // Data of points and cells go on to the end of the file.
+                // Point and cell data extend to the end of the file.
                 b"POINT_DATA" | b"CELL_DATA" => {
                     regions = data::regions(cursor, binary, &keyword, visitor);
                     break;
@@ -143,7 +143,7 @@ fn dataset(cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
     }
 }
 
-/// Reads the points, of three coordinates each. Returns their precision.
+/// Reads the points after the keyword POINTS, three coordinates each. Returns the precision of the coordinates.
 fn points(
     cursor: &mut Cursor<'_>,
     binary: bool,
@@ -175,8 +175,8 @@ fn points(
         return Ok(precision);
     }
     visitor.expect_nodes(cursor.capacity(count, "0 0 0\n".len()));
-    // If points are not one in each row, their numbers may be broken into lines anywhere, and the first may stand on the
-    // line of the keyword.
+    // Points may also be words anywhere on lines, even on the line of the keyword. If the rows do not hold a point
+    // each, `rest` reads all points word by word; `done` counts those already visited.
     let mut rest = cursor.clone();
     let mut done = 0;
     let in_rows = if cursor.is_at_end() { count } else { 0 };

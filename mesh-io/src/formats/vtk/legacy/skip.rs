@@ -1,10 +1,10 @@
-//! Takes or skips arrays of a legacy VTK file.
+//! Takes or skips the arrays of a legacy VTK file.
 
 use crate::error::ReadError;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
 
-/// Skips an array of `count` numbers, bits or strings.
+/// Skips an array of `count` numbers, bits or strings, whose type is `kind`.
 pub(super) fn skip_section(
     cursor: &mut Cursor<'_>,
     binary: bool,
@@ -14,7 +14,7 @@ pub(super) fn skip_section(
     let kind = kind.to_ascii_lowercase();
     match (kind.as_slice(), binary) {
         (b"string" | b"utf8_string", true) => strings(cursor, count),
-        // One string in each line, which may be empty.
+        // Each string is a line, which may be empty.
         (b"string" | b"utf8_string", false) => each(cursor, count, |c| c.line().is_some()),
         (_, false) => each(cursor, count, |c| c.next_word() && c.token().is_some()),
         (b"bit", true) => take(cursor, count.div_ceil(8), 1).map(|_| ()),
@@ -39,7 +39,8 @@ fn each<'a>(
     }
 }
 
-/// Skips binary strings. Each has its length before it, whose first two bits give the bytes of the length.
+/// Skips binary strings, each after its length. The two highest bits of a length give its width: 8, 4, 2 or 1 bytes for
+/// 0, 1, 2 or 3.
 fn strings(cursor: &mut Cursor<'_>, count: u64) -> Result<(), ReadError> {
     for _ in 0..count {
         let first = take(cursor, 1, 1)?[0];
@@ -52,7 +53,7 @@ fn strings(cursor: &mut Cursor<'_>, count: u64) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// Returns the bytes of a number of this type.
+/// Returns the width in bytes of a binary number type; `None` for types that cannot be read.
 pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
     match kind.to_ascii_lowercase().as_slice() {
         b"char" | b"unsigned_char" | b"signed_char" => Some(1),
@@ -64,7 +65,7 @@ pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
     }
 }
 
-/// Reads the name of an array, after skipping the metadata of the array before.
+/// Reads the name of the next array of a field, after any METADATA of the previous array. `None` if no name follows.
 pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
     loop {
         let name = cursor.token()?;
@@ -76,7 +77,7 @@ pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
     }
 }
 
-/// Skips the arrays of a field of the dataset.
+/// Skips a FIELD of the dataset, after its keyword: name, array count and arrays.
 pub(super) fn skip_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
     cursor.token();
     let arrays = cursor.integer("the number of arrays of a field")?;
@@ -93,7 +94,8 @@ pub(super) fn skip_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), Re
     Ok(())
 }
 
-/// Takes `count` items of `size` bytes. The line that announced them must be read to its end.
+/// Takes `count` binary items of `size` bytes, which start on the next line, or after the bytes taken last. All words
+/// of the cursor's line must have been read.
 pub(super) fn take<'a>(
     cursor: &mut Cursor<'a>,
     count: u64,

@@ -1,4 +1,4 @@
-//! Reads arrays of a VTK XML file as numbers.
+//! Reads the arrays of a VTK XML file as numbers.
 
 use super::blocks::{BlockEncoding, DecodedBlocks};
 use super::document::{Array, ArrayFormat, Document};
@@ -16,15 +16,20 @@ use crate::visit::z_values::TextNumbers;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A file, with the content of its tags.
+/// A VTK XML file with its parsed tags.
 pub(super) struct File<'a> {
     pub(super) source: &'a Source,
     pub(super) document: Document,
+    /// Offsets of the appended arrays, which a rewrite corrects.
     pub(super) offsets: Arc<[AppendedOffset]>,
 }
 
 impl File<'_> {
-    /// Returns the array of a section of a piece. `name` is needed if the section has several.
+    /// Returns the array with a name, in any case, in a section of a piece; the section's first array if `name` is
+    /// `None`.
+    ///
+    /// # Errors
+    /// If the section has no such array.
     pub(super) fn array(
         &self,
         piece: usize,
@@ -49,7 +54,7 @@ impl File<'_> {
         self.source.error_at(place, problem, CUT_OFF)
     }
 
-    /// Decodes an array. Returns its wrapping, its bytes, and their range in the file.
+    /// Decodes a binary array. Returns its encoding, its decoded bytes, and its range in the file.
     pub(super) fn unwrap(
         &self,
         array: &Array,
@@ -74,7 +79,7 @@ impl File<'_> {
         Ok((wrapping, found, range))
     }
 
-    /// Reads the whole numbers of an array as unsigned.
+    /// Reads an array of whole numbers as unsigned integers.
     pub(super) fn integers(&self, array: &Array) -> Result<IntArray<'_>, ReadError> {
         if array.format == ArrayFormat::Ascii {
             let mut numbers = IntArray::with_capacity(array.content.len() / 8);
@@ -89,7 +94,7 @@ impl File<'_> {
         Ok(IntArray::binary(found.bytes, size, wrapping.order))
     }
 
-    /// Reads the whole numbers of an array as signed.
+    /// Reads an array of whole numbers as signed integers. Unsigned types keep their bits.
     pub(super) fn signed_integers(&self, array: &Array) -> Result<Vec<i64>, ReadError> {
         if array.format == ArrayFormat::Ascii {
             return self.words(array, |cursor| cursor.signed("a number"));
@@ -103,7 +108,8 @@ impl File<'_> {
         Ok(found.bytes.chunks_exact(size).map(|number| wrapping.order.signed(number)).collect())
     }
 
-    /// Reads the numbers of an array of any type.
+    /// Reads an array of any number type as real numbers. Only `Float32` and `Float64` arrays can be rewritten, so
+    /// other types get no location.
     pub(super) fn numbers(&self, array: &Array) -> Result<PointNumbers, ReadError> {
         let precision = precision_of(array);
         if array.format == ArrayFormat::Ascii {
@@ -133,7 +139,7 @@ impl File<'_> {
         let numbers = old.bytes.chunks_exact(stride);
         let numbers = numbers.map(|number| wrapping.order.real(precision, number)).collect();
         let encoding = NumberEncoding::Binary(wrapping.order, precision);
-        // Raw bytes can be replaced in place. All others are encoded again.
+        // Appended raw bytes without compression are replaced in place. All other arrays are encoded again.
         let (start, home) = match !wrapping.base64 && wrapping.compressor.is_none() {
             true => (range.end - old.bytes.len(), ByteSpace::File),
             false => {
@@ -152,7 +158,7 @@ impl File<'_> {
         Ok(PointNumbers { numbers, nodes: None, location: stored })
     }
 
-    /// Reads the words of an array of text.
+    /// Reads each word of an array of text by `read`.
     fn words<T>(
         &self,
         array: &Array,
@@ -166,7 +172,10 @@ impl File<'_> {
         Ok(words)
     }
 
-    /// Returns the bytes of a whole number of an array.
+    /// Returns the width in bytes of an array's integer type.
+    ///
+    /// # Errors
+    /// If the type is not an integer type.
     fn size_of_integer(&self, array: &Array) -> Result<usize, ReadError> {
         match array.number.as_str() {
             "Int8" | "UInt8" => Ok(1),
@@ -183,7 +192,7 @@ impl File<'_> {
     }
 }
 
-/// Returns the precision of an array's numbers, if they are real.
+/// Returns the precision of an array's numbers; `None` for whole numbers.
 pub(super) fn precision_of(array: &Array) -> Option<Precision> {
     match array.number.as_str() {
         "Float32" => Some(Precision::Single),

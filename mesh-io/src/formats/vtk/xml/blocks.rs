@@ -1,4 +1,4 @@
-//! Decodes and encodes arrays of a VTK XML file: base64, and compressed blocks.
+//! Decodes and encodes the binary arrays of a VTK XML file: base64 text and compressed blocks.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::compress::zlib;
@@ -7,18 +7,18 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::borrow::Cow;
 
-/// The compression of blocks.
+/// Compression of the blocks of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Compressor {
     Zlib,
     Lz4,
 }
 
-/// Encoding of the bytes of an array: byte order, width of header numbers, compression and base64.
+/// Encoding of a binary array: byte order, width of header integers, compression and base64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BlockEncoding {
     pub(super) order: ByteOrder,
-    /// The bytes of a number in the header.
+    /// Width of an integer of the header, in bytes: 4 or 8.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
     pub(super) base64: bool,
@@ -26,18 +26,19 @@ pub(super) struct BlockEncoding {
 
 /// A decoded array, with the block size and header form that an encoder needs to write the array again.
 pub(super) struct DecodedBlocks<'a> {
-    /// The decoded bytes; those of the file itself, if they are not encoded.
+    /// Decoded bytes; borrowed from the file if the array is raw and uncompressed.
     pub(super) bytes: Cow<'a, [u8]>,
-    /// Number of bytes of the file that the encoded array takes.
+    /// Length of the encoded array in the file, in bytes, header included.
     pub(super) encoded_length: usize,
-    /// The size of a block before compression; 0 without blocks.
+    /// Size of a block before compression, in bytes; 0 for arrays without blocks.
     block: usize,
-    /// Whether an uncompressed array has its length in a separate base64 text.
+    /// Whether header and numbers are two base64 texts, each with its own padding. The value matters only for base64
+    /// without compression.
     has_separate_header: bool,
 }
 
 impl<'a> DecodedBlocks<'a> {
-    /// Separates the bytes from the rest.
+    /// Moves the decoded bytes out. Returns them, and the rest with empty `bytes`.
     pub(super) fn split(self) -> (Cow<'a, [u8]>, DecodedBlocks<'static>) {
         let DecodedBlocks {
             bytes,
@@ -58,7 +59,7 @@ impl<'a> DecodedBlocks<'a> {
 }
 
 impl BlockEncoding {
-    /// Decodes the array at the start of `input`. `None` if it is damaged or ends too early.
+    /// Decodes the array at the start of `input`. `None` if the array is damaged or `input` ends too early.
     pub(super) fn unwrap<'a>(&self, input: &'a [u8]) -> Option<DecodedBlocks<'a>> {
         match self.compressor {
             None => self.unwrap_plain(input),
@@ -79,7 +80,8 @@ impl BlockEncoding {
             });
         }
         let apart = encoded(self.header);
-        // The padding of a header that is encoded alone. With a few bytes after it, there is less padding.
+        // Padding of a header that is encoded alone. A header followed by numbers in the same base64 text has less
+        // padding, or none.
         let padding = 3 - self.header % 3;
         let header_apart = input.get(apart - padding..apart)? == &b"=="[..padding];
         let first = decode(input.get(..apart)?)?;
@@ -107,7 +109,8 @@ impl BlockEncoding {
     ) -> Option<DecodedBlocks<'static>> {
         let counts = self.numbers(input, 3)?;
         let [blocks, size, last] = [counts[0], counts[1], counts[2]];
-        // The header has another number for each block.
+        // The header lists the number of blocks, the block size, the size of a partial last block (or 0), and the
+        // compressed size of each block.
         let counts = self.numbers(input, blocks.checked_add(3)?)?;
         let header = self.header * counts.len();
         let compressed: usize = counts[3..].iter().try_fold(0_usize, |a, &b| a.checked_add(b))?;
@@ -145,7 +148,7 @@ impl BlockEncoding {
         })
     }
 
-    /// Encodes new bytes as those of `old` were encoded.
+    /// Encodes new bytes in the form of `old`: block size and header.
     pub(super) fn wrap(&self, old: &DecodedBlocks<'_>, bytes: &[u8]) -> Vec<u8> {
         let Some(compressor) = self.compressor else {
             let header = self.bytes_of(bytes.len());
@@ -167,7 +170,7 @@ impl BlockEncoding {
         }
     }
 
-    /// Reads the first `count` numbers of a header that is encoded alone.
+    /// Reads the first `count` integers of a header. In base64, the header must be a separate text.
     fn numbers(&self, input: &[u8], count: usize) -> Option<Vec<usize>> {
         let length = count.checked_mul(self.header)?;
         let decoded;
@@ -194,12 +197,12 @@ impl BlockEncoding {
     }
 }
 
-/// Returns the length of this many bytes in base64.
+/// Returns the length of the base64 text for this many bytes.
 fn encoded(bytes: usize) -> usize {
     bytes.div_ceil(3).saturating_mul(4)
 }
 
-/// Decodes base64.
+/// Decodes base64. `None` if the text is not base64.
 fn decode(text: &[u8]) -> Option<Vec<u8>> {
     STANDARD.decode(text).ok()
 }

@@ -1,4 +1,4 @@
-//! The cells and data of a VTK XML file, piece by piece.
+//! Cells and data of a VTK XML file, piece by piece.
 
 use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
@@ -11,25 +11,25 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::items::RegionAttribute;
 use crate::visit::visitor::MeshVisitor;
 
-/// The types of the cells of a list.
+/// Type numbers of the cells of a list.
 enum Types<'a> {
-    /// The same type for all cells.
+    /// One type for all cells: a section of polygonal data.
     Same(u64),
     PerCell(IntArray<'a>),
 }
 
-/// A list of cells of a piece.
+/// A cell list of a piece, such as `Cells` or `Polys`.
 struct List<'a> {
     connectivity: IntArray<'a>,
-    /// The end of each cell's points in `connectivity`.
+    /// End of each cell's point indices in `connectivity`.
     offsets: IntArray<'a>,
     types: Types<'a>,
-    /// The offset of the list in the file, for messages.
+    /// Offset of the connectivity array's tag in the file, for messages.
     at: usize,
 }
 
 impl File<'_> {
-    /// Hands the cells of all pieces to the visitor.
+    /// Visits the cells of all pieces, and their cell data if the visitor asks for data.
     pub(super) fn cells(&self, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
         let regions = self.region_names();
         visitor
@@ -106,12 +106,15 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Reads the lists of cells of a piece.
+    /// Reads the cell lists of a piece. Leaves out lists without cells, except that of a grid piece with points.
+    ///
+    /// # Errors
+    /// If an array is missing or damaged, or if offsets, types and connectivity of a list contradict each other.
     fn lists(&self, piece: usize) -> Result<Vec<List<'_>>, ReadError> {
         let announced = &self.document.pieces[piece];
         let sections: &[(&str, Option<u64>)] = match self.document.content {
             Content::Grid => &[("Cells", None)],
-            // The sections of polygonal data, with the type of their cells.
+            // Sections of polygonal data, with the type of their cells.
             Content::Polygons => &[
                 ("Verts", Some(types::POLY_VERTEX)),
                 ("Lines", Some(types::POLY_LINE)),
@@ -154,8 +157,8 @@ impl File<'_> {
         Ok(lists)
     }
 
-    /// Returns the names of the first arrays that tell regions. Damaged arrays are ignored, as the mesh does not depend
-    /// on them.
+    /// Returns the names of the first [`MAX_ARRAYS`] region arrays. Damaged arrays are ignored, as the mesh does not
+    /// depend on regions.
     fn region_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for array in self.document.arrays.iter().filter(|array| is_region_array(array)) {
@@ -169,15 +172,16 @@ impl File<'_> {
         names
     }
 
-    /// Reads the regions of a piece's cells from the array with this name. Empty if there is none.
+    /// Reads the region numbers of a piece's cells from the array called `name`. A missing or damaged array yields an
+    /// empty list.
     fn regions(&self, piece: usize, name: &str) -> Vec<i64> {
         let mut arrays = self.document.arrays.iter().filter(|array| is_region_array(array));
         let array = arrays.find(|array| array.piece == piece && array.name == name);
         array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
     }
 
-    /// Hands the arrays of point data that the visitor wants to it. Damaged ones are skipped, as the mesh does not depend
-    /// on them.
+    /// Visits the arrays of point data that the visitor wants. Damaged arrays are skipped, as the mesh does not depend
+    /// on data.
     pub(super) fn point_arrays(&self, visitor: &mut dyn MeshVisitor) {
         let pieces = &self.document.pieces;
         let mut first = 0;
@@ -205,7 +209,7 @@ impl File<'_> {
         }
     }
 
-    /// Hands the arrays of cell data that the visitor wants to it, except those that tell regions.
+    /// Visits the arrays of cell data that the visitor wants, except those of the given `regions`.
     fn cell_arrays(
         &self,
         piece: usize,

@@ -1,4 +1,4 @@
-//! The elements of a VTK XML file, and their offsets.
+//! The elements of a VTK XML file, with their offsets.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::disk::source::Source;
@@ -10,52 +10,58 @@ use crate::text::token::quoted;
 use crate::xml::{XmlTag, XmlTags};
 use std::ops::Range;
 
-/// The content of a file's tags.
+/// The tags of a file: encoding, pieces and arrays.
 pub(super) struct Document {
     pub(super) order: ByteOrder,
-    /// The bytes of a number that gives the length of a block.
+    /// Width of an integer in the header of a binary array, in bytes: 8 for `UInt64`, else 4.
     pub(super) header: usize,
     pub(super) compressor: Option<Compressor>,
     pub(super) content: Content,
-    /// The pieces of the mesh, including those without points.
+    /// The pieces of the mesh in file order, also those without points.
     pub(super) pieces: Vec<Piece>,
+    /// The arrays of all pieces in file order.
     pub(super) arrays: Vec<Array>,
+    /// The appended data; `None` if the file has no `AppendedData`.
     pub(super) appended: Option<Appended>,
 }
 
-/// The kind of dataset that a file holds.
+/// Dataset type of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Content {
     Grid,
     Polygons,
 }
 
-/// The sizes of a `Piece`.
+/// Announced sizes of a `Piece`.
 pub(super) struct Piece {
     pub(super) points: u64,
-    /// The number of cells. For polygonal data: points, lines, strips and polygons.
+    /// Announced cells: for an unstructured grid, the first number counts all cells. For polygonal data, the numbers
+    /// count vertices, lines, strips and polygons.
     pub(super) cells: [u64; 4],
 }
 
-/// A `DataArray`.
+/// Tag and location of a `DataArray` or `Array`.
 pub(super) struct Array {
-    /// The index of the array's piece, or of the last piece before it.
+    /// Index of the piece around the array, else of the preceding piece; 0 before the first piece.
     pub(super) piece: usize,
-    /// The element around the array: `Points`, `Cells`, `PointData` and so on.
+    /// Name of the element around the array: `Points`, `Cells`, `PointData` and so on.
     pub(super) section: String,
     pub(super) name: String,
+    /// Number type of the array, such as `Float32`.
     pub(super) number: String,
+    /// Numbers per point or cell.
     pub(super) components: u64,
     pub(super) format: ArrayFormat,
-    /// The range of the array's text; empty if it is appended.
+    /// Range of the array's text in the file; empty for an empty element.
     pub(super) content: Range<usize>,
-    /// For an appended array, its offset in the appended data, and the range of the file that gives the offset.
+    /// Offset of an appended array in the appended data, and the range of the attribute value with this offset. `None`
+    /// for other arrays.
     pub(super) offset: Option<(usize, Range<usize>)>,
-    /// The offset of the array's tag.
+    /// Offset of the array's tag in the file.
     pub(super) at: usize,
 }
 
-/// How an array is written.
+/// Storage of an array: text, base64 in the element, or appended data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ArrayFormat {
     Ascii,
@@ -63,11 +69,12 @@ pub(super) enum ArrayFormat {
     Appended,
 }
 
-/// The appended data at the end of the file.
+/// The appended data, the last element of the file.
 #[derive(Clone, Copy)]
 pub(super) struct Appended {
-    /// The offset of the data, after the underscore.
+    /// Offset of the data in the file, after the underscore.
     pub(super) start: usize,
+    /// Whether the data are base64 text, not raw bytes.
     pub(super) base64: bool,
 }
 
@@ -98,7 +105,7 @@ impl Document {
                 }
                 "AppendedData" => {
                     document.appended = Some(appended(&tag, source)?);
-                    // The data after this tag need not be XML.
+                    // Appended raw bytes after the tag need not be XML.
                     break;
                 }
                 _ => {}
@@ -110,7 +117,7 @@ impl Document {
         Ok(document)
     }
 
-    /// Returns the offsets of appended arrays, as the file gives them.
+    /// Returns the offset of each appended array, with the range of the file that states the offset.
     pub(super) fn offsets(&self) -> Vec<AppendedOffset> {
         let Some(appended) = self.appended else { return Vec::new() };
         let offset = |array: &Array| {
@@ -197,7 +204,7 @@ fn array(tag: &XmlTag<'_>, section: String, piece: usize) -> Result<Array, ReadE
         }
         _ => None,
     };
-    // VTK takes an empty number for one that is not there.
+    // VTK treats an empty attribute as a missing one.
     let components = match tag.attribute("NumberOfComponents")?.as_deref().map(str::trim) {
         None | Some("") => 1,
         Some(_) => tag.number("NumberOfComponents")?,

@@ -1,26 +1,27 @@
-//! Encoded arrays (base64 or compressed), and their encoding with new numbers.
+//! Arrays of a VTK XML file in base64 or with compression, and their encoding with new numbers.
 
 use super::blocks::{BlockEncoding, DecodedBlocks};
 use crate::edit::numbers::{AppendedOffset, ByteEdit, EncodedArrays};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Encoded arrays of points or point data, one for each piece of the mesh.
+/// Encoded arrays: the points of all pieces, or a single array of point data.
 pub(super) struct XmlArrays {
     parts: Vec<ArrayBytes>,
-    /// The decoded bytes of all arrays, one after the other.
+    /// Decoded bytes of all arrays, array after array.
     bytes: Vec<u8>,
+    /// Offsets of all appended arrays of the file.
     offsets: Arc<[AppendedOffset]>,
 }
 
 /// The encoded and decoded bytes of one array.
 struct ArrayBytes {
     encoding: BlockEncoding,
-    /// How the array was encoded, without its bytes.
+    /// Block size and header form of the array, without its decoded bytes.
     old: DecodedBlocks<'static>,
-    /// The range of the array in the file.
+    /// Range of the encoded array in the file.
     range: Range<usize>,
-    /// The range of this array in the decoded bytes of all arrays.
+    /// Range of the array in the decoded bytes of all arrays.
     own: Range<usize>,
 }
 
@@ -65,7 +66,7 @@ impl EncodedArrays for XmlArrays {
         changed.map(edit).collect()
     }
 
-    /// The offsets that are others once arrays before them have other lengths.
+    /// Corrects the offsets of appended arrays that lie after an edited array whose length changes.
     fn dependent_edits(&self, _: &[u8], edits: &[ByteEdit], _: usize) -> Vec<ByteEdit> {
         let corrected = self.offsets.iter().filter_map(|offset| {
             let before = edits.iter().filter(|edit| edit.range.end <= offset.array_start);
@@ -79,7 +80,7 @@ impl EncodedArrays for XmlArrays {
         corrected.collect()
     }
 
-    /// The offsets of what stands after an array that may have another length.
+    /// Returns the offset attributes of all appended arrays that start at byte `first` or later.
     fn dependent_ranges(&self, first: usize) -> Vec<Range<usize>> {
         let later = self.offsets.iter().filter(|offset| offset.array_start >= first);
         later.map(|offset| offset.range.clone()).collect()

@@ -1,8 +1,8 @@
 //! VTK's XML formats of unstructured grids and polygonal data, `.vtu` and `.vtp`. Arrays are text, base64 or appended
 //! data, uncompressed or compressed by zlib or LZ4, in one piece or several.
 //!
-//! The format: <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>. Of encoded arrays, only those
-//! whose numbers change are encoded again, and the offsets of appended arrays after them are corrected.
+//! The format: <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>. A rewrite encodes only arrays
+//! with changed numbers again, and corrects the offsets of later appended arrays.
 
 mod arrays;
 mod blocks;

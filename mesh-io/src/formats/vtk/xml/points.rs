@@ -18,28 +18,33 @@ use crate::visit::z_values::ZValues;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Encoding of the coordinates of all pieces, with their encoded arrays.
+/// Encoding of the coordinates of all pieces, with the encoded arrays of the pieces.
 pub(super) struct PointStorage {
     pub(super) numbers: CoordinateEncoding,
+    /// Encoded point arrays; `None` if coordinates are replaced in place.
     pub(super) encoded: Option<Box<dyn EncodedArrays>>,
 }
 
-/// The points read so far.
+/// State of reading the points of all pieces.
 struct Points<'s, 'f> {
     visitor: &'s mut dyn MeshVisitor,
     z_values: ZValues,
-    /// How the numbers are stored, and whether they are encoded. It must be the same in all pieces.
+    /// Encoding of the coordinates, and whether the arrays are base64 or compressed. Both must be equal in all pieces,
+    /// as a rewrite uses one encoding.
     numbers: Option<(CoordinateEncoding, bool)>,
+    /// Encoded point arrays of the pieces so far, each with its range in the file.
     encoded: Vec<(BlockEncoding, DecodedBlocks<'f>, Range<usize>)>,
-    /// The bytes of all encoded arrays, decoded.
+    /// Length of the decoded bytes of `encoded`.
     bytes: usize,
-    /// The number of points.
+    /// Number of points so far; also the id of the next point.
     count: u64,
-    /// The offset of the last array of points that is not encoded.
+    /// Offset at which the last point array starts. Arrays that are replaced in place must be in file order, as
+    /// coordinate offsets ascend.
     end: usize,
 }
 
-/// Hands on the points of all pieces.
+/// Visits the points of all pieces, and their third coordinates. Returns encoding and location of the coordinates for a
+/// rewrite.
 pub(super) fn read(
     file: &File<'_>,
     visitor: &mut dyn MeshVisitor,
@@ -111,7 +116,8 @@ impl<'f> Points<'_, 'f> {
         Ok(())
     }
 
-    /// Hands on binary points. Returns their offset, how they are stored, and whether they are encoded.
+    /// Visits binary points. Returns the offset of the first x (in the decoded bytes, if the array is encoded), the
+    /// encoding, and whether the array is encoded.
     fn binary(
         &mut self,
         file: &'f File<'_>,
@@ -127,7 +133,7 @@ impl<'f> Points<'_, 'f> {
                 format!("the array has {} bytes, which do not fit {count} points", old.bytes.len());
             return Err(cursor.error(problem, CORRECT));
         }
-        // Raw bytes can be replaced in place. All others are encoded again.
+        // Appended raw bytes without compression are replaced in place. All other arrays are encoded again.
         let is_encoded = wrapping.base64 || wrapping.compressor.is_some();
         let start = if is_encoded { self.bytes } else { range.end - old.bytes.len() };
         let [x, y, z] = [0, 1, 2].map(|axis| {
@@ -146,7 +152,7 @@ impl<'f> Points<'_, 'f> {
         Ok((start, numbers, is_encoded))
     }
 
-    /// Hands on points of a text.
+    /// Visits points of text.
     fn text(&mut self, file: &File<'_>, points: &Array, count: u64) -> Result<(), ReadError> {
         let cursor = &mut Cursor::within(file.source, points.content.clone());
         self.visitor.expect_nodes(cursor.capacity(count, "0 0 0 ".len()));
