@@ -1,4 +1,4 @@
-//! Tells which format a file is in, first by its content, then by its ending.
+//! Detection of a file's format, first by its content, then by its extension.
 
 use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
@@ -14,27 +14,31 @@ use crate::text::token::integer;
 use crate::visit::reader::ReaderFunctions;
 use std::path::{Path, PathBuf};
 
-/// Finds the format of a file. If no reader exists for it, the error names the format if it is known.
+/// Returns the reader of a file's format.
+///
+/// # Errors
+/// [`ReadError::Format`] if the file is empty, or if its format is unknown or unsupported. An unsupported format is
+/// named.
 pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let head = head(&source.bytes, b"%");
     if head.is_empty() {
         return Err(source.error("the file is empty", "Write the mesh again"));
     }
-    // The title of such a grid may start with anything.
+    // The title of an ADCIRC grid may start like any other format.
     if ADCIRC.matches_extension(&source.path) {
         return reader_of(source, &ADCIRC);
     }
     let promised = |family: &&&FormatEntry| family.matches_extension(&source.path);
     let by_content = || detect_by_magic(&source.bytes);
     let known = by_content().find(promised).or_else(|| by_content().next());
-    // Nastran's may start with anything, such as a title.
+    // A Nastran file may start like any other format, for example with a title.
     if known.is_none_or(|family| !family.is_read()) && nastran::is_nastran(source) {
         return reader_of(source, &NASTRAN);
     }
     if let Some(family) = known {
         return reader_of(source, family);
     }
-    // Files of MIKE may start with any numbers. Their ending is also that of Medit.
+    // MIKE files may start with any numbers, and have the extension of Medit.
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     if mike::is_mike(&first, &second) {
         return reader_of(source, &MIKE);
@@ -42,8 +46,8 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     if TRIANGLE.matches_extension(&source.path) {
         return reader_of(source, &TRIANGLE);
     }
-    // Formats without first words are told by their ending if it is theirs alone. An STL in text must start with its
-    // first word.
+    // Formats without magic bytes are detected by an extension of their own, unlike FreeFem's `.msh`. An STL in text
+    // must start with the magic bytes, so its extension alone does not count.
     let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
     let by_ending = |family: &&&FormatEntry| {
         let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
@@ -55,7 +59,7 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     }
 }
 
-/// Finds the format of a file of plain numbers by the counts of numbers in its first rows.
+/// Detects the format of a file of plain numbers by the counts of numbers in its first rows.
 fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
     let numbers =
@@ -95,7 +99,7 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
     if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
         return reader_of(source, &ADCIRC);
     }
-    // Formats that are not read may start with anything.
+    // Unsupported formats without magic bytes are detected by their extension.
     match REGISTRY.iter().find(|family| !family.is_read() && family.matches_extension(&source.path))
     {
         Some(family) => reader_of(source, family),
@@ -106,33 +110,33 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
     }
 }
 
-/// Returns the name of the format with the extension of `path`, whether the format is read or not; `None` if no
-/// format has the extension.
+/// Returns the name of the format with the extension of `path`, supported or not; `None` if no format has the
+/// extension.
 pub(crate) fn format_name_of_extension(path: &Path) -> Option<&'static str> {
     let family = REGISTRY.iter().find(|family| family.matches_extension(path));
     family.map(|family| family.name)
 }
 
 impl Format {
-    /// Returns the endings of file names of the format, the usual one first. Some endings are whole names, such as
+    /// Returns the extensions of the format, the usual one first. Some extensions are whole file names, such as
     /// `fort.14`.
     pub fn extensions(self) -> &'static [&'static str] {
         FormatEntry::of(self).extensions
     }
 
-    /// Returns a name of the formats that are read alike: `gmsh` for all of its versions, as text and in binary.
+    /// Returns the name of a family of formats with one reader: `gmsh` for all versions of gmsh, in text and in binary.
     pub fn family(self) -> &'static str {
         FormatEntry::of(self).name
     }
 
     /// Returns the name of the format with the extension of `path`, before the extension of a compression, in capital
-    /// or small letters. The format need not be one that is read. `None` if no format has the extension.
+    /// or small letters. Unsupported formats have names too. `None` if no format has the extension.
     pub fn name_of_extension(path: &Path) -> Option<&'static str> {
         format_name_of_extension(path)
     }
 
-    /// Lists the files of the mesh that has a file of this name, as far as names tell: `.node`, `.ele` and `.poly` of Triangle,
-    /// an XDMF and an `.h5` of the same name, else the file alone. They need not exist.
+    /// Returns the paths of all files of a mesh that follow from the name of one: `.node`, `.ele` and `.poly` of
+    /// Triangle, an XDMF and the `.h5` of the same name, else `path` alone. The files need not exist.
     pub fn files_of(path: &Path) -> Vec<PathBuf> {
         if let Some(Names { node, ele, poly }) = Names::of_file(path) {
             return vec![node, ele, poly];
@@ -143,18 +147,17 @@ impl Format {
         }
     }
 
-    /// Returns the name of a format whose files begin with the first words or bytes of `head`, which may be the beginning of a
-    /// file. The format need not be one that is read. `None` also for formats that only begin with numbers, such as Triangle.
+    /// Returns the name of the format whose magic bytes start `head`, the beginning of a file. Unsupported formats have
+    /// names too. `None` also for formats without magic bytes, such as Triangle.
     pub fn name_of_content(head: &[u8]) -> Option<&'static str> {
         detect_by_magic(head).next().map(|family| family.name)
     }
 }
 
-/// Finds the formats whose files begin with the first words of some bytes.
+/// Returns the entries whose magic bytes start a content, in the order of the registry.
 fn detect_by_magic(bytes: &[u8]) -> impl Iterator<Item = &'static &'static FormatEntry> {
     let head = head(bytes, b"%");
-    // Comment lines that start with `#` may come before the format's first words, but `# vtk` is itself the first line
-    // of VTK.
+    // Comment lines that start with `#` may precede the magic bytes, but the magic bytes of VTK start with `#` too.
     let heads = [head, bytes, self::head(head, b"%#"), after_prolog(head)];
     let opens = move |magic: &&[u8]| heads.iter().any(|head| head.starts_with(magic));
     REGISTRY.iter().filter(move |family| family.magic.iter().any(opens))
@@ -163,7 +166,7 @@ fn detect_by_magic(bytes: &[u8]) -> impl Iterator<Item = &'static &'static Forma
 /// Returns the reader of an entry.
 ///
 /// # Errors
-/// If the format is not read. The error names the format and a remedy.
+/// If the format is unsupported. The error names the format and a remedy.
 fn reader_of(
     source: &Source,
     family: &'static FormatEntry,
@@ -186,7 +189,7 @@ fn formats_read() -> String {
     format!("Formats read: {}", names.join(", "))
 }
 
-/// Returns the content without a byte order mark, blanks, and comment lines, which start with one of the bytes of
+/// Returns the content without a byte order mark, leading blanks, and comment lines, which start with a byte of
 /// `comments`.
 fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
     let mut head = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
@@ -197,7 +200,7 @@ fn head<'a>(bytes: &'a [u8], comments: &[u8]) -> &'a [u8] {
     head
 }
 
-/// Returns the content from the first XML element on, without declarations and comments before it.
+/// Returns the content from the first XML element on, without the declarations and comments before.
 fn after_prolog(bytes: &[u8]) -> &[u8] {
     let mut head = bytes;
     while head.starts_with(b"<?") || head.starts_with(b"<!") {
@@ -209,7 +212,7 @@ fn after_prolog(bytes: &[u8]) -> &[u8] {
 }
 
 fn first_rows(source: &Source, syntax: Syntax) -> [Vec<&[u8]>; 3] {
-    // No format that is told apart here has longer rows.
+    // Enough tokens to tell formats apart by their rows.
     const TOKENS: usize = 8;
     let mut cursor = Cursor::new(source).with_syntax(syntax);
     std::array::from_fn(|_| {

@@ -1,4 +1,4 @@
-//! Errors, one enum for each kind of operation.
+//! Errors of reading, of writing, of names of groups and of given data.
 
 use std::path::PathBuf;
 use std::{fmt, io};
@@ -10,7 +10,7 @@ pub enum Location {
     Line(usize),
     /// Offset in a binary file, in bytes.
     Byte(usize),
-    /// Somewhere in the file: a second search of the file did not find the item.
+    /// An unknown place in the file: a second search of the file did not find the item.
     Unknown,
 }
 
@@ -42,19 +42,19 @@ pub enum ReadError {
     Content {
         /// The file.
         path: PathBuf,
-        /// Where the error is.
+        /// Line or byte of the error.
         location: Location,
         /// What is wrong there.
         problem: String,
         /// What the user can do about it.
         remedy: String,
     },
-    /// The file can be read, but its format is not known.
+    /// The file was read, but its format is unknown or unsupported.
     #[error("{}: {problem}. {remedy}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
-        /// What was found instead.
+        /// What was found instead of a supported format.
         problem: String,
         /// What the user can do about it.
         remedy: String,
@@ -77,18 +77,18 @@ pub enum ReadError {
         path.display(), target.display()
     )]
     Outside {
-        /// The mesh file.
+        /// Path of the file that names the other file.
         path: PathBuf,
-        /// Where it names the other file.
+        /// Location of the name in this file.
         location: Location,
-        /// The name that it gives.
+        /// Name of the other file as this file spells it.
         names: String,
-        /// The other file, without symbolic links.
+        /// Path of the other file, with symbolic links resolved.
         target: PathBuf,
     },
 }
 
-/// A file could not be written. A file that was there before is unchanged.
+/// A file could not be written. An existing file keeps its content, or the remedy says where the content is.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The operating system reported an error.
@@ -101,7 +101,7 @@ pub enum WriteError {
         /// What the user can do about it.
         remedy: String,
     },
-    /// The name has the ending of another format than the one the mesh was read in.
+    /// The extension belongs to another format than that of the mesh.
     #[error("{}: {problem}. {remedy}", path.display())]
     Format {
         /// The file.
@@ -111,7 +111,7 @@ pub enum WriteError {
         /// What the user can do about it.
         remedy: String,
     },
-    /// The file is one that the mesh was read from, and another program has changed its content since.
+    /// Another program has changed the file since the mesh was read from it.
     #[error(
         "{}: another program has changed this file since it was read, so it is not replaced. Write to another name, or read \
          the mesh again",
@@ -121,7 +121,7 @@ pub enum WriteError {
         /// The file.
         path: PathBuf,
     },
-    /// The points do not fit the mesh: a mistake in the calling program, not of its user.
+    /// The points do not fit the mesh, by a mistake in the calling program.
     #[error("{}: not written: {problem}", path.display())]
     Points {
         /// The file.
@@ -131,7 +131,7 @@ pub enum WriteError {
     },
 }
 
-/// A name does not stand for exactly one group of a mesh file.
+/// A name stands for no group of a mesh file, or for several groups.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GroupError {
     /// No group has this name.
@@ -139,7 +139,7 @@ pub enum GroupError {
     Unknown {
         /// The name that was given.
         name: String,
-        /// The names of all groups, the most similar first.
+        /// Names of all groups, with the names most similar to `name` first.
         known: Vec<String>,
     },
     /// Several groups have this name.
@@ -147,7 +147,7 @@ pub enum GroupError {
     Ambiguous {
         /// The name that was given.
         name: String,
-        /// For each of these groups, a name that no other group has.
+        /// For each matching group, a longer name that no other group has.
         candidates: Vec<String>,
     },
 }
@@ -159,7 +159,7 @@ fn unknown(name: &str, known: &[String]) -> String {
     }
 }
 
-/// Joins the first names of a list, and says how many more there are.
+/// Joins the first 12 names of a list, followed by the number of further names.
 fn join_first(names: &[String], between: &str) -> String {
     const MAX_NAMES: usize = 12;
     let told = names[..names.len().min(MAX_NAMES)].join(between);
@@ -169,10 +169,10 @@ fn join_first(names: &[String], between: &str) -> String {
     }
 }
 
-/// Data or positions that are given for a mesh file do not have the length that the file needs.
+/// Positions or data of vertices whose length does not fit the mesh file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FieldError {
-    /// A list of positions does not have exactly one for each vertex of the mesh.
+    /// The number of positions differs from the number of vertices.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {
         /// Number of vertices of the mesh.
@@ -180,12 +180,12 @@ pub enum FieldError {
         /// Number of points that were given.
         given: usize,
     },
-    /// A list of data does not have as many numbers as the field.
+    /// The number of values differs from the length of the field.
     #[error("{given} numbers are given where the vertices of the mesh need {expected}")]
     ValueCount {
-        /// Number of numbers in the field.
+        /// Number of values in the field.
         expected: usize,
-        /// Number of numbers that were given.
+        /// Number of values that were given.
         given: usize,
     },
 }

@@ -1,10 +1,10 @@
-//! Reads 2D triangle meshes in many file formats, writes them again with nothing changed but moved vertices, and converts
-//! them.
+//! Reads 2D triangle meshes in many file formats, rewrites files with moved vertices and no other change, and converts
+//! meshes.
 //!
-//! [`MeshFile::read`] finds the format by the content of a file. A [`MeshFile`] never changes: it reports points, triangles,
-//! regions, [`Groups`], data of vertices ([`PointField`]), [`Constraints`], and the whole mesh as [`Content`], and [`MeshFile::write`] writes the file with
-//! vertices at other points. A [`Conversion`] writes the mesh in another [`Format`], and lists what that format does not
-//! hold. [`atomic`] replaces any file safely.
+//! [`MeshFile::read`] detects the format by the content of a file. A [`MeshFile`] never changes: it reports points,
+//! triangles, regions, [`Groups`], data of vertices ([`PointField`]), [`Constraints`], and the whole mesh as
+//! [`Content`], and [`MeshFile::write`] writes the file with vertices at other points. A [`Conversion`] writes the mesh
+//! in another [`Format`], and lists the losses. [`atomic`] replaces any file safely.
 //!
 //! ```no_run
 //! use mesh_io::MeshFile;
@@ -54,13 +54,13 @@ pub use crate::precision::Precision;
 pub use crate::visit::field::PointField;
 pub use crate::visit::items::CellKind;
 
-/// Replaces whole files safely: a file has either its old content or all of the new content, whatever happens.
+/// Safe replacement of whole files: whatever happens, a file has either its old content or all of the new content.
 pub mod atomic {
     pub use crate::disk::atomic::{BlockedWrites, discard_pending_writes, ensure_writable, write};
     pub use crate::disk::paths::same_file;
 }
 
-/// Compiles the code of the README with the tests.
+/// Compiles the code examples of the README as doc tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 mod readme {}

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Calls `task` with the index of each part and the part. Returns the results in the order of the parts.
+/// Calls `task` for each part with the index of the part, on all threads. Returns the results in the order of `parts`.
 pub(crate) fn map_parts<P: Send, T: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) -> T + Sync,
@@ -25,8 +25,8 @@ pub(crate) fn map_parts<P: Send, T: Send>(
     results.collect()
 }
 
-/// Calls `task` with ranges of `size` numbers below `count`; the last range may be shorter. Returns the results in the
-/// order of the ranges.
+/// Calls `task` on all threads with ranges of `size` numbers below `count`; the last range may be shorter. Returns the
+/// results in the order of the ranges.
 pub(crate) fn map_ranges<T: Send>(
     count: usize,
     size: usize,

@@ -1,8 +1,8 @@
-//! The precision in which coordinates are stored.
+//! Precision of the coordinates in a file.
 
 use crate::text::field_text::{field_error, rounded_to_field};
 
-/// The precision with which the coordinates of a mesh are stored.
+/// Precision with which a file stores the coordinates of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// Single precision: about seven digits, as in files of 32-bit floats.
@@ -10,19 +10,19 @@ pub enum Precision {
     /// Double precision: about sixteen digits.
     #[default]
     Double,
-    /// Double precision in text of at most 20 characters, which is all that Abaqus and CalculiX read of a number: about
-    /// sixteen digits, fewer only for numbers near zero or very large ones.
+    /// Double precision in text of at most 20 characters, the limit of Abaqus and CalculiX: about sixteen digits, fewer
+    /// only for numbers near zero or very large numbers.
     Text20,
-    /// Text of at most 16 characters, as large fields of Nastran's bulk data have: 12 to 15 digits for numbers from 0.001 to 1e14,
-    /// 10 or more for most others.
+    /// Text of at most 16 characters, as in large fields of Nastran's bulk data: 12 to 15 digits for numbers from 0.001
+    /// to 1e14, 10 or more for most others.
     Text16,
-    /// Text of at most 8 characters, as small fields of Nastran's bulk data have: 4 to 7 digits for numbers from 1e-10 to 1e10, 2 or 3
-    /// for most others.
+    /// Text of at most 8 characters, as in small fields of Nastran's bulk data: 4 to 7 digits for numbers from 1e-10 to
+    /// 1e10, 2 or 3 for most others.
     Text8,
 }
 
 impl Precision {
-    /// Number of bytes of a number in binary.
+    /// Returns the width of a binary number in bytes.
     pub(crate) fn bytes(self) -> usize {
         match self {
             Precision::Single => 4,
@@ -30,7 +30,7 @@ impl Precision {
         }
     }
 
-    /// Returns the number that is read back after storing this one.
+    /// Returns `number` rounded to the precision, as readers of the file see the number.
     pub fn rounded(self, number: f64) -> f64 {
         match self {
             Precision::Single => f64::from(number as f32),
@@ -41,12 +41,13 @@ impl Precision {
         }
     }
 
-    /// Returns a bound on the error of rounding numbers of at most this size, unless they are the smallest or largest that there are.
+    /// Returns a bound on the rounding error of numbers up to the magnitude `size`. Exceptions are numbers near the
+    /// smallest and the largest exponents, and with [`Precision::Text20`] all numbers with an exponent of three digits.
     pub fn error(self, size: f64) -> f64 {
         match self {
             Precision::Single => f64::from(f32::EPSILON) * size,
             Precision::Double => f64::EPSILON * size,
-            // Fourteen digits, as negative numbers with an exponent of two digits have.
+            // Negative numbers with an exponent of two digits have fourteen digits.
             Precision::Text20 => 256.0 * f64::EPSILON * size,
             Precision::Text16 => field_error(size, 16),
             Precision::Text8 => field_error(size, 8),
@@ -54,15 +55,15 @@ impl Precision {
     }
 }
 
-/// Field width of [`Precision::Text20`], in characters.
+/// Largest number of characters of [`Precision::Text20`].
 const MAX_CHARACTERS: usize = 20;
-/// The largest number that has at most 20 characters. Larger doubles are rounded to this number, as their rounding to
-/// 20 characters would be infinite.
+/// The largest number with at most 20 characters. Larger doubles become this number, as rounding to 20 characters would
+/// make them infinite.
 const MAX_TEXT20: f64 = 1.797_693_134_862_3e308;
 
-/// Returns the number that [`short_text`] stands for.
+/// Returns the number that results from parsing [`short_text`].
 fn rounded_to_short(number: f64) -> f64 {
-    // All digits of these have room: a sign, a point, one zero and seventeen digits.
+    // All seventeen digits fit, with a sign, a point and one zero.
     if (0.01..1e16).contains(&number.abs()) || number == 0.0 || !number.is_finite() {
         return number;
     }
@@ -70,8 +71,8 @@ fn rounded_to_short(number: f64) -> f64 {
     if f64::is_infinite(rounded) { MAX_TEXT20.copysign(number) } else { rounded }
 }
 
-/// Writes a finite number with as many digits as fit, but no more than it needs. The first zero of a fraction is left out where it
-/// takes the room of a digit.
+/// Writes a finite number in at most 20 characters, with no more digits than needed to parse back to the same bits. If
+/// not all digits fit, a zero before the decimal point is left out.
 pub(crate) fn short_text(number: f64) -> String {
     let shortest = format!("{number:?}");
     if shortest.len() <= MAX_CHARACTERS {
@@ -89,8 +90,8 @@ pub(crate) fn short_text(number: f64) -> String {
         .unwrap_or(shortest)
 }
 
-/// Writes a number without an exponent and without a zero before the point. `None` if its size is one or more, or if it has many
-/// zeros after the point.
+/// Writes a number from scientific notation without an exponent, and without a zero before the decimal point. `None` if
+/// the magnitude is 1 or more, or if at least 20 zeros follow the point.
 fn plain(scientific: &str) -> Option<String> {
     let (mantissa, exponent) = scientific.split_once('e')?;
     let zeros = usize::try_from(-1 - exponent.parse::<i32>().ok()?)
@@ -132,7 +133,8 @@ mod tests {
         }
     }
 
-    /// For numbers of all sizes: they fit, differ little, and do not change any more.
+    /// Checks random numbers of all magnitudes: the text fits in 20 characters, the error is small, and rounding again
+    /// changes nothing.
     #[test]
     fn rounded_numbers_fit_and_stay_as_they_are() {
         let mut state = 1_u64;

@@ -1,4 +1,4 @@
-//! The table of formats: how each is recognized, and its reader.
+//! Registry of formats: the name, extensions, magic bytes and reader of each.
 
 use crate::compress::file::inner_name;
 use crate::disk::source::file_name;
@@ -16,8 +16,7 @@ const fn reader<W: FormatReader>() -> ReaderFunctions {
     ReaderFunctions::of::<W>()
 }
 
-/// Entry of the registry: a reader with the formats it reads, or a format that is recognized only to be named in an
-/// error.
+/// Entry of the registry: a reader with the formats it reads, or an unsupported format that only errors name.
 pub(crate) struct FormatEntry {
     pub(crate) name: &'static str,
     /// Endings of file names of the format, the usual one first.
@@ -25,14 +24,14 @@ pub(crate) struct FormatEntry {
     /// The first bytes of a file of the format, after blanks and comment lines. Empty for formats that are recognized
     /// by their first rows of numbers.
     pub(crate) magic: &'static [&'static [u8]],
-    /// The reader. `None` for formats that are not read.
+    /// The reader; `None` for unsupported formats.
     pub(crate) reader: Option<ReaderFunctions>,
-    /// Remedy for a file of a format that is not read. If empty, the message lists the formats that are read.
+    /// Remedy in the error of an unsupported format. If empty, the error lists the supported formats.
     pub(crate) hint: &'static str,
 }
 
 impl FormatEntry {
-    /// Whether meshes of this format are read.
+    /// Returns whether meshes of the format are supported.
     pub(crate) fn is_read(&self) -> bool {
         self.reader.is_some()
     }
@@ -54,7 +53,7 @@ const fn entry(
     FormatEntry { name, extensions: endings, magic: opens, reader: Some(reader), hint: "" }
 }
 
-/// Makes an entry for a format that is not read.
+/// Makes an entry for an unsupported format, whose error gives the remedy `instead`.
 const fn unsupported(
     name: &'static str,
     endings: &'static [&'static str],
@@ -64,18 +63,18 @@ const fn unsupported(
     FormatEntry { name, extensions: endings, magic: opens, reader: None, hint: instead }
 }
 
-/// The remedy for a format that meshio reads.
+/// Remedy for unsupported formats that meshio converts.
 const BY_MESHIO: &str = "Convert it to a format that is read, with meshio for example";
-/// The remedy for a format that no common converter reads.
+/// Remedy for unsupported formats without a common converter.
 const BY_OTHERS: &str = "Export the mesh from its program as SMS 2dm, VTK or gmsh, or write its lists as Triangle's .node and .ele";
 
-/// Makes a static for each entry, their list [`REGISTRY`], and [`FormatEntry::of`], which does not compile if a
-/// format is in no entry.
+/// Declares a static for each entry, the list [`REGISTRY`] of all entries, and [`FormatEntry::of`]. Compilation fails
+/// if a [`Format`] has no entry.
 macro_rules! families {
     ($($(#[$doc:meta])* $row:ident [$($format:ident),*] = $family:expr;)*) => {
         $($(#[$doc])* pub(crate) static $row: FormatEntry = $family;)*
 
-        /// All entries, in the order in which contents are compared with their magic bytes.
+        /// All entries, in the order in which contents are compared with magic bytes.
         pub(crate) static REGISTRY: &[&FormatEntry] = &[$(&$row),*];
 
         impl FormatEntry {
@@ -89,7 +88,7 @@ macro_rules! families {
     };
 }
 
-// Contents are compared with the rows in this order. In brackets are the formats of a row.
+// Contents are compared with the magic bytes in this order of rows. The brackets hold the formats of a row.
 families! {
     TRIANGLE [Triangle] = entry(
         "Triangle .node/.ele",
@@ -191,7 +190,7 @@ families! {
         reader::<stl::Stl>(),
     );
     PLY [Ply, PlyBinary] = entry("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());
-    /// Any of those in HDF5 or netCDF, where the ending does not tell which.
+    /// Any format in HDF5 or netCDF, for files whose extension does not decide between these formats.
     CONTAINER [] = entry(
         "HDF5 or netCDF",
         &[".h5", ".hdf5", ".nc", ".nc4"],

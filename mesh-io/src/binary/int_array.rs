@@ -1,4 +1,4 @@
-//! Lists of whole numbers, kept as they are in a binary file.
+//! Arrays of unsigned integers in the binary form of a file.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
@@ -7,25 +7,25 @@ use crate::parallel::map_ranges;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Numbers that one thread compares at a time.
+/// Number of adjacent pairs that one task of [`IntArray::is_sorted`] compares.
 const CHUNK: usize = 1 << 14;
 
-/// Unsigned integers of one width: those of a binary file, or collected ones, which take 4 bytes each, or 8 if one of
-/// them needs more.
+/// Array of unsigned integers of one width, borrowed from a binary file or collected. Collected integers take 4 bytes
+/// each, or 8 bytes once an integer exceeds `u32::MAX`.
 pub(crate) struct IntArray<'a> {
     bytes: Cow<'a, [u8]>,
-    /// The bytes of a number.
+    /// Width of an integer in bytes.
     size: usize,
     order: ByteOrder,
 }
 
 impl<'a> IntArray<'a> {
-    /// Makes a list of binary numbers, of `size` bytes each. Bytes that are left at the end are ignored.
+    /// Makes an array of integers of `size` bytes each. Left-over bytes at the end are ignored.
     pub(crate) fn binary(bytes: Cow<'a, [u8]>, size: usize, order: ByteOrder) -> IntArray<'a> {
         IntArray { bytes, size, order }
     }
 
-    /// Makes an empty list with room for `count` numbers.
+    /// Makes an empty array with room for `count` integers of 4 bytes.
     pub(crate) fn with_capacity(count: usize) -> IntArray<'a> {
         IntArray {
             bytes: Cow::Owned(Vec::with_capacity(4 * count)),
@@ -34,7 +34,7 @@ impl<'a> IntArray<'a> {
         }
     }
 
-    /// Appends a number to a list made by [`with_capacity`](Self::with_capacity).
+    /// Appends an integer to an array that was made by [`with_capacity`](Self::with_capacity).
     #[inline]
     pub(crate) fn push(&mut self, number: u64) {
         if self.size == 4 && number > u64::from(u32::MAX) {
@@ -59,13 +59,13 @@ impl<'a> IntArray<'a> {
         self.len() == 0
     }
 
-    /// Returns the number with this index, which must exist.
+    /// Returns the integer at `index`. An index beyond the end panics.
     #[inline]
     pub(crate) fn at(&self, index: usize) -> u64 {
         self.order.whole(&self.bytes[index * self.size..][..self.size])
     }
 
-    /// Returns the numbers with these indices, which must exist.
+    /// Returns the integers at a range of indices. A range beyond the end panics.
     pub(crate) fn range(&self, places: Range<usize>) -> impl Iterator<Item = u64> {
         let bytes = &self.bytes[places.start * self.size..places.end * self.size];
         bytes.chunks_exact(self.size).map(|number| self.order.whole(number))
@@ -77,7 +77,7 @@ impl<'a> IntArray<'a> {
         map_ranges(pairs, CHUNK, each).into_iter().all(|is| is)
     }
 
-    /// Returns every `step`-th number from index `from` on, as a field of records.
+    /// Returns every `step`-th integer from index `from` on, as a field of records.
     pub(crate) fn field(&self, from: usize, step: usize) -> NumberField<'_> {
         let bytes = from.checked_mul(self.size).and_then(|at| self.bytes.get(at..));
         NumberField::new(bytes, step * self.size, self.size, self.order)

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Limit on the decompressed size, in multiples of the compressed size. Meshes of regular grids reach 5 to 20; gzip
 /// allows a thousand.
 const MAX_RATIO: usize = 200;
-/// Number of bytes to which a file of any size may be decompressed.
+/// Decompressed size in bytes that is allowed for any file, however small.
 const MIN_LIMIT: usize = 1 << 20;
 
 /// The compression of a whole file.
@@ -59,7 +59,7 @@ impl Compression {
         }
     }
 
-    /// Returns the compression that the ending of a path stands for.
+    /// Returns the compression of a path's extension, in capital or small letters; `None` for other extensions.
     pub(crate) fn of(path: &Path) -> Option<Compression> {
         let ending = path.extension()?;
         Self::ALL
@@ -88,7 +88,8 @@ impl Compression {
     }
 }
 
-/// Returns the name of the file inside a compressed one. `name` must be in small letters.
+/// Returns a file name without the extension of a compression, or the name itself if it has none. `name` must be in
+/// small letters.
 pub(crate) fn inner_name(name: &str) -> &str {
     let inner =
         |compression: Compression| name.strip_suffix(compression.extension())?.strip_suffix('.');
@@ -98,7 +99,7 @@ pub(crate) fn inner_name(name: &str) -> &str {
 /// Decompresses a file if its first bytes are those of gzip or zstd. Returns the compression and the content; `None`
 /// if the file is not compressed.
 pub(crate) fn decompress(bytes: &[u8]) -> Result<Option<(Compression, Vec<u8>)>, DecompressError> {
-    /// The first bytes of files that other programs have compressed.
+    /// First bytes of files in unsupported compressions, with the name of the compression and a remedy.
     const OTHERS: [(&[u8], &str, &str); 3] = [
         (b"\xFD7zXZ\0", "xz", "Decompress it first (unxz), or compress it by gzip or zstd"),
         (b"BZh", "bzip2", "Decompress it first (bunzip2), or compress it by gzip or zstd"),
@@ -132,14 +133,15 @@ pub(crate) fn decompress(bytes: &[u8]) -> Result<Option<(Compression, Vec<u8>)>,
     Ok(Some((compression, content)))
 }
 
-/// Decompresses to at most one byte more than `most`.
+/// Decompresses all members of a gzip file, up to one byte more than `most`. The additional byte shows the caller that
+/// the limit is exceeded.
 fn decompress_gzip(bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
     let limit = u64::try_from(most).unwrap_or(u64::MAX - 1) + 1;
     let read = MultiGzDecoder::new(bytes).take(limit).read_to_end(content);
     read.map(drop).map_err(|error| error.to_string())
 }
 
-/// Decompresses frame after frame, until the content has more than `most` bytes.
+/// Decompresses frame after frame of a zstd file, until the content has more than `most` bytes.
 fn decompress_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
     /// Bytes that are decompressed at a time.
     const STEP: usize = 1 << 20;
@@ -169,7 +171,7 @@ fn decompress_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Resu
     Ok(())
 }
 
-/// Returns the bytes after a frame that is to be skipped, if such a frame is next.
+/// Returns the bytes after a skippable frame; `None` if `bytes` start with another frame.
 fn after_skipped(bytes: &[u8]) -> Result<Option<&[u8]>, String> {
     match bytes {
         [0x50..=0x5F, 0x2A, 0x4D, 0x18, rest @ ..] => {

@@ -1,4 +1,4 @@
-//! Compressed files: what gzip and Zstandard hold, with limits on the size.
+//! Compression by gzip, Zstandard and zlib, with limits on the decompressed size.
 
 pub(crate) mod file;
 pub(crate) mod zlib;

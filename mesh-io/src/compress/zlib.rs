@@ -4,18 +4,19 @@ use flate2::Compression;
 use flate2::read::{ZlibDecoder, ZlibEncoder};
 use std::io::Read;
 
-/// The level of compression that zlib uses if none is given.
+/// Default compression level of zlib.
 pub(crate) const USUAL_LEVEL: u32 = 6;
 
-/// The most bytes that one compressed byte may stand for. Deflate reaches 1032, LZ4 255.
+/// Limit on the decompressed bytes per compressed byte. Deflate reaches 1032, LZ4 255.
 const MAX_EXPANSION: usize = 1100;
 
-/// Whether so many compressed bytes can stand for `length` bytes. If not, a length in the file is wrong.
+/// Returns whether `compressed` bytes can decompress to `length` bytes. If not, one of these lengths in the file is
+/// wrong.
 pub(crate) fn can_expand(compressed: usize, length: usize) -> bool {
     length <= compressed.saturating_mul(MAX_EXPANSION)
 }
 
-/// Decompresses bytes up to a length of `limit`. Returns `None` if they are damaged.
+/// Decompresses at most `limit` bytes. Returns `None` if the compressed bytes are damaged.
 pub(crate) fn decompress(bytes: &[u8], limit: usize) -> Option<Vec<u8>> {
     let mut whole = Vec::new();
     ZlibDecoder::new(bytes).take(limit as u64).read_to_end(&mut whole).ok()?;

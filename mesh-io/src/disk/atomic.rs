@@ -1,5 +1,5 @@
-//! Replaces files as a whole: whatever happens, the old content is there or the new one, and several files are
-//! replaced together or not at all.
+//! Replacement of whole files: whatever happens, a file has either its old content or all of the new content, and
+//! several files are replaced together or not at all.
 
 use crate::disk::file_system::{FileSystem, NewFile, OsFileSystem};
 use crate::disk::paths::{directory_of, resolve};
@@ -10,26 +10,27 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A file to be written: its path, and a function that writes its content.
+/// A file to be written: its path, and a function that writes the content.
 pub(crate) type FileWrite<'a> =
     (PathBuf, Box<dyn Fn(&mut (dyn Write + Send)) -> io::Result<()> + 'a>);
 
-/// Writes a file so that it has either its old content or all of the new one, whatever happens meanwhile.
+/// Replaces the content of a file. Whatever happens meanwhile, the file has either its old content or all of `content`.
 ///
-/// The content is first written beside the file, to the same disk, then takes its place. Symbolic links are followed
-/// and permissions kept. What is no regular file, a device or a pipe, is written to directly.
+/// Writes `content` to a temporary file in the same directory, then renames this file. Symbolic links are followed, and
+/// permissions are kept. Devices and pipes are written to directly.
 ///
 /// # Errors
-/// [`WriteError::Io`] if the system refuses; what stood at `path` then still stands there.
+/// [`WriteError::Io`] if the system refuses; an existing file at `path` is then unchanged.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     write_all(&[(path.to_owned(), Box::new(|out| out.write_all(content)))])
 }
 
-/// Writes several files as [`write()`] does, all or none.
+/// Writes several files as [`write()`] does: all or none.
 ///
-/// Contents go to temporary files first, which are renamed from the last entry to the first. The first entry is
-/// the main file of the mesh, which readers open: until the main file is renamed, readers see no new mesh. If
-/// another file changes too, the old first file is moved aside before, so that old and new files are never mixed.
+/// Writes each content to a temporary file, then renames the temporary files from the last entry to the first. The
+/// first entry is the main file of the mesh, which readers open: until the main file is renamed, readers see no new
+/// mesh. If another file changes too, the old main file is moved aside before, so that old and new files are never
+/// mixed.
 pub(crate) fn write_all(writes: &[FileWrite<'_>]) -> Result<(), WriteError> {
     write_all_if(&OsFileSystem, writes, &|| Ok(()))
 }
@@ -46,7 +47,7 @@ pub(crate) fn write_all_if(
 ) -> Result<(), WriteError> {
     let staged = writes.iter().map(|(path, content)| stage(disk, path, content));
     let staged = staged.collect::<Result<Vec<_>, _>>()?;
-    // Declared before what it protects, so that it is dropped after it.
+    // Declared before `staged`, so that the lock is released after the temporary files are removed.
     let _committing = lock(&COMMITTING);
     let mut staged = staged;
     check()?;
@@ -60,7 +61,7 @@ pub(crate) fn write_all_if(
             let error = refused(&staged[next].target, source);
             let is_touched = |(i, it): &(usize, &mut Staged<'_>)| *i > next || it.is_aside;
             let touched = staged.iter_mut().enumerate().filter(is_touched);
-            // The first one last, as it makes a mesh of them.
+            // The main file is restored last, as readers open the mesh by it.
             let lost: Vec<_> = touched.rev().filter_map(|(_, it)| it.revert()).collect();
             return Err(with_lost(error, &lost));
         }
@@ -68,7 +69,7 @@ pub(crate) fn write_all_if(
     Ok(())
 }
 
-/// The error of a write after which some files could not be brought back either.
+/// Adds messages about files that could not be restored to the remedy of a write error.
 fn with_lost(error: WriteError, lost: &[String]) -> WriteError {
     match error {
         WriteError::Io { path, source, remedy } if !lost.is_empty() => {
@@ -78,24 +79,24 @@ fn with_lost(error: WriteError, lost: &[String]) -> WriteError {
     }
 }
 
-/// Held while written files take their places.
+/// Lock that a write holds while it renames its temporary files.
 static COMMITTING: Mutex<()> = Mutex::new(());
-/// The temporary files of this process.
+/// Paths of the temporary files that writes of this process have created.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn lock<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps every thread from writing mesh files, see [`discard_pending_writes`].
+/// Guard that blocks all writes of mesh files in this process, made by [`discard_pending_writes`].
 pub struct BlockedWrites {
     _committing: MutexGuard<'static, ()>,
     _temporaries: MutexGuard<'static, Vec<PathBuf>>,
 }
 
-/// Removes the temporary files of all writes that are under way on other threads, for a program that is about to end:
-/// [`std::process::exit`] would leave the files behind. Waits until writes that are renaming their files have
-/// finished. No thread can write a mesh file as long as the returned value lives.
+/// Removes the temporary files of unfinished writes on other threads, before the program ends: [`std::process::exit`]
+/// would leave the files behind. Waits for writes that are already renaming their files. No thread can write a mesh
+/// file while the returned guard lives.
 pub fn discard_pending_writes() -> BlockedWrites {
     let (committing, mut temporaries) = (lock(&COMMITTING), lock(&TEMPORARIES));
     for path in temporaries.drain(..) {
@@ -104,18 +105,18 @@ pub fn discard_pending_writes() -> BlockedWrites {
     BlockedWrites { _committing: committing, _temporaries: temporaries }
 }
 
-/// Checks, as far as is possible without writing, whether [`write()`] can work: that the directory exists and takes new
-/// files, and that no directory or read-only file is in the way.
+/// Checks, without changing `path`, whether [`write()`] can succeed: the directory must exist and take new files, and
+/// neither a directory nor a read-only file may be at `path`.
 ///
 /// # Errors
-/// [`WriteError::Io`] that says what is wrong.
+/// [`WriteError::Io`] with the obstacle and a remedy.
 pub fn ensure_writable(path: &Path) -> Result<(), WriteError> {
     let (target, existing) = resolve(path).map_err(|source| refused(path, source))?;
     match existing {
         Some(existing) if existing.is_dir() => {
             return Err(refused(path, ErrorKind::IsADirectory.into()));
         }
-        // A device or pipe: only writing to it can tell.
+        // Only a write can show whether a device or pipe accepts data.
         Some(existing) if !existing.is_file() => return Ok(()),
         Some(existing) if existing.permissions().readonly() => {
             return Err(WriteError::Io {
@@ -153,15 +154,15 @@ fn refused(path: &Path, source: io::Error) -> WriteError {
     WriteError::Io { path: path.to_owned(), source, remedy: remedy.into() }
 }
 
-/// A written file that waits to take its place.
+/// A file with its content written to a temporary file, to be renamed to its destination.
 struct Staged<'d> {
     target: PathBuf,
-    /// None if the content went straight to a device or pipe.
+    /// The temporary file with the content; `None` if the content went straight to a device or pipe.
     content: Option<Temporary<'d>>,
     existed: bool,
-    /// Whether the file that stood there has been given its other name, and there is none.
+    /// Whether the old file was moved aside, so that the destination is free.
     is_aside: bool,
-    /// A second name of the file that stood there, or a copy where there are no second names, as long as it may have to be
+    /// Hard link to the old file, or a copy on file systems without hard links, while the old file may have to be
     /// restored.
     previous: Option<Temporary<'d>>,
 }
@@ -187,7 +188,7 @@ fn stage<'d>(
         if let Some(existing) = existing {
             file.set_permissions(existing.permissions())?;
         }
-        // Otherwise a crash could leave the new name with none of the content.
+        // Without this, a crash after the rename could leave an empty file under the new name.
         file.sync()?;
         Ok(Staged { target, content: Some(temporary), existed, is_aside: false, previous: None })
     };
@@ -195,7 +196,7 @@ fn stage<'d>(
 }
 
 impl<'d> Staged<'d> {
-    /// Whether the file that stands there has another content.
+    /// Returns whether the destination exists with a content other than the new one.
     fn changes(&self) -> bool {
         let read = |path: &Path| fs::read(path).ok();
         match &self.content {
@@ -204,9 +205,9 @@ impl<'d> Staged<'d> {
         }
     }
 
-    /// Gives the file that stands there another name.
+    /// Moves the old file at the destination to a temporary name.
     fn set_aside(&mut self, disk: &'d dyn FileSystem) -> io::Result<()> {
-        // What is no file stays in the way, and is told as that.
+        // A directory at the destination stays, and makes the later rename fail with an error that names it.
         if self.content.is_some() && self.target.is_file() {
             let directory = directory_of(&self.target);
             let previous = Temporary::named(disk, directory);
@@ -218,23 +219,26 @@ impl<'d> Staged<'d> {
         Ok(())
     }
 
+    /// Renames the temporary file to the destination. If `revertible`, the old file is kept under a temporary name
+    /// before.
     fn commit(&mut self, disk: &'d dyn FileSystem, revertible: bool) -> io::Result<()> {
         let Some(content) = &self.content else { return Ok(()) };
         let directory = directory_of(&self.target);
         if revertible && self.existed {
             let previous = Temporary::named(disk, directory);
-            // Not every system has second names.
+            // Some file systems have no hard links.
             disk.hard_link(&self.target, &previous.path)
                 .or_else(|_| disk.copy(&self.target, &previous.path))?;
             self.previous = Some(previous);
         }
         disk.rename(&content.path, &self.target)?;
-        // So that the new name outlasts a crash too. Not every system lets a directory be opened for that.
+        // Makes the new name survive a crash. Errors are ignored, as some systems cannot open a directory.
         let _ = disk.sync_directory(directory);
         Ok(())
     }
 
-    /// Brings back what stood there. Says what to do if the system refuses.
+    /// Restores the old file, or removes the new one if there was none. Returns a message with the remedy if the system
+    /// refuses; `None` on success.
     fn revert(&mut self) -> Option<String> {
         let content = self.content.as_ref()?;
         let target = self.target.display();
@@ -253,7 +257,7 @@ impl<'d> Staged<'d> {
     }
 }
 
-/// The path of a temporary file. Dropping it removes the file, unless the file was renamed.
+/// The path of a temporary file. Dropping the value removes the file, unless the file was renamed or kept.
 struct Temporary<'d> {
     path: PathBuf,
     disk: &'d dyn FileSystem,
@@ -279,18 +283,19 @@ impl<'d> Temporary<'d> {
         }
     }
 
-    /// A name that a file may be given.
+    /// Returns an unused path, to which an existing file may be renamed or linked.
     fn named(disk: &'d dyn FileSystem, directory: &Path) -> Self {
         Temporary { path: Self::unused_name(directory), disk, is_kept: false }
     }
 
-    /// Leaves the file where it is.
+    /// Keeps the file on disk. Returns the path of the file.
     fn keep(mut self) -> PathBuf {
         self.is_kept = true;
         self.path.clone()
     }
 
-    /// An unused name. It is short, as the destination's own name may be as long as names can be.
+    /// Returns an unused path in a directory. The name is short, as the destination's name may already have the maximum
+    /// length.
     fn unused_name(directory: &Path) -> PathBuf {
         static COUNTER: AtomicU64 = AtomicU64::new(0);
         let number = COUNTER.fetch_add(1, Ordering::Relaxed);
@@ -342,7 +347,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [a, b, c] = ["a", "b", "c"].map(|name| directory.path().join(name));
         fs::write(&a, "old").unwrap();
-        // No file can take the place of a directory.
+        // A file cannot be renamed over a directory, so the write to `c` fails.
         fs::create_dir(&c).unwrap();
         let writes =
             [file_write(c, "new"), file_write(b.clone(), "new"), file_write(a.clone(), "new")];

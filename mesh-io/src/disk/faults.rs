@@ -1,4 +1,4 @@
-//! Tests of writing on disks that fail: each request fails once, and each pair of requests.
+//! Tests of writes to failing disks: each request fails alone, and each pair of requests fails together.
 
 use crate::disk::atomic::{FileWrite, write_all_if};
 use crate::disk::file_system::{FileSystem, NewFile, OsFileSystem};
@@ -8,12 +8,14 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Which requests fail, counted from the first.
+/// A file system that passes requests to the operating system, except for chosen requests, which fail.
 #[derive(Clone, Default)]
 struct Faults {
+    /// Number of requests so far.
     asked: Arc<AtomicUsize>,
+    /// Numbers of the requests that fail, counted from 0.
     failing: Vec<usize>,
-    /// The request from which on the disk is full.
+    /// Number of the first request that finds the disk full. Requests that need no space succeed even then.
     full_from: Option<usize>,
     has_links: bool,
 }
@@ -47,7 +49,7 @@ impl FileSystem for Faults {
 
     fn copy(&self, from: &Path, to: &Path) -> io::Result<()> {
         let done = self.ask(true);
-        // A copy that fails may have been made in part.
+        // A copy that fails may leave a part of the file.
         OsFileSystem.copy(from, to)?;
         done
     }
@@ -58,7 +60,7 @@ impl FileSystem for Faults {
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
-        // If this fails, nothing can be cleared up.
+        // Removal never fails, as the test could not clean up otherwise.
         OsFileSystem.remove(path)
     }
 
@@ -93,15 +95,15 @@ impl NewFile for Faulty {
     }
 
     fn sync(&self) -> io::Result<()> {
-        // Nothing has to outlast the test here.
+        // The files of this test need not survive a crash.
         self.faults.ask(true)
     }
 }
 
 const NAMES: [&str; 3] = ["out.node", "out.ele", "out.poly"];
 
-/// Writes three files on this disk. `old` says which of them existed before. Checks that all files are new or all are
-/// as they were, and that there are no other files. Returns whether they are new.
+/// Writes three files to a failing disk. `old` says which files existed before. Checks that all files are new or all
+/// are old, and that no other files are left. Returns whether the files are new.
 fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
     let directory = tempfile::tempdir().unwrap();
     let paths = NAMES.map(|name| directory.path().join(name));
@@ -177,6 +179,6 @@ fn whichever_disk_request_fails_all_files_are_old_or_all_new() {
             }
         }
     }
-    // Requests that are not essential may fail: forcing names to the disk, and hard links where a copy works.
+    // Two kinds of requests may fail without harm: forcing names to the disk, and hard links where a copy works.
     assert!(failed > 100 && survived > 20, "{failed} failed, {survived} survived");
 }

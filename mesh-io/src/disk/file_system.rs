@@ -1,12 +1,12 @@
-//! What the writing of files needs of the system, so that tests can make each request fail.
+//! Operations of the file system that writes need, as a trait, so that tests can make each operation fail.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// The requests to the file system that writing files needs. Tests replace the system to make requests fail.
+/// Operations of the file system that writes need. Tests implement the trait to make operations fail.
 pub(crate) trait FileSystem {
-    /// Creates a file to write to, which must not exist yet.
+    /// Creates a file for writing. An existing file is an error.
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn NewFile>>;
     /// Gives a file a second name, by a hard link.
     fn hard_link(&self, path: &Path, second: &Path) -> io::Result<()>;
@@ -19,7 +19,7 @@ pub(crate) trait FileSystem {
     fn sync_directory(&self, path: &Path) -> io::Result<()>;
 }
 
-/// A file that is being written.
+/// A new file that is open for writing.
 pub(crate) trait NewFile: Write + Send {
     fn set_permissions(&self, permissions: Permissions) -> io::Result<()>;
     /// Forces the content to the disk.

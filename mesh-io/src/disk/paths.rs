@@ -1,16 +1,16 @@
-//! The file to which a path leads.
+//! Identity of files: whether two paths lead to the same file.
 
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Whether two paths lead to one file, also by another spelling, a symbolic link or a hard link. The file need not exist
-/// yet. Hard links are recognized on Unix only.
+/// Returns whether two paths lead to the same file, by another spelling, a symbolic link or a hard link. The file need
+/// not exist yet. Hard links are recognized on Unix only.
 pub fn same_file(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Some(a), Some(b)) if a == b)
 }
 
-/// What identifies a file.
+/// Identity of a file: device and inode of an existing file on Unix, else the canonical path.
 #[derive(PartialEq)]
 enum Identity {
     #[cfg(unix)]
@@ -21,7 +21,7 @@ enum Identity {
     Path(PathBuf),
 }
 
-/// The identity of the file at a path. None where no file could be written anyway, as without a directory.
+/// Returns the identity of the file at a path. `None` if no file can be written there, for example without a directory.
 fn identity(path: &Path) -> Option<Identity> {
     let (target, existing) = resolve(path).ok()?;
     #[cfg(unix)]
@@ -36,11 +36,11 @@ fn identity(path: &Path) -> Option<Identity> {
     Some(Identity::Path(directory.join(target.file_name()?)))
 }
 
-/// Where the path leads through all symbolic links, and the metadata of what is there, if anything: the last link may
-/// point to nothing yet.
+/// Follows all symbolic links of a path. Returns the final path, and the metadata if something exists there. The last
+/// link may lead to a missing file.
 pub(super) fn resolve(path: &Path) -> io::Result<(PathBuf, Option<fs::Metadata>)> {
     match fs::metadata(path) {
-        // A device or pipe may be reached by a link, as /proc has them, that is not a path.
+        // A link in `/proc` may lead to a device or pipe without a path of its own, so the path stays as given.
         Ok(existing) if !existing.is_file() => Ok((path.to_owned(), Some(existing))),
         Ok(existing) => Ok((fs::canonicalize(path)?, Some(existing))),
         Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -54,7 +54,7 @@ pub(super) fn resolve(path: &Path) -> io::Result<(PathBuf, Option<fs::Metadata>)
     }
 }
 
-/// Returns the directory that a path names; `.` if it names none.
+/// Returns the directory part of a path; `.` if the path is a bare file name.
 pub(crate) fn directory_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if parent.as_os_str().is_empty() => Path::new("."),

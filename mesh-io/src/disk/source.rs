@@ -1,4 +1,4 @@
-//! The bytes of a file, with the other files of the same mesh.
+//! A mesh file in memory, with its companion files and the errors that name it.
 
 use crate::compress::file::{CompressedFile, DecompressError, decompress};
 use crate::disk::paths::directory_of;
@@ -10,7 +10,7 @@ use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// How a mesh is read.
+/// Options for reading a mesh file.
 ///
 /// ```no_run
 /// use mesh_io::ReadOptions;
@@ -26,36 +26,36 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// Makes the options by which [`MeshFile::read`](crate::MeshFile::read) reads.
+    /// Returns the default options, with which [`MeshFile::read`](crate::MeshFile::read) reads.
     pub fn new() -> ReadOptions {
         ReadOptions::default()
     }
 
-    /// Sets whether the corners of triangles at the same place become one vertex, for STL, which has no vertices. The
-    /// corners must have one common third coordinate. Vertices are numbered in the order in which the file first has
-    /// them, and a moved vertex is written wherever the file has it. Off by default.
+    /// Sets whether corners of triangles with equal coordinates become one vertex, for STL, which has no vertices. The
+    /// corners must have one common third coordinate. Vertices are numbered in the order of their first corners in the
+    /// file, and a moved vertex is written at each of its corners. Off by default.
     #[must_use]
     pub fn weld(self, welds: bool) -> ReadOptions {
         ReadOptions { welds, ..self }
     }
 
-    /// Sets whether a mesh file may name files outside of its own directory, and so have them read, and replaced by a write in
-    /// place. Symbolic links are followed before the directories are compared. Off by default, as a mesh file may come from
-    /// someone else; such a file is then [`ReadError::Outside`].
+    /// Sets whether a mesh file may name files outside of its own directory, which are then read, and replaced by a
+    /// write in place. Symbolic links are followed before directories are compared. Off by default, as a stranger may
+    /// have made the mesh file: outside files are then the error [`ReadError::Outside`].
     #[must_use]
     pub fn allow_outside(self, allows_outside: bool) -> ReadOptions {
         ReadOptions { allows_outside, ..self }
     }
 }
 
-/// A file as it was read.
+/// A file of a mesh as it was read, decompressed.
 pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) bytes: Vec<u8>,
     /// The compressed bytes of the file, if it is compressed.
     pub(crate) compressed: Option<CompressedFile>,
     pub(crate) options: ReadOptions,
-    /// The state of the file on the disk when it was read, or last written by this process.
+    /// Stamp of the file on disk after the latest read or write by this process.
     pub(crate) known: KnownState,
     /// The other files of the mesh.
     pub(crate) companions: Vec<Companion>,
@@ -63,15 +63,15 @@ pub(crate) struct Source {
 
 /// Another file of a mesh.
 pub(crate) struct Companion {
-    /// The names by which the main file refers to this file. Empty if the name follows from that of the main file.
+    /// Names by which the main file refers to this file. Empty if the name follows from the main file's name.
     pub(crate) names: Vec<String>,
-    /// The ranges of bytes of the main file that hold one of the names, ascending.
+    /// Ranges of the main file that hold one of the names, ascending.
     pub(crate) named_at: Vec<Range<usize>>,
     pub(crate) source: Source,
 }
 
 impl Companion {
-    /// Makes a companion whose name follows from that of the main file.
+    /// Makes a companion whose name follows from the main file's name.
     pub(crate) fn by_convention(source: Source) -> Companion {
         Companion { names: Vec::new(), named_at: Vec::new(), source }
     }
@@ -95,7 +95,7 @@ impl Source {
         }
     }
 
-    /// Makes a source of a file's bytes, and decompresses them if needed.
+    /// Makes a source from a file's bytes, and decompresses gzip and zstd.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Source, ReadError> {
         let source = Source {
             path: path.to_owned(),
@@ -132,11 +132,11 @@ impl Source {
         ReadError::Format { path, problem: problem.into(), remedy: remedy.into() }
     }
 
-    /// Checks that `path`, which `names` gives at a byte of this file, leads into the directory of the mesh file `mesh`, unless
-    /// the options of `mesh` allow other directories. A path without a file passes.
+    /// Checks that `path` lies in the directory of the mesh file `mesh` or below, unless the options of `mesh` allow
+    /// other directories. This file refers to `path` by `names` at byte `at`. A path without a file passes.
     ///
     /// # Errors
-    /// [`ReadError::Outside`] if the file is in another directory.
+    /// [`ReadError::Outside`] if the file is outside of the directory.
     pub(crate) fn check_inside(
         &self,
         mesh: &Source,
@@ -149,7 +149,7 @@ impl Source {
         }
         let Ok(target) = fs::canonicalize(path) else { return Ok(()) };
         let own = fs::canonicalize(directory_of(&mesh.path)).ok();
-        // The mesh file itself may be a link. What lies beside its target is also its own.
+        // If the mesh file is a symbolic link, files beside its target are allowed too.
         let linked = fs::canonicalize(&mesh.path).ok();
         let linked = linked.as_deref().and_then(Path::parent);
         if own.as_deref().into_iter().chain(linked).any(|folder| target.starts_with(folder)) {
@@ -159,17 +159,17 @@ impl Source {
         Err(ReadError::Outside { path, location, names: names.to_owned(), target })
     }
 
-    /// Returns the offset of the content, after a byte order mark if there is one.
+    /// Returns the offset of the content: 3 if the file starts with a UTF-8 byte order mark, else 0.
     pub(crate) fn begin(&self) -> usize {
         if self.bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 }
     }
 
-    /// Returns the line of a byte, counted from 1.
+    /// Returns the line of the byte at offset `at`, counted from 1.
     pub(crate) fn line_of(&self, at: usize) -> usize {
         1 + memchr::memchr_iter(b'\n', &self.bytes[..at]).count()
     }
 
-    /// Returns the bytes that the file had when it was read, compressed if it is compressed.
+    /// Returns the bytes of the file on disk when it was read: the compressed bytes of a compressed file.
     pub(crate) fn stored(&self) -> &[u8] {
         self.compressed.as_ref().map_or(&self.bytes, |packed| &packed.bytes)
     }
@@ -179,22 +179,23 @@ impl Source {
         std::iter::once(self).chain(self.companions.iter().map(|companion| &companion.source))
     }
 
-    /// The last part of the path, for messages.
+    /// Returns the file name without directories, for messages.
     pub(crate) fn name(&self) -> String {
         file_name(&self.path)
     }
 }
 
-/// Bytes that one thread reads at a time.
+/// Number of bytes that one task reads.
 const CHUNK: usize = 1 << 22;
 
-/// Reads a file. All threads read parts of a long one, as a single thread spends most of its time waiting for the
-/// system to provide memory.
+/// Reads a file. If the file has at least two chunks, all threads read chunks, as a single thread spends most of its
+/// time waiting for the system to provide memory.
 fn content(path: &Path) -> io::Result<Vec<u8>> {
     let about = fs::metadata(path)?;
     match usize::try_from(about.len()) {
         Ok(length) if about.is_file() && length >= 2 * CHUNK => {
-            // If memory is short, this is an error, while the next line would end the process without a message.
+            // Without enough memory, this line returns an error, while the next line would end the process without a
+            // message.
             Vec::<u8>::new().try_reserve_exact(length)?;
             let mut bytes = vec![0; length];
             let each = bytes.chunks_mut(CHUNK);
@@ -213,7 +214,7 @@ fn content(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
-/// Returns the last part of a path, for messages.
+/// Returns the file name of a path without directories, for messages.
 pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -1,4 +1,4 @@
-//! Whether a file is still as it was read or written.
+//! Detection of files that have changed since they were read or written.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read};
@@ -6,7 +6,8 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
-/// Age from which the time of change differs from that of any later change. Times on FAT have steps of two seconds.
+/// Age of a file from which a later change surely gets another modification time. Modification times on FAT have steps
+/// of two seconds.
 const MIN_AGE: Duration = Duration::from_secs(2);
 
 /// Length, time of change and inode of a regular file. A file with an equal stamp has not changed.
@@ -37,26 +38,27 @@ impl FileStamp {
     }
 }
 
-/// The last state of a file that this process knows. Any thread may note a new one.
+/// Latest known stamp of a file; `None` if unknown. Any thread may store a new stamp.
 #[derive(Debug, Default)]
 pub(crate) struct KnownState(Mutex<Option<FileStamp>>);
 
 impl KnownState {
-    /// Returns the state of a file that is about to be read. Nothing is known of a file that changed in the last two seconds: a
-    /// change after reading could have the same time.
+    /// Returns the stamp of a file before it is read. The stamp is unknown if the file changed in the last two seconds:
+    /// a change after the read could leave the modification time unchanged.
     pub(crate) fn before_reading(path: &Path) -> KnownState {
         let is_settled =
             |stamp: &FileStamp| stamp.modified.elapsed().is_ok_and(|age| age >= MIN_AGE);
         KnownState(Mutex::new(FileStamp::of(path).filter(is_settled)))
     }
 
-    /// Notes the state of a file that this process has just written.
+    /// Stores the stamp of a file that this process has just written.
     pub(crate) fn note_written(&self, path: &Path) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = FileStamp::of(path);
     }
 
-    /// Whether a file has changed: it has neither the known state nor these bytes. What is no regular file any more, or cannot
-    /// be read, counts as unchanged, as it has no content to lose or cannot be replaced.
+    /// Returns whether a file has changed: both stamp and content differ from the known stamp and `bytes`. A path
+    /// without a regular file counts as unchanged, as there is no content to lose. An unreadable file counts as
+    /// unchanged too.
     pub(crate) fn has_changed(&self, path: &Path, bytes: &[u8]) -> bool {
         let Some(now) = FileStamp::of(path) else { return false };
         let known = *self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -64,7 +66,7 @@ impl KnownState {
     }
 }
 
-/// Whether a file has exactly these bytes.
+/// Returns whether a file has exactly the content `bytes`.
 fn has_content(path: &Path, mut bytes: &[u8]) -> io::Result<bool> {
     let mut file = File::open(path)?;
     let mut chunk = vec![0; bytes.len().clamp(1, 1 << 20)];

@@ -35,8 +35,8 @@ pub(super) struct FixedArrayElement {
 
 const OBJECT_NAME: &str = "the list of chunks of a dataset";
 
-/// Reads the header of the fixed array at offset `at`, which must have at least `least` entries. `has_sizes` is whether
-/// the dataset has filters.
+/// Reads the header and the data block of the fixed array at offset `at`. The array must have at least `least` entries.
+/// `has_sizes` is whether the dataset has filters.
 pub(super) fn read(
     raw: &FileBytes<'_>,
     at: usize,

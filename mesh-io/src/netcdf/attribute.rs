@@ -3,7 +3,7 @@
 use super::types::NumberType;
 use crate::binary::byte_order::ByteOrder;
 
-/// An attribute: its name, and its content as it stands in the file.
+/// An attribute of a variable: its name, its type, and its value as undecoded bytes.
 pub(super) struct Attribute {
     pub(super) name: Vec<u8>,
     pub(super) number: NumberType,
@@ -12,14 +12,14 @@ pub(super) struct Attribute {
 }
 
 impl Attribute {
-    /// Returns its text, up to where it ends.
+    /// Returns the text up to its first zero byte, without blanks around; `None` if the attribute is not text.
     pub(super) fn text(&self) -> Option<&[u8]> {
         let is_text = self.number == NumberType::Text;
         let text = self.bytes.split(|&byte| byte == 0).next().unwrap_or_default();
         is_text.then(|| text.trim_ascii())
     }
 
-    /// Returns the first of its numbers.
+    /// Returns the first number; `None` if the attribute is empty, text, or of an unknown type.
     pub(super) fn real(&self) -> Option<f64> {
         let first = self.bytes.get(..self.number.bytes())?;
         match self.number {
@@ -29,7 +29,7 @@ impl Attribute {
         }
     }
 
-    /// Returns the first of its numbers, if that is whole.
+    /// Returns the first number as an integer; `None` for text, and for real numbers with a fraction or from 1e15 on.
     pub(super) fn whole(&self) -> Option<i64> {
         match self.number {
             NumberType::Whole(bytes) => Some(self.order.signed(self.bytes.get(..bytes)?)),

@@ -1,7 +1,7 @@
-//! The header of a netCDF file in the classic format, with 64-bit offsets or as CDF-5: where each variable stands.
+//! The header of a netCDF file in the classic format, with 64-bit offsets or as CDF-5, which locates each variable.
 //!
-//! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. All numbers have their highest byte
-//! first. Variables of the record dimension come at the end, one record after another.
+//! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. All numbers are big-endian.
+//! Variables with records come last: record 0 of each variable, then record 1 of each, and so on.
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Variable};
@@ -25,7 +25,7 @@ struct VariableEntry {
 }
 
 impl VariableEntry {
-    /// The variable, where each record starts so many bytes after the one before.
+    /// Makes the variable, whose records are `stride` bytes apart.
     fn with(self, stride: usize) -> Variable {
         let VariableEntry { name, shape, is_record, number, attributes, begin, size } = self;
         let content = Content::Bytes { begin, stride };
@@ -33,7 +33,7 @@ impl VariableEntry {
     }
 }
 
-/// Reads the header and checks that all variables lie in the file, each by itself.
+/// Reads the header, and checks that variables lie in the file and do not overlap.
 pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
     let mut reader = HeaderReader { cursor: Cursor::new(source), count: 4, offset: 4 };
     match source.bytes.get(3) {
@@ -65,7 +65,8 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
     Ok(Header { source, dimensions, variables, records, hdf5: None })
 }
 
-/// Finds how many records there are and how many bytes lie between two, and checks the places of all variables.
+/// Returns the number of records and their distance in bytes. Checks that variables lie in the file and do not overlap
+/// each other or the header, which ends at offset `start`. `records` is the header's field for the number of records.
 fn variable_entries(
     variables: &[VariableEntry],
     source: &Source,
@@ -77,7 +78,7 @@ fn variable_entries(
     let of_records = || variables.iter().filter(|variable| variable.is_record);
     let padded = |variable: &VariableEntry| variable.size.checked_next_multiple_of(4);
     let stride = match of_records().count() {
-        // The records of a single variable follow each other without a gap.
+        // Without other variables with records, records follow each other without padding.
         1 => of_records().map(|variable| variable.size).sum(),
         _ => {
             let sum = of_records().try_fold(0, |sum: usize, v| sum.checked_add(padded(v)?));
@@ -85,7 +86,7 @@ fn variable_entries(
         }
     };
     let first = of_records().map(|variable| variable.begin).min().unwrap_or(length);
-    // All bits set stand for as many as the file holds.
+    // All bits set mark a file of a streaming writer: the length of the file gives the number of records.
     let unknown = if reader.count == 8 { u64::MAX } else { u64::from(u32::MAX) };
     let records = match records {
         _ if stride == 0 => 0,
@@ -134,8 +135,9 @@ fn variable_entries(
 /// Reader of the fields of the header.
 struct HeaderReader<'a> {
     cursor: Cursor<'a>,
-    /// How many bytes a count has, and an offset.
+    /// Width of a count in bytes: 8 in CDF-5, else 4.
     count: usize,
+    /// Width of an offset in bytes: 4 in the classic format (version 1), else 8.
     offset: usize,
 }
 
@@ -150,7 +152,7 @@ impl<'a> HeaderReader<'a> {
         Ok(ORDER.whole(self.take(bytes)?))
     }
 
-    /// Takes the tag and the length of a list.
+    /// Takes the tag and the length of a list, and returns the length. An absent list has two zeros instead.
     fn list(&mut self, tag: u32) -> Result<u64, ReadError> {
         let found = self.number(4)? as u32;
         let count = self.number(self.count)?;
@@ -160,7 +162,7 @@ impl<'a> HeaderReader<'a> {
         }
     }
 
-    /// Takes bytes that are filled up to a multiple of four.
+    /// Takes `bytes` bytes and their padding to a multiple of four. Returns the bytes without padding.
     fn padded(&mut self, bytes: u64) -> Result<&'a [u8], ReadError> {
         let bytes = usize::try_from(bytes).unwrap_or(usize::MAX);
         let taken = self.take(bytes)?;
@@ -196,7 +198,7 @@ impl<'a> HeaderReader<'a> {
             let number = self.number(self.count)?;
             let found = usize::try_from(number).ok().and_then(|number| dimensions.get(number));
             match found {
-                // The record dimension has no length of its own.
+                // Length 0 marks the record dimension.
                 Some((_, 0)) if axis == 0 => is_record = true,
                 Some((_, length)) => shape.push(*length),
                 None => {
@@ -210,7 +212,7 @@ impl<'a> HeaderReader<'a> {
             attributes.push(self.attribute()?);
         }
         let number = self.number_type()?;
-        // Its size stands here too, but need not be right where it is large.
+        // The size in the header is ignored: its field is too narrow for the largest variables.
         self.number(self.count)?;
         let begin = usize::try_from(self.number(self.offset)?).unwrap_or(usize::MAX);
         let size = shape.iter().try_fold(number.bytes() as u64, |size, &n| size.checked_mul(n));

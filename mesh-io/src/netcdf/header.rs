@@ -1,4 +1,4 @@
-//! What a netCDF file holds, whichever format it is in: dimensions and variables by name.
+//! Dimensions and variables of a netCDF file by name, in the classic formats and in netCDF-4.
 
 use super::attribute::Attribute;
 use super::types::NumberType;
@@ -9,38 +9,36 @@ use crate::hdf5::{Dataset, DatasetArray, Hdf5};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// The dimensions and variables of a file. No two of the variables overlap, and none ends beyond the file.
+/// The dimensions and variables of a netCDF file. In the classic formats, no variables overlap or end beyond the file.
 pub(crate) struct Header<'a> {
     pub(crate) source: &'a Source,
     pub(crate) dimensions: Vec<(Vec<u8>, u64)>,
     pub(crate) variables: Vec<Variable>,
-    /// How many records there are.
+    /// Length of the record dimension; 0 without records.
     pub(crate) records: usize,
-    /// The file, if it is HDF5.
+    /// The HDF5 file of netCDF-4; `None` in the classic formats.
     pub(crate) hdf5: Option<Hdf5<'a>>,
 }
 
 /// A variable of a netCDF file.
 pub(crate) struct Variable {
     pub(crate) name: Vec<u8>,
-    /// Its lengths, but for the record dimension.
+    /// Lengths of the dimensions except the record dimension.
     pub(crate) shape: Vec<u64>,
     pub(crate) is_record: bool,
     pub(crate) number: NumberType,
     pub(crate) order: ByteOrder,
     pub(super) attributes: Vec<Attribute>,
-    /// How many bytes it has, in each record if it is of records.
+    /// Size in bytes of the variable, or of each record if the variable has records.
     pub(crate) size: usize,
     pub(super) content: Content,
 }
 
-/// Where the content of a variable stands.
+/// Location of the values of a variable in the file.
 pub(super) enum Content {
-    /// From this byte of the file on; each record so many bytes after the one before.
-    Bytes {
-        begin: usize,
-        stride: usize,
-    },
+    /// Classic formats: the offset of record 0, and the distance from each record to the next in bytes.
+    Bytes { begin: usize, stride: usize },
+    /// NetCDF-4: a dataset of the HDF5 file.
     Dataset(Dataset),
 }
 
@@ -49,22 +47,22 @@ impl Variable {
         self.attributes.iter().find(|attribute| attribute.name == name.as_bytes())
     }
 
-    /// The text of an attribute, if it has one.
+    /// Returns the text of an attribute; `None` if the attribute is missing or not text.
     pub(crate) fn text(&self, attribute: &str) -> Option<&[u8]> {
         self.attribute(attribute)?.text()
     }
 
-    /// The first number of an attribute, if that is whole.
+    /// Returns the first number of an attribute; `None` if the attribute is missing or the number has a fraction.
     pub(crate) fn whole(&self, attribute: &str) -> Option<i64> {
         self.attribute(attribute)?.whole()
     }
 
-    /// The number that stands where there is none, if the file names one.
+    /// Returns the value that marks a missing number: the attribute `_FillValue`, else `missing_value`.
     pub(crate) fn missing(&self) -> Option<f64> {
         ["_FillValue", "missing_value"].iter().find_map(|name| self.attribute(name)?.real())
     }
 
-    /// The real numbers in these bytes of it; none if it has others.
+    /// Decodes `bytes`, a part of the variable's values, as real numbers. Empty if the variable has another type.
     pub(crate) fn reals(&self, bytes: &[u8]) -> Vec<f64> {
         match self.number {
             NumberType::Real(_) => self.numbers(bytes),
@@ -72,7 +70,8 @@ impl Variable {
         }
     }
 
-    /// The numbers in these bytes of it, real or whole; none if it has text.
+    /// Decodes `bytes`, a part of the variable's values, as real numbers or integers. Empty if the variable has another
+    /// type.
     pub(crate) fn numbers(&self, bytes: &[u8]) -> Vec<f64> {
         let each = bytes.chunks_exact(self.number.bytes().max(1));
         match self.number {
@@ -83,49 +82,52 @@ impl Variable {
     }
 }
 
-/// The content of a variable.
+/// The values of a variable as bytes.
 pub(crate) struct Items<'a> {
-    /// Bytes that it stands in, and where its records start there.
+    /// The whole file in the classic formats; the decoded dataset in netCDF-4.
     pub(crate) bytes: Cow<'a, [u8]>,
+    /// Offset of record 0 in `bytes`.
     first: usize,
+    /// Distance from each record to the next, in bytes.
     stride: usize,
+    /// Size of a record in bytes.
     size: usize,
-    /// What these bytes are, if they are not those of the file.
+    /// The dataset of netCDF-4, whose own bytes were moved to `bytes`; `None` in the classic formats.
     pub(crate) array: Option<DatasetArray<'a>>,
 }
 
 impl<'a> Items<'a> {
-    /// Where a record is among the bytes; of a variable without records all of it.
+    /// Returns the range of a record in `bytes`. Record 0 of a variable without records is the whole variable.
     pub(crate) fn range(&self, record: usize) -> Range<usize> {
         let start = self.first + record * self.stride;
         start..start + self.size
     }
 
-    /// All of a variable without records.
+    /// Returns the bytes of record 0, which is all of a variable without records.
     pub(crate) fn own(&self) -> &[u8] {
         self.bytes.get(self.range(0)).unwrap_or_default()
     }
 
-    /// Where in the file it starts, if it stands there as it is.
+    /// Returns the offset of record 0 in the file; `None` if the values are chunked, compressed or under a checksum.
     pub(crate) fn start(&self) -> Option<usize> {
         self.array.as_ref().map_or(Some(self.first), DatasetArray::start)
     }
 
-    /// Takes out what it is, with its bytes, if these are not those of the file.
+    /// Takes the dataset of netCDF-4 together with `bytes`, which become empty; `None` in the classic formats.
     pub(crate) fn take_array(&mut self) -> Option<DatasetArray<'a>> {
         let mut array = self.array.take()?;
         array.bytes = std::mem::take(&mut self.bytes);
         Some(array)
     }
 
-    /// The byte of the file at or near which this one of the bytes stands.
+    /// Returns the offset in the file at or near byte `at` of `bytes`, for messages.
     pub(crate) fn byte_of(&self, at: usize) -> usize {
         self.array.as_ref().map_or(at, |array| array.byte_of(at))
     }
 }
 
 impl<'a> Header<'a> {
-    /// The content of a variable.
+    /// Reads the values of a variable.
     pub(crate) fn items(&self, variable: &Variable) -> Result<Items<'a>, ReadError> {
         let size = variable.size;
         match (&variable.content, &self.hdf5) {
@@ -144,7 +146,7 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// Near which byte a variable stands, for messages.
+    /// Returns an offset near a variable, for messages: of record 0, or of the object header in netCDF-4.
     pub(crate) fn start_of(&self, variable: &Variable) -> usize {
         match &variable.content {
             Content::Bytes { begin, .. } => *begin,
@@ -152,14 +154,15 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// The whole numbers of a variable; none if it has others.
+    /// Returns the integers of a variable, of record 0 only; `None` if the variable has another type or cannot be read.
     pub(crate) fn integers(&self, variable: &Variable) -> Option<Vec<i64>> {
         let NumberType::Whole(bytes) = variable.number else { return None };
         let items = self.items(variable).ok()?;
         Some(items.own().chunks_exact(bytes).map(|n| variable.order.signed(n)).collect())
     }
 
-    /// The texts of a variable, the rows of a table of letters, without what fills them up.
+    /// Returns the rows of a table of characters, each up to its first zero byte and without blanks around the text.
+    /// Empty for variables of other types, and for variables with records.
     pub(crate) fn texts(&self, variable: &Variable) -> Vec<Vec<u8>> {
         let width = variable.shape.last().map_or(1, |&width| width as usize).max(1);
         let is_table = variable.number == NumberType::Text && !variable.is_record;
@@ -173,31 +176,31 @@ impl<'a> Header<'a> {
         rows.collect()
     }
 
-    /// How many records a variable has; one if it has none.
+    /// Returns the number of records of a variable; 1 for a variable without records.
     pub(crate) fn steps(&self, variable: &Variable) -> usize {
         if variable.is_record { self.records } else { 1 }
     }
 
-    /// The length of a dimension.
+    /// Returns the length of a dimension; `None` if no dimension has this name.
     pub(crate) fn dimension(&self, name: &str) -> Option<u64> {
         let found = self.dimensions.iter().find(|(own, _)| own == name.as_bytes());
         found.map(|&(_, length)| length)
     }
 
-    /// Why a dataset of one of these names is no variable: it is damaged, or packed by a filter that is not read. None if there is
-    /// no such dataset.
+    /// Returns the error of the first HDF5 dataset with a wanted name that cannot be opened: damaged, or with an
+    /// unsupported filter. `None` if all can be opened, or if the file is not HDF5.
     pub(crate) fn unread(&self, is_wanted: impl Fn(&[u8]) -> bool) -> Option<ReadError> {
         let file = self.hdf5.as_ref()?;
         let mut wanted = file.children(file.root()).filter(|(name, _)| is_wanted(name));
         wanted.find_map(|(_, object)| file.dataset(object).err())
     }
 
-    /// The variable of a name.
+    /// Returns the variable of this name.
     pub(crate) fn variable(&self, name: &str) -> Option<&Variable> {
         self.variables.iter().find(|variable| variable.name == name.as_bytes())
     }
 
-    /// The variables called so with a number after it, in the order of these.
+    /// Returns the variables whose name is `name` followed by a positive number, ascending by this number.
     pub(crate) fn numbered(&self, name: &str) -> Vec<(usize, &Variable)> {
         let number = |variable: &Variable| -> Option<usize> {
             let digits = variable.name.strip_prefix(name.as_bytes())?;

@@ -14,10 +14,10 @@ use crate::hdf5::SIGNATURE;
 pub(crate) use header::{Header, Items, Variable};
 pub(crate) use types::NumberType;
 
-/// Reads the header of a file.
+/// Reads the dimensions and variables of a netCDF file.
 ///
 /// # Errors
-/// If it is damaged, of an unknown version, or tells of variables that overlap or end beyond the file.
+/// If the file is damaged, of an unknown version, or if variables overlap or end beyond the file.
 pub(crate) fn open(source: &Source) -> Result<Header<'_>, ReadError> {
     match source.bytes.starts_with(SIGNATURE) {
         true => version4::read(source),

@@ -1,4 +1,4 @@
-//! What numbers in a header of the classic format stand for: types of numbers, and kinds of lists.
+//! Types of numbers, with their codes in headers of the classic format, and the tags of lists there.
 
 use crate::precision::Precision;
 
@@ -6,9 +6,10 @@ use crate::precision::Precision;
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum NumberType {
     Text,
+    /// Integers of this many bytes.
     Whole(usize),
     Real(Precision),
-    /// None of these.
+    /// Any other type, whose items have this many bytes.
     Other(usize),
 }
 
@@ -20,7 +21,8 @@ impl NumberType {
             NumberType::Real(precision) => precision.bytes(),
         }
     }
-    /// Returns what the number of a type stands for. Unsigned numbers are taken for signed ones.
+    /// Returns the type with a code of the format; `None` for unknown codes. Unsigned integers are read as signed
+    /// integers.
     pub(super) fn of_type(number: u32) -> Option<NumberType> {
         match number {
             CHAR => Some(NumberType::Text),
@@ -35,7 +37,7 @@ impl NumberType {
     }
 }
 
-/// The numbers of types, which the format calls `NC_BYTE` and so on.
+/// Codes of types: `NC_BYTE` and so on in the format specification.
 const BYTE: u32 = 1;
 pub(super) const CHAR: u32 = 2;
 const SHORT: u32 = 3;
@@ -48,7 +50,7 @@ const UINT: u32 = 9;
 const INT64: u32 = 10;
 const UINT64: u32 = 11;
 
-/// The tags of lists.
+/// Tags of the lists of dimensions, variables and attributes in the header.
 pub(super) const DIMENSIONS: u32 = 10;
 pub(super) const VARIABLES: u32 = 11;
 pub(super) const ATTRIBUTES: u32 = 12;

@@ -1,7 +1,7 @@
-//! NetCDF-4: variables are datasets of HDF5, in the root group of the file.
+//! NetCDF-4: variables are datasets in the root group of an HDF5 file.
 //!
-//! The format: <https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html#netcdf_4_spec>. A dimension is a
-//! dataset too, as long as the dimension.
+//! The format: <https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html#netcdf_4_spec>. Each
+//! dimension is a dataset with a single axis too, and has the length of this dataset.
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Variable};
@@ -11,10 +11,10 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::hdf5::{self, Hdf5};
 
-/// What the name of a dimension starts with that is no variable of the same name.
+/// Start of the attribute `NAME` of datasets that only stand for a dimension and hold no variable.
 const NO_VARIABLE: &[u8] = b"This is a netCDF dimension but not a netCDF variable";
 
-/// Reads which datasets there are. What is no dataset, or none that can be read, is no variable.
+/// Makes dimensions and variables from the datasets in the root group. Skips groups, and datasets that cannot be read.
 pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
     let file = Hdf5::open(source)?;
     let (mut dimensions, mut variables) = (Vec::new(), Vec::new());
@@ -23,7 +23,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         Some((name, object, dataset))
     });
     let datasets: Vec<_> = named.collect();
-    // The dimension itself need not be as long as those that have it.
+    // The dataset of the record dimension may be shorter than variables with records, so the longest dataset counts.
     let growing = datasets.iter().filter(|(.., dataset)| dataset.grows());
     let records = growing.filter_map(|(.., dataset)| dataset.shape().first().copied()).max();
     for (name, object, dataset) in datasets {
@@ -31,7 +31,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         if let &[length] = &shape[..] {
             dimensions.push((name.to_vec(), length));
         }
-        // Such a dataset has no numbers.
+        // A dataset that only stands for a dimension has no values.
         if file
             .attribute(object, b"NAME")
             .is_some_and(|name| name.text().is_some_and(|text| text.starts_with(NO_VARIABLE)))
@@ -49,7 +49,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         let size = shape.iter().try_fold(number.bytes() as u64, |size, &n| size.checked_mul(n));
         let Some(size) = size.and_then(|size| usize::try_from(size).ok()) else { continue };
         let attributes = file.attributes(object).into_iter().map(|(name, attribute)| {
-            // A text of an attribute is a single item.
+            // The text of an attribute is a single HDF5 item, however long.
             let (number, order) = match attribute.number {
                 hdf5::Datatype::Text(_) => (NumberType::Text, ByteOrder::Big),
                 other => number_of(other),
@@ -74,7 +74,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
     Ok(Header { source, dimensions, variables, records, hdf5: Some(file) })
 }
 
-/// What numbers are called here, and the order of their bytes.
+/// Returns the netCDF type and the byte order of a datatype. Texts and unknown types become `Other`.
 fn number_of(number: hdf5::Datatype) -> (NumberType, ByteOrder) {
     match number {
         hdf5::Datatype::Whole(bytes, order) => (NumberType::Whole(bytes), order),

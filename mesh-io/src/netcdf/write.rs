@@ -1,16 +1,17 @@
 //! Writes netCDF's classic format with 64-bit offsets.
 //!
 //! The format: <https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>. Numbers are big-endian.
-//! Variables of the record dimension come last, and there is at most one record.
+//! Variables with records follow all other variables; a file has at most one record.
 
 use super::types::{ATTRIBUTES, CHAR, DIMENSIONS, DOUBLE, FLOAT, INT, VARIABLES};
 use std::collections::HashMap;
 
-/// A file in the classic netCDF format, to be written.
+/// Builder of a file in the classic netCDF format.
 #[derive(Default)]
 pub(crate) struct NetCdfWriter {
     dimensions: Vec<(String, usize)>,
-    /// Where the dimension of a name is: a file of as many blocks as elements has as many dimensions.
+    /// Index of each dimension by name. An Exodus file has dimensions for each block of elements, possibly as many
+    /// blocks as elements, so a search of the list would be too slow.
     dimension_indices: HashMap<String, usize>,
     attributes: Vec<(&'static str, Values)>,
     variables: Vec<Variable>,
@@ -25,7 +26,7 @@ struct Variable {
     values: Values,
 }
 
-/// The values of a variable or an attribute.
+/// Values of a variable or an attribute, all of one type.
 pub(crate) enum Values {
     Text(Vec<u8>),
     Whole(Vec<i32>),
@@ -45,7 +46,7 @@ impl Values {
         Values::Text(text)
     }
 
-    /// Returns the number of the type, how many values there are, and their bytes.
+    /// Returns the code of the type, the number of values, and the big-endian bytes of the values.
     fn encoded(&self) -> (u32, usize, Vec<u8>) {
         match self {
             Values::Text(text) => (CHAR, text.len(), text.clone()),
@@ -65,7 +66,7 @@ impl NetCdfWriter {
         self.attributes.push((name, values));
     }
 
-    /// Adds a dimension. That of length zero is the dimension of records.
+    /// Adds a dimension. A dimension of length 0 is the record dimension.
     pub(crate) fn dimension(&mut self, name: impl Into<String>, length: usize) {
         let name = name.into();
         self.dimension_indices.insert(name.clone(), self.dimensions.len());
@@ -76,7 +77,7 @@ impl NetCdfWriter {
         self.dimension_indices.contains_key(name)
     }
 
-    /// Adds a variable of these dimensions, none for a single value.
+    /// Adds a variable over dimensions that were added before; without dimensions, the variable has a single value.
     pub(crate) fn variable(
         &mut self,
         name: impl Into<String>,
@@ -138,7 +139,8 @@ impl Variable {
     }
 }
 
-/// Appends a number of 4 bytes. A number that does not fit becomes `u32::MAX`; readers do not rely on such sizes.
+/// Appends a number in 4 bytes. Larger numbers become `u32::MAX`: only the sizes of variables can be so large, and
+/// readers compute sizes from the dimensions.
 fn word(out: &mut Vec<u8>, number: usize) {
     out.extend_from_slice(&u32::try_from(number).unwrap_or(u32::MAX).to_be_bytes());
 }

@@ -1,4 +1,4 @@
-//! XML files: their tags in order, with offsets, and the text that is in them.
+//! Start tags of XML files in file order, with their offsets, attributes and text.
 
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
@@ -9,18 +9,18 @@ use quick_xml::events::{BytesStart, Event};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// The most elements that may be nested. VTK and XDMF nest no more than ten, and each takes memory until it ends.
+/// Limit on nested elements. VTK and XDMF nest at most ten, and each open element takes memory.
 const MAX_DEPTH: usize = 100;
 
 /// Iterator over the start tags of a document, with the elements that are open.
 pub(crate) struct XmlTags<'a> {
     source: &'a Source,
-    /// The offset of the first byte that the parser gets.
+    /// Offset of the first byte after a byte order mark, where the parser starts.
     begin: usize,
     reader: Reader<&'a [u8]>,
     /// The tags of the elements around the next tag, the innermost last.
     open: Vec<XmlTag<'a>>,
-    /// The last tag, if its element has content and is thus around the next tag.
+    /// The tag that was returned last, if its element has content and may enclose the next tag.
     last: Option<XmlTag<'a>>,
 }
 
@@ -133,7 +133,7 @@ impl<'a> XmlTag<'a> {
         Ok(None)
     }
 
-    /// Returns the whole number that an attribute stands for. The tag must have the attribute.
+    /// Returns the value of an attribute as an unsigned integer. The tag must have the attribute.
     pub(crate) fn number(&self, name: &str) -> Result<u64, ReadError> {
         let text = self.attribute(name)?.unwrap_or_default();
         text.trim().parse().map_err(|_| {
@@ -161,7 +161,7 @@ impl<'a> XmlTag<'a> {
         })
     }
 
-    /// Makes an error at the line of the tag.
+    /// Makes a read error that names the line of the tag.
     #[cold]
     pub(crate) fn error(&self, problem: impl Into<String>, remedy: &str) -> ReadError {
         let place = Location::Line(self.source.line_of(self.at()));
@@ -169,13 +169,13 @@ impl<'a> XmlTag<'a> {
     }
 }
 
-/// Words the error of the XML parser. The error may quote a tag, of any length and over several lines.
+/// Words the error of the XML parser on one line of limited length, as the error may quote a tag of any length.
 fn ill_formed(error: &quick_xml::Error) -> String {
     format!("it is not XML: {}", on_one_line(error.to_string().as_bytes(), 120))
 }
 
-/// Returns the text that an attribute or the content of an element stands for: `a"b` for `a&quot;b`. An entity without a
-/// meaning stays as it is.
+/// Returns the value of an attribute or the text of an element without escapes: `a"b` for `a&quot;b`. If an entity is
+/// unknown, the whole text is returned unchanged.
 pub(crate) fn plain_text(value: &[u8]) -> String {
     let text = String::from_utf8_lossy(value).into_owned();
     quick_xml::escape::unescape(&text).map(Cow::into_owned).unwrap_or(text)
