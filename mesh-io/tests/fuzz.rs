@@ -1,5 +1,5 @@
-//! A short version of the fuzzing in `fuzz/`, on any toolchain and with the same inputs each time. The environment variable
-//! `FUZZ_ROUNDS` is a factor that makes it longer. Inputs that once failed are literal tests here.
+//! Short version of the fuzzing in `fuzz/`, on any toolchain and with repeatable inputs. The environment variable
+//! `FUZZ_ROUNDS` multiplies the number of inputs. Inputs that once failed are literal tests here.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
@@ -13,13 +13,13 @@ use std::sync::OnceLock;
 use mesh_io::{Conversion, MeshFile};
 use support::SplitMix64;
 
-/// The number of rounds: `usual`, which takes about a second, times `FUZZ_ROUNDS`.
+/// Returns the number of rounds: `usual`, which takes about a second, times `FUZZ_ROUNDS`.
 fn rounds(usual: usize) -> usize {
     let factor = env::var("FUZZ_ROUNDS").ok().and_then(|text| text.parse().ok());
     usual * factor.unwrap_or(1)
 }
 
-/// The content with random bytes cut, replaced, inserted and doubled.
+/// Returns the content with random bytes cut, replaced, inserted and doubled.
 fn damaged(content: &[u8], random: &mut SplitMix64) -> Vec<u8> {
     let bytes = b"0123456789 \n\r\t#$<>/=-+.eEnaif\"\0\x01\x7F\xFF";
     let mut damaged = content.to_vec();
@@ -38,7 +38,7 @@ fn damaged(content: &[u8], random: &mut SplitMix64) -> Vec<u8> {
     damaged
 }
 
-/// A small mesh as text of each format that is written, and as Triangle's files.
+/// Returns a small mesh as text in each format that is written, and as the joined files of a Triangle mesh.
 fn samples() -> &'static (Vec<Vec<u8>>, Vec<u8>) {
     static SAMPLES: OnceLock<(Vec<Vec<u8>>, Vec<u8>)> = OnceLock::new();
     SAMPLES.get_or_init(|| {
@@ -68,7 +68,7 @@ fn arbitrary_bytes_as_a_file_never_panic() {
     }
 }
 
-/// The error message once quoted the whole tag, with its line ends.
+/// The error message once quoted the whole tag, including its line ends.
 #[test]
 fn a_closing_tag_of_several_lines_is_quoted_on_one_line() {
     checks::any_file(b"<?xml version=\"1.0\"?>\n</P 2.0 1.78 0.0\n12 3.0 1.73 0.0\n>\n");
@@ -91,7 +91,7 @@ GRID    1               0.      0.      1.\nGRID    2               2.          
        2       3       5\nCTRIA3* 3               2               3               4\n*       5\nCTRIAR,4,,4,1,5\nRBE2,5,1,123,2,3,\n\
 +,4\nCONM2,6,4,,1.\nCBAR,7,3,1,2\nENDDATA\n";
 
-/// Files of HDF5, of which the first is Exodus and the others stand beside an XDMF.
+/// HDF5 files and a raw file: the first is Exodus, the others belong to XDMF files.
 const HDF5: [&[u8]; 4] = [
     include_bytes!("formats/h5/netcdf4.exo"),
     include_bytes!("formats/h5/dolfin.h5"),
@@ -123,7 +123,7 @@ fn triangle_files_of_any_bytes() {
     }
 }
 
-/// Writes the inputs that the fuzzer starts from, if the environment variable FUZZ_CORPUS names a folder.
+/// Writes the start inputs of the fuzzer, if the environment variable FUZZ_CORPUS names a folder.
 #[test]
 fn the_corpus_can_be_written() {
     let Some(folder) = env::var_os("FUZZ_CORPUS") else { return };

@@ -1,4 +1,5 @@
-//! Input files of Abaqus and CalculiX: sets and surfaces, parts, what is left out or included, and how numbers are written.
+//! Input files of Abaqus and CalculiX: sets and surfaces, parts, omitted and included items, and the digits of
+//! coordinates.
 
 use super::Folder;
 use super::facts::{fixed, remarks};
@@ -20,7 +21,7 @@ fn read(text: &str) -> MeshFile {
         .unwrap_or_else(|error| panic!("{error} of {text}"))
 }
 
-/// Each group with its triangles, its number of lines, and its vertices.
+/// Returns each group as text with its triangles, its number of lines, and its vertices.
 fn groups(text: &str) -> Vec<String> {
     let told = |group: &Group| {
         format!("{group}: {:?} {} {:?}", group.triangles(), group.lines, group.vertices())
@@ -154,7 +155,7 @@ fn sets_and_surfaces_of_an_input_file_are_groups() {
     );
 }
 
-/// Sections tell regions apart even if their sets are not those of lists of elements.
+/// Sections separate regions even if their sets differ from the sets of element lists.
 #[test]
 fn vertices_between_sections_are_held() {
     let one = deck().replace("Right", "Left");
@@ -169,7 +170,7 @@ fn vertices_between_sections_are_held() {
     assert!(remarks(&read(&text))[0].contains("set ELSEWHERE, which is not here"));
 }
 
-/// meshio writes sets without sections, and lists of elements without sets.
+/// meshio writes sets without sections, and element lists without sets.
 #[test]
 fn sets_alone_tell_regions_apart_where_nothing_else_does() {
     let plain = deck().replace(", ELSET=Left", "").replace(", ELSET=Right", "");
@@ -212,7 +213,7 @@ fn one_part_of_an_assembly_is_a_mesh() {
         ]
     );
     assert!(fixed(&file).contains(&2));
-    // A part whose mesh is that of its instance.
+    // A part without nodes; its instance contains the mesh.
     let own = format!(
         "*PART, NAME=P\n*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=P-1, PART=P\n{}*END INSTANCE\n*ELSET, ELSET=E, INSTANCE=P-1\n4\n*END ASSEMBLY\n",
         deck()
@@ -248,7 +249,7 @@ fn included_files_must_not_hold_a_part_of_the_mesh() {
             "{error}"
         );
     }
-    // Files that include themselves or each other, many times.
+    // Includes of one file many times, and of files that include each other.
     assert_eq!(
         with(&"*INCLUDE, INPUT=more.inp\n*INCLUDE, INPUT=a.inp\n".repeat(50)).map_err(drop),
         Err(())
@@ -277,7 +278,7 @@ fn third_coordinates_are_data_if_they_differ() {
     assert_eq!(read(&deck()).data_names(), [""; 0]);
 }
 
-/// Neither Abaqus nor CalculiX reads more than 20 characters of a number.
+/// Neither Abaqus nor CalculiX reads more than the first 20 characters of a number.
 #[test]
 fn coordinates_are_written_in_20_characters() {
     let long =

@@ -1,4 +1,4 @@
-//! Meshes whose numbers are in files beside them: an XDMF with HDF5 or raw files.
+//! Meshes with numbers in companion files: an XDMF with HDF5 or raw files.
 
 use super::facts::fixed;
 use super::hdf5::{SAMPLES, bits, made, moved, refused};
@@ -6,7 +6,7 @@ use mesh_io::{Conversion, MeshFile, ReadError, ReadOptions};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Under another name the files beside it are called after it, and it names them so.
+/// If a mesh is written under another name, its companion files are renamed accordingly, in the XDMF too.
 #[test]
 fn files_beside_a_mesh_are_renamed_with_it() {
     for sample in SAMPLES.iter().filter(|sample| !sample.beside.is_empty()) {
@@ -32,11 +32,11 @@ fn files_beside_a_mesh_are_renamed_with_it() {
             assert_eq!(own, destinations);
             assert_eq!(file.difference(&again), None);
             assert_eq!(again.difference(&file), None);
-            // The files that were read are as they were.
+            // The input files are unchanged.
             for name in [sample.name].iter().chain(sample.beside) {
                 assert!(fs::read(folder.path(name)).unwrap() == fs::read(made(name)).unwrap());
             }
-            // And back under the old name, with the old places: the same text.
+            // Written back under the old name with the old points, the XDMF has its original text.
             fs::create_dir_all(folder.path("back")).unwrap();
             let back = folder.path("back").join(sample.name);
             again.write(&back, file.points()).unwrap();
@@ -75,7 +75,7 @@ fn missing_files_beside_a_mesh_are_errors() {
     );
     fs::write(folder.path("text.h5"), "not HDF5").unwrap();
     refused(with("text.h5:/a"), &["text.h5 is not HDF5"]);
-    // The same file by another name is one of the files still.
+    // A companion that the text names by two spellings counts as one file.
     let file = with("./dolfin.h5:/Mesh/mesh/geometry").unwrap();
     assert_eq!(file.paths().count(), 2);
     file.write(&folder.path("out.xdmf"), file.points()).unwrap();
@@ -83,7 +83,7 @@ fn missing_files_beside_a_mesh_are_errors() {
     folder.read("out.xdmf");
 }
 
-/// Where a file cannot take its place, all are as they were.
+/// If one file cannot be replaced, all files keep their old content.
 #[test]
 fn all_files_are_replaced_or_none() {
     let sample = &SAMPLES[0];
@@ -93,7 +93,7 @@ fn all_files_are_replaced_or_none() {
     file.write(&folder.path("out.xdmf"), file.points()).unwrap();
     let old = ["out.xdmf", "out.h5"].map(|name| fs::read(folder.path(name)).unwrap());
     let count = folder.count();
-    // The text stays as it is, and then it does not.
+    // The XDMF at the destination first has the text that is written, then another text.
     for text in [old[0].clone(), b"another".to_vec()] {
         fs::write(folder.path("out.xdmf"), &text).unwrap();
         fs::remove_file(folder.path("out.h5")).unwrap();
@@ -110,7 +110,7 @@ fn all_files_are_replaced_or_none() {
     assert_eq!(folder.count(), count);
 }
 
-/// What would replace a file that another part of the mesh was read from is refused before anything is written.
+/// A write that would replace another file of the mesh is refused before any file is written.
 #[test]
 fn a_file_of_the_mesh_is_not_replaced_by_another() {
     let folder = SAMPLES[4].folder();
@@ -132,7 +132,7 @@ fn a_file_of_the_mesh_is_not_replaced_by_another() {
     assert!(error.to_string().contains("of several files"), "{error}");
 }
 
-/// Regions, groups and data of the files of meshio and of the newest layouts.
+/// Regions, groups and data in companion files of meshio, and in files of the newest HDF5 layouts.
 #[test]
 fn attributes_in_files_beside_a_mesh_are_read() {
     let file = MeshFile::read(&made("meshio.xdmf")).unwrap();
@@ -176,14 +176,14 @@ fn files_outside_of_the_directory_of_a_mesh_are_errors_without_leave() {
     }
     refused(MeshFile::read(&path), &["sub/in.xdmf:7: it names", "ReadOptions::allow_outside"]);
     ReadOptions::new().allow_outside(true).read(&path).unwrap();
-    // Below the directory, and there and back, is inside.
+    // A subdirectory is inside, and so is a path that leaves the directory and comes back.
     fs::copy(folder.path("dolfin.h5"), folder.path("sub/deep/v.h5")).unwrap();
     MeshFile::read(&write("sub/below.xdmf", "deep/v.h5")).unwrap();
     MeshFile::read(&write("sub/back.xdmf", "../sub/deep/v.h5")).unwrap();
     #[cfg(unix)]
     {
         use std::os::unix::fs::symlink;
-        // A mesh that is reached by a link may have the files beside its target.
+        // A mesh behind a symbolic link may also name files beside the link's target.
         write("sub/y.xdmf", "y.h5");
         fs::copy(folder.path("dolfin.h5"), folder.path("sub/y.h5")).unwrap();
         for name in ["y.xdmf", "y.h5"] {

@@ -1,4 +1,4 @@
-//! gmsh's `.msh` in binary: the meshes of the text samples, with numbers in either byte order.
+//! gmsh's `.msh` in binary: the meshes of the text samples, in either byte order.
 
 use super::facts::{mesh_of, remarks};
 use super::long::{points, triangles};
@@ -8,14 +8,15 @@ use super::{Folder, GMSH22, GMSH41};
 use mesh_io::{Format, Location, MeshFile};
 use std::fs;
 
-/// Adds a section whose content looks like lines, comments and ends of other sections.
+/// Adds a section with content that looks like lines, comments and ends of other sections.
 fn misleading(file: &mut Binary, name: &str) {
     file.text(&format!("${name}\n"));
     file.bytes.extend_from_slice(b"\n\0\xFF# $Nodes\n#\n$Elements of\n \n$EndNodes\n\n3");
     file.text(&format!("\n$End{name}\n"));
 }
 
-/// The mesh of [`GMSH22`] in binary. The tag of its first node does not fit an `int`, so it is 90000 here.
+/// Returns the mesh of [`GMSH22`] in binary. The first node has the tag 90000, as its tag in text does not fit an
+/// `int`.
 pub(crate) fn msh22(big: bool) -> Vec<u8> {
     let mut file = Binary::new("2.2", big);
     file.text("$PhysicalNames\n1\n2 1 \"$Nodes # a\"\n$EndPhysicalNames\n$Nodes\n6\n");
@@ -37,7 +38,7 @@ pub(crate) fn msh22(big: bool) -> Vec<u8> {
     file.bytes
 }
 
-/// The mesh of [`GMSH41`] in binary.
+/// Returns the mesh of [`GMSH41`] in binary.
 pub(crate) fn msh41(big: bool) -> Vec<u8> {
     let mut file = Binary::new("4.1", big);
     misleading(&mut file, "Entities");
@@ -69,7 +70,7 @@ fn read(bytes: &[u8]) -> (Folder, MeshFile) {
     (folder, file)
 }
 
-/// Where `part` starts in `bytes`; it must occur exactly once.
+/// Returns the offset of `part` in `bytes`, where `part` must occur exactly once.
 fn find(bytes: &[u8], part: &[u8]) -> usize {
     let at: Vec<_> = bytes.windows(part.len()).enumerate().filter(|(_, w)| *w == part).collect();
     assert_eq!(at.len(), 1, "{part:?}");
@@ -155,7 +156,7 @@ fn binary_files_come_back_but_for_what_moved() {
     }
 }
 
-/// Files of the mesh with its rows in several arrangements.
+/// Returns files of the mesh with rows in several arrangements.
 fn arrangements(mesh: &Mesh) -> [Vec<u8>; 6] {
     let arranged = |big| {
         [
@@ -186,7 +187,7 @@ fn long_binary_files_come_back_but_for_what_moved() {
         file.write(&folder.path("out"), &moved.points).unwrap();
         assert!(fs::read(folder.path("out")).unwrap() == after);
 
-        // A tag that is out of order, and a triangle that starts at another corner or is wound the other way.
+        // One node gets another tag, and one triangle is inverted by a swap of two corners.
         let start = |triangle| match file.triangle_location(triangle).location {
             Location::Byte(at) => at,
             other => panic!("{other:?}"),
@@ -245,7 +246,7 @@ fn parametric_nodes_of_version_2_are_read() {
     }
 }
 
-/// The error of reading a file in which `from`, which occurs once, is replaced by `to`.
+/// Returns the error for a file in which `from`, which occurs once, is replaced by `to`, and the offset of `from`.
 fn error(bytes: &[u8], from: &[u8], to: &[u8]) -> (usize, String) {
     let at = find(bytes, from);
     let damaged = [&bytes[..at], to, &bytes[at + from.len()..]].concat();
@@ -342,7 +343,7 @@ fn errors_in_blocks_of_binary_files_name_byte_and_remedy() {
     let wanted = format!("a.msh, byte {at}: triangle 3 lists node 9 twice. Remove the triangle");
     assert!(message.starts_with(&wanted), "{message}");
     for cut in nodes..v4.len() {
-        // A file that is cut after $EndElements is complete.
+        // A file is complete if the cut comes after $EndElements.
         if let Err(error) = std::panic::catch_unwind(|| error_of(&v4[..cut])) {
             let whole = find(&v4, b"$EndElements") + "$EndElements".len();
             assert!(cut >= whole, "cut at {cut}: {error:?}");

@@ -1,9 +1,9 @@
-//! The whole mesh of a file, by [`MeshFile::content`](mesh_io::MeshFile::content).
+//! The whole mesh of a file as [`MeshFile::content`](mesh_io::MeshFile::content) returns it.
 
 use super::{ELE, Folder, GMSH22, NODE, POLY};
 use mesh_io::CellKind::{self, Line, Point, Quadrilateral, Triangle};
 
-/// Returns kind, number and vertices of each cell.
+/// Returns the kind, the number and the vertices of each cell.
 fn cells(content: &mesh_io::Content) -> Vec<(CellKind, u64, Vec<u32>)> {
     content.cells().map(|cell| (cell.kind, cell.id, cell.vertices.to_vec())).collect()
 }
@@ -65,7 +65,8 @@ fn a_mesh_of_triangle_has_attributes_markers_and_segments() {
     assert_eq!((data.name(), data.values()), ("attribute", &[7.5; 5][..]));
 }
 
-/// A damaged header may announce as many attributes as the file has bytes. Names that are compared in pairs would take minutes.
+/// A damaged header may announce as many attributes as the file has bytes. Comparing their names in pairs would take
+/// minutes.
 #[test]
 fn a_wrong_number_of_attributes_does_not_hold_up_reading() {
     let node = NODE.replace("5 2 1 1", "5 2 4000000000 0") + &"# padding\n".repeat(100_000);
@@ -77,7 +78,7 @@ fn a_wrong_number_of_attributes_does_not_hold_up_reading() {
     assert!(error.contains("no point data is called 'none'"), "{}", &error[..200]);
 }
 
-/// Triangle's `.ele` may have any number of attributes. Groups and content have all of them.
+/// Triangle's `.ele` may have several attributes per triangle. Groups and content include every attribute.
 #[test]
 fn each_attribute_of_triangles_is_a_kind_of_group() {
     let ele = "4 3 3\n1 1 2 5 9 0.5 a\n2 2 3 5 9 0.5 a\n3 3 4 5 9 1.5 b\n4 4 1 5 8 1.5 b";

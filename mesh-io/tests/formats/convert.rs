@@ -1,4 +1,4 @@
-//! Meshes converted to other formats: what comes back from them, and what is reported as lost.
+//! Conversions to other formats: the content that comes back, and the reported losses.
 
 use super::facts::mesh_of;
 use super::made::base;
@@ -10,14 +10,14 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Mutex;
 
-/// The content of a group: dimension, name, triangles, and numbers of lines and quadrilaterals.
+/// Returns the content of a group: dimension, name, triangles, and numbers of lines and quadrilaterals.
 fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
     let triangles = group.triangles().to_vec();
     (group.dimension, group.name.clone(), triangles, group.lines, group.quadrilaterals)
 }
 
-/// Converts a mesh to every format and reads it back: all of it must come back where nothing is reported as lost. Returns
-/// the number of formats without loss.
+/// Converts a mesh to every format and reads the result: the whole content must come back unless a loss is reported.
+/// Returns the number of formats without loss.
 fn check(file: &MeshFile, folder: &Folder) -> usize {
     let mut clean = 0;
     for (name, format) in Conversion::targets() {
@@ -33,7 +33,7 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
             own.sort_unstable();
         }
         assert_eq!(triangles, own, "{name}");
-        // What was written is read completely: converted again, it gives the same file without loss.
+        // The reader reads the whole file: a second conversion gives an equal file without loss.
         let again = Conversion::new(&back, format).unwrap().unwrap();
         let [again_text, text] = [&again, &conversion].map(|c| c.text().unwrap_or_default());
         let differ = again_text.lines().zip(text.lines()).find(|(again, first)| again != first);
@@ -49,10 +49,10 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         assert_eq!(free(&back), free(file), "{name}: other vertices are free");
         let (before, after) = (file.groups().unwrap(), back.groups().unwrap());
         let after: Vec<_> = after.iter().map(held).collect();
-        // A tag of zero is not a group in every format, and entities are replaced by physical groups where there are any.
+        // Tag 0 is not a group in every format, and physical groups, if there are any, replace entities.
         let is_kept = |group: &&Group| {
             let is_points = group.lines + group.triangles().len() + group.quadrilaterals == 0;
-            // An OBJ has its lines in the groups of its faces, and chains of nodes count as points.
+            // OBJ puts lines into the groups of faces, and chains of nodes count as points.
             let is_points =
                 is_points || (matches!(name, "obj" | "2dm" | "adcirc") && group.dimension < 2);
             group.tag != Some(0) && !group.kind.contains("entity") && !is_points
@@ -71,16 +71,16 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
             let of = |field: &mesh_io::PointField| {
                 (field.name().to_owned(), field.values().iter().map(bits).collect())
             };
-            // gmsh pads vectors of two numbers to three, so these are left out.
+            // Vectors of two numbers are skipped, as gmsh pads them to three numbers.
             fields.iter().filter(|field| field.components() != 2).map(of).collect()
         };
         let (mut before, after) = (values(file), values(&back));
-        // A third coordinate that is the same everywhere need not be written.
+        // A constant third coordinate may be missing in the output.
         let is_flat = |z: &Vec<u64>| z.iter().all(|bits| *bits == z[0]);
         if before.get("z").is_some_and(is_flat) {
             before.remove("z");
         }
-        // A depth is a height with the other sign.
+        // Depth and height have opposite signs.
         let turned = match (file.format(), format) {
             (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => Some(("depth", "z")),
             (Format::Sms2dm | Format::Mike, Format::Adcirc) => Some(("z", "depth")),
@@ -116,7 +116,7 @@ $EndPhysicalNames\n$Nodes\n6\n1 0 0 0.5\n2 1 0 1\n3 1 1 1\n4 0 1 1\n5 .5 .5 1\n6
 1 1 2 1 7 1 2\n2 1 2 2 8 2 3\n3 1 2 2 8 3 4\n4 1 2 2 9 4 1\n5 2 2 1 4 1 2 5\n6 2 2 1 4 2 3 5\n7 2 2 1 4 3 4 5\n\
 8 2 2 1 4 4 1 5\n9 2 2 3 4 2 6 3\n$EndElements\n$ElementData\n1\n\"e\"\n1\n0\n3\n0\n1\n1\n6 2.5\n$EndElementData\n";
 
-/// The mesh in another format, and the list of what is lost.
+/// Converts a mesh. Returns the text of the result and the reported losses.
 fn converted(name: &str, text: &str, to: Format) -> (String, String) {
     let folder = Folder::new(&[(name, text)]);
     let conversion = Conversion::new(&folder.read(name), to).unwrap().unwrap();
@@ -152,7 +152,7 @@ fn names_and_numbers_stand_where_formats_have_them() {
         "{lost}"
     );
 
-    // Groups named in one version of a format are named in the other.
+    // Names of groups pass from one version of gmsh's format to the other and back.
     let (newer, lost) = converted("in.msh", GMSH, Format::Gmsh41);
     assert_eq!(lost, "");
     let (older, lost) = converted("in.msh", &newer, Format::Gmsh22);
@@ -181,7 +181,7 @@ fn boundaries_of_a_grid_are_groups() {
         ("boundary line island2".into(), &[0, 3]),
     ];
     assert_eq!(told, expected);
-    // A list of a boundary that is cut off is skipped.
+    // A boundary list that is cut off is skipped.
     assert_eq!(folder.read("cut.14").groups().unwrap().len(), 2);
     let (gmsh, lost) = converted("in.14", GRID, Format::Gmsh22);
     assert_eq!(lost, "");
@@ -234,7 +234,7 @@ fn every_encoding_of_vtu_is_converted() {
     }
 }
 
-/// A damaged file that can be read can be converted.
+/// A damaged file that can be read can also be converted.
 #[test]
 fn damaged_files_are_converted_or_refused() {
     let mut random = damage::random(17);
@@ -272,11 +272,11 @@ fn depths_of_grids_are_heights_of_sms() {
     assert!(folder.text("a.2dm").ends_with(nodes), "{}", folder.text("a.2dm"));
     assert_eq!(convert("a.2dm", Format::Adcirc, "b.14"), [""; 0]);
     assert!(folder.text("b.14").contains(&grid[2..]), "{}", folder.text("b.14"));
-    // The loss of depths is reported: z of other formats may be anything, so depths are not converted to it.
+    // Depths are reported as lost: z of other formats may have any meaning, so depths do not become z.
     assert_eq!(convert("a.14", Format::Off, "a.off"), ["data of vertices: depth"]);
     assert_eq!(convert("a.2dm", Format::Off, "b.off"), [""; 0]);
     assert_eq!(convert("b.off", Format::Adcirc, "c.14"), ["third coordinates"]);
-    // A variable of nodes of UGRID is called so, or `z`, and what another format makes of it comes back.
+    // In UGRID, depths become the variable `depth` and third coordinates `z`, and both come back from other formats.
     assert_eq!(convert("a.14", Format::Ugrid, "a.nc"), [""; 0]);
     assert_eq!(folder.read("a.nc").data_names(), ["depth"]);
     assert_eq!(convert("a.nc", Format::Sms2dm, "d.2dm"), [""; 0]);

@@ -1,4 +1,4 @@
-//! Damages files at random.
+//! Random damage to files, and its test with the samples of Triangle and gmsh.
 
 use super::binary::{msh22, msh41};
 use super::facts::mesh_of;
@@ -6,7 +6,7 @@ use super::{ELE, GMSH22, GMSH41, NODE, POLY, triangle};
 use mesh_io::{Location, MeshFile, SourceLocation};
 use std::fs;
 
-/// A generator of random numbers below its argument, by SplitMix64.
+/// Returns a generator of random numbers below its argument, by SplitMix64.
 pub(crate) fn random(seed: u64) -> impl FnMut(usize) -> usize {
     let mut state = seed;
     move |below: usize| {
@@ -18,13 +18,13 @@ pub(crate) fn random(seed: u64) -> impl FnMut(usize) -> usize {
     }
 }
 
-/// The number of damaged files of a format: `usual`, or `GPU_SMOOTH_DAMAGES` for a longer test.
+/// Returns the number of damaged files per format: `usual`, or `GPU_SMOOTH_DAMAGES` for a longer test.
 pub(crate) fn rounds(usual: usize) -> usize {
     let wanted = std::env::var("GPU_SMOOTH_DAMAGES").ok();
     wanted.map_or(usual, |wanted| wanted.parse().expect("GPU_SMOOTH_DAMAGES is a number"))
 }
 
-/// The content with up to three random pieces cut, replaced or doubled.
+/// Returns the content with up to three random pieces cut, replaced or doubled.
 pub(crate) fn damaged(content: &[u8], mut random: impl FnMut(usize) -> usize) -> Vec<u8> {
     let bytes = b"0123456789 \n\r\t#$.-+eEdDnaifE\"\0\xFF";
     let mut damaged = content.to_vec();
@@ -41,7 +41,7 @@ pub(crate) fn damaged(content: &[u8], mut random: impl FnMut(usize) -> usize) ->
     damaged
 }
 
-/// Reading a file with random bytes cut, replaced or doubled gives an error or a mesh with places, never a panic.
+/// A file with random bytes cut, replaced or doubled gives an error or a mesh with all locations, never a panic.
 #[test]
 fn damaged_files_never_panic() {
     let mut random = random(7);

@@ -1,4 +1,4 @@
-//! Data of vertices: fields are found by their names and replaced in place, and nothing else changes.
+//! Data of vertices: fields are found by name and replaced in place, and no other byte changes.
 
 use super::facts::mesh_of;
 use super::made::base;
@@ -10,12 +10,12 @@ use mesh_io::{Conversion, Format, MeshFile, PointField};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The changed value: for three of four indices another one, with few digits.
+/// Returns a changed value with few digits; every fourth value stays unchanged.
 fn changed(value: f64, index: usize) -> f64 {
     value + 0.25 * (index % 4) as f64
 }
 
-/// Gives each field other values.
+/// Sets changed values in each field.
 fn change(fields: &mut [PointField]) {
     for field in fields {
         let values = field.values().iter().enumerate();
@@ -30,7 +30,8 @@ fn bits(fields: &[PointField]) -> Vec<(String, usize, Vec<u64>)> {
     all.collect()
 }
 
-/// Changes all data and coordinates of a file: it must hold the new numbers and be otherwise the same.
+/// Changes all data and coordinates of a file, and checks that the file has the new numbers and no other change.
+/// Returns how many numbers the fields have.
 fn check(folder: &Folder, name: &str) -> usize {
     let file = folder.read(name);
     let out = name.replace("in.", "out.").replace("fort", "out");
@@ -53,7 +54,7 @@ fn check(folder: &Folder, name: &str) -> usize {
     if numbers > 0 {
         assert!(file.difference(&after).is_some());
     }
-    // Changes only data, and then changes them back: the original numbers must be read.
+    // Changes only data, then restores them: the original numbers must be read.
     file.write_with_fields(&folder.path(&out), file.points(), &fields).unwrap();
     let after = folder.read(&out);
     let mut back = after.point_fields(None).unwrap();
@@ -81,7 +82,7 @@ fn data_are_replaced_in_every_format() {
     assert!(files >= 30 && numbers > 30 * files, "{numbers} numbers in {files} files");
 }
 
-/// Arrays follow each other, and each may change its length and so move those after it.
+/// Each array may change its length, which moves the arrays after it.
 #[test]
 fn data_are_replaced_in_every_encoding_of_vtu() {
     for style in styles().into_iter().step_by(3) {
@@ -93,7 +94,7 @@ fn data_are_replaced_in_every_encoding_of_vtu() {
     assert_eq!(file.data_names(), ["z", "flow", "wind"]);
 }
 
-/// In text, only the words that are numbers of data change. The file is split without the reader.
+/// In text, only words that are data change. The test splits the file without the reader.
 #[test]
 fn only_the_tokens_of_data_change_in_text() {
     let tried = AtomicUsize::new(0);
@@ -142,7 +143,8 @@ fn node_data_of_gmsh_are_those_of_the_nodes_they_name() {
     let mut values = v.values().to_vec();
     values[13] = 5.5;
     v.set(values).unwrap();
-    // The view lists no value for one node, so that value is not written. A value that is not finite leaves the number.
+    // The view has no value for one node, so the new value of this node is not written. A NaN leaves the number
+    // unchanged.
     assert_eq!(view.set(vec![f64::NAN, 9.0, 8.0, 9.0, 1.5]).unwrap(), 1);
     file.write_with_fields(&folder.path("out.msh"), file.points(), &fields).unwrap();
     let expected = GMSH.replace("30 7", "30 8.0").replace("50 4.0 5 6", "50 4.0 5.5 6");
@@ -150,7 +152,7 @@ fn node_data_of_gmsh_are_those_of_the_nodes_they_name() {
     assert!(fields[0].set(vec![0.0; 4]).is_err());
 }
 
-/// Many views of one node each, read as fields of all nodes, would take many times the size of the file.
+/// Many views of one node each, read as fields of all nodes, would take many times the file's memory.
 #[test]
 fn node_data_of_very_few_nodes_are_no_field() {
     let row = |n: u32| format!("{} {} 7 0\n", n + 100, n);
@@ -197,7 +199,7 @@ fn attributes_of_triangle_are_data() {
     assert_eq!(folder.text("out.node"), expected);
 }
 
-/// Every variable is read and replaced in every time step, in both byte orders.
+/// Every variable of SELAFIN is read and replaced in every time step, in both byte orders.
 #[test]
 fn variables_of_selafin_are_data_in_every_step() {
     let tried = AtomicUsize::new(0);
@@ -213,7 +215,7 @@ fn variables_of_selafin_are_data_in_every_step() {
     assert!(tried.into_inner() > 1);
 }
 
-/// Damaged data give an error or other values, never a panic. What is read can be written.
+/// Damaged data give an error or other values, never a panic. Fields that can be read can also be written.
 #[test]
 fn damaged_data_never_panic() {
     let mut random = damage::random(31);
@@ -238,10 +240,10 @@ fn damaged_data_never_panic() {
     assert!(read > 40, "{read} of 400 files were read");
 }
 
-/// Grids with a vertex of no depth were refused once, and so was NaN in other numbers of a PLY.
+/// Once, grids with a vertex without depth were refused, and PLY files with NaN in further properties.
 #[test]
 fn depths_and_other_numbers_need_not_be_finite() {
-    // A square and its center. The depth of the center is given.
+    // A square and its center, where `z` is the depth of the center.
     let square = ["0 0", "4 0", "4 4", "0 4"];
     let row = |before: &str, z: &str| -> String {
         let corner = |at: &&str| format!("{before}{at} 1\n");
@@ -315,7 +317,7 @@ fn depths_and_other_numbers_need_not_be_finite() {
     assert!(error.contains("b.ply:8: a whole number of an item is not finite"), "{error}");
 }
 
-/// Real numbers are looked at even where whole ones of the same name come before them.
+/// Real numbers are checked even if integers of an equal name come before them.
 #[test]
 fn damaged_data_of_a_name_that_is_there_twice_are_errors() {
     let head = "<Xdmf Version=\"3.0\"><Domain><Grid><Geometry Type=\"XY\"><DataItem Dimensions=\"4 2\">\

@@ -1,11 +1,11 @@
-//! Error messages: the file, the line, what stands there, and what to do.
+//! Error messages, which name the file, the line, the wrong text and a remedy.
 
 use super::{ELE, Folder, GMSH22, GMSH41, NODE, POLY, triangle};
 use mesh_io::{Format, MeshFile};
 use std::fs;
 use std::path::Path;
 
-/// Checks that reading the first file fails with one line that contains each of the parts.
+/// Checks that the first file is refused with a message of one line that contains all `parts`.
 fn assert_error(files: &[(&str, &str)], parts: &[&str]) {
     let folder = Folder::new(files);
     let error = MeshFile::read(&folder.path(files[0].0)).unwrap_err().to_string();

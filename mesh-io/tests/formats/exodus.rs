@@ -31,7 +31,8 @@ fn blocks_and_sets_are_groups() {
             ("sideset line shore", Some(40), 0, 2, 4),
             ("nodeset point 1", Some(1), 0, 0, 3),
         ] {
-            // The number of vertices is not checked for `steel`, as the mesh decides it.
+            // The vertex count of `steel` is not checked, as the block shares vertices with neighbors that the mesh
+            // determines.
             let found = told.iter().find(|group| group.0 == expected.0);
             let Some(found) = found else { panic!("no {} in {told:?}", expected.0) };
             assert_eq!((found.1, found.2, found.3), (expected.1, expected.2, expected.3));
@@ -83,7 +84,7 @@ fn files_that_are_no_exodus_mesh_are_refused_with_a_remedy() {
     refused(&replaced(&made.bytes, b"TRI3", b"TET4"), &["this a volume mesh"]);
     refused(&replaced(&made.bytes, b"TRI3", b"WORD"), &["elements of the type WORD", "TRI3"]);
     refused(&replaced(&made.bytes, b"coordy", b"coordw"), &["no coordinates in two or three axes"]);
-    // The offset of an array stands 24 bytes after its name. Here y gets the offset of x.
+    // The header has the offset of an array 24 bytes after the array's name. Here y gets the offset of x.
     let offset = |name: &[u8]| {
         let at = made.bytes.windows(name.len()).position(|part| part == name).unwrap();
         at + name.len() + 24

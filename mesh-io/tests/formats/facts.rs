@@ -1,9 +1,9 @@
-//! What a program that moves vertices makes of the facts of a file.
+//! Facts of a file as a program that moves vertices uses them: fixed vertices and remarks.
 
 use super::support::Mesh;
 use mesh_io::MeshFile;
 
-/// Returns the vertices that triangles of different regions share inside the mesh and that nothing else constrains,
+/// Returns the vertices inside the mesh between triangles of different regions that no other constraint holds,
 /// ascending.
 pub(crate) fn between_regions(file: &MeshFile) -> Vec<u32> {
     let constrained = &file.constraints().vertices;
@@ -12,18 +12,18 @@ pub(crate) fn between_regions(file: &MeshFile) -> Vec<u32> {
     between
 }
 
-/// Returns the vertices that a program would fix: those of constraints, then those between regions.
+/// Returns the vertices that a program would fix: constrained vertices, then vertices between regions.
 pub(crate) fn fixed(file: &MeshFile) -> Vec<u32> {
     [file.constraints().vertices.clone(), between_regions(file)].concat()
 }
 
-/// Returns the mesh with the vertices that a program would fix.
+/// Returns the mesh of a file with the vertices that a program would fix.
 pub(crate) fn mesh_of(file: &MeshFile) -> Mesh {
     let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
     Mesh { points, triangles, fixed: fixed(file) }
 }
 
-/// Returns the mesh with the vertices that a program would fix if vertices between regions may move.
+/// Returns the mesh of a file with its constrained vertices fixed. Vertices between regions are free.
 pub(crate) fn freed(file: &MeshFile) -> Mesh {
     Mesh { fixed: file.constraints().vertices.clone(), ..mesh_of(file) }
 }

@@ -1,6 +1,6 @@
-//! Golden files: hashes of every file that is written from the samples of all formats, recorded in `golden.txt` beside this
-//! file. A change of a recorded hash needs a commit of its own that says why.
-//! `GPU_SMOOTH_GOLDEN=write cargo test --test formats golden` writes the record.
+//! Golden files: hashes of every file that is written from the samples of all formats, recorded in `golden.txt` beside
+//! this file. A commit that changes a recorded hash must contain no other change, and must give the reason.
+//! `GPU_SMOOTH_GOLDEN=write cargo test -p mesh-io --test formats golden` writes the record.
 
 use super::facts::mesh_of;
 use super::made::{all, base};
@@ -10,17 +10,17 @@ use mesh_io::{Conversion, MeshFile};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// The command that writes the record.
+/// Command line that writes the record.
 const RECORD: &str = "GPU_SMOOTH_GOLDEN=write cargo test -p mesh-io --test formats golden";
 
-/// FNV-1a, 64 bits.
+/// Returns the FNV-1a hash with 64 bits.
 fn hash(bytes: impl IntoIterator<Item = u8>) -> u64 {
     bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
 }
 
-/// Returns hashes of the mesh as it is read, its groups, the files that hold it with moved vertices, and all conversions.
+/// Returns hashes of the mesh, its groups, its files with moved vertices, and all its conversions.
 fn hashes(folder: &Folder, file: &MeshFile, name: &str) -> String {
     let mesh = mesh_of(file);
     let mut fixed = mesh.fixed.clone();
@@ -48,7 +48,7 @@ fn hashes(folder: &Folder, file: &MeshFile, name: &str) -> String {
         let out = folder.path("moved").join(name);
         conversion.write(&out).unwrap();
         let paths = conversion.destinations(&out);
-        // A Triangle mesh without lines has no `.poly`.
+        // Triangle meshes without lines have no `.poly`, so some destinations do not exist.
         let there = paths.into_iter().filter(|path| path.exists());
         there.flat_map(|path| std::fs::read(path).unwrap()).collect::<Vec<_>>()
     });
@@ -95,7 +95,7 @@ fn files_written_from_every_sample_have_the_recorded_bytes() {
         std::fs::write(&path, &lines).unwrap();
     }
     let recorded = std::fs::read_to_string(&path).unwrap();
-    // A sample may stand before others: only its own line is missing then.
+    // A new sample may come before others, so the test reports only lines that the other text lacks.
     let missing = |from: &str, sign: &str, other: &str| {
         let has = |line: &&str| !other.lines().any(|own| own == *line);
         from.lines().filter(has).map(|line| format!("{sign} {line}")).collect::<Vec<_>>()

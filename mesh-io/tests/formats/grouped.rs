@@ -1,5 +1,5 @@
-//! Small files of each format with groups. Each is a square of four triangles around a fifth vertex. The first two
-//! triangles are of one region, the others of another.
+//! Small files of each format with groups. Each mesh is a square of four triangles around a fifth vertex. Triangles 0
+//! and 1 form one region, triangles 2 and 3 another.
 
 use super::support::Binary;
 
@@ -19,7 +19,8 @@ pub(crate) fn gmsh41() -> String {
     format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{names}{entities}{NODES41}{ELEMENTS41}")
 }
 
-/// A partitioned mesh: entities 7 and 8 are parts of surface 1, curve 7 is a part of curve 2, and point 3 is new.
+/// Returns a partitioned mesh: entities 7 and 8 are parts of surface 1, curve 7 is a part of curve 2, and point 3 is
+/// new.
 pub(crate) fn gmsh41_partitioned() -> String {
     let entities = "$Entities\n0 1 1 0\n2 0 0 0 1 0 0 1 5 0\n1 0 0 0 1 1 0 1 6 0\n$EndEntities\n";
     let parts = "$PartitionedEntities\n2\n1\n90 1\n1 1 2 0\n3 2 1 2 1 2 0 1 0 0\n7 1 2 1 1 0 0 0 1 0 0 1 5 0\n\
@@ -76,10 +77,10 @@ NMARK= 2\nMARKER_TAG= shore\nMARKER_ELEMS= 2\n3 0 1\n3 1 2\nSEND_RECV= 0\nMARKER
 pub(crate) const MEDIT: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n5\n0 0 3\n1 0 3\n1 1 0\n0 1 0\n.5 .5 0\n\
 Corners\n2\n1\n2\nEdges\n1\n1 2 3\nTriangles\n4\n1 2 5 0\n2 3 5 0\n3 4 5 -3\n4 1 5 -3\nRequiredVertices\n1\n5\nEnd\n";
 
-/// A mesh of Medit in binary. `last` is the keyword of its last list, and the one number in it.
+/// Returns a binary Medit mesh. `last` holds the keyword and the single number of the last list.
 pub(crate) fn meditb(last: [i32; 2]) -> Vec<u8> {
     let mut file = Binary::empty(false);
-    // Before each list stand its keyword, the place of the next list, and its length.
+    // Each list has a header with its keyword, the offset of the next list, and its length.
     file.ints(&[1, 2, 3, 20, 2]);
     let mut list = |keyword: i32, count: usize, body: &dyn Fn(&mut Binary)| {
         let mut content = Binary::empty(false);

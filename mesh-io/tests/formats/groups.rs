@@ -1,4 +1,4 @@
-//! What has a name in each format: groups, vertices by their numbers, arrays of point data.
+//! Names in each format: of groups, of vertices by number, and of arrays of point data.
 
 use super::Folder;
 use super::facts::{between_regions, fixed, remarks};
@@ -9,7 +9,7 @@ use super::grouped::{
 use mesh_io::{GroupError, Location, MeshFile, ReadError};
 use std::fs;
 
-/// Every group as text: its name as a user writes it, its kind, its numbers of points, lines, triangles and
+/// Returns each group as text: its name as a user writes it, its kind, its numbers of points, lines, triangles and
 /// quadrilaterals, and its vertices.
 fn told(file: &MeshFile) -> Vec<String> {
     let groups = file.groups().unwrap();
@@ -45,7 +45,7 @@ fn gmsh_has_physical_groups_and_entities() {
             "8 = entity surface 8: [0, 0, 2, 0] [0, 2, 3, 4]",
         ],
     );
-    // A name without a dimension, as in version 2.0, applies to all groups with the tag.
+    // A name without a dimension, as in version 2.0, belongs to all groups with the tag.
     let old = GMSH22.replace("1 1 \"the", "1 \"the").replace("2 1 \"sea", "5 \"sea");
     let folder = Folder::new(&[("in.msh", &old)]);
     assert_eq!(
@@ -65,7 +65,7 @@ fn gmsh_lists_the_physical_groups_of_entities_from_version_4_on() {
         "surface:7 = entity surface 7: [0, 0, 2, 0] [0, 1, 2, 4]",
         "8 = entity surface 8: [0, 0, 2, 0] [0, 2, 3, 4]",
     ];
-    // A curve may be in a group against its direction, and a surface in several.
+    // A curve may be in a group with opposite direction, and a surface may be in several groups.
     let physical = [
         "the shore = physical line the shore: [0, 1, 0, 0] [0, 1]",
         "sea # deep = physical surface sea # deep: [0, 0, 2, 0] [0, 1, 2, 4]",
@@ -141,7 +141,7 @@ fn medit_and_freefem_have_references_of_each_kind() {
     assert_groups("in.msh", FREEFEM.as_bytes(), &labels.each_ref().map(String::as_str));
 }
 
-/// Required triangles keep their vertices, as mmg does not change them.
+/// Vertices of required triangles stay fixed, as mmg does not change such triangles.
 #[test]
 fn vertices_of_required_triangles_stay() {
     let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n2\n3\n3");
@@ -162,11 +162,11 @@ fn vertices_of_required_triangles_stay() {
         let references = "-3 = reference surface -3: [0, 0, 2, 0] [0, 2, 3, 4]";
         assert!(told.contains(&references.to_owned()), "{told:?}");
     }
-    // The number of a triangle that does not exist is not an error.
+    // A required triangle that does not exist is not an error.
     let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n1\n99");
     let folder = Folder::new(&[("in.mesh", &text)]);
     assert_eq!(between_regions(&folder.read("in.mesh")), [4]);
-    // Nor does such a number hide the ones after it.
+    // A required triangle that does not exist does not hide later entries of the list.
     let text = MEDIT.replace("RequiredVertices\n1\n5", "RequiredTriangles\n2\n0\n3");
     let folder = Folder::new(&[("in.mesh", &text)]);
     let fixed = fixed(&folder.read("in.mesh"));
@@ -271,7 +271,7 @@ fn triangles_of_a_group_are_those_of_the_mesh() {
     );
 }
 
-/// A mesh is read however its entities are damaged. Groups are then read, or refused with a place.
+/// A mesh with damaged entities is read. Reading its groups then succeeds, or fails with a location.
 #[test]
 fn damaged_entities_are_refused_only_where_groups_are_asked_for() {
     let text = gmsh41();

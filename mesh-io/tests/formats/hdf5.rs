@@ -1,4 +1,4 @@
-//! Meshes in HDF5, as several programs write them: `h5/make.py` has made the files.
+//! Meshes in HDF5 files of several programs, made by `h5/make.py`.
 
 use super::damage::{self, damaged, random};
 use super::facts::{between_regions, fixed, mesh_of};
@@ -8,11 +8,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// A file, and those beside it that it names.
+/// A mesh file with its companion files.
 pub(crate) struct Sample {
     pub(crate) name: &'static str,
     pub(crate) beside: &'static [&'static str],
-    /// Whether all numbers stand in the file as they are, so that its length does not change.
+    /// Whether all numbers are uncompressed, so that a rewrite keeps the length of the file.
     is_plain: bool,
 }
 
@@ -35,7 +35,7 @@ pub(crate) fn made(name: &str) -> PathBuf {
 }
 
 impl Sample {
-    /// A folder with the files.
+    /// Returns a folder with copies of the files.
     pub(crate) fn folder(&self) -> Folder {
         let folder = Folder::new(&[]);
         for name in [self.name].iter().chain(self.beside) {
@@ -44,13 +44,14 @@ impl Sample {
         folder
     }
 
-    /// What the files that are called so hold.
+    /// Returns the current content of all files of a mesh.
     fn bytes(&self, file: &MeshFile) -> Vec<Vec<u8>> {
         file.paths().map(|path| fs::read(path).unwrap()).collect()
     }
 }
 
-/// What files give that may be damaged: a mesh whose parts are found again, or an error of one line with the name of one of them.
+/// Reads files that may be damaged: a mesh must have a location for each vertex and triangle, and an error must have
+/// one line and name a file. Returns the mesh, or `None` for an error.
 fn mesh_or_error(folder: &Folder, sample: &Sample) -> Option<MeshFile> {
     match MeshFile::read(&folder.path(sample.name)) {
         Ok(file) => {
@@ -75,7 +76,7 @@ pub(crate) fn bits(points: &[[f64; 2]]) -> Vec<[u64; 2]> {
     points.iter().map(|p| p.map(f64::to_bits)).collect()
 }
 
-/// Where the corners of each triangle are, in any order.
+/// Returns the coordinate bits of each triangle's corners, independent of the numbering of vertices and triangles.
 fn corners(mesh: &super::support::Mesh) -> Vec<[[u64; 2]; 3]> {
     let of = |triangle: &[u32; 3]| {
         let mut corners = triangle.map(|v| mesh.points[v as usize].map(f64::to_bits));
@@ -88,7 +89,7 @@ fn corners(mesh: &super::support::Mesh) -> Vec<[[u64; 2]; 3]> {
     all
 }
 
-/// The points with those that may move at other places, of digits that take room.
+/// Returns the points with free vertices moved to coordinates with many digits, which compress badly.
 pub(crate) fn moved(file: &MeshFile, by: f64) -> Vec<[f64; 2]> {
     let mut points = file.points().to_vec();
     let held = check::held(&mesh_of(file));
@@ -99,13 +100,13 @@ pub(crate) fn moved(file: &MeshFile, by: f64) -> Vec<[f64; 2]> {
     points
 }
 
-/// Demands an error with all of these parts.
+/// Checks that the read failed with an error that contains all `parts`.
 pub(crate) fn refused(read: Result<MeshFile, mesh_io::ReadError>, parts: &[&str]) {
     let error = read.unwrap_err().to_string();
     assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
 }
 
-/// What is read of each is what the plain file has.
+/// Every sample gives the mesh of the file with plain numbers.
 #[test]
 fn every_sample_holds_the_same_mesh() {
     let plain = MeshFile::read(&made("plain.xdmf")).unwrap();
@@ -137,7 +138,7 @@ fn an_hdf5_mesh_that_did_not_move_keeps_its_bytes() {
     }
 }
 
-/// Again and again, as chunks that have gone to the end of the file may go there once more.
+/// Each file is written several times, as chunks that were moved to the end of the file may move again.
 #[test]
 fn only_coordinates_change() {
     for sample in &SAMPLES {
@@ -170,7 +171,7 @@ fn only_coordinates_change() {
     }
 }
 
-/// A chunk whose length changes replaces the old chunk at the end of the file.
+/// If a chunk at the end of the file changes its length, the new chunk replaces the old one.
 #[test]
 fn a_mesh_that_is_written_in_place_many_times_does_not_grow_without_bound() {
     for sample in SAMPLES.iter().filter(|sample| !sample.is_plain) {
@@ -179,7 +180,7 @@ fn a_mesh_that_is_written_in_place_many_times_does_not_grow_without_bound() {
         for round in 0..40 {
             let file = folder.read(sample.name);
             let to = match round % 4 {
-                // Points that compress better.
+                // Coordinates with few digits compress better.
                 3 => file.points().iter().map(|p| p.map(|x| (x * 64.0).round() / 64.0)).collect(),
                 _ => moved(&file, f64::from(round)),
             };
@@ -194,7 +195,7 @@ fn a_mesh_that_is_written_in_place_many_times_does_not_grow_without_bound() {
     }
 }
 
-/// A byte that is none of a coordinate shows, wherever it is.
+/// A changed byte outside of coordinates is found at any offset.
 #[test]
 fn compare_finds_a_changed_byte_outside_coordinates() {
     for sample in &SAMPLES {
@@ -215,7 +216,7 @@ fn compare_finds_a_changed_byte_outside_coordinates() {
     }
 }
 
-/// Data of vertices are written as coordinates are, and with them.
+/// Data of vertices are written like coordinates, and together with coordinates.
 #[test]
 fn data_are_replaced() {
     for sample in &SAMPLES {
@@ -240,7 +241,7 @@ fn data_are_replaced() {
         }
         let sides = [&found[..], &fields[..]];
         assert_eq!(again.difference_ignoring(&file, sides), None, "{}", sample.name);
-        // And back to the same numbers.
+        // Restoring the values gives the original numbers.
         let mut back = found;
         let set =
             |(field, values): (&mut PointField, &Vec<f64>)| field.set(values.clone()).unwrap();
@@ -254,7 +255,7 @@ fn data_are_replaced() {
     }
 }
 
-/// Families of MED tell regions, and groups have their names.
+/// Families of MED determine regions, and groups keep their names.
 #[test]
 fn groups_of_med_have_their_names() {
     let file = MeshFile::read(&made("gmsh.med")).unwrap();
@@ -270,7 +271,7 @@ fn groups_of_med_have_their_names() {
     assert!(text.contains("\"steel\""), "{text}");
 }
 
-/// Sections of CGNS tell regions; boundary conditions and families are groups.
+/// Sections of CGNS determine regions; boundary conditions and families are groups.
 #[test]
 fn sections_and_boundaries_of_cgns_are_groups() {
     let file = MeshFile::read(&made("gmsh.cgns")).unwrap();
@@ -287,7 +288,7 @@ fn sections_and_boundaries_of_cgns_are_groups() {
     assert_eq!(place.id, 2);
 }
 
-/// Under an ending of HDF5, or none, the content tells what it is, and in place it keeps its name.
+/// With an extension of HDF5 or none, the content determines the format, and a write in place keeps the file name.
 #[test]
 fn any_file_of_hdf5_is_known_by_its_content() {
     let all = [
@@ -312,7 +313,7 @@ fn any_file_of_hdf5_is_known_by_its_content() {
     );
 }
 
-/// What netCDF-4 has is what the classic format has: groups and their names, and data in every time step.
+/// A netCDF-4 file gives the same content as the classic file: groups, names, and data in every time step.
 #[test]
 fn netcdf_files_of_every_format_hold_the_same_mesh() {
     let classic = MeshFile::read(&made("classic.exo")).unwrap();
@@ -335,7 +336,7 @@ fn netcdf_files_of_every_format_hold_the_same_mesh() {
     }
 }
 
-/// Random bytes cut, replaced, doubled: an error or a mesh that can be located, never a panic.
+/// Files with random bytes cut, replaced or doubled give an error or a mesh with all locations, never a panic.
 #[test]
 fn damaged_files_of_hdf5_never_panic() {
     let mut random = random(23);
@@ -350,7 +351,7 @@ fn damaged_files_of_hdf5_never_panic() {
         for round in 0..rounds {
             let part = round % files.len();
             let content = match round % 3 {
-                // Text and counts of another length are seldom read: a byte more often is.
+                // Two of three rounds change a single byte, as most files of another length are refused at once.
                 0 => damaged(&whole[part], &mut random),
                 _ => {
                     let mut content = whole[part].clone();
@@ -374,7 +375,7 @@ fn damaged_files_of_hdf5_never_panic() {
                 }
             }
             assert!(start.elapsed().as_secs() < 10, "{} takes forever", sample.name);
-            // What was damaged, and what was written.
+            // Restores the damaged file, and every seventh round all files, which the write may have changed.
             for (name, bytes) in files.iter().zip(&whole) {
                 if name == &files[part] || round % 7 == 0 {
                     folder.put(name, bytes);

@@ -1,12 +1,12 @@
 //! Unusual layouts of text that the programs of a format read: commas between numbers, items anywhere on lines, rows
-//! continued by a backslash. Each gives the mesh of the plain layout, and is kept when it is written, but for moved vertices.
+//! continued by a backslash. Each layout gives the mesh of the plain layout, and a rewrite changes only moved vertices.
 
 use super::Folder;
 use super::facts::{fixed, mesh_of};
 use super::long;
 use mesh_io::MeshFile;
 
-/// Reads a mesh in a plain and in an odd layout, checks that they agree, and moves a vertex of the odd one.
+/// Reads a mesh in a plain and in an odd layout, checks that both meshes are equal, and moves a vertex of the odd file.
 #[track_caller]
 pub(crate) fn assert_same(name: &str, plain: &str, odd: &str) -> MeshFile {
     assert_ne!(plain, odd);
@@ -49,7 +49,7 @@ pub(crate) fn assert_refused(name: &str, text: &str, parts: &[&str]) {
 const GRID: &str = "bay\n2 4\n1 0.0 0.0 1.5\n2 1.0 0.0 2.5\n3 1.0 1.25 0.5\n4 0.0 1.0 0.5\n1 3 1 2 3\n\
 2 3 1 3 4\n1 = open boundaries\n2 = nodes\n2 = nodes of the first\n1\n2\n0\n0\n";
 
-/// The text with each row of a node or element changed.
+/// Returns the text with each row of a node or element changed.
 fn rows(text: &str, change: impl Fn(&str) -> String) -> String {
     let is_row = |(line, text): (usize, &str)| match (2..8).contains(&line) {
         true => change(text),
@@ -71,10 +71,10 @@ fn grids_are_read_as_fortran_reads_lists() {
         rows(GRID, |row| format!("{},\n", row.replace(' ', ","))).replace("\n2 4\n", "\n2,4\n");
     assert_same("a.gr3", GRID, &commas);
     assert_same("a.dat", GRID, &commas);
-    // What follows a slash on a line is not read.
+    // The rest of a line after a slash is ignored.
     let slash = rows(GRID, |row| format!("{row}/ 7 8\n")).replace("\n2 4\n", "\n2 4/ of them\n");
     assert_same("fort.14", GRID, &slash);
-    // Rows broken over several lines, as programs write long ones.
+    // Rows of several lines, into which programs break long rows.
     for (from, to) in [(" ", "\n "), (" ", ",\n"), (" ", "\r\n"), (".0 ", ".0\n  ")] {
         assert_same("fort.14", GRID, &rows(GRID, |row| format!("{}\n", row.replace(from, to))));
     }
@@ -84,7 +84,7 @@ fn grids_are_read_as_fortran_reads_lists() {
     let repeated =
         "fort.14:5: y of node 3 is `2*1.25`, a repeated number. Write each number by itself";
     assert_refused("fort.14", &GRID.replace("1.25", "2*1.25"), &[repeated]);
-    // A row that lacks a number does not continue in the next row.
+    // A row with a missing number does not continue in the next row.
     assert_refused(
         "fort.14",
         &GRID.replace("1.25 0.5", "1.25"),
@@ -150,7 +150,7 @@ fn items_of_medit_stand_anywhere_on_lines() {
     let few =
         "a.mesh:8: `0` stands where a keyword should. Correct the count of the list before it";
     assert_refused("a.mesh", &MEDIT.replace("Vertices\n4", "Vertices\n3"), &[few]);
-    // One row in a list of plain rows lacks a number.
+    // A single row of the list lacks a number.
     let missing = "a.mesh:7: the reference of a vertex is missing. Correct the line";
     assert_refused("a.mesh", &MEDIT.replace("1.25 0", "1.25"), &[missing]);
 }
@@ -176,7 +176,7 @@ fn vertices_of_an_off_stand_anywhere_on_lines() {
     let normals =
         OFF.replace("OFF", "NOFF").replace(" 0\n", " 0 0 0 1 ").replace("1 3 0", "1\n3 0");
     assert_same("a.off", OFF, &OFF.replace("0 1 0\n3", "0 1 0 255 0 0\n3"));
-    // Colors that the header does not announce.
+    // Vertices have colors although the header announces none.
     assert_same("a.off", OFF, &OFF.replace(" 0\n", " 0 255 0 0\n"));
     let folder = Folder::new(&[("a.off", &normals), ("b.off", OFF)]);
     assert_eq!(mesh_of(&folder.read("a.off")), mesh_of(&folder.read("b.off")));
@@ -232,7 +232,7 @@ fn comments_of_su2_follow_numbers_at_once() {
         SU2,
         &SU2.replace("NPOIN= 4", "NPOIN= 4%points").replace("shore", "shore%x"),
     );
-    // A file of a partitioned mesh.
+    // Partitioned meshes have a keyword for the exchange between partitions.
     assert_same("a.su2", SU2, &SU2.replace("ELEMS= 2\n", "ELEMS= 2\nSEND_TO= 1\n"));
 }
 
@@ -257,7 +257,7 @@ fn numbers_of_triangle_may_have_a_comma_behind() {
     assert_eq!(folder.text("c.ele"), commas(ELE));
 }
 
-/// Long lists with odd rows among plain ones: several threads read them as one thread does.
+/// Long lists with odd rows among plain rows give equal meshes on several threads and on one thread.
 #[test]
 fn odd_rows_in_long_lists_are_read_in_their_order() {
     let (points, triangles) = (long::points(), long::triangles());
@@ -293,7 +293,7 @@ fn odd_rows_in_long_lists_are_read_in_their_order() {
     }
 }
 
-/// Vertices that moved would change the bytes of the other list.
+/// The next list of a binary Medit file starts within the vertices, so a moved vertex would change the other list.
 #[test]
 fn lists_of_a_binary_medit_that_share_bytes_are_refused() {
     let file = |next: i32| {

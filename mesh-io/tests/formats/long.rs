@@ -1,13 +1,14 @@
-//! Lists that are long enough for several threads to read and write them: results are those of short lists.
+//! Lists that are long enough for several threads: reads and writes give the results of short lists.
 
 use super::Folder;
 use mesh_io::{Location, MeshFile};
 use std::fmt::Write;
 
-/// Vertices along a side.
+/// Number of vertices along a side of the mesh.
 const SIDE: usize = 180;
 
-/// The text of a mesh with comments and blank lines, and the line numbers of its vertices and triangles.
+/// The text of a mesh with comments and blank lines, and the line numbers of its vertices and triangles, counted from
+/// 1.
 struct Text {
     name: &'static str,
     text: String,
@@ -23,7 +24,7 @@ impl Text {
         Text { name, text: String::new(), end, lines: 0, vertex_lines, triangle_lines }
     }
 
-    /// Adds a row, here and there after a blank or comment line. Returns its line.
+    /// Adds a row, sometimes after a blank or comment line. Returns the line number of the row.
     fn row(&mut self, row: &str) -> usize {
         if self.lines % 97 == 5 {
             self.line("");
@@ -41,7 +42,7 @@ impl Text {
         self.lines
     }
 
-    /// The text with one line replaced, or left out for `None`.
+    /// Returns the text with one line replaced, or removed if `by` is `None`.
     fn with(&self, line: usize, by: Option<&str>) -> String {
         let mut text: Vec<&str> = self.text.split_inclusive(self.end).collect();
         let replaced = by.map(|by| format!("{by}{}", self.end)).unwrap_or_default();
@@ -61,13 +62,13 @@ pub(crate) fn triangles() -> Vec<[u32; 3]> {
     halves.map(|triangle| triangle.map(|v| v as u32)).collect()
 }
 
-/// A mesh in each format, with its first vertex under number `first`.
+/// Returns a mesh in each format; the first vertex has the number `first`.
 fn texts(points: &[[f64; 2]], end: &'static str, first: usize) -> [Text; 4] {
     let mut texts = ["m.node", "m.ele", "2.msh", "4.msh"].map(|name| Text::new(name, end));
     let [node, ele, v2, v4] = &mut texts;
     let triangles = triangles();
     let (n, m) = (points.len(), triangles.len());
-    // Tags are not consecutive in one of the files.
+    // Tags are three apart in version 2.2 of gmsh's format, and consecutive in version 4.1.
     let (apart, tag) = (|v: usize| 3 * (v + first), |v: usize| v + first);
     node.row(&format!("{n} 2"));
     ele.row(&format!("{m} 3"));
@@ -249,9 +250,9 @@ fn errors_in_long_lists_name_their_line() {
         let line = v4.triangle_lines[at];
         check(v4, line, Some("5 3 6 6"), line, "triangle 5 lists node 6 twice");
     }
-    // One row too few, and one row announced too many.
+    // One row is removed, so the header announces one row too many.
     let line = node.vertex_lines[20_000];
-    // The row stands one line higher, as one was removed before it.
+    // The next row moves up by one line.
     let next = node.vertex_lines[20_001] - 1;
     check(node, line, None, next, "vertex 20002 stands where vertex 20001 should");
     let last_row = node.vertex_lines[SIDE * SIDE - 1];
@@ -260,7 +261,8 @@ fn errors_in_long_lists_name_their_line() {
     check(ele, last_row, None, ele.lines - 1, "the file ends after 64081 of 64082 triangles");
 }
 
-/// The mesh in formats with one list after another, in two regions. Vertices have references where the format has them.
+/// Returns the mesh in formats that consist of plain lists, with two regions, and with references of vertices where a
+/// format has them.
 fn plain_texts() -> Vec<(&'static str, String)> {
     let (points, triangles) = (points(), triangles());
     let (n, m) = (points.len(), triangles.len());

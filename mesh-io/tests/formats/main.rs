@@ -1,4 +1,4 @@
-//! Reading and writing mesh files: what comes back byte for byte, and what each error message says.
+//! Tests of reading and writing mesh files: byte-for-byte rewrites, and the wording of error messages.
 
 mod abaqus;
 mod beside;
@@ -119,7 +119,7 @@ fn triangle_numbers_may_start_at_zero() {
     let folder = Folder::new(&[("m.node", node), ("m.ele", "1 3\n0 0 1 2\n"), ("m.poly", own)]);
     let file = folder.read("m.node");
     assert_eq!(file.triangles(), [[0, 1, 2]]);
-    // Fixed are the vertices that the .poly lists, under its own numbers, and the ends of its segment.
+    // The fixed vertices are those that the .poly lists, under its own numbers, then the ends of its segment.
     assert_eq!(fixed(&file), [0, 1, 2, 2, 0]);
     assert_eq!(file.triangle_location(0).id, 0);
     let place = file.vertex_location(2);
@@ -139,7 +139,7 @@ fn gmsh_maps_tags_and_fixes_what_is_not_a_triangle() {
     let file = folder.read("b.msh");
     assert_eq!(file.format(), Format::Gmsh41);
     assert_eq!(file.triangles(), [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
-    // Vertex 0 is also in a block of a point of the model.
+    // A node block on a point of the model also holds vertex 0.
     assert_eq!(fixed(&file), [0, 0, 1]);
     assert!(remarks(&file).is_empty() && file.has_parameters());
 }
@@ -199,7 +199,7 @@ fn places_asked_for_together_are_those_asked_for_one_by_one() {
     let gmsh = Folder::new(&[("a.msh", GMSH22), ("b.msh", GMSH41)]);
     for file in [folder.read("la.1"), gmsh.read("a.msh"), gmsh.read("b.msh")] {
         let (vertices, triangles) = (file.points().len(), file.triangles().len());
-        // In any order, repeated, and some that do not exist.
+        // The indices are in any order, some are repeated, and some do not exist.
         let places = file.triangle_locations([triangles, triangles - 1, 1, 0, 1, usize::MAX]);
         assert!(places.keys().copied().eq([0, 1, triangles - 1]));
         assert!(places.iter().all(|(&t, place)| *place == file.triangle_location(t)));
@@ -254,7 +254,7 @@ fn only_moved_coordinates_change() {
     for (text, expected) in replaced {
         let folder = Folder::new(&[("a.msh", text)]);
         let file = folder.read("a.msh");
-        // Overwrites its input.
+        // The output file is the input file.
         file.write(&folder.path("a.msh"), &moved(&file)).unwrap();
         assert_eq!(folder.text("a.msh"), expected);
         let again = folder.read("a.msh");

@@ -1,4 +1,4 @@
-//! File names of Triangle's meshes: what is written is found again when it is read.
+//! File names of Triangle meshes: a written mesh is found by each of its names.
 
 use super::facts::mesh_of;
 use super::{ELE, Folder, NODE, POLY};
@@ -34,7 +34,7 @@ fn a_mesh_is_not_written_where_another_file_would_be_read_with_it() {
     }
     let names = ["out.node", "out.ele", "plain.node", "plain.ele"];
     assert!(names.iter().all(|name| !folder.path(name).exists()));
-    // The mesh has a .poly of its own, which replaces the older one.
+    // Now the mesh has a .poly of its own, which replaces the older file.
     fs::write(folder.path("in.poly"), POLY).unwrap();
     let file = MeshFile::read(&folder.path("in.node")).unwrap();
     file.write(&folder.path("out.node"), file.points()).unwrap();

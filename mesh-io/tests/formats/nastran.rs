@@ -1,4 +1,4 @@
-//! Bulk data of Nastran: fields in every form, what holds vertices, properties, what is refused, and how numbers are written.
+//! Bulk data of Nastran: fields of all widths, held vertices, properties, refused cards, and the digits of coordinates.
 
 use super::Folder;
 use super::facts::{between_regions, fixed, remarks};
@@ -15,7 +15,7 @@ fn deck() -> String {
     ["BEGIN BULK\n", NODES, ELEMENTS, "ENDDATA\n"].concat()
 }
 
-/// All triangles of one property, so that vertex 5 is free.
+/// Returns the deck with all triangles of one property, so that vertex 5 is free.
 fn one() -> String {
     deck().replace(",9,", ",7,")
 }
@@ -31,7 +31,7 @@ fn written(file: &MeshFile, points: &[[f64; 2]]) -> String {
     String::from_utf8(out).unwrap()
 }
 
-/// The text with vertex 5 moved.
+/// Returns the text with vertex 5 moved.
 fn moved(text: &str, to: [f64; 2]) -> String {
     let file = read(text);
     let mut points = file.points().to_vec();
@@ -43,7 +43,7 @@ fn moved(text: &str, to: [f64; 2]) -> String {
     out
 }
 
-/// The fields of all lines, without blanks around them.
+/// Returns the fields of all lines, without blanks around their contents.
 pub(crate) fn fields(text: &str) -> Vec<String> {
     let of_line = |line: &str| -> Vec<String> {
         if line.chars().take(10).any(|letter| letter == ',') {
@@ -64,7 +64,7 @@ pub(crate) fn fields(text: &str) -> Vec<String> {
     text.lines().flat_map(of_line).collect()
 }
 
-/// The value of a number whose exponent has no letter.
+/// Parses a number whose exponent has no letter.
 pub(crate) fn value(word: &str) -> f64 {
     let sign = word.rfind(['+', '-']).unwrap();
     format!("{}e{}", &word[..sign], &word[sign..]).parse().unwrap()
@@ -196,7 +196,7 @@ fn elements_that_are_no_triangles_hold_their_vertices() {
     assert_eq!(held("CONROD,7,3,5,1,.5"), [2, 4]);
     assert_eq!(held("PLOTEL,7,3,5"), [2, 4]);
     assert_eq!(held("CONM2,7,5,,1."), [4]);
-    // The other end of a spring may be a scalar point, or the ground.
+    // The other end of a spring may be a scalar point or the ground.
     assert_eq!(held("CELAS1,7,1,5,1,99,1"), [4]);
     assert_eq!(held("CELAS2,7,1.+3,5,1"), [4]);
     assert_eq!(held("CBUSH,7,1,5,,,,,0"), [4]);
@@ -255,7 +255,7 @@ fn third_coordinates_are_data_if_they_differ() {
     assert_eq!(changed[0].values()[4], -0.142_857);
 }
 
-/// Each field has as many characters as before, also where numbers stand side by side.
+/// Each field keeps its width, even if numbers touch each other.
 #[test]
 fn coordinates_fit_into_their_fields() {
     let with = |card: &str| one().replace("GRID,5,,1.,1.25,0.", card);
@@ -293,7 +293,7 @@ fn coordinates_fit_into_their_fields() {
             "GRID,5,,-0.3333333333333333,12.345678901234567,0.",
         ),
     ] {
-        // Nodes in free field are as precise as the longest of them.
+        // Free field uses the precision of its longest number for all nodes.
         let others = match precision {
             Precision::Text8 => with(card),
             _ => with(card).replace("GRID,1,,0.", "GRID,1,,0.0000000000"),
@@ -302,7 +302,7 @@ fn coordinates_fit_into_their_fields() {
         let out = moved(&others, [-1.0 / 3.0, 12.345_678_901_234_567]);
         assert_eq!(out, others.replace(card, expected), "{card}");
     }
-    // Numbers with fewer digits stand where the old ones stood in their fields.
+    // Shorter numbers keep the alignment of the old numbers in their fields.
     for (card, expected) in [
         (
             "GRID           5              1.    1.25      0.",
@@ -316,13 +316,13 @@ fn coordinates_fit_into_their_fields() {
     ] {
         assert_eq!(moved(&with(card), [0.5, -2.5]), with(expected));
     }
-    // Exponents without a letter, and numbers in blank fields.
+    // Numbers that need an exponent, written without a letter, in fields that were blank.
     let blank = "GRID    5                               0.";
     let out = moved(&with(blank), [-1.234_567e-5, 1e-9 / 7.0]);
     assert_eq!(out, with(blank).replace(blank, "GRID    5               -1.235-5.14286-90."));
 }
 
-/// Programs read no more of a number than its field has, so that all nodes count as if they were in the smallest one.
+/// Programs read no more of a number than its field holds, so the narrowest field gives the precision of all nodes.
 #[test]
 fn the_smallest_field_gives_the_precision() {
     let small = "GRID    5               1.      1.25    0.";
@@ -337,7 +337,7 @@ fn the_smallest_field_gives_the_precision() {
     assert!(remarks(&read(&one())).is_empty());
 }
 
-/// Every comment was once a row that looked for its continuation among all comments after it.
+/// Once, every comment counted as a row, and searched all later comments for a continuation.
 #[test]
 fn many_comments_take_no_time() {
     let start = std::time::Instant::now();

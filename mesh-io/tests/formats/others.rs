@@ -1,4 +1,4 @@
-//! Formats of other programs: what is read from each variant of them, and what is written.
+//! Formats of other programs: the mesh that each variant gives, and the file that is written.
 
 use super::Folder;
 use super::facts::{between_regions, fixed, freed};
@@ -13,7 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Runs a check on every variant, and fails with the names of those that failed.
+/// Runs a check on every variant, and fails with the names of the failing variants.
 #[track_caller]
 pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made) + Sync) {
     let all = all(mesh);
@@ -25,7 +25,7 @@ pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made) + Sync) {
             }
         }
     };
-    // Threads of their own: a thread of rayon would go on with another variant while it waits for the parts of a file.
+    // Not threads of rayon, which would start another variant while they wait for the parts of a file.
     std::thread::scope(|scope| {
         (0..4).for_each(|_| drop(scope.spawn(work)));
     });
@@ -33,19 +33,19 @@ pub(crate) fn for_each(mesh: &Mesh, check: impl Fn(&Made) + Sync) {
     assert!(failed.is_empty(), "{} of {} failed: {failed:#?}", failed.len(), all.len());
 }
 
-/// A folder with a file of these bytes under the sample's name.
+/// Returns a folder with a file of the sample's name and these bytes.
 pub(crate) fn folder(made: &Made, bytes: &[u8]) -> Folder {
     let folder = Folder::new(&[]);
     fs::write(folder.path(made.name), bytes).unwrap();
     folder
 }
 
-/// The text with a carriage return before each line feed.
+/// Returns the text with a carriage return before each line feed.
 fn with_crlf(bytes: &[u8]) -> Vec<u8> {
     str::from_utf8(bytes).unwrap().replace('\n', "\r\n").into_bytes()
 }
 
-/// The bytes of the file; for text, also with carriage returns before line feeds.
+/// Returns the bytes of the file; for text, also a copy with carriage returns before line feeds.
 fn both_ends(made: &Made) -> Vec<Vec<u8>> {
     let mut both = vec![made.bytes.clone()];
     if made.is_text() {
@@ -81,7 +81,7 @@ fn every_variant_is_read_as_what_it_holds() {
     });
 }
 
-/// Every format is tested here or, as those of Triangle and gmsh, in other files, and has its row in docs/formats.md.
+/// Every format is tested here or, like Triangle and gmsh, in other files, and has a row in docs/formats.md.
 #[test]
 fn every_format_is_tried_and_documented() {
     let made: BTreeSet<String> = all(&base()).iter().map(|made| made.format.to_string()).collect();
@@ -113,14 +113,14 @@ fn unmoved_points_give_the_same_bytes_in_every_variant() {
             let file = folder.read(made.name);
             file.write(&folder.path("out"), file.points()).unwrap();
             assert!(fs::read(folder.path("out")).unwrap() == bytes, "the bytes have changed");
-            // Digits that the file's precision cannot hold do not count as a move.
+            // Digits beyond the precision of the file do not count as a move.
             file.write(&folder.path("out"), &made.mesh.points).unwrap();
             assert!(fs::read(folder.path("out")).unwrap() == bytes, "the bytes have changed");
         }
     });
 }
 
-/// The points with all free vertices moved.
+/// Returns the points with all free vertices moved.
 fn moved(file: &MeshFile) -> Vec<[f64; 2]> {
     let mut rng = SplitMix64::new(3);
     let mut points = file.points().to_vec();
@@ -137,7 +137,7 @@ fn moved(file: &MeshFile) -> Vec<[f64; 2]> {
     points
 }
 
-/// Words and the separators between them, in turn; of Nastran what stands in each field.
+/// Splits a text into words and the separators between the words, or a Nastran file into the contents of its fields.
 pub(crate) fn pieces(format: Format, bytes: &[u8]) -> Vec<String> {
     if format == Format::Nastran {
         return nastran::fields(str::from_utf8(bytes).unwrap());
@@ -152,7 +152,7 @@ pub(crate) fn value(word: &str) -> f64 {
     number.parse().unwrap_or_else(|_| nastran::value(&number))
 }
 
-/// Checks that the words that differ are exactly the coordinates that moved.
+/// Checks that exactly the words of moved coordinates differ.
 fn assert_text_moved(made: &Made, before: &[u8], after: &[u8], to: &[[f64; 2]]) {
     let [old, new] = [before, after].map(|bytes| pieces(made.format, bytes));
     assert_eq!(old.len(), new.len());
@@ -175,7 +175,7 @@ fn assert_text_moved(made: &Made, before: &[u8], after: &[u8], to: &[[f64; 2]]) 
     assert_eq!(differing, expected);
 }
 
-/// The bytes of a binary file with the coordinates `to` put in place.
+/// Returns the bytes of a binary file with the coordinates `to` written in place.
 fn rewritten(made: &Made, to: &[[f64; 2]]) -> Vec<u8> {
     let mut bytes = made.bytes.clone();
     for (places, point) in made.coordinates.iter().zip(to) {
@@ -195,7 +195,7 @@ fn only_moved_coordinates_change_in_every_variant() {
             let folder = folder(made, &bytes);
             let file = folder.read(made.name);
             let to = moved(&file);
-            // Overwrites its input.
+            // The output file is the input file.
             file.write(&folder.path(made.name), &to).unwrap();
             let after = fs::read(folder.path(made.name)).unwrap();
             let again = folder.read(made.name);

@@ -1,4 +1,4 @@
-//! Files that are compressed as a whole by gzip or zstd.
+//! Mesh files that are compressed as a whole by gzip or zstd.
 
 use super::facts::mesh_of;
 use super::made::base;
@@ -13,7 +13,7 @@ use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
 
-/// The bytes compressed as another program may do it.
+/// Returns the bytes compressed by gzip at another level than that of the writer.
 fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
     encoder.write_all(bytes).unwrap();
@@ -37,10 +37,10 @@ fn every_variant_is_read_and_written_compressed() {
         fs::write(folder.path(made.name), &made.bytes).unwrap();
         let (file, plain) = (folder.read(&input), folder.read(made.name));
         assert_eq!((file.format(), mesh_of(&file)), (plain.format(), mesh_of(&plain)));
-        // If nothing moves, the bytes stay the same, whichever program compressed them.
+        // If no vertex moves, the compressed bytes come back, whichever program compressed them.
         file.write(&folder.path(output), file.points()).unwrap();
         assert!(fs::read(folder.path(output)).unwrap() == bytes);
-        // If vertices move, the unpacked content is what would be written without compression.
+        // If vertices move, the decompressed content equals the file that is written without compression.
         let mut moved = file.points().to_vec();
         moved[14][0] += 0.0625;
         let uncompressed = output.trim_end_matches(".gz");
@@ -132,7 +132,7 @@ fn bytes_in_memory_are_read_and_written() {
 #[test]
 fn files_compressed_by_zstd_are_read_and_written() {
     let folder = Folder::new(&[("plain.msh", GMSH22)]);
-    // As another program may compress it.
+    // Another program may store the content uncompressed in the zstd frame.
     let bytes = compress_to_vec(GMSH22.as_bytes(), CompressionLevel::Uncompressed);
     fs::write(folder.path("in.msh.zst"), &bytes).unwrap();
     let (file, plain) = (folder.read("in.msh.zst"), folder.read("plain.msh"));

@@ -1,4 +1,4 @@
-//! Parameters of nodes on plane surfaces of a gmsh model: they change as the nodes move.
+//! Parameters of nodes on plane surfaces of a gmsh model, which change with moved nodes.
 
 use super::Folder;
 use super::facts::remarks;
@@ -8,16 +8,16 @@ use mesh_io::MeshFile;
 use std::fmt::Write;
 use std::fs;
 
-/// Three nodes on the boundary and two inside, all on one surface.
+/// Three nodes on the boundary and two inside, all on one surface of the model.
 const NODES: [[f64; 2]; 5] = [[0.0, 0.0], [8.0, 0.0], [0.0, 8.0], [1.0, 2.0], [3.0, 1.5]];
 const TRIANGLES: [[usize; 3]; 5] = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [0, 4, 3], [0, 3, 2]];
 
-/// The parameters of a point on the surface: linear in its coordinates, or not if the surface is curved.
+/// Returns the parameters of a point on the surface, which are linear in its coordinates unless the surface is curved.
 fn parameters([x, y]: [f64; 2], curved: bool) -> [f64; 2] {
     [2.0 * x + y + 1.0, x - 3.0 * y + if curved { x * y } else { 0.0 }]
 }
 
-/// A mesh with all nodes on one surface, enough of them to tell that its parameters are linear.
+/// Returns a mesh with all nodes on one surface, enough nodes to show that the parameters are linear.
 fn text(curved: bool) -> String {
     let mut text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 5 1 5\n2 6 1 5\n".to_owned();
     (1..=5).for_each(|tag| writeln!(text, "{tag}").unwrap());
@@ -58,7 +58,7 @@ fn is_near(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12)
 }
 
-/// The nodes, one of them moved.
+/// Returns the nodes with the last node moved.
 fn moved() -> Vec<[f64; 2]> {
     let mut moved = NODES.to_vec();
     moved[4] = [2.5, 2.25];
@@ -85,7 +85,7 @@ fn parameters_on_a_plane_move_with_the_nodes() {
         assert!(is_near(&numbers[3..], &parameters([2.5, 2.25], false)), "{new}");
     }
     assert_eq!(before.lines().count(), out.lines().count());
-    // If nothing moves, nothing is written.
+    // If no node moves, the parameters keep their text.
     let (fields, _) = file.plane_parameters(&NODES).unwrap();
     file.write_with_fields(&folder.path("same.msh"), &NODES, &fields).unwrap();
     assert_eq!(folder.text("same.msh"), before);
@@ -114,7 +114,7 @@ fn parameters_on_other_surfaces_stay() {
     let file = folder.read("in.msh");
     let (fields, others) = file.plane_parameters(&moved()).unwrap();
     assert_eq!((fields.len(), others), (0, 1));
-    // Parameters that are the same everywhere are linear too.
+    // Constant parameters are linear too.
     let flat = folder.read("flat.msh");
     let (fields, others) = flat.plane_parameters(flat.points()).unwrap();
     assert_eq!((fields.len(), others), (1, 0));

@@ -1,4 +1,4 @@
-//! Files of other programs that are refused, and what each error message says to do.
+//! Unsupported files of other programs, and the remedy in each error message.
 
 use super::Folder;
 use super::made::binary::selafin;
@@ -8,7 +8,7 @@ use mesh_io::Precision;
 use mesh_io::{Format, MeshFile};
 use std::fs;
 
-/// Checks that reading these bytes fails with one line that contains each of the parts.
+/// Checks that a file with these bytes is refused with a message of one line that contains all `parts`.
 #[track_caller]
 fn assert_refused(name: &str, bytes: impl AsRef<[u8]>, parts: &[&str]) {
     let folder = Folder::new(&[]);
@@ -51,7 +51,7 @@ fn meshes_of_a_volume_are_refused() {
     }
 }
 
-/// A file with one cell of this type and this number of points.
+/// Returns a legacy VTK file with one cell of type `cell_type` with `points` points.
 fn vtk_of_one_cell(points: usize, cell_type: usize) -> String {
     let rows: String = (0..points).map(|i| format!("{i} {} 0\n", i * i)).collect();
     let corners: String = (0..points).map(|i| format!(" {i}")).collect();
@@ -155,7 +155,7 @@ fn damaged_meshes_of_coasts_are_refused_with_place_and_reason() {
     );
 }
 
-/// The name of a format's list of vertices in messages.
+/// Returns the name that messages use for a format's list of vertices.
 fn list_of(made: &Made) -> &'static str {
     match made.format {
         Format::Vtk | Format::VtkBinary => "POINTS",

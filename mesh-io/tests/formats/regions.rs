@@ -1,4 +1,4 @@
-//! Which triangles form a region, and which vertices are fixed between regions.
+//! Regions of triangles, and the fixed vertices between regions.
 
 use super::Folder;
 use super::facts::{between_regions, fixed, freed, mesh_of};
@@ -16,7 +16,7 @@ fn folder(files: &[(&str, Vec<u8>)]) -> Folder {
     folder
 }
 
-/// The vertices between regions, by definition: not on the boundary, with triangles of more than one region.
+/// Returns the vertices between regions by definition: inside the mesh, with triangles of more than one region.
 pub(crate) fn interfaces(mesh: &Mesh, regions: &[u32]) -> Vec<u32> {
     let on_boundary = super::support::boundary(mesh);
     let mut of_vertex = vec![Vec::new(); mesh.points.len()];
@@ -30,7 +30,7 @@ pub(crate) fn interfaces(mesh: &Mesh, regions: &[u32]) -> Vec<u32> {
     (0..mesh.points.len() as u32).filter(between).collect()
 }
 
-/// Checks in each format that the mesh has these regions and comes back byte for byte.
+/// Checks that each format gives the regions, and that a rewrite without moves keeps every byte.
 #[track_caller]
 fn assert_regions(mesh: &Mesh, names: &[[i32; 2]], numbers: &[u32]) {
     let held = interfaces(mesh, numbers);
@@ -54,7 +54,7 @@ fn assert_regions(mesh: &Mesh, names: &[[i32; 2]], numbers: &[u32]) {
 #[test]
 fn triangles_of_one_group_and_entity_are_a_region_in_every_format() {
     let mesh = lattice(6, 4);
-    // A region of one triangle, stripes, and region numbers that occur in several places.
+    // A region of one triangle; stripes; region numbers that occur in several separate places.
     let names = [[7, 1], [-7, 1], [7, 2], [0, 0]];
     let of_triangle: [fn(usize) -> usize; 3] =
         [|t| usize::from(t == 17), |t| t / 12, |t| [0, 1, 2, 0, 3, 3, 1][t % 7]];
@@ -112,7 +112,7 @@ fn vertices_fixed_by_other_means_are_not_counted_between_regions() {
     let folder = folder(files);
     let held = between_regions(&folder.read("in"));
     assert_eq!(held, [15, 16, 17, 18, 19]);
-    // A segment along part of the interface. Its vertices are numbered from one.
+    // A segment along a part of the interface, with vertices numbered from one.
     fs::write(folder.path("in.poly"), "0 2 0 0\n1 0\n1 17 18\n0\n").unwrap();
     let file = folder.read("in");
     assert_eq!(between_regions(&file), [15, 18, 19]);

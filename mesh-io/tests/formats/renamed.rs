@@ -1,10 +1,10 @@
-//! Names that a format cannot hold, or cannot tell apart: what becomes of them when a mesh is converted.
+//! Conversions of meshes with names that a format cannot hold or cannot tell apart.
 
 use super::Folder;
 use mesh_io::{Conversion, Format};
 use std::collections::BTreeMap;
 
-/// A square with a group of lines on each side, these names, and the name of the surface.
+/// Returns a square with one named group of lines per side and a named surface.
 fn square(names: [&str; 5]) -> String {
     let [a, b, c, d, surface] = names;
     format!(
@@ -16,7 +16,7 @@ fn square(names: [&str; 5]) -> String {
     )
 }
 
-/// The names of the groups after a conversion, each with the number of its vertices, and what is told of the names.
+/// Returns the group names after a conversion, each with its number of vertices, and the reported renamings.
 fn converted(names: [&str; 5], to: Format) -> (BTreeMap<String, usize>, Vec<String>) {
     let folder = Folder::new(&[("in.msh", &square(names))]);
     let conversion = Conversion::new(&folder.read("in.msh"), to).unwrap().unwrap();
@@ -37,7 +37,7 @@ fn groups<'n>(names: impl IntoIterator<Item = (&'n str, usize)>) -> BTreeMap<Str
     names.into_iter().map(|(name, vertices)| (name.to_owned(), vertices)).collect()
 }
 
-/// Each line of the square has two vertices, so groups that had been merged would have more.
+/// Each side of the square has two vertices, so merged groups would have more.
 #[test]
 fn groups_stay_apart_where_names_are_words() {
     let names = ["a b", "a_b", "wall", "wall", "50 % open"];
@@ -49,7 +49,7 @@ fn groups_stay_apart_where_names_are_words() {
     assert_eq!(found, groups(own));
     let all = "groups: `a b` (1) to `a_b_2`, `wall` (4) to `wall_2`, `50 % open` (9) to `50_open`";
     assert_eq!(told, [all]);
-    // A name may be the number of a group that has none, or that of another dimension where a format tells none.
+    // A name may equal the number of an unnamed group, or the name of a group of another dimension.
     let (found, _) = converted(["2", "", "2_2", "x", "x"], Format::Obj);
     assert_eq!(found, groups([("2", 2), ("2_3", 2), ("2_2", 2), ("x", 2), ("x_2", 5)]));
 }
@@ -70,7 +70,7 @@ fn quotation_marks_that_change_are_told() {
     let told = "groups: `a \"b\"` (1) to `a 'b'_2`, `the \"best\" one` (9) to `the 'best' one`";
     let data = "data of vertices: `h \"1\"` to `h '1'`";
     let (found, renamed) = converted(names, Format::Gmsh41);
-    // Numbers tell groups of one name apart here.
+    // In gmsh, numbers tell groups of equal names apart.
     assert_eq!(found, groups([("a 'b'_2", 2), ("a 'b'", 2), ("wall", 2), ("the 'best' one", 5)]));
     assert_eq!(renamed, [told, data]);
     let (found, renamed) = converted(names, Format::Sms2dm);
@@ -80,7 +80,7 @@ fn quotation_marks_that_change_are_told() {
     assert_eq!(renamed, ["data of vertices: `h \"1\"` to `h_\"1\"`"]);
 }
 
-/// Data of one name would be one property of vertices twice, and such as are called `x` would be coordinates.
+/// Two data arrays of equal names would become one property of PLY, and an array called `x` would become coordinates.
 #[test]
 fn data_stay_apart_where_names_are_words() {
     let vtk = "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\n\

@@ -1,4 +1,4 @@
-//! Details of the formats of other programs, one by one.
+//! Single details of the formats of other programs.
 
 use super::Folder;
 use super::facts::{fixed, remarks};
@@ -18,7 +18,7 @@ fn read(name: &str, text: &str) -> MeshFile {
     }
 }
 
-/// Checks that the text is read as a square of two triangles.
+/// Checks that the text gives a square of two triangles in the given format.
 #[track_caller]
 fn assert_square(name: &str, text: &str, format: Format) -> MeshFile {
     let file = read(name, text);
@@ -52,7 +52,7 @@ fn comments_may_come_before_the_first_words() {
 fn the_content_tells_the_format_whatever_the_ending() {
     for made in all(&base()) {
         for name in ["in.dat", "in", "in.node", "in.stl"] {
-            // Rows of numbers alone could also be the vertices of Triangle.
+            // Rows of plain numbers could also be the vertices of a Triangle mesh.
             if name == "in.node" && matches!(made.format, Format::Adcirc | Format::FreeFem) {
                 continue;
             }
@@ -75,7 +75,7 @@ fn a_byte_order_mark_is_no_part_of_a_text() {
 
 #[test]
 fn lines_and_points_of_an_obj_are_no_faces() {
-    // Lines along three or all four corners, and points.
+    // Lines along three or all four corners, points, and a negative vertex number.
     for row in ["l 1 2 3", "l 2 3 4 1", "p 1 2 3", "p 1 2", "l 1 -1"] {
         let file = assert_square("a.obj", &format!("{OBJ}{row}\n"), Format::Obj);
         let numbers = row.split_whitespace().skip(1);
@@ -166,7 +166,7 @@ fn regions_of_a_vtk_are_found_among_other_data() {
     }
 }
 
-/// Zero of either sign is one number, and so one region.
+/// Positive and negative zero are equal numbers, so they name one region.
 #[test]
 fn a_negative_zero_is_the_region_of_zero() {
     for (kind, zeros) in [
@@ -195,7 +195,7 @@ fn a_negative_zero_is_the_region_of_zero() {
     }
 }
 
-/// The numbers of points may be broken into lines anywhere, also where all but one of these lines have a point each.
+/// Points may be broken into lines anywhere, even if all other points have a line each.
 #[test]
 fn points_of_a_vtk_may_begin_on_the_line_of_the_keyword() {
     let head = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET POLYDATA\n";
@@ -215,7 +215,7 @@ fn text_between_x_and_y_is_kept() {
     for between in ["  ", "\t", "\n", " \r\n\r\n ", " # x\n", "# x\n# y\n\n"] {
         let text = format!("{head}{}", VTK.replace("\n1 0 0", &format!("\n1{between}0 0")));
         let folder = Folder::new(&[("a.vtk", &text)]);
-        // A reader may refuse the comment. If it is read, it is kept.
+        // A reader may refuse the comment; if the file is read, a rewrite keeps the comment.
         let Ok(file) = MeshFile::read(&folder.path("a.vtk")) else { continue };
         let mut points = file.points().to_vec();
         points[1] = [1.5, 0.25];

@@ -1,4 +1,4 @@
-//! Files of other programs that are cut off, damaged, or announce more than they hold.
+//! Files of other programs that are cut off, damaged, or announce more items than they hold.
 
 use super::Folder;
 use super::damage::{self, damaged, random};
@@ -9,7 +9,8 @@ use mesh_io::{Format, Location, MeshFile, ReadOptions};
 use std::fs;
 use std::time::Instant;
 
-/// Reads a file that may be damaged: it must give a mesh whose parts have places, or an error of one line with its name.
+/// Reads a file that may be damaged: a mesh must have a location for each vertex and triangle, and an error must have
+/// one line and name the file.
 pub(crate) fn mesh_or_error(folder: &Folder, name: &str) -> Result<MeshFile, String> {
     match ReadOptions::new().weld(true).read(&folder.path(name)) {
         Ok(file) => {
@@ -54,7 +55,7 @@ fn a_file_cut_off_anywhere_is_an_error_or_a_mesh() {
     });
 }
 
-/// Counts that are too large for any file, in the format of the given one: digits, or as many bytes.
+/// Returns counts that are too large for any file, in the form of `count`: as digits, or in an equal number of bytes.
 fn huge(made: &Made, count: &[u8]) -> Vec<Vec<u8>> {
     if count.iter().all(u8::is_ascii_digit) {
         let numbers = ["4000000000", "9223372036854775807", "18446744073709551615"];
@@ -62,7 +63,7 @@ fn huge(made: &Made, count: &[u8]) -> Vec<Vec<u8>> {
         return numbers.iter().chain(&more).map(|n| n.as_bytes().to_vec()).collect();
     }
     let mut all = vec![vec![0xFF; count.len()]];
-    // The largest and the smallest number, and two that overflow to small ones when multiplied.
+    // The largest and the smallest signed number, and two numbers whose multiples overflow to small numbers.
     for (first, others) in [(0x7F, 0xFF), (0x80, 0), (0x40, 0), (0x20, 0)] {
         let mut bytes = vec![others; count.len()];
         bytes[0] = first;
@@ -99,7 +100,7 @@ fn wrong_counts_are_errors() {
             let bytes = &made.bytes;
             let Ok(text) = str::from_utf8(&bytes[count.clone()]) else { continue };
             let Ok(number) = text.parse::<u64>() else { continue };
-            // A count that is one too large: what follows the list is not one of its rows.
+            // The count is too large by one, so the reader meets another item after the list.
             let more = (number + 1).to_string();
             let parts = [&bytes[..count.start], more.as_bytes(), &bytes[count.end..]];
             let read = mesh_or_error(&folder(made, &parts.concat()), made.name);
@@ -108,7 +109,7 @@ fn wrong_counts_are_errors() {
     });
 }
 
-/// Reading a file with random bytes cut, replaced or doubled gives an error or a mesh with places, never a panic.
+/// A file with random bytes cut, replaced or doubled gives an error or a mesh with all locations, never a panic.
 #[test]
 fn damaged_files_of_other_programs_never_panic() {
     let rounds = damage::rounds(2000);
@@ -140,7 +141,8 @@ fn damaged_files_of_other_programs_never_panic() {
     }
 }
 
-/// Writes a file of every layout for the fuzzer to start from, if the environment variable FUZZ_CORPUS names a folder.
+/// Writes a file of every layout as a start input of the fuzzer, if the environment variable FUZZ_CORPUS names a
+/// folder.
 #[test]
 fn the_corpus_can_be_written() {
     let Some(folder) = std::env::var_os("FUZZ_CORPUS") else { return };

@@ -1,4 +1,4 @@
-//! STL, which repeats the coordinates of a vertex in every triangle.
+//! STL, which repeats the coordinates of a vertex in each of its triangles.
 
 use super::Folder;
 use super::damage::{damaged, random, rounds};
@@ -11,7 +11,7 @@ use mesh_io::Precision;
 use mesh_io::{Format, Location, MeshFile, ReadOptions};
 use std::fs;
 
-/// The mesh with its vertices numbered in the order in which its triangles first use them.
+/// Returns the mesh with vertices numbered in the order of their first use by triangles.
 fn in_order() -> Mesh {
     let mesh = base();
     let mut numbers = vec![u32::MAX; mesh.points.len()];
@@ -27,7 +27,7 @@ fn in_order() -> Mesh {
     Mesh { points, triangles, fixed: Vec::new() }
 }
 
-/// The mesh as text: two solids, the second from triangle 30 on, with words and numbers written in several ways.
+/// Returns the mesh as text: two solids, the second from triangle 30 on, with words and numbers in several spellings.
 fn ascii(mesh: &Mesh, points: &[[f64; 2]], z: &str) -> String {
     let mut text = "solid  left half\r\n".to_owned();
     for (t, corners) in mesh.triangles.iter().enumerate() {
@@ -47,7 +47,7 @@ fn ascii(mesh: &Mesh, points: &[[f64; 2]], z: &str) -> String {
     text + "endsolid"
 }
 
-/// The mesh in binary, under a header that looks like text.
+/// Returns the mesh in binary, after a header that looks like text.
 fn binary(mesh: &Mesh, points: &[[f64; 2]], z: f64) -> Vec<u8> {
     let mut out = Binary::empty(false);
     out.bytes = b"solid of another program".to_vec();
@@ -128,7 +128,7 @@ fn every_copy_of_a_moved_corner_is_written() {
         if format == Format::StlBinary {
             assert!(written == binary(&mesh, &moved, 7.0));
         } else {
-            // Compares text with all numbers written alike.
+            // Texts are compared with all numbers in one spelling.
             let plain = |bytes: &[u8]| -> Vec<String> {
                 let text = String::from_utf8(bytes.to_vec()).unwrap();
                 let word =
@@ -137,7 +137,7 @@ fn every_copy_of_a_moved_corner_is_written() {
             };
             assert_eq!(plain(&written), plain(ascii(&mesh, &moved, "-2.5").as_bytes()));
         }
-        // A changed copy of a corner is another vertex, so the triangles differ.
+        // A changed copy of a corner becomes a vertex of its own, so the triangles differ.
         let mut torn = written.clone();
         let at = match format {
             Format::StlBinary => 84 + 50 * 20 + 14,
@@ -154,7 +154,7 @@ fn every_copy_of_a_moved_corner_is_written() {
 fn places_are_those_of_the_first_copy() {
     let mesh = in_order();
     let (_folder, file) = read("in.stl", ascii(&mesh, &mesh.points, "0").as_bytes());
-    // A triangle takes seven lines and a blank one, after one line of the solid.
+    // After the line of the solid, a triangle takes seven lines and a blank line.
     assert_eq!(file.triangle_location(2).location, Location::Line(18));
     let first = mesh.triangles.iter().position(|t| t.contains(&9)).unwrap();
     let corner = mesh.triangles[first].iter().position(|&v| v == 9).unwrap();

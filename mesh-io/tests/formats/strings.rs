@@ -1,4 +1,4 @@
-//! Arrays of strings and bits, and 64-bit integers, which other programs write beside a mesh.
+//! Arrays of strings, bits and 64-bit integers, which other programs write beside a mesh.
 
 use super::Folder;
 use mesh_io::MeshFile;
@@ -7,7 +7,7 @@ use std::fs;
 const POINTS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.25, 0.0], [0.0, 1.0, 0.0]];
 const NAMES: [&str; 4] = ["a & b", "", "POINTS", "x"];
 
-/// A string of a legacy VTK file in binary, after its length in `bytes` bytes.
+/// Returns a string of a binary legacy VTK file, after its length in `bytes` bytes.
 fn string(text: &str, bytes: usize) -> Vec<u8> {
     let mut length = (text.len() as u64).to_be_bytes()[8 - bytes..].to_vec();
     length[0] |= match bytes {
@@ -20,7 +20,7 @@ fn string(text: &str, bytes: usize) -> Vec<u8> {
     length
 }
 
-/// A legacy VTK file with strings and bits among its arrays, and materials after them.
+/// Returns a legacy VTK file with strings and bits among its arrays, and materials after these arrays.
 fn vtk(binary: bool) -> Vec<u8> {
     let mut file = Vec::new();
     let long = "long ".repeat(30);
@@ -91,7 +91,7 @@ fn strings_and_bits_of_vtk_are_passed_over() {
         file.write(&folder.path("out.vtk"), &moved).unwrap();
         let out = folder.read("out.vtk");
         assert_eq!((out.points(), file.difference(&out)), (&moved[..], None));
-        // Strings cut off at any byte.
+        // The file is cut off at each byte of its strings.
         let end = memchr::memmem::find(&bytes, b"POINTS 4").unwrap();
         for cut in 0..end {
             assert!(

@@ -1,4 +1,4 @@
-//! UGRID: data of nodes, what stays as it is, and refused files.
+//! UGRID: data of nodes, arrays that a rewrite keeps, and refused files.
 
 use super::Folder;
 use super::facts::remarks;
@@ -24,7 +24,7 @@ fn variables_of_nodes_are_data_in_every_time_step_and_layer() {
         assert_eq!(told, [("lon", 1), ("bay_node_z", 1), ("u", 2), ("level", 1), ("level", 1)]);
         assert_eq!(fields[2].values()[9], 1.125);
         assert_eq!(fields[4].values()[7], 14.0);
-        // A missing depth is no number, so that it is in no mean of others.
+        // A missing depth is read as NaN, so that no mean of depths includes the fill value.
         let depths = fields[1].values();
         assert!(depths[3].is_nan() && depths[4] == -2.0);
     }
@@ -64,19 +64,19 @@ fn centers_of_faces_follow_the_vertices() {
         assert_eq!(theirs[0].values(), fields[0].values());
         assert!(file.difference(&again).is_some());
         assert_eq!(file.difference_ignoring(&again, [&fields, &theirs]), None);
-        // The last triangle of the file is the last face.
+        // The last triangle of the mesh is the last face of the file.
         let corners = again.triangles().last().unwrap();
         let x = |&v: &u32| to[v as usize][0];
         let mean = corners.iter().map(x).sum::<f64>() / 3.0;
         assert!((fields[0].values().last().unwrap() - mean).abs() < 1e-6);
-        // Where nothing has moved, no bit changes.
+        // If no vertex has moved, no bit of the file changes.
         fields = file.centers(file.points()).unwrap().0;
         file.write_with_fields(&folder.path("out.nc"), file.points(), &fields).unwrap();
         assert!(fs::read(folder.path("out.nc")).unwrap() == made.bytes);
     }
 }
 
-/// Texts of attributes stand in a heap, and y before x.
+/// In this file, attributes have their texts in a heap, and y comes before x.
 #[test]
 fn a_file_by_h5netcdf_is_read() {
     let file = MeshFile::read(&hdf5::made("h5netcdf.nc")).unwrap();
@@ -88,7 +88,7 @@ fn a_file_by_h5netcdf_is_read() {
     assert_eq!(file.vertex_location(4).id, 5);
 }
 
-/// The message names the filter, and not a mesh without coordinates.
+/// The message names the filter, and does not say that coordinates are missing.
 #[test]
 fn coordinates_packed_by_a_filter_that_is_not_read_are_refused_by_its_name() {
     hdf5::refused(
@@ -107,7 +107,7 @@ fn refused(bytes: &[u8], parts: &[&str]) {
     assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
 }
 
-/// The bytes with the last of these words replaced by another of the same length.
+/// Returns the bytes with the last occurrence of `from` replaced by `to`, a word of equal length.
 fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     assert_eq!(from.len(), to.len());
     let at = bytes.windows(from.len()).rposition(|part| part == from.as_bytes()).unwrap();
@@ -130,7 +130,7 @@ fn files_without_one_mesh_of_faces_are_refused_with_a_remedy() {
     refuse("bay_y bay_x lon", "bay_x bay_x    ", &["bay_x and bay_x are not two lists"]);
     let no_faces = replaced(&usual.bytes, "face_node_connectivity", "face_face_connectivity");
     refused(&no_faces, &["bay has no variable that its face_node_connectivity names"]);
-    // The dimensions of both meshes, one after the other.
+    // Offsets of the topological dimensions of both meshes in the file.
     let dimension = b"topology_dimension\0\0\0\0\0\x04\0\0\0\x01\0\0\0";
     let places: Vec<usize> = (0..usual.bytes.len() - dimension.len())
         .filter(|&at| usual.bytes[at..].starts_with(dimension))

@@ -1,4 +1,4 @@
-//! VTK's XML format in all its encodings.
+//! VTK's XML format of unstructured grids and polygons in all its encodings.
 
 use super::facts::{between_regions, fixed, mesh_of};
 use super::made::base;
@@ -42,7 +42,7 @@ fn every_encoding_is_read_and_comes_back() {
     }
 }
 
-/// A third coordinate that differs is told with its vertex and place, however the points are encoded.
+/// If a third coordinate differs, the error names vertex and location, in every encoding of the points.
 #[test]
 fn the_vertex_is_told_whose_third_coordinate_differs() {
     let points = |z: f64| {
@@ -69,7 +69,7 @@ fn the_vertex_is_told_whose_third_coordinate_differs() {
     assert_eq!(difference.other_location.location, Location::Line(5));
 }
 
-/// Some programs write the attribute without a number. VTK then takes one component.
+/// Some programs write `NumberOfComponents` with an empty value. VTK then reads one component.
 #[test]
 fn an_empty_number_of_components_is_one() {
     for style in styles() {
@@ -99,7 +99,7 @@ fn only_coordinates_change_in_every_encoding() {
         assert_eq!(after.points(), rounded(&to, style.precision), "{style:?}");
         assert_eq!((after.triangles(), after.regions()), (&mesh.triangles[..], file.regions()));
         assert_eq!(file.difference(&after), None, "{style:?}");
-        // The written file is what a writer makes of the moved mesh, if nothing is compressed and numbers are not text.
+        // Without compression and text, the file equals the one that the test's writer makes of the moved mesh.
         if style.place != Place::Text && style.compressor.is_none() {
             let moved = Mesh { points: to, ..mesh.clone() };
             assert!(fs::read(folder.path("out.vtu")).unwrap() == write(&moved, style), "{style:?}");
@@ -116,7 +116,7 @@ fn only_coordinates_change_in_every_encoding() {
     }
 }
 
-/// Byte order marks were once left out of the count, so that numbers were read three bytes too early.
+/// Offsets once ignored a byte order mark, so numbers were read three bytes too early.
 #[test]
 fn a_byte_order_mark_moves_all_places() {
     for style in styles().into_iter().step_by(11) {
@@ -154,7 +154,7 @@ fn cut_off_and_damaged_files_never_panic() {
         for cut in (0..bytes.len()).skip(n % 7).step_by(7) {
             assert!(!read(&bytes[..cut]) || cut > bytes.len() / 2, "{style:?}: {cut}");
         }
-        // There are a hundred styles.
+        // The number of rounds is divided among about a hundred styles.
         for _ in 0..damage::rounds(10_000) / 100 {
             read(&damage::damaged(&bytes, &mut random));
         }
@@ -180,7 +180,7 @@ fn features_of_vtu_that_are_not_read_are_refused_by_name() {
     }
 }
 
-/// The mesh twice, the second copy farther right.
+/// Returns the mesh twice, with the second copy farther right.
 fn pieces() -> [Mesh; 2] {
     let first = base();
     let mut second = first.clone();
@@ -248,7 +248,7 @@ fn pieces_and_polygons_are_read_and_come_back() {
         assert!(found.iter().map(bits).eq(fields.iter().map(bits)), "{style:?}");
         assert_eq!(file.difference_ignoring(&after, [&fields, &found]), None, "{style:?}");
 
-        // The conversion joins all pieces to one, without loss.
+        // The conversion joins all pieces to one piece, without loss.
         let conversion = Conversion::new(&file, Format::Vtu).unwrap().unwrap();
         assert_eq!(conversion.losses(), [""; 0]);
         conversion.write(&folder.path("one.vtu")).unwrap();
@@ -277,7 +277,7 @@ fn damaged_pieces_never_panic() {
     }
 }
 
-/// Neither nested elements nor entities make a small file take much memory.
+/// Neither deeply nested elements nor entities make a small file take much memory or time.
 #[test]
 fn hostile_xml_takes_no_memory_and_no_time() {
     let opening = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>\n";

@@ -1,4 +1,4 @@
-//! Text of gmsh, PLY and OFF, whose programs read words on whatever lines they are, and rows with numbers left out.
+//! Text of gmsh, PLY and OFF, which programs read word by word across line ends, and rows with missing numbers.
 
 use super::Folder;
 use super::layouts::{assert_refused, assert_same};
@@ -13,7 +13,7 @@ $EndNodes\n$Elements\n1 2 1 2\n2 1 2 2\n1 1 2 3\n2 1 3 4\n$EndElements\n";
 const GMSH_40: &str = "$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n2 4\n1 2 0 3\n1 0 0 0\n2 1 0 0\n\
 3 1 1.25 0\n1 2 0 1\n4 0 1 0\n$EndNodes\n$Elements\n1 2\n1 2 2 2\n1 1 2 3\n2 1 3 4\n$EndElements\n";
 
-/// The text with the content of one section changed.
+/// Returns the text with the content of one section changed.
 fn within(text: &str, section: &str, change: impl Fn(&str) -> String) -> String {
     let (open, close) = (format!("${section}\n"), format!("\n$End{section}"));
     let start = text.find(&open).unwrap() + open.len();
@@ -34,7 +34,7 @@ fn lists_of_gmsh_are_read_word_by_word_wherever_lines_end() {
                 }
             }
         }
-        // One row of a list lacks a number.
+        // A single row of the list lacks a number.
         let broken = plain.replace("1.25 0\n", "1.25\n");
         assert_refused("a.msh", &broken, &["z of node 3 is missing"]);
     }
@@ -74,7 +74,7 @@ fn items_of_ply_are_read_word_by_word_wherever_lines_end() {
         let file = assert_same("a.ply", PLY, &odd);
         assert_eq!(file.data_names(), ["q"]);
     }
-    // Elements without properties take no space in the file, so any number of them may be announced.
+    // Elements without properties take no bytes, so a file may announce any number of elements.
     let many = "element nothing 18446744073709551615\n";
     assert_same("a.ply", PLY, &PLY.replace("element face", &format!("{many}element face")));
     assert_same("a.ply", PLY, &PLY.replace("end_header", &format!("{many}end_header")));
@@ -105,7 +105,7 @@ fn vertices_may_have_no_third_coordinate() {
         let points = plain.replace(" 0\n", "\n");
         let file = assert_same(name, plain, &points);
         assert!(file.point_fields(Some(&["z".into()])).is_err(), "there is no z");
-        // A file in which only some vertices have z: they are data, and can be replaced only where they are.
+        // If only some vertices have z, the values are data, and only existing values can be replaced.
         let some = points.replace("1.25\n", "1.25 3\n");
         let folder = Folder::new(&[(name, &some)]);
         assert_eq!(folder.read(name).data_names(), ["z"]);
@@ -139,7 +139,7 @@ fn line_ends_of_old_systems_are_refused_with_a_remedy() {
         Folder::new(&[("a.node", "3 2 0 0\r1 0 0\r2 1 0\r3 0 1\r"), ("a.ele", "1 3 0\n1 1 2 3\n")]);
     let error = mesh_io::MeshFile::read(&folder.path("a.ele")).unwrap_err().to_string();
     assert!(error.contains("a.node") && error.contains(told), "{error}");
-    // Formats that are read as words take any line ends.
+    // Formats that are read word by word allow any line ends.
     const MEDIT: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 3\n1 0 0\n1 1.25 0\n0 1 0\n\
                          Triangles\n2\n1 2 3 5\n1 3 4 5\nEnd\n";
     assert_same("a.mesh", MEDIT, &MEDIT.replace('\n', "\r"));

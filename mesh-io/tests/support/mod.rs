@@ -1,5 +1,5 @@
-//! Seeded meshes and checks of meshes: the files of the top folder's `tests/support` that need no smoother, with a mesh type of
-//! their own.
+//! Seeded meshes and checks of meshes: the files of the top folder's `tests/support` that need no smoother, with a mesh
+//! type of this crate.
 #![allow(dead_code, unreachable_pub, unused_imports)]
 
 #[path = "../../../tests/support/binary.rs"]
@@ -36,7 +36,7 @@ pub struct Mesh {
     pub points: Vec<[f64; 2]>,
     /// Vertex indices of each triangle, zero-based.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertices that elements other than triangles have.
+    /// Vertices of elements other than triangles.
     pub fixed: Vec<u32>,
 }
 

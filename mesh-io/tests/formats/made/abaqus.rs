@@ -7,7 +7,7 @@ use mesh_io::Precision;
 
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;
-/// The first triangle of the second region.
+/// Index of the first triangle of the second region.
 const SECOND: usize = super::SECOND_REGION;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
@@ -20,28 +20,28 @@ fn made(text: Text, what: &str, mesh: Mesh, probes: [(u64, usize); 2]) -> Made {
     Made { regions, precision: Precision::Text20, ..made }
 }
 
-/// x and y in several styles, between commas.
+/// Writes x and y in several styles, separated by a comma.
 fn point(vertex: usize, [x, y]: [f64; 2]) -> String {
     let comma = [" , ", "\t,", ", \t "][vertex % 3];
     format!("{} {comma} {}", number(vertex, x), number(vertex + 1, y))
 }
 
-/// Numbers of vertices, counted in threes.
+/// Returns vertex numbers, which are multiples of three apart and start at 100.
 fn sparse(vertices: &[u32]) -> String {
     let numbers: Vec<_> = vertices.iter().map(|v| (100 + 3 * v).to_string()).collect();
     numbers.join(" , ")
 }
 
-/// Rows of triangles, numbered from 10 on in twos.
+/// Adds rows of triangles with the numbers 10, 12, 14 and so on. Returns the offset of each row.
 fn triangles(text: &mut Text, mesh: &Mesh, range: std::ops::Range<usize>) -> Vec<usize> {
     let rows = range.map(|t| format!("{}, {}", 10 + 2 * t, sparse(&mesh.triangles[t])));
     let starts = text.rows(rows);
-    // A file that ends among the elements may be a valid smaller mesh.
+    // A file that is cut off among the elements may be a valid smaller mesh.
     text.lists.pop();
     starts
 }
 
-/// As gmsh writes it: without parts, each list of elements with a set.
+/// Makes a file like those of gmsh: without parts, and with a set for each element list.
 fn flat(mesh: &Mesh) -> Made {
     let mut text = Text::new("*Heading\n in.inp, *NODE\n*NODE , NSET = all\n");
     let rows = mesh.points.iter().enumerate();
@@ -65,7 +65,8 @@ fn flat(mesh: &Mesh) -> Made {
     made(text, "flat", mesh, probes)
 }
 
-/// Elements before nodes, keywords in small letters, rows of several lines, comments and blank lines among the rows.
+/// Makes a file with elements before nodes, keywords in small letters, rows of several lines, and comments and blank
+/// lines among the rows.
 fn elements_first(mesh: &Mesh) -> Made {
     let mut text = Text::new("** by hand\n*element , type = s3r ,\n elset = \"Plate\"\n\n");
     let mut rows: Vec<_> =
@@ -92,8 +93,8 @@ fn elements_first(mesh: &Mesh) -> Made {
     made(text, "elements first", mesh, probes)
 }
 
-/// As Abaqus/CAE writes it: a part with sections of sets, and an assembly with an instance of it, a node and a spring of its own,
-/// and a surface.
+/// Makes a file like those of Abaqus/CAE: a part with sections of sets, and an assembly with an instance of the part, a
+/// node and a spring of its own, and a surface.
 fn parts(mesh: &Mesh) -> Made {
     let mut text = Text::new("*Heading\n** PARTS\n**\n*Part, name=Plate\n*Node\n");
     let rows = mesh.points.iter().enumerate();

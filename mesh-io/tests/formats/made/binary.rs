@@ -1,4 +1,4 @@
-//! Makes files of binary formats other than VTK's.
+//! Makes files of binary formats, except VTK and PLY.
 
 use super::super::support::Binary;
 use super::super::support::Mesh;
@@ -18,12 +18,12 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     all
 }
 
-/// How many bytes a coordinate has.
+/// Returns the size of a coordinate in bytes.
 pub(crate) fn size_of(precision: Precision) -> usize {
     if precision == Precision::Single { 4 } else { 8 }
 }
 
-/// A `.meshb` under construction.
+/// Builder of a `.meshb` file.
 struct Meshb {
     file: Binary,
     version: i32,
@@ -32,7 +32,7 @@ struct Meshb {
 }
 
 impl Meshb {
-    /// Adds integers of the size that lists have in this version.
+    /// Adds integers in the width of the file's version: 8 bytes in version 4, else 4.
     fn integers(&self, body: &mut Binary, numbers: impl IntoIterator<Item = i64>) {
         for n in numbers {
             match self.version {
@@ -42,7 +42,7 @@ impl Meshb {
         }
     }
 
-    /// Adds a keyword, the place of the next one, and `body`. Returns where `body` starts.
+    /// Adds a keyword, the offset of the next keyword, and `body`. Returns the offset of `body`.
     fn chain(&mut self, keyword: i32, body: &[u8]) -> usize {
         self.file.ints(&[keyword]);
         let start = self.file.bytes.len() + if self.version < 3 { 4 } else { 8 };
@@ -55,7 +55,7 @@ impl Meshb {
         start
     }
 
-    /// Adds a list after its count. Returns where its first item starts.
+    /// Adds the length of a list and its items. Returns the offset of the first item.
     fn list(&mut self, keyword: i32, count: usize, items: &[u8]) -> usize {
         let mut body = Binary::empty(self.file.big);
         self.integers(&mut body, [count as i64]);
@@ -67,7 +67,7 @@ impl Meshb {
         start + width
     }
 
-    /// Adds a list of elements, with their vertices numbered from one.
+    /// Adds a list of elements, whose vertices are numbered from 1.
     fn elements(&mut self, keyword: i32, elements: &[(&[u32], Option<i32>)]) -> Range<usize> {
         let mut items = Binary::empty(self.file.big);
         for (vertices, reference) in elements {
@@ -81,7 +81,7 @@ impl Meshb {
 
 fn meshb(mesh: &Mesh, version: i32, big: bool) -> Made {
     let precision = if version == 1 { Precision::Single } else { Precision::Double };
-    // The third coordinate in every other version.
+    // Every other version has a third coordinate.
     let dimension = 3 - version % 2;
     let file = Binary::empty(big);
     let mut out = Meshb { file, version, lists: Vec::new(), counts: Vec::new() };
@@ -134,7 +134,7 @@ fn meshb(mesh: &Mesh, version: i32, big: bool) -> Made {
     }
 }
 
-/// Adds a record. Returns where its content starts.
+/// Adds a Fortran record. Returns the offset of its content.
 fn record(file: &mut Binary, content: &[u8]) -> usize {
     file.ints(&[content.len() as i32]);
     let start = file.bytes.len();
@@ -143,7 +143,7 @@ fn record(file: &mut Binary, content: &[u8]) -> usize {
     start
 }
 
-/// A SELAFIN file of two variables and one time step, with this number of planes. Files of double precision have a date.
+/// Makes a SELAFIN file with two variables, one time step, and `planes` planes. Files of double precision have a date.
 pub(crate) fn selafin(mesh: &Mesh, precision: Precision, big: bool, planes: i32) -> Made {
     let double = precision == Precision::Double;
     let (points, triangles) = (mesh.points.len(), mesh.triangles.len());

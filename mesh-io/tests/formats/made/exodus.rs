@@ -17,7 +17,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     ]
 }
 
-/// Whether x, y and z are separate variables, or one.
+/// Whether x, y and z are separate variables or one variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Axes {
     Apart,
@@ -70,11 +70,12 @@ fn exodus(mesh: &Mesh, version: u8, precision: Precision, axes: Axes) -> Made {
     let corners: Vec<Vec<u32>> = mesh.triangles.iter().map(|t| t.to_vec()).collect();
     let [first, second] = [&corners[..SECOND_REGION], &corners[SECOND_REGION..]];
     connect(&mut file, 1, &["TRI3", "num_el_in_blk1", "three"], first);
-    // Elements are numbered in the order of the blocks, whatever the order of the variables.
+    // The order of blocks determines element numbers, whatever the order of the variables.
     connect(&mut file, 3, &["tri", "num_el_in_blk3", "three"], second);
     connect(&mut file, 2, &["SHELL4\0", "one", "four"], &[QUADRILATERAL.to_vec()]);
     connect(&mut file, 4, &["BAR2", "one", "two"], &[LINE.to_vec()]);
-    // The side of the first triangle between its first two vertices; of the shell its first edge and a face.
+    // The side set has the edge between the first two vertices of triangle 0, and the first edge and a face of the
+    // shell.
     let shell = SECOND_REGION as i32 + 1;
     file.ints("ss_prop1", &["one"], &[40]);
     file.names("ss_names", &["one", "len_name"], &["shore"]);
@@ -91,7 +92,7 @@ fn exodus(mesh: &Mesh, version: u8, precision: Precision, axes: Axes) -> Made {
     build(file, &lengths, mesh, precision)
 }
 
-/// The file of these variables, in two time steps.
+/// Finishes the file of these variables, with two time steps.
 fn build(file: NetCdf, lengths: &[usize; 14], mesh: &Mesh, precision: Precision) -> Made {
     let version = file.version;
     let dimensions: Vec<_> = DIMENSIONS.into_iter().zip(lengths.iter().copied()).collect();

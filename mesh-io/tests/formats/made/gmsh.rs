@@ -9,7 +9,7 @@ use mesh_io::Precision;
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;
 
-/// The tag of a vertex.
+/// Returns the tag of a vertex.
 fn tag(vertex: u32) -> u32 {
     2 * vertex + 7
 }
@@ -18,9 +18,9 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     vec![as_text(mesh), in_binary(mesh, false), in_binary(mesh, true)]
 }
 
-/// The mesh with the vertices in this order.
+/// Returns the mesh with its vertices in another order.
 fn ordered(mesh: &Mesh, order: &[usize]) -> Mesh {
-    // A vertex that is not listed keeps its number.
+    // A vertex outside of `order` keeps its number.
     let position = |v: u32| order.iter().position(|&i| i == v as usize).map_or(v, |at| at as u32);
     let points = order.iter().map(|&i| mesh.points[i]).collect();
     let triangles = mesh.triangles.iter().map(|t| t.map(position)).collect();
@@ -28,7 +28,7 @@ fn ordered(mesh: &Mesh, order: &[usize]) -> Mesh {
     fixing(&mesh, [POINT].into_iter().chain(LINE).map(position))
 }
 
-/// The mesh in binary. One inner vertex is on a point of the model, and nodes of a surface have parameters.
+/// Makes the mesh in binary. One inner vertex is on a point of the model, and nodes of a surface have parameters.
 fn in_binary(mesh: &Mesh, big: bool) -> Made {
     let mut file = Binary::new("4", big);
     let (mut counts, mut coordinates) = (Vec::new(), Vec::new());
@@ -126,7 +126,7 @@ fn as_text(mesh: &Mesh) -> Made {
     text.rows((halves..mesh.triangles.len()).map(triangle));
     text.put("$EndElements\n");
 
-    // The vertices have another order in the file than in the mesh.
+    // The file lists vertices in another order than the mesh.
     let probed = order[VERTEX];
     let row_of = others.iter().position(|&i| i == probed).unwrap();
     let probes =

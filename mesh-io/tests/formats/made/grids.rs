@@ -1,4 +1,4 @@
-//! Makes grids of coastal models and of FreeFem, which consist mostly of rows of numbers.
+//! Makes grids of coastal models, MFEM, JIGSAW and FreeFem, which consist mostly of rows of numbers.
 
 use super::super::support::Mesh;
 use super::{
@@ -9,7 +9,7 @@ use mesh_io::Format;
 
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;
-/// The row of the probed triangle among those of [`cells`].
+/// Row of the probed triangle in the list of [`cells`].
 const CELL: usize = TRIANGLE + 1;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
@@ -30,7 +30,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     ]
 }
 
-/// Numbers of nodes and elements that are not consecutive.
+/// Returns node numbers that are not consecutive.
 fn sparse(vertices: &[u32]) -> String {
     let numbers: Vec<_> = vertices.iter().map(|v| (100 + 3 * v).to_string()).collect();
     numbers.join("  ")
@@ -43,7 +43,7 @@ fn fort_14(mesh: &Mesh) -> Made {
     text.put("  ");
     text.count(mesh.points.len());
     text.put(" ! elements, nodes\n");
-    // Double precision as Fortran writes it.
+    // Fortran writes exponents of double precision with a D.
     let fortran = |x: f64| format!("{x:E}").replace('E', "D");
     let vertices = text.rows(mesh.points.iter().enumerate().map(|(i, &[x, y])| {
         format!("{:>9} {} {}  {}", 100 + 3 * i, fortran(x), fortran(y), fortran(z(i)))
@@ -74,7 +74,7 @@ fn gr3(mesh: &Mesh) -> Made {
     text.made("without boundaries", "in.gr3", Format::Adcirc, mesh.clone(), probes)
 }
 
-/// A mesh with elements before nodes, numbers that are not consecutive, materials and node strings.
+/// Makes a 2dm file with elements before nodes, gaps in the numbers, materials and node strings.
 fn sms(mesh: &Mesh) -> Made {
     let mut text = Text::new("MESH2D\nMESHNAME \"ND 1 bay\"\nNUM_MATERIALS_PER_ELEM 1\n");
     let mut triangle = 0;
@@ -103,13 +103,13 @@ fn sms_in_order(mesh: &Mesh) -> Made {
     let vertices = text.rows(points(mesh).map(|(i, at)| format!("ND {} {at} 0.0", i + 1)));
     let rows = mesh.triangles.iter().enumerate();
     let triangles = text.rows(rows.map(|(i, t)| format!("E3T {} {}", i + 1, joined(t, 1))));
-    // A file that ends among the elements is a valid smaller mesh, so this list is left out.
+    // A file that is cut off among the elements is a valid smaller mesh, so the list is removed.
     text.lists.pop();
     let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
     text.made("nodes first", "in.2dm", Format::Sms2dm, mesh.clone(), probes)
 }
 
-/// A mesh with a quadrilateral among its triangles, whose fourth nodes are 0.
+/// Makes a MIKE mesh with a quadrilateral. Triangles have 0 as their fourth node.
 fn mike(mesh: &Mesh) -> Made {
     let mut text = Text::new("100079  1000  ");
     text.count(mesh.points.len());
@@ -128,7 +128,7 @@ fn mike(mesh: &Mesh) -> Made {
     text.made("with a quadrilateral", "in.mesh", Format::Mike, mesh, probes)
 }
 
-/// A mesh as it was written before 2012, of triangles alone.
+/// Makes a MIKE mesh in the form before 2012, of triangles alone.
 fn mike_of_2011(mesh: &Mesh) -> Made {
     let mut text = Text::new("");
     text.count(mesh.points.len());
@@ -155,7 +155,7 @@ fn fvcom(mesh: &Mesh) -> Made {
     text.made("with depths", "in_grd.dat", Format::Fvcom, mesh.clone(), probes)
 }
 
-/// A grid with commas and comments, without depths.
+/// Makes an FVCOM grid with commas and comments, without depths.
 fn fvcom_of_fortran(mesh: &Mesh) -> Made {
     let mut text = Text::new("Node Number=");
     text.count(mesh.points.len());
@@ -174,7 +174,7 @@ fn fvcom_of_fortran(mesh: &Mesh) -> Made {
     text.made("with commas", "in_grd.dat", Format::Fvcom, mesh.clone(), probes)
 }
 
-/// A mesh as MFEM writes it, with a quadrilateral and named sets of attributes.
+/// Makes a mesh as MFEM writes it, with a quadrilateral and named sets of attributes.
 fn mfem(mesh: &Mesh) -> Made {
     let head = "MFEM mesh v1.3\n\n#\n# TRIANGLE    = 2\n#\n\ndimension\n2\n\nelements\n";
     let mut text = Text::new(head);
@@ -202,7 +202,7 @@ fn mfem(mesh: &Mesh) -> Made {
     Made { regions, ..text.made("with a quadrilateral", "in.mesh", Format::Mfem, mesh, probes) }
 }
 
-/// A mesh with its words on few lines.
+/// Makes an MFEM mesh with many words per line.
 fn mfem_of_words(mesh: &Mesh) -> Made {
     let mut text = Text::new("MFEM mesh v1.0\n dimension 2 elements ");
     text.count(mesh.triangles.len());
@@ -218,7 +218,8 @@ fn mfem_of_words(mesh: &Mesh) -> Made {
     Made { regions, ..text.made("of words", "in.mesh", Format::Mfem, mesh.clone(), probes) }
 }
 
-/// A mesh with an edge, a quadrilateral, tags and values of points, with lists of elements before the points.
+/// Makes a JIGSAW mesh with an edge, a quadrilateral, tags and values of points, and with element lists before the
+/// points.
 fn jigsaw(mesh: &Mesh) -> Made {
     let mut text = Text::new("# in.msh; by hand\nmshid=3;euclidean-mesh\nTRIA3=");
     text.count(mesh.triangles.len());
@@ -246,7 +247,7 @@ fn jigsaw(mesh: &Mesh) -> Made {
     Made { regions, ..text.made("elements first", "in.msh", Format::Jigsaw, mesh, probes) }
 }
 
-/// A mesh as JIGSAW writes it, with three coordinates.
+/// Makes a mesh as JIGSAW writes it, with three coordinates.
 fn jigsaw_in_space(mesh: &Mesh) -> Made {
     let mut text =
         Text::new("# in.msh; created by JIGSAW\nMSHID=3;EUCLIDEAN-MESH\nNDIMS=3\nPOINT=");

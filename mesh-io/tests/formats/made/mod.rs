@@ -1,4 +1,5 @@
-//! Meshes in the formats of other programs, each written in several legal ways, and what reading them must give.
+//! Sample meshes in the formats of other programs, each in several legal layouts, with the facts that a reader must
+//! report.
 
 mod abaqus;
 pub(crate) mod binary;
@@ -21,39 +22,39 @@ use mesh_io::Format;
 use mesh_io::Precision;
 use std::ops::Range;
 
-/// A line inside the mesh. The file fixes its ends.
+/// A line inside the mesh, whose ends the file fixes.
 pub(crate) const LINE: [u32; 2] = [7, 8];
-/// A vertex inside the mesh that the file fixes on its own.
+/// A vertex inside the mesh that the file fixes by an element of its own.
 pub(crate) const POINT: u32 = 9;
-/// A quadrilateral inside the mesh, whose corners stay fixed. It stands before triangle 10.
+/// A quadrilateral inside the mesh, whose corners stay fixed. In lists of cells, it comes before triangle 10.
 pub(crate) const QUADRILATERAL: [u32; 4] = [15, 16, 22, 21];
-/// The vertex and the triangle whose places in the file are known.
+/// Indices of the vertex and the triangle whose locations in the file are checked.
 pub(crate) const PROBED: (u32, usize) = (14, 17);
-/// The first triangle of the second region.
+/// Index of the first triangle of the second region.
 const SECOND_REGION: usize = 30;
 
-/// A file, and what it holds.
+/// A sample file, and the content that a reader must find.
 pub(crate) struct Made {
-    /// How this file differs from others, for messages.
+    /// Difference from other samples of the format, for messages.
     pub(crate) what: String,
-    /// The name of the file.
+    /// File name with an extension of the format.
     pub(crate) name: &'static str,
     pub(crate) format: Format,
     pub(crate) precision: Precision,
     pub(crate) bytes: Vec<u8>,
-    /// The mesh. Its points have all digits, also where the file rounds them. Its fixed vertices are those that the file's
-    /// elements fix, ascending.
+    /// The mesh, with all digits of its points, even if the file rounds coordinates. Its fixed vertices are those of
+    /// elements in the file, ascending.
     pub(crate) mesh: Mesh,
     pub(crate) regions: Option<Vec<u32>>,
-    /// The label of the probed vertex, and the range of bytes that contains it.
+    /// Number of the probed vertex in the file, and the range of bytes that contains its location.
     pub(crate) vertex: (u64, Range<usize>),
-    /// The label of the probed triangle, and the range of bytes that contains it.
+    /// Number of the probed triangle in the file, and the range of bytes that contains its location.
     pub(crate) triangle: (u64, Range<usize>),
-    /// The byte ranges of lists: a file that ends within one of these is not a mesh.
+    /// Byte ranges of lists. A file that is cut off within such a range is not a mesh.
     pub(crate) lists: Vec<Range<usize>>,
-    /// The byte ranges of the numbers that tell how long lists are.
+    /// Byte ranges of the numbers that give the lengths of lists.
     pub(crate) counts: Vec<Range<usize>>,
-    /// Where x and y of each vertex start, in bytes, if they are in binary.
+    /// Offsets of x and y of each vertex in a binary file; empty for text.
     pub(crate) coordinates: Vec<[usize; 2]>,
     /// Whether binary numbers are big-endian.
     pub(crate) big: bool,
@@ -64,12 +65,12 @@ impl Made {
         self.coordinates.is_empty()
     }
 
-    /// The points as they are read: rounded to the file's precision.
+    /// Returns the points as a reader gets them, rounded to the precision of the file.
     pub(crate) fn points(&self) -> Vec<[f64; 2]> {
         self.mesh.points.iter().map(|p| p.map(|x| self.precision.rounded(x))).collect()
     }
 
-    /// The vertices that are fixed only because they lie between regions.
+    /// Returns the vertices between regions that no element fixes.
     pub(crate) fn interfaces(&self) -> Vec<u32> {
         let regions = self.regions.as_deref().unwrap_or_default();
         let mut between = interfaces(&self.mesh, regions);
@@ -78,7 +79,7 @@ impl Made {
     }
 }
 
-/// A mesh with 12 inner vertices whose coordinates have many digits.
+/// Returns a mesh with 12 inner vertices whose coordinates have many digits.
 pub(crate) fn base() -> Mesh {
     let mut mesh = lattice(5, 4);
     let on_boundary = super::support::boundary(&mesh);
@@ -89,7 +90,7 @@ pub(crate) fn base() -> Mesh {
     mesh
 }
 
-/// Every variant of every format. The mesh must have the triangles of [`base`]; its vertices may be elsewhere.
+/// Returns every variant of every format. `mesh` must have the triangles of [`base`], but may have other points.
 pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
     let families = [
         text::all,
@@ -107,7 +108,7 @@ pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
     families.into_iter().flat_map(|all| all(mesh)).collect()
 }
 
-/// The mesh with these vertices fixed.
+/// Returns the mesh with the vertices `fixed` fixed.
 fn fixing(mesh: &Mesh, fixed: impl IntoIterator<Item = u32>) -> Mesh {
     let mut fixed: Vec<_> = fixed.into_iter().collect();
     fixed.sort_unstable();
@@ -115,34 +116,34 @@ fn fixing(mesh: &Mesh, fixed: impl IntoIterator<Item = u32>) -> Mesh {
     Mesh { fixed, ..mesh.clone() }
 }
 
-/// The corners of every triangle.
+/// Returns the corners of every triangle.
 fn triples(mesh: &Mesh) -> Vec<Vec<u32>> {
     mesh.triangles.iter().map(|t| t.to_vec()).collect()
 }
 
-/// The corners of every triangle, and of the quadrilateral among them.
+/// Returns the corners of every cell: the triangles, with the quadrilateral before triangle 10.
 fn cells(mesh: &Mesh) -> Vec<Vec<u32>> {
     let mut cells = triples(mesh);
     cells.insert(10, QUADRILATERAL.to_vec());
     cells
 }
 
-/// The number that names the region of a triangle.
+/// Returns the number that the file gives to a triangle's region.
 fn region(triangle: usize) -> i32 {
     if triangle < SECOND_REGION { 5 } else { 2 }
 }
 
-/// The region of each triangle as it is read, numbered from zero.
+/// Returns the region of each triangle as a reader numbers regions, from 0.
 fn regions(mesh: &Mesh) -> Option<Vec<u32>> {
     Some((0..mesh.triangles.len()).map(|t| u32::from(t >= SECOND_REGION)).collect())
 }
 
-/// The third coordinate of a vertex.
+/// Returns the third coordinate of a vertex.
 fn z(vertex: usize) -> f64 {
     vertex as f64 * -0.75 + 1.5
 }
 
-/// A number in one of the styles in which programs write it.
+/// Writes a number in one of several styles that programs use.
 fn number(style: usize, x: f64) -> String {
     match style % 4 {
         0 => format!("{x}"),
@@ -152,7 +153,7 @@ fn number(style: usize, x: f64) -> String {
     }
 }
 
-/// x and y in several styles, after a number of blanks.
+/// Writes x and y in several styles, with blanks or a tab between.
 fn point(vertex: usize, [x, y]: [f64; 2]) -> String {
     let blank = [" ", "\t", "   "][vertex % 3];
     format!("{}{blank}{}", number(vertex, x), number(vertex + 1, y))
@@ -162,7 +163,7 @@ fn points(mesh: &Mesh) -> impl Iterator<Item = (usize, String)> {
     mesh.points.iter().enumerate().map(|(i, &at)| (i, point(i, at)))
 }
 
-/// Numbers of vertices as text, counted from `first`.
+/// Returns vertex numbers as text, counted from `first` and separated by blanks.
 fn joined(vertices: &[u32], first: u32) -> String {
     let numbers: Vec<_> = vertices.iter().map(|v| (v + first).to_string()).collect();
     numbers.join(" ")
@@ -185,14 +186,14 @@ impl Text {
         self.text.push_str(text);
     }
 
-    /// Adds a number that tells how long a list is.
+    /// Adds the length of a list, and records the byte range of this number.
     fn count(&mut self, count: usize) {
         let start = self.text.len();
         self.text.push_str(&count.to_string());
         self.counts.push(start..self.text.len());
     }
 
-    /// Adds the rows of a list. Returns where each starts.
+    /// Adds the rows of a list. Returns the offset of each row.
     fn rows(&mut self, rows: impl IntoIterator<Item = String>) -> Vec<usize> {
         let mut starts = Vec::new();
         for row in rows {
@@ -204,7 +205,7 @@ impl Text {
         starts
     }
 
-    /// Finishes the file. Takes the labels and places of the probed vertex and triangle.
+    /// Finishes the file. The last parameter has the numbers and the offsets of the probed vertex and triangle.
     fn made(
         self,
         what: &str,

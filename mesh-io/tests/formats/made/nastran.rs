@@ -12,7 +12,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     vec![small(mesh), large(mesh), free(mesh)]
 }
 
-/// The number of a vertex, counted in threes.
+/// Returns the number of a vertex in the file: 100, 103, 106 and so on.
 fn tag(vertex: u32) -> usize {
     100 + 3 * vertex as usize
 }
@@ -26,7 +26,7 @@ fn made(text: Text, what: &str, mesh: &Mesh, precision: Precision, starts: [usiz
     Made { regions, precision, ..made }
 }
 
-/// Writes a number as it is after rounding, in at most `most` characters.
+/// Writes a number, rounded to the precision, in at most `most` characters.
 fn fitting(x: f64, precision: Precision, most: usize) -> String {
     let x = precision.rounded(x);
     let scientific = format!("{x:e}").replace("e-", "-").replace('e', "+");
@@ -36,7 +36,7 @@ fn fitting(x: f64, precision: Precision, most: usize) -> String {
     fits.unwrap_or_else(|| panic!("{x:?} does not fit")).clone()
 }
 
-/// A card of fields of so many characters, its lines broken as they must be.
+/// Writes a card with fields of `width` characters, broken into lines of four or eight fields.
 fn fixed(name: &str, width: usize, fields: &[String]) -> String {
     let (mark, count) = if width == 16 { ("*", 4) } else { ("", 8) };
     let lines = fields.chunks(count).enumerate().map(|(line, fields)| {
@@ -56,7 +56,8 @@ fn triangle(mesh: &Mesh, t: usize) -> Vec<String> {
     corners([10 + 2 * t, region(t) as usize], &mesh.triangles[t])
 }
 
-/// As preprocessors write it, with all sections; some rows have tabs, and elements are wherever they may be.
+/// Makes a file like those of preprocessors, with all sections. Some rows have tabs, and elements come before and after
+/// nodes.
 fn small(mesh: &Mesh) -> Made {
     let precision = Precision::Text8;
     let mut text =
@@ -84,7 +85,7 @@ fn small(mesh: &Mesh) -> Made {
     made(text, "small field", mesh, precision, [vertices[VERTEX], triangles[TRIANGLE]])
 }
 
-/// Large field without other sections, elements in large and in small field.
+/// Makes bulk data in large field without other sections. Elements are in large and in small field.
 fn large(mesh: &Mesh) -> Made {
     let precision = Precision::Text16;
     let mut text = Text::new("$HMNAME PROP 5\"one\" 4\n");
@@ -110,7 +111,7 @@ fn large(mesh: &Mesh) -> Made {
     made(text, "large field", mesh, precision, [vertices[VERTEX], triangles[TRIANGLE]])
 }
 
-/// Free field, with as many digits as programs write that know no bounds.
+/// Makes bulk data in free field, with all digits, as programs write that ignore the limits of fields.
 fn free(mesh: &Mesh) -> Made {
     let mut text = Text::new("BEGIN BULK\n");
     let rows = mesh.points.iter().enumerate().map(|(v, &[x, y])| {

@@ -1,10 +1,10 @@
-//! Makes files of netCDF's three classic forms.
+//! Makes files in the three classic forms of netCDF.
 
 use super::super::support::Binary;
 use mesh_io::Precision;
 use std::ops::Range;
 
-/// A variable: its name, type, dimensions and content. The content is that of one record if it depends on time.
+/// A variable: name, type, dimensions and content. For a variable with records, the content is that of one record.
 struct Variable {
     name: String,
     number: i32,
@@ -13,7 +13,7 @@ struct Variable {
     attributes: Vec<(&'static str, Attribute)>,
 }
 
-/// The content of an attribute.
+/// Value of an attribute.
 #[derive(Clone, Copy)]
 pub(super) enum Attribute {
     Text(&'static str),
@@ -21,14 +21,14 @@ pub(super) enum Attribute {
     Real(f64),
 }
 
-/// A file under construction. `version` tells whether counts and offsets have 64 bits.
+/// Builder of a file. `version` is 1, 2 (64-bit offsets) or 5 (64-bit counts and offsets).
 pub(super) struct NetCdf {
     out: Binary,
     pub(super) version: u8,
     variables: Vec<Variable>,
 }
 
-/// A file, with the places of its variables and of the lengths of its dimensions, by name.
+/// A finished file, with the byte ranges of its variables and of the lengths of its dimensions, by name.
 pub(super) struct Built {
     pub(super) bytes: Vec<u8>,
     places: Vec<(String, Range<usize>)>,
@@ -36,25 +36,25 @@ pub(super) struct Built {
 }
 
 impl Built {
-    /// Where a variable stands, in its first record.
+    /// Returns the byte range of a variable, of its first record if it has records.
     pub(super) fn variable(&self, name: &str) -> Option<Range<usize>> {
         let found = self.places.iter().find(|(own, _)| own == name);
         found.map(|(_, range)| range.clone())
     }
 
-    /// Where all variables stand, in all records.
+    /// Returns the byte ranges of all variables, in all records.
     pub(super) fn lists(&self) -> Vec<Range<usize>> {
         self.places.iter().map(|(_, range)| range.clone()).collect()
     }
 
-    /// Where the lengths of these dimensions stand.
+    /// Returns the byte ranges of the lengths of some dimensions.
     pub(super) fn lengths(&self, names: &[&str]) -> Vec<Range<usize>> {
         let wanted = self.lengths.iter().filter(|(name, _)| names.contains(name));
         wanted.map(|(_, range)| range.clone()).collect()
     }
 }
 
-/// The dimension of records.
+/// Name of the record dimension.
 pub(super) const RECORDS: &str = "time_step";
 
 impl NetCdf {
@@ -108,7 +108,7 @@ impl NetCdf {
         self.add(name, 2, dimensions, content.collect());
     }
 
-    /// Gives the variable that was added last an attribute.
+    /// Adds an attribute to the variable that was added last.
     pub(super) fn attribute(&mut self, name: &'static str, content: Attribute) {
         self.variables.last_mut().unwrap().attributes.push((name, content));
     }
@@ -133,7 +133,7 @@ impl NetCdf {
         }
     }
 
-    /// Writes the file, with so many records.
+    /// Finishes the file with `records` records.
     pub(super) fn build(mut self, dimensions: &[(&'static str, usize)], records: usize) -> Built {
         let variables = std::mem::take(&mut self.variables);
         self.out.text("CDF");

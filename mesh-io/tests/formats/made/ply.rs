@@ -1,4 +1,4 @@
-//! Makes PLY files, as text and in binary.
+//! Makes PLY files, in text and in binary.
 
 use super::super::support::Binary;
 use super::super::support::Mesh;
@@ -8,7 +8,7 @@ use mesh_io::Format;
 use mesh_io::Precision;
 
 const VERTEX: usize = PROBED.0 as usize;
-/// The row of the probed triangle among those of [`cells`].
+/// Row of the probed triangle in the list of [`cells`].
 const CELL: usize = PROBED.1 + 1;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
@@ -20,7 +20,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     all
 }
 
-/// Adds the header but for its first two lines.
+/// Adds the header except its first two lines.
 fn header(text: &mut Text, mesh: &Mesh, precision: Precision) {
     let real = if precision == Precision::Single { "float" } else { "double" };
     text.put("comment element vertex 9\nobj_info by hand\nelement vertex ");

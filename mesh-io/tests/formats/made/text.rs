@@ -1,4 +1,4 @@
-//! Makes files of text formats with keywords or headers, other than VTK's.
+//! Makes files of text formats with keywords or headers, except VTK.
 
 use super::super::support::Mesh;
 use super::{
@@ -9,7 +9,7 @@ use mesh_io::Format;
 
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;
-/// The row of the probed triangle among those of [`cells`].
+/// Row of the probed triangle in the list of [`cells`].
 const CELL: usize = TRIANGLE + 1;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
@@ -77,7 +77,7 @@ fn su2_elements_first(mesh: &Mesh) -> Made {
     text.made("elements first", "in.su2", Format::Su2, mesh, probes)
 }
 
-/// The mesh twice, in two zones.
+/// Makes an SU2 file with the mesh twice, in two zones.
 fn su2_zones(mesh: &Mesh) -> Made {
     let mut text = Text::new("NZONE= 2\n");
     let mut both = Mesh::default();
@@ -167,7 +167,7 @@ fn obj(mesh: &Mesh) -> Made {
         let next = region(triangle) != region(triangle.saturating_sub(1)) && cell.len() == 3;
         format!("f{face}{}", if next { "\nusemtl ice" } else { "" })
     }));
-    // A file that ends among the faces is a valid smaller mesh, so this list is left out.
+    // A file that is cut off among the faces is a valid smaller mesh, so the list is removed.
     text.lists.pop();
     text.put(&format!("l {}\np {}\n", joined(&LINE, 1), POINT + 1));
     let regions = regions(mesh);
@@ -176,7 +176,7 @@ fn obj(mesh: &Mesh) -> Made {
     Made { regions, ..text.made("of materials", "in.obj", Format::Obj, mesh, probes) }
 }
 
-/// Writes each face as soon as all its vertices are written, with numbers counted back from the last vertex.
+/// Makes an OBJ with each face right after its last vertex, by numbers counted back from the latest vertex.
 fn obj_counted_back(mesh: &Mesh) -> Made {
     let mut text = Text::default();
     let (mut before, mut probes) = (0, [(VERTEX as u64 + 1, 0), (18, 0)]);

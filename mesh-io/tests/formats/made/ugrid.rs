@@ -7,28 +7,29 @@ use super::{Made, PROBED, QUADRILATERAL, cells, fixing, triples};
 use mesh_io::Format;
 use mesh_io::Precision;
 
-/// How a file has its mesh.
+/// Properties in which the sample files differ.
 struct Style {
     version: u8,
     precision: Precision,
     faces: Faces,
-    /// The number of the first node, and whether the file says it.
+    /// Number of the first node.
     first: u32,
+    /// Whether the file gives the number of the first node as `start_index`.
     says_first: bool,
-    /// Whether y stands before x.
+    /// Whether the variable of y comes before the variable of x.
     is_turned: bool,
 }
 
-/// How the nodes of faces stand.
+/// Layout of the nodes of faces.
 #[derive(Clone, Copy, PartialEq)]
 enum Faces {
-    /// A row for each triangle. There are no other faces.
+    /// A row of three nodes for each triangle, without any other faces.
     Triangles,
-    /// A row for each face, filled up with this number, which the file tells.
+    /// A row for each face, padded with this number, which the file gives as `_FillValue`.
     Rows(i32),
-    /// A column for each face, filled up with -1, which the file does not tell.
+    /// A column for each face, padded with -1, which no attribute of the file explains.
     Columns,
-    /// A row for each face, of real numbers, filled up with what is no number.
+    /// A row of real numbers for each face, padded with NaN.
     Real,
 }
 
@@ -67,7 +68,7 @@ fn ugrid(mesh: &Mesh, style: &Style) -> Made {
     let is_mixed = faces != Faces::Triangles;
     let elements = if is_mixed { cells(mesh) } else { triples(mesh) };
     let (n, m, corners) = (mesh.points.len(), elements.len(), if is_mixed { 4 } else { 3 });
-    // A mesh of lines, which is not meant.
+    // A second mesh, of lines, which the reader must ignore.
     file.ints("network", &[], &[0]);
     file.attribute("cf_role", Attribute::Text("mesh_topology"));
     file.attribute("topology_dimension", Attribute::Whole(1));
@@ -99,7 +100,7 @@ fn ugrid(mesh: &Mesh, style: &Style) -> Made {
         }
     }
     if says_first {
-        // Some programs give it as a real number.
+        // Some programs write `start_index` as a real number.
         let real = Attribute::Real(f64::from(first));
         let whole = Attribute::Whole(first as i32);
         file.attribute("start_index", if version == 1 { real } else { whole });
@@ -121,7 +122,7 @@ fn ugrid(mesh: &Mesh, style: &Style) -> Made {
     made(mesh, style, built)
 }
 
-/// Adds numbers for each node and face: depths of which one is missing, velocities in layers, and water levels in time steps.
+/// Adds data of nodes and faces: depths with one missing value, velocities in layers, and water levels in time steps.
 fn data(file: &mut NetCdf, precision: Precision, nodes: usize, faces: usize) {
     let numbers = |count: usize, by: f64| (0..count).map(|i| i as f64 * by).collect::<Vec<_>>();
     file.reals("lon", precision, &["node"], &numbers(nodes, 0.25));
@@ -139,9 +140,9 @@ fn data(file: &mut NetCdf, precision: Precision, nodes: usize, faces: usize) {
     file.attribute("location", Attribute::Text("face"));
 }
 
-/// Adds centers of faces: x is the mean of the corners, y something else.
+/// Adds centers of faces: x is the mean of the corners, y is not.
 fn centers(file: &mut NetCdf, mesh: &Mesh, faces: &[Vec<u32>]) {
-    // A corner may be no vertex of the mesh.
+    // A corner beyond the vertices counts as 0.
     let x = |&v: &u32| mesh.points.get(v as usize).map_or(0.0, |point| point[0]);
     let mean = |face: &Vec<u32>| face.iter().map(x).sum::<f64>() / face.len() as f64;
     let means: Vec<f64> = faces.iter().map(mean).collect();
@@ -155,7 +156,7 @@ fn made(mesh: &Mesh, style: &Style, built: Built) -> Made {
     let [x, y] = ["bay_x", "bay_y"].map(|name| built.variable(name).unwrap());
     let is_mixed = faces != Faces::Triangles;
     let fixed = if is_mixed { QUADRILATERAL.to_vec() } else { Vec::new() };
-    // The quadrilateral stands before triangle 10.
+    // The quadrilateral comes before triangle 10.
     let place = PROBED.1 as u64 + u64::from(is_mixed);
     Made {
         what: format!("UGRID, version {version} of netCDF, {precision:?}"),

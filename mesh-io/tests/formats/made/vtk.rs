@@ -1,4 +1,4 @@
-//! Makes files of VTK's legacy format, as text and in binary, with lists of cells in the old and the new layout.
+//! Makes legacy VTK files, in text and in binary, with cell lists in the old and the new layout.
 
 use super::super::support::Binary;
 use super::super::support::Mesh;
@@ -8,18 +8,18 @@ use mesh_io::Format;
 use mesh_io::Precision;
 use std::ops::Range;
 
-/// A line of three vertices on the boundary.
+/// A polyline of three vertices on the boundary.
 const POLYLINE: [u32; 3] = [2, 3, 4];
 
-/// Properties in which the files differ.
+/// Properties in which the sample files differ.
 #[derive(Clone, Copy)]
 struct Style {
     version: &'static str,
     binary: bool,
     precision: Precision,
-    /// Whether the file is polygonal data, and not an unstructured grid.
+    /// Whether the file has polygonal data instead of an unstructured grid.
     polygons: bool,
-    /// The type of the integers of cells, if offsets and points are separate lists.
+    /// Type of the integers in cell lists with separate offsets and points; `None` for the old layout.
     offsets: Option<&'static str>,
 }
 
@@ -41,7 +41,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     all
 }
 
-/// A file under construction, as text or in binary.
+/// Builder of a file in text or in binary.
 struct Writer {
     file: Binary,
     style: Style,
@@ -62,7 +62,7 @@ impl Writer {
         self.text(after);
     }
 
-    /// Adds integers, in binary of `size` bytes each.
+    /// Adds integers; in binary, each has `size` bytes.
     fn numbers(&mut self, numbers: &[i64], size: usize) {
         for &n in numbers {
             match (self.style.binary, size) {
@@ -80,7 +80,7 @@ impl Writer {
         }
     }
 
-    /// Adds the regions of cells, as an attribute or in a field.
+    /// Adds the regions of cells as an attribute or in a field.
     fn regions(&mut self, cells: &[Vec<u32>]) {
         let mut triangle = 0;
         let names: Vec<_> = cells
@@ -108,7 +108,7 @@ impl Writer {
         }
     }
 
-    /// Adds a list of rows of integers, in binary of `size` bytes each. Returns where each row starts.
+    /// Adds rows of integers; in binary, each integer has `size` bytes. Returns the offset of each row.
     fn integers(&mut self, rows: &[Vec<usize>], size: usize) -> Vec<usize> {
         let mut starts = Vec::new();
         for row in rows {
@@ -123,14 +123,14 @@ impl Writer {
         starts
     }
 
-    /// Ends a list. A text that ends anywhere in its last row may still be read.
+    /// Ends a list. In text, the range of the list ends with the start of the last row, which may be cut off unnoticed.
     fn end_list(&mut self, start: usize, last_row: usize) {
         let end = if self.style.binary { self.file.bytes.len() } else { last_row + 1 };
         self.lists.push(start..end);
         self.text("\n");
     }
 
-    /// Adds the points. Returns where each starts. Text of single precision has three points on a line.
+    /// Adds the points. Returns the offset of each point. Text of single precision has three points per line.
     fn points(&mut self, mesh: &Mesh) -> Vec<usize> {
         let precision = self.style.precision;
         let name = if precision == Precision::Single { "float" } else { "double" };
@@ -151,7 +151,7 @@ impl Writer {
         starts
     }
 
-    /// Adds a list of cells. Returns the byte range that contains each; where offsets are separate, that of the points of all.
+    /// Adds a list of cells. Returns the byte range of each cell; with separate offsets, the byte range of all points.
     fn cells(&mut self, keyword: &str, cells: &[Vec<u32>]) -> Vec<Range<usize>> {
         let points: Vec<Vec<usize>> =
             cells.iter().map(|cell| cell.iter().map(|&v| v as usize).collect()).collect();

@@ -1,4 +1,4 @@
-//! Makes files of VTK's XML format in all its encodings.
+//! Makes VTK XML files in all encodings of arrays.
 
 use super::super::support::Binary;
 use super::super::support::Mesh;
@@ -20,12 +20,12 @@ pub(crate) enum Place {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
     pub(crate) place: Place,
-    /// The attribute that names the compressor, if there is one.
+    /// Value of the attribute `compressor`; `None` without compression.
     pub(crate) compressor: Option<&'static str>,
     wide_header: bool,
     big: bool,
     pub(crate) precision: Precision,
-    /// Whether integers have 64 bits.
+    /// Whether integers have 64 bits instead of 32.
     wide_integers: bool,
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn styles() -> Vec<Style> {
     styles
 }
 
-/// An array to write: its attributes, its numbers as text, and its numbers as bytes.
+/// An array to write: XML attributes, numbers as text, and numbers as bytes.
 struct Array {
     attributes: String,
     text: String,
@@ -62,7 +62,7 @@ impl Style {
         bytes.bytes
     }
 
-    /// The bytes with their header, encoded as `place` requires.
+    /// Returns the bytes with their header, encoded as `place` requires.
     fn encoded(self, bytes: &[u8]) -> Vec<u8> {
         const BLOCK: usize = 100;
         let text = |bytes: &[u8]| STANDARD.encode(bytes).into_bytes();
@@ -89,7 +89,7 @@ impl Style {
         if raw { [header, content].concat() } else { [text(&header), text(&content)].concat() }
     }
 
-    /// Vectors of two numbers each, of another precision than the points.
+    /// Returns vectors of two numbers each, in another precision than the points.
     fn vectors(self, name: &str, count: usize) -> Array {
         let single = self.precision == Precision::Double;
         let precision = if single { Precision::Single } else { Precision::Double };
@@ -121,13 +121,13 @@ impl Style {
     }
 }
 
-/// A file of the mesh, with an edge and a quadrilateral among its triangles, and regions.
+/// Returns a file of the mesh, with an edge and a quadrilateral among its triangles, and with regions.
 pub(crate) fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
     write_pieces(&[mesh], style, false)
 }
 
-/// A file of several pieces, as an unstructured grid or as polygonal data. Each piece has an edge before its triangles and a
-/// quadrilateral among them.
+/// Returns a file of several pieces, as an unstructured grid or as polygonal data. Each piece has an edge before its
+/// triangles and a quadrilateral among them.
 pub(crate) fn write_pieces(meshes: &[&Mesh], style: Style, polygons: bool) -> Vec<u8> {
     let mut out = Vec::new();
     let order = if style.big { "BigEndian" } else { "LittleEndian" };
@@ -195,7 +195,7 @@ pub(crate) fn write_pieces(meshes: &[&Mesh], style: Style, polygons: bool) -> Ve
     out
 }
 
-/// A cell's type, its points and its region.
+/// Type, points and region of a cell.
 type Cell = (u32, Vec<u32>, u32);
 
 fn cells(mesh: &Mesh) -> Vec<Cell> {
@@ -206,7 +206,7 @@ fn cells(mesh: &Mesh) -> Vec<Cell> {
     cells
 }
 
-/// The arrays of a piece, grouped by the XML element that contains them.
+/// Returns the arrays of a piece, grouped by the enclosing XML element.
 fn sections(
     mesh: &Mesh,
     cells: &[Cell],
@@ -226,7 +226,7 @@ fn sections(
         bytes: points.bytes,
     };
     let column = |of: fn(&Cell) -> u32| cells.iter().map(of).collect::<Vec<_>>();
-    // Connectivity and offsets of these cells.
+    // Makes the connectivity and the offsets of some cells.
     let lists = |cells: &[Cell]| {
         let connectivity: Vec<u32> = cells.iter().flat_map(|cell| cell.1.clone()).collect();
         let mut end = 0;

@@ -1,4 +1,4 @@
-//! Makes XDMF files with the numbers in the XML.
+//! Makes XDMF files with all numbers in the XML.
 
 use super::super::support::Mesh;
 use super::{
@@ -12,7 +12,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     vec![mixed(mesh), triangles(mesh)]
 }
 
-/// An XDMF of version 3 with a topology of several kinds, regions, and data of two time steps.
+/// Makes an XDMF of version 3 with a mixed topology, regions, and data of two time steps.
 fn mixed(mesh: &Mesh) -> Made {
     let mut text = Text::new(
         "<?xml version=\"1.0\" ?>\n<!-- <Geometry> -->\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"3.0\">\n\
@@ -49,13 +49,13 @@ fn mixed(mesh: &Mesh) -> Made {
     let regions = regions(mesh);
     let mesh = fixing(mesh, QUADRILATERAL.into_iter().chain(LINE).chain([POINT]));
     let vertex = PROBED.0 as usize;
-    // Cells are counted from zero, and the quadrilateral is before the probed triangle.
+    // Cells are counted from 0, and the quadrilateral comes before the probed triangle.
     let probes = [(vertex as u64, vertices[vertex]), (PROBED.1 as u64 + 1, elements[PROBED.1 + 1])];
     let made = text.made("of several kinds", "in.xdmf", Format::Xdmf, mesh, probes);
     Made { regions, ..made }
 }
 
-/// An XDMF of version 2 with triangles alone, and planar points of single precision.
+/// Makes an XDMF of version 2 with triangles alone, and planar points of single precision.
 fn triangles(mesh: &Mesh) -> Made {
     let mut text = Text::new(
         "<Xdmf Version=\"2.2\"><Domain><Grid><Topology TopologyType=\"Triangle\" NumberOfElements=\"",
