@@ -30,33 +30,33 @@ pub enum ReadError {
     /// The operating system reported an error.
     #[error("{}: {source}. {remedy}", path.display())]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The system's error.
         source: io::Error,
-        /// What the user can do about it.
+        /// Remedy for the user, without a final period.
         remedy: String,
     },
     /// The content does not follow the format.
     #[error("{}{location}: {problem}. {remedy}", path.display())]
     Content {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Line or byte of the error.
         location: Location,
         /// What is wrong there.
         problem: String,
-        /// What the user can do about it.
+        /// Remedy for the user, without a final period.
         remedy: String,
     },
     /// The file was read, but its format is unknown or unsupported.
     #[error("{}: {problem}. {remedy}", path.display())]
     Format {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// What was found instead of a supported format.
         problem: String,
-        /// What the user can do about it.
+        /// Remedy for the user, without a final period.
         remedy: String,
     },
     /// An STL was read without [`ReadOptions::weld`](crate::ReadOptions::weld).
@@ -66,7 +66,7 @@ pub enum ReadError {
         path.display()
     )]
     Unwelded {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
     /// A mesh file names a file outside of its directory, and was read without
@@ -94,21 +94,21 @@ pub enum WriteError {
     /// The operating system reported an error.
     #[error("{}: {source}. {remedy}", path.display())]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The system's error.
         source: io::Error,
-        /// What the user can do about it.
+        /// Remedy for the user, without a final period.
         remedy: String,
     },
-    /// The extension belongs to another format than that of the mesh.
+    /// The extension belongs to a format that differs from the format of the mesh.
     #[error("{}: {problem}. {remedy}", path.display())]
     Format {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// What is wrong with the name.
         problem: String,
-        /// What the user can do about it.
+        /// Remedy for the user, without a final period.
         remedy: String,
     },
     /// Another program has changed the file since the mesh was read from it.
@@ -118,13 +118,13 @@ pub enum WriteError {
         path.display()
     )]
     Changed {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
     /// The points do not fit the mesh, by a mistake in the calling program.
     #[error("{}: not written: {problem}", path.display())]
     Points {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// What is wrong with the points.
         problem: String,
@@ -172,7 +172,7 @@ fn join_first(names: &[String], between: &str) -> String {
 /// Positions or data of vertices whose length does not fit the mesh file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FieldError {
-    /// The number of positions differs from the number of vertices.
+    /// The list of positions differs in length from the list of vertices.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
     PointCount {
         /// Number of vertices of the mesh.
@@ -180,7 +180,7 @@ pub enum FieldError {
         /// Number of points that were given.
         given: usize,
     },
-    /// The number of values differs from the length of the field.
+    /// The list of values differs in length from the field.
     #[error("{given} numbers are given where the vertices of the mesh need {expected}")]
     ValueCount {
         /// Number of values in the field.

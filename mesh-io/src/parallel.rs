@@ -4,7 +4,8 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Calls `task` for each part with the index of the part, on all threads. Returns the results in the order of `parts`.
+/// Calls `task` with the index and the value of each part, distributed over all threads. Returns the results in part
+/// order.
 pub(crate) fn map_parts<P: Send, T: Send>(
     parts: impl IntoIterator<Item = P>,
     task: impl Fn(usize, P) -> T + Sync,

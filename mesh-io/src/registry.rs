@@ -19,7 +19,7 @@ const fn reader<W: FormatReader>() -> ReaderFunctions {
 /// Entry of the registry: a reader with the formats it reads, or an unsupported format that only errors name.
 pub(crate) struct FormatEntry {
     pub(crate) name: &'static str,
-    /// Endings of file names of the format, the usual one first.
+    /// Extensions of file names, the usual one first. Some are whole names, such as `fort.14`.
     pub(crate) extensions: &'static [&'static str],
     /// The first bytes of a file of the format, after blanks and comment lines. Empty for formats that are recognized
     /// by their first rows of numbers.

@@ -50,7 +50,7 @@ impl ByteOrder {
         }
     }
 
-    /// Reads an unsigned whole number of up to 8 bytes.
+    /// Reads an unsigned integer of up to 8 bytes.
     #[inline]
     pub(crate) fn whole(self, bytes: &[u8]) -> u64 {
         // Separate branches for widths of 4 and 8 bytes are several times as fast as the fold.
@@ -67,7 +67,7 @@ impl ByteOrder {
         }
     }
 
-    /// Reads a signed whole number of up to 8 bytes.
+    /// Reads a signed integer of up to 8 bytes.
     #[inline]
     pub(crate) fn signed(self, bytes: &[u8]) -> i64 {
         let unused = 64 - 8 * bytes.len();

@@ -1,4 +1,4 @@
-//! Binary numbers: byte orders, numbers in records of one size, and lists of whole numbers.
+//! Binary numbers: byte orders, fields of records, and arrays of unsigned integers.
 
 pub(crate) mod byte_order;
 pub(crate) mod int_array;

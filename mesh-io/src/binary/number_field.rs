@@ -11,7 +11,7 @@ const CHUNK: usize = 1 << 13;
 /// A number at the same offset in each record of a binary list, or several adjacent numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct NumberField<'a> {
-    /// Bytes of the list from the first record's number to the end.
+    /// Bytes of the list, which begin with the first record's number.
     pub(crate) bytes: &'a [u8],
     /// Distance between the numbers of successive records, in bytes.
     pub(crate) stride: usize,
@@ -43,7 +43,7 @@ impl<'a> NumberField<'a> {
         self.stride > 0 && self.width > 0 && end.is_some_and(|end| end <= self.bytes.len())
     }
 
-    /// Returns, for each record of a range, the bytes from its number up to the number of the next record. The field
+    /// Returns, for each record of a range, `stride` bytes from its number on, fewer at the end of the list. The field
     /// must hold the records.
     pub(crate) fn of(self, records: Range<usize>) -> impl Iterator<Item = &'a [u8]> {
         self.bytes[records.start * self.stride..].chunks(self.stride).take(records.len())

@@ -143,7 +143,7 @@ fn decompress_gzip(bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(
 
 /// Decompresses frame after frame of a zstd file, until the content has more than `most` bytes.
 fn decompress_zstd(mut bytes: &[u8], most: usize, content: &mut Vec<u8>) -> Result<(), String> {
-    /// Bytes that are decompressed at a time.
+    /// Number of decompressed bytes after which the limit is checked.
     const STEP: usize = 1 << 20;
     let mut decoder = FrameDecoder::new();
     while !bytes.is_empty() {

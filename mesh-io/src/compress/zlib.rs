@@ -1,4 +1,4 @@
-//! Blocks that are compressed by zlib within VTK XML and HDF5 files.
+//! Compression of blocks by zlib, for VTK XML and HDF5 files.
 
 use flate2::Compression;
 use flate2::read::{ZlibDecoder, ZlibEncoder};
@@ -10,8 +10,7 @@ pub(crate) const USUAL_LEVEL: u32 = 6;
 /// Limit on the decompressed bytes per compressed byte. Deflate reaches 1032, LZ4 255.
 const MAX_EXPANSION: usize = 1100;
 
-/// Returns whether `compressed` bytes can decompress to `length` bytes. If not, one of these lengths in the file is
-/// wrong.
+/// Returns whether `compressed` bytes can decompress to `length` bytes. Otherwise the file gives a wrong length.
 pub(crate) fn can_expand(compressed: usize, length: usize) -> bool {
     length <= compressed.saturating_mul(MAX_EXPANSION)
 }

@@ -102,8 +102,8 @@ impl NewFile for Faulty {
 
 const NAMES: [&str; 3] = ["out.node", "out.ele", "out.poly"];
 
-/// Writes three files to a failing disk. `old` says which files existed before. Checks that all files are new or all
-/// are old, and that no other files are left. Returns whether the files are new.
+/// Writes three files to a failing disk. `old` says which files existed before. Checks that either all files are new or
+/// all are old, without leftover files. Returns whether the files are new.
 fn write_three(faults: &Faults, old: [bool; 3], is_same_mesh: bool) -> bool {
     let directory = tempfile::tempdir().unwrap();
     let paths = NAMES.map(|name| directory.path().join(name));

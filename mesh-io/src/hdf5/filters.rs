@@ -15,8 +15,8 @@ pub(super) enum Filter {
     Fletcher,
 }
 
-/// Reads a filter pipeline message. Returns the filters in the order of the message, which is that of compression. An
-/// unsupported filter is an error.
+/// Reads a filter pipeline message. Returns the filters in message order, which applies to compression; decompression
+/// reverses the order. An unsupported filter is an error.
 pub(super) fn read(mut bytes: ByteReader<'_>) -> Result<Vec<Filter>, Hdf5Error> {
     let version = bytes.byte()?;
     let count = bytes.byte()?;

@@ -9,7 +9,7 @@ use super::file_bytes::FileBytes;
 pub(super) struct FixedArray {
     /// Number of entries.
     count: usize,
-    /// Number of entries per page. An array with more entries than a page has a checksum for each page.
+    /// Number of entries per page. If the entries exceed one page, each page has its own checksum.
     page: usize,
     /// Width of an entry in bytes.
     size: usize,

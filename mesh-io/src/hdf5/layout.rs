@@ -10,8 +10,8 @@ pub(super) enum Layout {
     Compact(Range<usize>),
     /// In one piece from this address on; `None` if the items were never written.
     Contiguous(Option<usize>),
-    /// In chunks of `lengths` items in each dimension. `address` is the offset of the index, or of the first chunk if
-    /// the index is `Single` or `Implicit`; `None` if no chunk was written.
+    /// In chunks of `lengths` items in each dimension. `address` is the offset of the index, or for `Single` and
+    /// `Implicit` the offset of the first chunk; `None` if no chunk was written.
     Chunked { lengths: Vec<u64>, index: Index, address: Option<usize> },
 }
 

@@ -15,7 +15,7 @@ pub(crate) enum Datatype {
     Real(Precision, ByteOrder),
     /// Reference to a text of variable length. The reference itself has this many bytes.
     VariableText(usize),
-    /// Any other type, whose items have this many bytes.
+    /// Any other type, with the item size in bytes.
     Other(usize),
 }
 

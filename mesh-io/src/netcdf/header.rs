@@ -52,7 +52,8 @@ impl Variable {
         self.attribute(attribute)?.text()
     }
 
-    /// Returns the first number of an attribute; `None` if the attribute is missing or the number has a fraction.
+    /// Returns the first number of an attribute as an integer; `None` if the attribute is missing or the number has a
+    /// fraction.
     pub(crate) fn whole(&self, attribute: &str) -> Option<i64> {
         self.attribute(attribute)?.whole()
     }
@@ -188,7 +189,7 @@ impl<'a> Header<'a> {
     }
 
     /// Returns the error of the first HDF5 dataset with a wanted name that cannot be opened: damaged, or with an
-    /// unsupported filter. `None` if all can be opened, or if the file is not HDF5.
+    /// unsupported filter. `None` if every wanted dataset opens, or if the file is not HDF5.
     pub(crate) fn unread(&self, is_wanted: impl Fn(&[u8]) -> bool) -> Option<ReadError> {
         let file = self.hdf5.as_ref()?;
         let mut wanted = file.children(file.root()).filter(|(name, _)| is_wanted(name));

@@ -9,7 +9,7 @@ pub(crate) enum NumberType {
     /// Integers of this many bytes.
     Whole(usize),
     Real(Precision),
-    /// Any other type, whose items have this many bytes.
+    /// Any other type, with the size of an item in bytes.
     Other(usize),
 }
 

@@ -1,7 +1,7 @@
 //! NetCDF-4: variables are datasets in the root group of an HDF5 file.
 //!
 //! The format: <https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html#netcdf_4_spec>. Each
-//! dimension is a dataset with a single axis too, and has the length of this dataset.
+//! dimension is stored as a dataset with one axis of the dimension's length.
 
 use super::attribute::Attribute;
 use super::header::{Content, Header, Variable};

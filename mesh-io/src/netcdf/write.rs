@@ -26,7 +26,7 @@ struct Variable {
     values: Values,
 }
 
-/// Values of a variable or an attribute, all of one type.
+/// Values of a variable or an attribute, with a common type.
 pub(crate) enum Values {
     Text(Vec<u8>),
     Whole(Vec<i32>),

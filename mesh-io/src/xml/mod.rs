@@ -87,7 +87,7 @@ impl<'a> XmlTag<'a> {
         String::from_utf8_lossy(self.start.name().into_inner())
     }
 
-    /// Whether the element has no content, as its tag ends in a slash.
+    /// Returns whether the element has no content, because its tag ends in a slash.
     pub(crate) fn is_empty(&self) -> bool {
         self.source.bytes[self.range.clone()].ends_with(b"/>")
     }

@@ -3,7 +3,7 @@
 use super::{ELE, Folder, GMSH22, NODE, POLY};
 use mesh_io::CellKind::{self, Line, Point, Quadrilateral, Triangle};
 
-/// Returns the kind, the number and the vertices of each cell.
+/// Returns kind, number and vertex indices of each cell.
 fn cells(content: &mesh_io::Content) -> Vec<(CellKind, u64, Vec<u32>)> {
     content.cells().map(|cell| (cell.kind, cell.id, cell.vertices.to_vec())).collect()
 }

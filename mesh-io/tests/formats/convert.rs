@@ -234,7 +234,7 @@ fn every_encoding_of_vtu_is_converted() {
     }
 }
 
-/// A damaged file that can be read can also be converted.
+/// Every damaged file that still can be read can be converted too.
 #[test]
 fn damaged_files_are_converted_or_refused() {
     let mut random = damage::random(17);

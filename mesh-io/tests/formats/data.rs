@@ -215,7 +215,7 @@ fn variables_of_selafin_are_data_in_every_step() {
     assert!(tried.into_inner() > 1);
 }
 
-/// Damaged data give an error or other values, never a panic. Fields that can be read can also be written.
+/// Damaged data give an error or other values, never a panic. All readable fields can also be written.
 #[test]
 fn damaged_data_never_panic() {
     let mut random = damage::random(31);

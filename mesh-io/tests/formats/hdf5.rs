@@ -50,8 +50,8 @@ impl Sample {
     }
 }
 
-/// Reads files that may be damaged: a mesh must have a location for each vertex and triangle, and an error must have
-/// one line and name a file. Returns the mesh, or `None` for an error.
+/// Reads files that may be damaged: each vertex and triangle of a mesh must have a location, and an error must name a
+/// file on a single line. Returns the mesh, or `None` for an error.
 fn mesh_or_error(folder: &Folder, sample: &Sample) -> Option<MeshFile> {
     match MeshFile::read(&folder.path(sample.name)) {
         Ok(file) => {
@@ -351,7 +351,8 @@ fn damaged_files_of_hdf5_never_panic() {
         for round in 0..rounds {
             let part = round % files.len();
             let content = match round % 3 {
-                // Two of three rounds change a single byte, as most files of another length are refused at once.
+                // Every third round may change the length, the others a single byte: files of another length are mostly
+                // refused at once.
                 0 => damaged(&whole[part], &mut random),
                 _ => {
                     let mut content = whole[part].clone();

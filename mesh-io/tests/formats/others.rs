@@ -1,4 +1,5 @@
-//! Formats of other programs: the mesh that each variant gives, and the file that is written.
+//! Formats of other programs: readers get the expected mesh from each variant, and a rewrite changes only moved
+//! coordinates.
 
 use super::Folder;
 use super::facts::{between_regions, fixed, freed};

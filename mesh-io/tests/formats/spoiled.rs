@@ -9,8 +9,8 @@ use mesh_io::{Format, Location, MeshFile, ReadOptions};
 use std::fs;
 use std::time::Instant;
 
-/// Reads a file that may be damaged: a mesh must have a location for each vertex and triangle, and an error must have
-/// one line and name the file.
+/// Reads a file that may be damaged: each vertex and triangle of a mesh must have a location, and an error must name
+/// the file on a single line.
 pub(crate) fn mesh_or_error(folder: &Folder, name: &str) -> Result<MeshFile, String> {
     match ReadOptions::new().weld(true).read(&folder.path(name)) {
         Ok(file) => {
@@ -55,7 +55,8 @@ fn a_file_cut_off_anywhere_is_an_error_or_a_mesh() {
     });
 }
 
-/// Returns counts that are too large for any file, in the form of `count`: as digits, or in an equal number of bytes.
+/// Returns counts that are too large for any file, as digits if `count` consists of digits, else as binary numbers of
+/// equal width.
 fn huge(made: &Made, count: &[u8]) -> Vec<Vec<u8>> {
     if count.iter().all(u8::is_ascii_digit) {
         let numbers = ["4000000000", "9223372036854775807", "18446744073709551615"];

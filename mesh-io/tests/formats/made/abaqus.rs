@@ -41,7 +41,7 @@ fn triangles(text: &mut Text, mesh: &Mesh, range: std::ops::Range<usize>) -> Vec
     starts
 }
 
-/// Makes a file like those of gmsh: without parts, and with a set for each element list.
+/// Makes a file like those of gmsh: no parts, one set per element list.
 fn flat(mesh: &Mesh) -> Made {
     let mut text = Text::new("*Heading\n in.inp, *NODE\n*NODE , NSET = all\n");
     let rows = mesh.points.iter().enumerate();
@@ -93,8 +93,8 @@ fn elements_first(mesh: &Mesh) -> Made {
     made(text, "elements first", mesh, probes)
 }
 
-/// Makes a file like those of Abaqus/CAE: a part with sections of sets, and an assembly with an instance of the part, a
-/// node and a spring of its own, and a surface.
+/// Makes a file like those of Abaqus/CAE: a part with sections and sets, and an assembly that instantiates the part and
+/// adds a node, a spring and a surface.
 fn parts(mesh: &Mesh) -> Made {
     let mut text = Text::new("*Heading\n** PARTS\n**\n*Part, name=Plate\n*Node\n");
     let rows = mesh.points.iter().enumerate();

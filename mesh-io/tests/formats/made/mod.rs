@@ -50,7 +50,7 @@ pub(crate) struct Made {
     pub(crate) vertex: (u64, Range<usize>),
     /// Number of the probed triangle in the file, and the range of bytes that contains its location.
     pub(crate) triangle: (u64, Range<usize>),
-    /// Byte ranges of lists. A file that is cut off within such a range is not a mesh.
+    /// Byte ranges of lists. A file that is cut off inside a list must be refused.
     pub(crate) lists: Vec<Range<usize>>,
     /// Byte ranges of the numbers that give the lengths of lists.
     pub(crate) counts: Vec<Range<usize>>,
@@ -90,7 +90,7 @@ pub(crate) fn base() -> Mesh {
     mesh
 }
 
-/// Returns every variant of every format. `mesh` must have the triangles of [`base`], but may have other points.
+/// Returns every variant of every format. `mesh` must have the triangles of [`base`] but any points.
 pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
     let families = [
         text::all,
@@ -128,7 +128,7 @@ fn cells(mesh: &Mesh) -> Vec<Vec<u32>> {
     cells
 }
 
-/// Returns the number that the file gives to a triangle's region.
+/// Returns a triangle's region number in the file.
 fn region(triangle: usize) -> i32 {
     if triangle < SECOND_REGION { 5 } else { 2 }
 }

@@ -12,7 +12,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     vec![small(mesh), large(mesh), free(mesh)]
 }
 
-/// Returns the number of a vertex in the file: 100, 103, 106 and so on.
+/// Returns the vertex number in the file: 100, 103, 106 and so on.
 fn tag(vertex: u32) -> usize {
     100 + 3 * vertex as usize
 }
@@ -56,8 +56,8 @@ fn triangle(mesh: &Mesh, t: usize) -> Vec<String> {
     corners([10 + 2 * t, region(t) as usize], &mesh.triangles[t])
 }
 
-/// Makes a file like those of preprocessors, with all sections. Some rows have tabs, and elements come before and after
-/// nodes.
+/// Makes a file like those of preprocessors, with all sections. Some rows have tabs, and element cards precede and
+/// follow node cards.
 fn small(mesh: &Mesh) -> Made {
     let precision = Precision::Text8;
     let mut text =

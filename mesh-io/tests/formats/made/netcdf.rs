@@ -4,7 +4,7 @@ use super::super::support::Binary;
 use mesh_io::Precision;
 use std::ops::Range;
 
-/// A variable: name, type, dimensions and content. For a variable with records, the content is that of one record.
+/// A variable: name, type, dimensions and content. With records, the content is a single record.
 struct Variable {
     name: String,
     number: i32,

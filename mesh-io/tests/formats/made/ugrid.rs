@@ -14,9 +14,9 @@ struct Style {
     faces: Faces,
     /// Number of the first node.
     first: u32,
-    /// Whether the file gives the number of the first node as `start_index`.
+    /// Whether the attribute `start_index` gives the first node number.
     says_first: bool,
-    /// Whether the variable of y comes before the variable of x.
+    /// Whether variable y precedes variable x in the file.
     is_turned: bool,
 }
 
@@ -25,7 +25,7 @@ struct Style {
 enum Faces {
     /// A row of three nodes for each triangle, without any other faces.
     Triangles,
-    /// A row for each face, padded with this number, which the file gives as `_FillValue`.
+    /// A row for each face, padded with this value of the attribute `_FillValue`.
     Rows(i32),
     /// A column for each face, padded with -1, which no attribute of the file explains.
     Columns,

@@ -123,7 +123,8 @@ impl Writer {
         starts
     }
 
-    /// Ends a list. In text, the range of the list ends with the start of the last row, which may be cut off unnoticed.
+    /// Ends a list. In text, the recorded range ends within the last row, as text that is cut off in this row may be
+    /// readable.
     fn end_list(&mut self, start: usize, last_row: usize) {
         let end = if self.style.binary { self.file.bytes.len() } else { last_row + 1 };
         self.lists.push(start..end);

@@ -127,7 +127,7 @@ pub(crate) fn write(mesh: &Mesh, style: Style) -> Vec<u8> {
 }
 
 /// Returns a file of several pieces, as an unstructured grid or as polygonal data. Each piece has an edge before its
-/// triangles and a quadrilateral among them.
+/// triangles, and a quadrilateral between two triangles.
 pub(crate) fn write_pieces(meshes: &[&Mesh], style: Style, polygons: bool) -> Vec<u8> {
     let mut out = Vec::new();
     let order = if style.big { "BigEndian" } else { "LittleEndian" };
