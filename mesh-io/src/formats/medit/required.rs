@@ -1,4 +1,4 @@
-//! Triangles that are not to be changed, which both of Medit's formats list by their numbers.
+//! Required triangles, whose vertices stay fixed. Both of Medit's formats list required triangles by number.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
