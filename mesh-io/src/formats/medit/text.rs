@@ -1,8 +1,8 @@
 //! Medit's `.mesh`, as text.
 //!
 //! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and the documentation of
-//! mmg and libMeshb. Vertices of edges, corners, required vertices and vertices of required triangles stay fixed.
-//! Required edges and ridges are not read, as both are listed among the edges.
+//! mmg and libMeshb. Corners, required vertices, and the vertices of edges and required triangles stay fixed. Required
+//! edges and ridges are not read, as both are listed among the edges.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -165,7 +165,7 @@ impl FormatReader for Medit {
     }
 }
 
-/// Reads the list `RequiredTriangles`: a count, and then one triangle number in each row.
+/// Reads the list `RequiredTriangles`: the list's length, followed by one triangle number per row.
 fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadError> {
     let count = value(cursor, "the number of required triangles")?;
     for done in 0..count {
@@ -283,7 +283,7 @@ fn skip_numbers(cursor: &mut Cursor<'_>) {
     }
 }
 
-/// Returns whether a word is a keyword: the word starts with a letter, but is no number such as NaN.
+/// Returns whether a word is a keyword. Keywords start with a letter, but so do numbers such as NaN.
 fn is_keyword(word: &[u8]) -> bool {
     word.first().is_some_and(u8::is_ascii_alphabetic) && float(word).is_none()
 }

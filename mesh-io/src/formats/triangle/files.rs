@@ -17,8 +17,8 @@ fn is_named_as_triangle(path: &Path) -> bool {
 }
 
 /// Returns the names of all files of the mesh that `source` belongs to. If the file's name ends in neither `.node` nor
-/// `.ele`, the second number of the first row decides: 2 dimensions make a `.node`, 3 or 6 corners an `.ele`. `None` if
-/// the file is neither, or if the mesh has no other file.
+/// `.ele`, the second number of the first row decides: 2 dimensions make a `.node`, 3 or 6 corners an `.ele`. `None`
+/// for other files, and for a file without counterpart.
 pub(crate) fn names(source: &Source) -> Option<Names> {
     let path = &source.path;
     if is_named_as_triangle(path) {

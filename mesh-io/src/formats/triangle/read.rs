@@ -135,8 +135,8 @@ impl<'s> Vertices<'s> {
     }
 }
 
-/// Returns the name of the attribute in a 0-based column: `attribute` if the file has one attribute, else `attribute1`
-/// and so on.
+/// Returns the name of the attribute in a 0-based column: `attribute` for a single column, else `attribute1`,
+/// `attribute2` and so on.
 fn column_name(column: u64, columns: u64) -> String {
     match columns {
         1 => "attribute".to_owned(),
@@ -144,7 +144,7 @@ fn column_name(column: u64, columns: u64) -> String {
     }
 }
 
-/// Returns the group label of an attribute: a number, or a name if the token is no number.
+/// Returns the group label of an attribute: numeric labels for numbers, names for other tokens.
 fn attribute(token: &[u8]) -> GroupLabel {
     float(token).map_or_else(|| GroupLabel::name(token), GroupLabel::number)
 }

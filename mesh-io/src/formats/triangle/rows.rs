@@ -18,10 +18,10 @@ pub(super) struct VertexNumbering {
 }
 
 impl VertexNumbering {
-    /// Reads the number of a vertex of `owner`, such as a triangle.
+    /// Reads the vertex number in a row of `owner`, such as a triangle.
     ///
     /// # Errors
-    /// If `list`, the file with the vertices, has no vertex of this number.
+    /// If the file `list` contains no vertex of this number.
     #[inline]
     pub(super) fn vertex(
         &self,

@@ -5,8 +5,8 @@ use crate::error::ReadError;
 use crate::formats::triangle::rows::{VertexNumbering, header, rows, vertex_header};
 use crate::text::cursor::Cursor;
 
-/// Returns the number of vertices in a `.poly`, or 0 if the first row is damaged. The mesh starts with the vertices of
-/// the `.poly`.
+/// Returns the number of vertices in a `.poly`, or 0 for a damaged first row. The mesh starts with the vertices of the
+/// `.poly`.
 pub(super) fn listed_vertices(poly: &Source) -> u64 {
     vertex_header(&mut rows(poly)).unwrap_or(0)
 }
@@ -20,7 +20,7 @@ pub(super) struct Segments<'s> {
     node: &'s Source,
     /// The numbering of the `.poly`.
     own: VertexNumbering,
-    /// The number of the `.node`'s first vertex.
+    /// The number of the first vertex in the `.node`, 0 or 1.
     first: u64,
 }
 
