@@ -24,7 +24,7 @@ pub(crate) struct Obj;
 
 /// A row of the file, reduced to the content that the reader uses.
 enum Row<'a> {
-    /// A vertex: the offset of x, [x, y], (the offset of z, z).
+    /// A vertex: the offset of x, x and y, (the offset of z, z).
     Vertex(usize, [f64; 2], (usize, f64)),
     /// The vertices of a face.
     Face(Corners),

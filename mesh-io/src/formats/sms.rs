@@ -25,7 +25,7 @@ const NO_MATERIAL: i64 = i64::MIN;
 
 /// A row of the file, reduced to the content that the reader uses.
 enum Row {
-    /// A node: the id, the offset of x, [x, y], (the offset of z, z).
+    /// A node: the id, the offset of x, x and y, (the offset of z, z).
     Node(u64, usize, [f64; 2], (usize, f64)),
     Element(Element),
     /// The nodes of a node string in one row, without signs.

@@ -9,8 +9,9 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
 /// Converts depths to third coordinates and back, between formats with different conventions. Depths of ADCIRC and
-/// FVCOM point downwards; z of SMS, MIKE and UGRID points upwards. SMS, too, opens a grid of ADCIRC with minus its
-/// depths as z. UGRID has a node variable `z`, or a name that ends in `node_z` or, for depths, in `depth`.
+/// FVCOM are positive downwards, z of SMS, MIKE and UGRID upwards. SMS, too, opens a grid of ADCIRC with minus its
+/// depths as z. In UGRID, z is a node variable named `z` or ending in `node_z`, and a depth is a node variable whose
+/// name ends in `depth`.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
@@ -52,8 +53,8 @@ fn of_vertices(name: &str, values: Vec<f64>) -> DataArray {
     DataArray { name: name.to_owned(), components: 1, is_real: true, values }
 }
 
-/// Removes z or else depths from the point data of UGRID. Returns the values and whether they are depths; `None` if the
-/// content has neither.
+/// Removes z, or else a depth, from the node variables of UGRID. Returns the values, and true for depths. `None` if
+/// UGRID has neither variable.
 fn take_heights(content: &mut Content) -> Option<(Vec<f64>, bool)> {
     let is_z = |data: &DataArray| data.name == "z" || data.name.ends_with("node_z");
     let is_depth = |data: &DataArray| data.name.to_ascii_lowercase().ends_with("depth");

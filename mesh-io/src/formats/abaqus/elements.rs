@@ -16,7 +16,7 @@ use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// The sections, sets and surfaces of the elements, found before the elements are visited. Elements are numbered from 0
-/// over all lists with a kind of cell. Lists that the visitor does not need are empty.
+/// over all lists with a kind of cell. Lists that this reading does not need are empty.
 #[derive(Default)]
 pub(super) struct ElementGroups {
     /// The number of each element's section, counted from 1. Where `*ELSET` sets define regions, each combination of

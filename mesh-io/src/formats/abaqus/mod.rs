@@ -2,7 +2,7 @@
 //!
 //! The format: the Abaqus Keywords Reference Guide, and G. Dhondt, CalculiX CrunchiX User's Manual. Keywords start with
 //! an asterisk, comments with two. Ids of nodes and elements are arbitrary. Vertices of lines, points, quadrilaterals
-//! and of element sides in surfaces stay fixed. Element lists and sections name sets, and each set is a region. Other
+//! and of element sides in surfaces stay fixed. Regions are the sets that element lists and sections name. Other
 //! keywords, such as materials, loads and steps, are not read.
 
 mod blocks;

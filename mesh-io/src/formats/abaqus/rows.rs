@@ -45,7 +45,7 @@ pub(super) fn send_nodes(
     })
 }
 
-/// A node: the id, (the offset of x, whether x or y exceeds [`MAX_NUMBER_LENGTH`]), [x, y], (the offset of z, z).
+/// A node: the id, (the offset of x, whether x or y exceeds [`MAX_NUMBER_LENGTH`]), x and y, (the offset of z, z).
 type Node = (u64, (usize, bool), [f64; 2], (usize, f64));
 
 /// Maximum length of a number in characters. Abaqus and CalculiX ignore all characters beyond this length.

@@ -18,7 +18,7 @@ pub(super) struct Families {
 const NAME_LENGTH: usize = 80;
 
 impl Families {
-    /// Reads the families of the mesh with a name. Damaged families are left out.
+    /// Reads the families of nodes and elements of the mesh named `mesh`. Damaged families are left out.
     pub(super) fn read(file: &Hdf5<'_>, mesh: &[u8]) -> Families {
         let mut families = Families::default();
         let path = [&b"FAS/"[..], mesh].concat();

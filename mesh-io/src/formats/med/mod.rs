@@ -142,7 +142,7 @@ impl<'a> File<'a> {
         Cursor::at_byte_offset(self.source, object.at)
     }
 
-    /// Returns the coordinates and the number of nodes.
+    /// Returns the coordinates, and how many nodes have coordinates.
     fn nodes(&self) -> Result<(Axes<'a>, usize), ReadError> {
         let object = self.hdf5.child(self.step, b"NOE/COO");
         let dataset = object.map(|object| self.hdf5.dataset(object)).transpose()?.flatten();

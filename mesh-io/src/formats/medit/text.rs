@@ -22,7 +22,7 @@ use crate::visit::z_values::ZValues;
 
 pub(crate) struct Medit;
 
-/// The first letters of keywords for volume elements, of first or higher order.
+/// Prefixes of keywords for volume elements, of first or higher order.
 const VOLUMES: [&[u8]; 4] = [b"Tetrahedra", b"Hexahedra", b"Prisms", b"Pyramids"];
 
 /// A list of elements. The list may precede the vertices.

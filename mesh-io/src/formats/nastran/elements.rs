@@ -18,7 +18,7 @@ enum Card {
     Element(Element),
     /// The name of a card whose element constrains nodes, and the ids of these nodes.
     Constrains(CardName, Vec<u64>),
-    /// A GRID card with the id of the node; 0 if [`card`] read the row, which needs no id.
+    /// A GRID card with the id of the node; 0 if `card` read the row, since elements need no ids of nodes.
     Node(u64),
     Other(CardName),
 }

@@ -18,9 +18,9 @@ pub struct GmshView {
 const SAVE: &str = "Save the view from gmsh as text (.pos), of scalars on triangles (ST)";
 
 impl GmshView {
-    /// Reads the first view of a `.pos` file of gmsh. Its elements must be scalar triangles, `ST(x, y, z, ...){value,
-    /// ...};`. Corners with equal x and y become one vertex, with the value of the first corner in the file. If a view
-    /// has several time steps, the first step is read. Third coordinates are ignored.
+    /// Reads the first view of a `.pos` file of gmsh. The elements of the view must be scalar triangles, `ST(x, y, z,
+    /// ...){value, ...};`. Corners with equal x and y become one vertex, with the value of the first corner in the
+    /// file. If a view has several time steps, the first step is read. Third coordinates are ignored.
     ///
     /// # Errors
     /// [`ReadError`] if the file cannot be read, or has no such view.
