@@ -92,8 +92,7 @@ fn meshb(input: &WriterInput<'_>, medit: &Medit, version: i32) -> Vec<u8> {
         numbers.iter().flat_map(|&number| (number as i32).to_le_bytes()).collect()
     };
     out.extend(ints(&[1, i64::from(version)]));
-    // Writes a keyword, the offset of the next keyword, and the content between. The offset after the last keyword is
-    // 0.
+    // Writes a keyword, the offset of the next keyword (0 after the last keyword), and the content between.
     let mut chain = |keyword: i32, content: &[u8]| {
         out.extend(keyword.to_le_bytes());
         let width = if version == 2 { 4 } else { 8 };

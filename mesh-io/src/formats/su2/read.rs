@@ -1,8 +1,8 @@
 //! SU2's `.su2`.
 //!
-//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. Points are numbered by their positions in the list, from
-//! 0. An index at the end of a point's row is ignored. Each zone of a multi-zone mesh has its own points, numbered from
-//! 0.
+//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. The number of a point is its 0-based position in the
+//! list. An index at the end of a point's row is ignored. Each zone of a multi-zone mesh has its own points and point
+//! numbers.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
