@@ -1,9 +1,9 @@
 //! The grid of ADCIRC (`fort.14`) and SCHISM (`.gr3`).
 //!
 //! The format: <https://adcirc.org/home/documentation/users-manual-v53/input-file-descriptions/adcirc-grid-and-boundary-information-file-fort-14/>.
-//! Programs read it as Fortran reads lists: numbers may have commas between them, and an item may go on in the next line.
-//! The third number of a node's row is its depth. The lists of boundaries at the end are read where groups are asked for:
-//! their nodes are on the boundary of the mesh, weirs included, and do not move anyway.
+//! Programs read the grid by Fortran's list-directed input: commas may separate numbers, and an item may continue on
+//! the next line. The number after x and y is a node's depth. Lists of boundaries at the end of the file are read only
+//! for groups. Their nodes, weirs included, are on the boundary of the mesh and stay fixed anyway.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -29,7 +29,7 @@ impl FormatReader for Adcirc {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
         let cursor = &mut Cursor::new(source).with_syntax(Syntax::FORTRAN);
-        // The first line is a title of any text, or of none.
+        // The first line is a title, which may be empty.
         cursor.line();
         cursor.row(0, 1, "lines of counts")?;
         let counts = |cursor: &mut Cursor<'_>| {
@@ -64,12 +64,13 @@ impl FormatReader for Adcirc {
     }
 }
 
-/// Hands on the boundaries as lines: open ones, then those of land, whose islands are called `island`. Damaged lists
-/// end the search without an error, as the mesh does not depend on them.
+/// Visits the boundaries as lines: open boundaries (`open1`), then land boundaries (`land1`), which are named `island1`
+/// if their type is that of an island. A damaged list ends the reading without an error, as the mesh does not depend on
+/// boundaries.
 fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     for is_open in [true, false] {
         let Some(count) = number(cursor) else { return };
-        // The number of nodes of all boundaries together.
+        // The row has the number of nodes of all boundaries together.
         if !cursor.next_row() {
             return;
         }
@@ -78,7 +79,7 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
             let kind = if is_open { 0 } else { cursor.integer("a type").unwrap_or(0) };
             let word = match (is_open, kind) {
                 (true, _) => "open",
-                // The boundary types of islands, whatever condition holds there.
+                // These types are islands, with different boundary conditions.
                 (false, 1 | 11 | 21) => "island",
                 _ => "land",
             };
@@ -103,7 +104,7 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     }
 }
 
-/// Reads the number at the start of the next row.
+/// Reads the whole number at the start of the next row; `None` for other rows, or at the end of the file.
 fn number(cursor: &mut Cursor<'_>) -> Option<u64> {
     cursor.next_row().then_some(())?;
     cursor.integer("a number").ok()

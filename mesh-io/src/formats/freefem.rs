@@ -1,7 +1,7 @@
 //! FreeFem's `.msh`, a mesh of the plane.
 //!
 //! The format: <https://doc.freefem.org/documentation/mesh-generation.html>, "Data Structures and Read/Write Statements
-//! for a Mesh". All numbers start at one.
+//! for a Mesh". Vertices are numbered from 1.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;

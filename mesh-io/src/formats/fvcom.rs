@@ -1,8 +1,8 @@
 //! The grid of FVCOM, `CASE_grd.dat`.
 //!
-//! The format: "FVCOM User Manual", section on input files. Two rows tell the numbers of nodes and of cells; then come the
-//! cells and the nodes. The program reads them as Fortran reads lists. The third number of a node's row, if there is one,
-//! is its depth. Other files of a case repeat coordinates; they are not read.
+//! The format: "FVCOM User Manual", section on input files. Two rows have the numbers of nodes and cells; the cells and
+//! then the nodes follow. FVCOM reads the grid by Fortran's list-directed input. The optional number after x and y is a
+//! node's depth. Other files of a case repeat coordinates, and are not read.
 
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -31,7 +31,7 @@ impl FormatReader for Fvcom {
         let count = number_of(cursor, "Node Number")?;
         cursor.check_vertex_count(count)?;
         let cells = number_of(cursor, "Cell Number")?;
-        // Cells stand before the nodes that they name, so they are read twice.
+        // Cells precede the nodes that they name, so cells are read twice: here only to find their end.
         let mut again = cursor.clone();
         each_row(cursor, cells, "cells", visitor, cell, |_, _, _, _| Ok(()))?;
         let depths = numbered_nodes(cursor, count, true, visitor)?;
@@ -45,11 +45,11 @@ impl FormatReader for Fvcom {
     }
 }
 
-/// Reads the next row, which must be `KEY = NUMBER`.
+/// Reads the next row, which must be `KEY = NUMBER`. The keyword may be in capital or small letters.
 fn number_of(cursor: &mut Cursor<'_>, key: &str) -> Result<u64, ReadError> {
     cursor.row(0, 1, "lines of counts")?;
     let (before, after) = key_value(cursor.rest());
-    // A comment may follow.
+    // A comment may follow the number.
     let number = after.split(|byte| byte.is_ascii_whitespace() || *byte == b'!').next();
     let is_it = before.eq_ignore_ascii_case(key.as_bytes());
     match number.and_then(integer).filter(|_| is_it) {
@@ -58,7 +58,7 @@ fn number_of(cursor: &mut Cursor<'_>, key: &str) -> Result<u64, ReadError> {
     }
 }
 
-/// Reads a cell. What stands behind its nodes is not used.
+/// Reads a cell: its number and three nodes. Further numbers in the row are ignored.
 #[inline]
 fn cell(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     let id = cursor.integer("the number of a cell")?;

@@ -1,8 +1,8 @@
 //! JIGSAW's `.msh`.
 //!
 //! The format: the help of `loadmsh` and `savemsh` in JIGSAW's interfaces for MATLAB and Python. Lists start with a row
-//! `KEY=COUNT` and may stand in any order. Numbers are separated by semicolons, and points counted from zero. Each point and
-//! element ends in a tag.
+//! `KEY=COUNT` and may stand in any order. Semicolons separate numbers, and points are counted from zero. The row of
+//! each point and element ends in a tag.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -23,7 +23,7 @@ use crate::visit::z_values::TextNumbers;
 
 pub(crate) struct Jigsaw;
 
-/// A list that is read after the points.
+/// A list of the file: a cursor before the first row, and the list's length in rows.
 struct List<'a> {
     cursor: Cursor<'a>,
     count: u64,
@@ -33,7 +33,7 @@ struct List<'a> {
 #[derive(Default)]
 struct Lists<'a> {
     elements: Vec<(CellKind, List<'a>)>,
-    /// The last list of values, with the numbers in each row.
+    /// The last list `VALUE` of the file, with the number of values per row.
     values: Option<(List<'a>, u64)>,
 }
 
@@ -48,7 +48,7 @@ impl FormatReader for Jigsaw {
         let mut lists = Lists::default();
         let (mut dimensions, mut points) = (2, None);
         while cursor.next_row() {
-            // Rows of lists that are read later, or not at all.
+            // Other rows belong to lists that are read later, or not at all.
             if !cursor.is_at_letter() {
                 continue;
             }
@@ -125,7 +125,10 @@ impl FormatReader for Jigsaw {
     }
 }
 
-/// Fails for grids and for meshes on an ellipsoid.
+/// Checks that `MSHID` is absent or `EUCLIDEAN-MESH`.
+///
+/// # Errors
+/// For other kinds: grids, and meshes on an ellipsoid.
 fn check_kind(cursor: &Cursor<'_>, kind: &[u8]) -> Result<(), ReadError> {
     if kind.is_empty() || kind.eq_ignore_ascii_case(b"EUCLIDEAN-MESH") {
         return Ok(());
@@ -134,7 +137,7 @@ fn check_kind(cursor: &Cursor<'_>, kind: &[u8]) -> Result<(), ReadError> {
     Err(cursor.error(problem, "Only meshes of the plane are read: save a EUCLIDEAN-MESH"))
 }
 
-/// Returns a number in the row of a key.
+/// Returns the whole number `value` from the row of the keyword `key`.
 fn number(cursor: &Cursor<'_>, key: &[u8], value: &[u8]) -> Result<u64, ReadError> {
     integer(value).ok_or_else(|| {
         let (key, value) = (quoted(key), quoted(value));
@@ -142,7 +145,7 @@ fn number(cursor: &Cursor<'_>, key: &[u8], value: &[u8]) -> Result<u64, ReadErro
     })
 }
 
-/// Hands on the tags of points that are not 0.
+/// Visits the tags of points as groups. Tag 0 means no group.
 fn tags(
     points: &List<'_>,
     dimensions: u64,
@@ -160,7 +163,8 @@ fn tags(
     Ok(())
 }
 
-/// Hands on the values of points, if there are some for each.
+/// Visits the values of points as an array `value`. Values that do not belong to points, one row each, are reported as
+/// unsupported.
 fn values(
     List { mut cursor, count }: List<'_>,
     components: u64,
@@ -185,7 +189,7 @@ fn values(
     Ok(())
 }
 
-/// Reads the tag at the end of a row. A row without one has the tag 0.
+/// Reads the tag at the end of a row; 0 if the row ends before.
 #[inline]
 fn tag(cursor: &mut Cursor<'_>) -> Result<i64, ReadError> {
     if cursor.is_at_end() { Ok(0) } else { cursor.signed("a tag") }

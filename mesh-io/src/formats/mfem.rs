@@ -1,7 +1,8 @@
 //! MFEM's `.mesh`, versions 1.0 to 1.3.
 //!
-//! The format: <https://mfem.org/mesh-format-v1.0/>. MFEM reads it word by word. Elements stand before the vertices, which are
-//! counted from zero. Curved meshes have their points in a finite element space instead, and are refused.
+//! The format: <https://mfem.org/mesh-format-v1.0/>. MFEM reads a file word by word. Elements precede the vertices,
+//! which are counted from zero. Curved meshes store the points of a finite element space instead of vertices, and are
+//! refused.
 
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -19,7 +20,7 @@ use crate::visit::visitor::MeshVisitor;
 
 pub(crate) struct Mfem;
 
-/// A list of elements, which stands before the vertices.
+/// A list of elements. The list precedes the vertices.
 struct List<'a> {
     cursor: Cursor<'a>,
     count: u64,
@@ -90,7 +91,7 @@ impl FormatReader for Mfem {
     }
 }
 
-/// Reads the vertices, of two or three coordinates each.
+/// Visits the vertices, with two or three coordinates each.
 fn vertices(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
     cursor.next_word();
     let count = cursor.vertex_count()?;
@@ -107,7 +108,7 @@ fn vertices(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<()
     Ok(())
 }
 
-/// Reads an element: its kind, attribute and vertices.
+/// Reads an element. Returns its kind, attribute and vertices.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<(CellKind, i64, [u64; 4]), ReadError> {
     let attribute = cursor.signed("the attribute of an element")?;
@@ -122,7 +123,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<(CellKind, i64, [u64; 4]), ReadErr
     Ok((kind, attribute, nodes(cursor, kind)?))
 }
 
-/// Skips the rows of named sets of attributes.
+/// Skips the rows of `attribute_sets` or `bdr_attribute_sets`, which name sets of attributes.
 fn skip_sets(cursor: &mut Cursor<'_>) {
     loop {
         let mut next = cursor.clone();
@@ -131,7 +132,7 @@ fn skip_sets(cursor: &mut Cursor<'_>) {
                 [&b"boundary"[..], b"vertices", b"bdr_attribute_sets"].contains(&word)
             });
         if is_section {
-            // The next word is that of the section.
+            // The next word is the keyword of a section.
             cursor.rest();
             return;
         }

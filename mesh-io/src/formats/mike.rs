@@ -1,8 +1,8 @@
 //! The `.mesh` of MIKE (DHI).
 //!
-//! The format: "MIKE 21 & MIKE 3 Flow Model FM, Mesh File Specification" of DHI, and how DHI's own library `mikecore` reads it. The
-//! first row has the kind of data, its unit, the number of nodes and the projection; before 2012 only the latter two. A
-//! node has a height and a code: 0 inside, 1 at land, more at open boundaries.
+//! The format: "MIKE 21 & MIKE 3 Flow Model FM, Mesh File Specification" of DHI, and the reader in DHI's library
+//! `mikecore`. The first row contains kind of data, unit, number of nodes and projection; before 2012, only the last
+//! two. Nodes have a height and a code: 0 in the interior, 1 on land boundaries, larger codes on open boundaries.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -58,7 +58,7 @@ impl FormatReader for Mike {
     }
 }
 
-/// Reads an element. Among quadrilaterals, a triangle has 0 for a fourth node.
+/// Reads an element. In a mesh with quadrilaterals, the fourth node of a triangle is 0.
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     let id = cursor.integer("the number of an element")?;
@@ -70,7 +70,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
     Ok(Element { id, kind, region: [0; 2], nodes })
 }
 
-/// Hands on the codes of nodes. They stand behind z, and inner nodes have the code 0.
+/// Visits the codes of nodes as groups. Codes follow z in the rows of nodes, and code 0 means no group.
 fn codes(
     cursor: &mut Cursor<'_>,
     count: u64,
@@ -87,12 +87,12 @@ fn codes(
     Ok(())
 }
 
-/// Whether the number of nodes is the third of the first row, as it is since 2012.
+/// Returns whether the first row has the layout since 2012, in which the third number counts the nodes.
 fn is_of_2012(row: &mut Cursor<'_>) -> bool {
     (0..3).all(|_| row.token().and_then(integer).is_some())
 }
 
-/// Returns whether the first two rows of a file may be those of MIKE: numbers and a projection, then a node.
+/// Returns whether the first two rows may belong to a MIKE mesh: one or three numbers and a projection, then a node.
 pub(crate) fn is_mike(first: &[&[u8]], second: &[&[u8]]) -> bool {
     let numbers = first.iter().take_while(|token| integer(token).is_some()).count();
     let is_projection = |token: &&[u8]| token.first().is_some_and(u8::is_ascii_alphabetic);

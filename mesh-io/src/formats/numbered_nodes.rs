@@ -1,4 +1,4 @@
-//! Lists of nodes in text, with numbers of their own, as in grids of coastal models, or without.
+//! Reads lists of nodes in text files: nodes with ids, as in grids of coastal models, or nodes counted from 0.
 
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
@@ -7,8 +7,8 @@ use crate::visit::rows::each_row;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
-/// Reads a list of nodes, each a number, x, y and a third coordinate or depth, and hands them to the visitor. Returns the
-/// third numbers. If these are optional, a node may end after y.
+/// Visits a list of nodes. Each row has the id, x, y, and a third coordinate or depth, which may be missing if
+/// `is_third_optional`. Returns the third coordinates or depths.
 pub(crate) fn numbered_nodes(
     cursor: &mut Cursor<'_>,
     count: u64,
@@ -48,8 +48,11 @@ pub(crate) struct NodeNames {
     pub(crate) all: &'static str,
 }
 
-/// Reads a list of nodes of two or three coordinates each, counted from zero, and hands them to the visitor. Returns the third
-/// coordinates.
+/// Visits a list of nodes without ids, which are counted from 0. Each row has two or three coordinates, as `dimensions`
+/// says. Returns the third coordinates.
+///
+/// # Errors
+/// If `dimensions` is neither 2 nor 3, or if a node cannot be read.
 pub(crate) fn counted_nodes(
     cursor: &mut Cursor<'_>,
     count: u64,

@@ -1,8 +1,8 @@
 //! Wavefront's `.obj`, for a mesh in the plane.
 //!
-//! The format: <http://paulbourke.net/dataformats/obj/>. Vertices are numbered from 1 in their order. Faces and lines
-//! may also name them by negative numbers, counted back from the last vertex before. Texture coordinates and normals
-//! are not read.
+//! The format: <http://paulbourke.net/dataformats/obj/>. Vertices are numbered from 1 in file order. Faces and lines
+//! may also name vertices by negative numbers, counted back from the last vertex before the row. Texture coordinates
+//! and normals are not read.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::regions::Interner;
@@ -22,21 +22,23 @@ use crate::visit::z_values::ZValues;
 
 pub(crate) struct Obj;
 
-/// A row of the file, as far as it is used.
+/// A row of the file, reduced to the content that the reader uses.
 enum Row<'a> {
+    /// A vertex: the offset of x, x and y, (the offset of z, z).
     Vertex(usize, [f64; 2], (usize, f64)),
     /// The vertices of a face.
     Face(Corners),
     /// The vertices of a line.
     Line(Corners),
-    /// Vertices that are points.
+    /// The vertices of a `p` row, each a point.
     Points(Corners),
     /// The row that starts a group, object or material.
     Name(&'a [u8]),
     Other,
 }
 
-/// The vertices of an element. Up to four need no memory of their own, which would take long with millions of elements.
+/// The vertices of an element. Up to four are stored inline, since an allocation for each of millions of elements would
+/// be slow.
 enum Corners {
     Few([i64; 4], usize),
     Many(Vec<i64>),
@@ -141,7 +143,8 @@ impl FormatReader for Obj {
     }
 }
 
-/// Returns a cursor before the first row. A line that ends in a backslash is joined to the next one.
+/// Returns a cursor before the first row. If a line of the file ends in a backslash, the cursor joins lines at
+/// backslashes.
 fn rows(source: &Source) -> Cursor<'_> {
     let ends_line = |at: usize| matches!(source.bytes[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
     match memchr::memchr_iter(b'\\', &source.bytes).any(ends_line) {
@@ -160,7 +163,7 @@ struct CurrentGroups<'a> {
 }
 
 impl<'a> CurrentGroups<'a> {
-    /// Takes a row that names the material, the object or the groups of the elements after it.
+    /// Updates the material (`usemtl`), the object (`o`) or the groups (`g`) of later elements from a row of names.
     fn enter(&mut self, row: &'a [u8]) {
         let split = row.iter().position(|&byte| byte <= b' ').unwrap_or(row.len());
         let name = row[split..].trim_ascii();
@@ -175,7 +178,8 @@ impl<'a> CurrentGroups<'a> {
         }
     }
 
-    /// Returns the groups of the elements that follow, which may have elements of any kind.
+    /// Returns the groups of later elements. Groups have dimension 2, although elements of any kind may belong to a
+    /// group.
     fn groups(&self) -> Vec<GroupScope<'static>> {
         let of = |what, names: &[&[u8]]| -> Vec<_> {
             let one = |name: &&[u8]| GroupScope {
@@ -190,7 +194,8 @@ impl<'a> CurrentGroups<'a> {
     }
 }
 
-/// Returns the numbers of vertices counted from the first one. `before` is the number of vertices before the row.
+/// Returns vertex numbers counted from 1. Negative numbers count back from the `before` vertices that precede the row:
+/// -1 is the last.
 fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64>, ReadError> {
     let number = |&vertex: &i64| {
         let number = match vertex {
@@ -204,7 +209,7 @@ fn counted(cursor: &Cursor<'_>, vertices: &[i64], before: u64) -> Result<Vec<u64
     vertices.iter().map(number).collect()
 }
 
-/// Hands on a face. The vertices of polygons with more than four corners stay fixed.
+/// Visits a face as a triangle, quadrilateral or polygon. The vertices of a polygon stay fixed.
 fn face(
     cursor: &Cursor<'_>,
     visitor: &mut dyn MeshVisitor,
@@ -222,7 +227,7 @@ fn face(
     }
 }
 
-/// Tells the visitor which kinds of rows are not read.
+/// Reports rows that the reader ignores as unsupported.
 #[cold]
 fn left_out(mut cursor: Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     while cursor.next_row() {
@@ -236,7 +241,7 @@ fn left_out(mut cursor: Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     }
 }
 
-/// Reads a row if it is that of a vertex.
+/// Reads a row in the first pass over the file: a vertex, or else [`Row::Other`].
 #[inline]
 fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     if cursor.token() != Some(b"v") {
@@ -246,7 +251,8 @@ fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     Ok(Row::Vertex(x_at, at, cursor.z_if_any("a vertex")?))
 }
 
-/// Reads a row unless it is that of a vertex.
+/// Reads a row in the second pass over the file: an element or a name. Vertices are only counted in this pass, so their
+/// coordinates are not read.
 #[inline]
 fn element<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     let named = b"gou".iter().any(|&first| cursor.is_at(first)).then(|| cursor.clone());

@@ -1,7 +1,7 @@
 //! Geomview's `.off`, as text.
 //!
-//! The format: <http://www.geomview.org/docs/html/OFF.html>. Vertices may stand
-//! anywhere on lines, and a face starts on a line of its own. Normals, colors and texture coordinates are not read.
+//! The format: <http://www.geomview.org/docs/html/OFF.html>. Vertices may be spread over lines in any way, but each
+//! face starts on a new line. Normals, colors and texture coordinates are not read.
 
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -115,8 +115,9 @@ fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     cursor.integer(format_args!("the number of {what}"))
 }
 
-/// Chooses how to read the vertices, which have `more` numbers besides coordinates. They are read one in each row, with
-/// other text after them ignored, unless rows have too few numbers or there are too few rows.
+/// Chooses the syntax of the vertices, which have `more` numbers besides coordinates. By default, each row has one
+/// vertex, and further text in the row is ignored. If rows have too few numbers, or the file too few rows, vertices are
+/// read word by word.
 fn layout(cursor: &Cursor<'_>, vertices: u64, faces: u64, more: usize) -> Syntax {
     let starts_on_row = !cursor.is_at_end();
     let mut first = cursor.clone();
@@ -128,9 +129,9 @@ fn layout(cursor: &Cursor<'_>, vertices: u64, faces: u64, more: usize) -> Syntax
     if is_of_words { Syntax::WORDS } else { Syntax::RECORDS }
 }
 
-/// Whether at least `count` rows follow.
+/// Returns whether at least `count` rows follow.
 fn has_rows(cursor: &Cursor<'_>, count: u64) -> bool {
-    // Nearly all lines start with a number and are rows, which is faster to count than rows are read.
+    // Nearly all rows start with a digit or a minus sign, and such lines are counted faster than rows are read.
     let (bytes, start) = (&cursor.source.bytes, cursor.at());
     let is_row = |&at: &usize| matches!(bytes.get(start + at + 1), Some(b'0'..=b'9' | b'-'));
     let sure = memchr::memchr_iter(b'\n', &bytes[start..]).filter(is_row).count();

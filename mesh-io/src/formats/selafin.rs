@@ -1,7 +1,8 @@
 //! TELEMAC's SELAFIN (also SERAFIN), in either byte order and precision.
 //!
 //! The format: TELEMAC-MASCARET's user manual, appendix on SERAFIN. A file is a sequence of Fortran records, each
-//! between two copies of its length. All x come before all y. The time steps after them are kept.
+//! between two copies of its length. The x of all points precede the y of all points. The time steps that follow are
+//! kept.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
@@ -113,7 +114,7 @@ impl FormatReader for Selafin {
 }
 
 /// Reads the time steps, each a time and a record for each variable. The first damaged or incomplete step ends the
-/// reading without an error, as the mesh does not depend on it.
+/// reading without an error, as the mesh does not depend on time steps.
 fn steps(
     mut cursor: Cursor<'_>,
     order: ByteOrder,
@@ -140,8 +141,12 @@ fn steps(
     }
 }
 
-/// Takes a record, which must have `expected` bytes if that is known. [`Cursor::last_taken`] is then the offset of the
-/// record's content.
+/// Takes a Fortran record and returns its content, which starts at [`Cursor::last_taken`]. Messages call the record
+/// `what`.
+///
+/// # Errors
+/// If the file ends before the record, if the two copies of the length differ, or if the content does not have
+/// `expected` bytes. `None` allows any length.
 fn record<'a>(
     cursor: &mut Cursor<'a>,
     order: ByteOrder,

@@ -1,7 +1,7 @@
 //! SMS's `.2dm`.
 //!
 //! The format: <https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm>. Rows start with a keyword and may stand in any
-//! order. Nodes of node strings (NS) stay fixed.
+//! order. The nodes of node strings (NS) stay fixed.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
@@ -20,24 +20,26 @@ use crate::visit::z_values::ZValues;
 
 pub(crate) struct Sms;
 
-/// The material of lines that have none.
+/// Marks lines without a material, which belong to no group of the kind `material`.
 const NO_MATERIAL: i64 = i64::MIN;
 
-/// A row of the file, as far as it is used.
+/// A row of the file, reduced to the content that the reader uses.
 enum Row {
+    /// A node: the id, the offset of x, x and y, (the offset of z, z).
     Node(u64, usize, [f64; 2], (usize, f64)),
     Element(Element),
+    /// The nodes of a node string in one row, without signs.
     String(Vec<u64>, NodestringEnd),
     /// The number and name of a material.
     Material(i64, Vec<u8>),
     Other,
 }
 
-/// The end of a row of a nodestring.
+/// Whether a node string continues after a row.
 enum NodestringEnd {
     /// The string continues in the next row.
     Open,
-    /// The string ends here. The rest of the row is its name, if it has one.
+    /// The string ends in this row. The rest of the row is the string's name, possibly empty.
     Last(Vec<u8>),
 }
 
@@ -71,7 +73,7 @@ impl FormatReader for Sms {
             match row {
                 Row::Element(element) => visitor.element(cursor, &element)?,
                 Row::String(nodes, end) => {
-                    // A row that continues a string has the same label.
+                    // A row that continues a string belongs to the group of the string's first row.
                     let label = GroupLabel::Tag(string);
                     visitor.group_scopes(&[GroupScope {
                         kind: "nodestring",
@@ -117,7 +119,7 @@ fn keyword(cursor: &mut Cursor<'_>) -> ([u8; 3], usize) {
     (word, token.len())
 }
 
-/// Reads a row if it is that of a node.
+/// Reads a row in the first pass over the file: a node, or else [`Row::Other`].
 #[inline]
 fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let (word, length) = keyword(cursor);
@@ -129,7 +131,7 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     Ok(Row::Node(tag, x_at, at, cursor.z_if_any(format_args!("node {tag}"))?))
 }
 
-/// Reads a row if it is that of an element, a node string or a material.
+/// Reads a row in the second pass over the file: an element, a node string or a material, or else [`Row::Other`].
 #[inline]
 fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let (word, length) = keyword(cursor);
@@ -151,14 +153,14 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     };
     let tag = cursor.integer("the number of an element")?;
     let nodes = nodes(cursor, kind)?;
-    // A material is a number, which some programs leave out.
+    // The last number is the material, which some programs leave out.
     let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
     let of_none = kind == CellKind::Line && material == 0;
     let region = [if of_none { NO_MATERIAL } else { material }, 0];
     Ok(Row::Element(Element { id: tag, kind, region, nodes }))
 }
 
-/// Reads the nodes in a row of a node string. The last node of a string is negative, and the string's name may follow.
+/// Reads a row of a node string. The last node of a string is negative, and the string's name may follow.
 #[cold]
 fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let mut nodes = Vec::new();
@@ -179,7 +181,7 @@ fn string(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     Ok(Row::String(nodes, NodestringEnd::Open))
 }
 
-/// Reads the number and the name of a material. A row without them is ignored, as the mesh does not depend on it.
+/// Reads a material's number and name. Rows without number or name are ignored, as the mesh does not depend on names.
 #[cold]
 fn material(cursor: &mut Cursor<'_>) -> Row {
     match cursor.signed("a material") {

@@ -1,7 +1,7 @@
 //! STL, as text and in binary, for a mesh in the plane.
 //!
-//! The format: <https://www.fabbers.com/tech/STL_Format>. It lists the corners of each triangle and has no vertices. A
-//! mesh is read only if the user asks to join corners at the same place. Normals are not read.
+//! The format: <https://www.fabbers.com/tech/STL_Format>. An STL lists the corners of each triangle, and has no
+//! vertices. A mesh is read only if the user asks to join corners with equal coordinates. Normals are not read.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::content::group_label::GroupLabel;
@@ -22,8 +22,9 @@ use std::collections::HashMap;
 
 pub(crate) struct Stl;
 
-/// The size of a binary file's header in bytes. The number of triangles follows, and then the triangles.
+/// The size of a binary file's header in bytes. The triangle count, 4 bytes, and the triangles follow the header.
 const HEADER: usize = 80;
+/// The offset of the first triangle in a binary file.
 const START: usize = HEADER + 4;
 /// The size of a binary triangle in bytes: a normal and three corners of three floats each, and an attribute of two
 /// bytes.
@@ -32,18 +33,18 @@ const TRIANGLE: usize = 50;
 /// The triangles of a file, which share no vertices.
 #[derive(Default)]
 struct TriangleSoup<'a> {
-    /// The offset of each triangle, and the number of its solid.
+    /// The offset of each triangle in the file, and the index of its solid in `solids`.
     triangles: Vec<(usize, u32)>,
     /// The offset of each corner's x, ascending, three for each triangle.
     x_at: Vec<usize>,
     corners: Vec<[f64; 2]>,
-    /// The third coordinate, which is the same for all corners.
+    /// The common third coordinate of all corners; `None` before the first corner.
     z: Option<f64>,
     /// The names of the solids.
     solids: Vec<&'a [u8]>,
 }
 
-/// A row of text.
+/// A row of a text file.
 enum Row<'a> {
     Solid(&'a [u8]),
     Facet(usize),
@@ -79,14 +80,14 @@ impl FormatReader for Stl {
     }
 }
 
-/// Whether a file is binary. Some binary files start with `solid` as text does, but no text has zero bytes.
+/// Returns whether a file is binary. Some binary files start with `solid` as text does, but text has no zero bytes.
 fn is_binary(bytes: &[u8]) -> bool {
     let begin = bytes.trim_ascii_start().get(..5);
     let first = &bytes[..bytes.len().min(512)];
     !begin.is_some_and(|w| w.eq_ignore_ascii_case(b"solid")) || memchr::memchr(0, first).is_some()
 }
 
-/// Returns the number of triangles that a binary file announces.
+/// Returns the triangle count of a binary file; `None` if the file ends before the count.
 fn announced(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(HEADER..START)?;
     usize::try_from(ByteOrder::Little.whole(count)).ok()
@@ -216,7 +217,7 @@ impl TriangleSoup<'_> {
 /// Returns for each corner the index of the first corner with equal coordinates.
 fn first_equal_corners(corners: &[[f64; 2]]) -> Vec<u32> {
     let mut first = HashMap::new();
-    // Adding zero makes a negative zero positive, so both are one place.
+    // Adding zero makes a negative zero positive, so both zeros are one place.
     let places = corners.iter().map(|corner| corner.map(|x| (x + 0.0).to_bits()));
     (0..).zip(places).map(|(corner, place)| *first.entry(place).or_insert(corner)).collect()
 }
@@ -257,7 +258,7 @@ fn send_mesh(
         && visitor.asks_for_data()
         && visitor.z_array(b"z")
     {
-        // z is the same everywhere, so it never has to be replaced.
+        // All corners have this z, so z never has to be replaced.
         let numbers = vec![z; count];
         visitor.point_numbers(PointNumbers { numbers, nodes: None, location: None });
     }

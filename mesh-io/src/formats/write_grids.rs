@@ -8,9 +8,10 @@ use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
-/// Turns depths into the third coordinates of a `.2dm`, or third coordinates into depths. In SMS, MIKE and UGRID z is positive
-/// upwards, and SMS opens a grid of ADCIRC with minus its depths as z. In UGRID z is a variable of nodes, of this name or one that
-/// ends in `node_z`; or it has depths, under a name that ends so.
+/// Converts depths to third coordinates and back, between formats with different conventions. Depths of ADCIRC and
+/// FVCOM are positive downwards, z of SMS, MIKE and UGRID upwards. SMS, too, opens a grid of ADCIRC with minus its
+/// depths as z. In UGRID, z is a node variable named `z` or ending in `node_z`, and a depth is a node variable whose
+/// name ends in `depth`.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
@@ -52,7 +53,8 @@ fn of_vertices(name: &str, values: Vec<f64>) -> DataArray {
     DataArray { name: name.to_owned(), components: 1, is_real: true, values }
 }
 
-/// Takes the variable of nodes out that is z, or a depth, and tells whether it is a depth.
+/// Removes z, or else a depth, from the node variables of UGRID. Returns the values, and true for depths. `None` if
+/// UGRID has neither variable.
 fn take_heights(content: &mut Content) -> Option<(Vec<f64>, bool)> {
     let is_z = |data: &DataArray| data.name == "z" || data.name.ends_with("node_z");
     let is_depth = |data: &DataArray| data.name.to_ascii_lowercase().ends_with("depth");
@@ -103,10 +105,11 @@ pub(crate) fn write_sms(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Joins lines to chains, as long as possible and in either direction. Chains are in the order of their first lines.
+/// Joins lines to chains, as long as possible and in either direction. Chains are sorted by the index of their first
+/// line in `lines`.
 fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
     let mut at: HashMap<u32, Vec<usize>> = HashMap::new();
-    // Lines are popped from the end of these lists, so that the first line comes first.
+    // Lines are popped from the end of these lists, so the first line comes first.
     for (index, &[a, b]) in lines.iter().enumerate().rev() {
         at.entry(a).or_default().push(index);
         at.entry(b).or_default().push(index);
@@ -117,7 +120,7 @@ fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
         if std::mem::replace(&mut used[index], true) {
             continue;
         }
-        // Returns the vertex that the next unused line leads to.
+        // Returns the other end of the next unused line at a vertex.
         let mut next = |vertex: u32| {
             let lines_at = at.get_mut(&vertex)?;
             while let Some(line) = lines_at.pop() {
@@ -174,12 +177,12 @@ pub(crate) fn write_adcirc(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Whether a line belongs to a node string, not to an element of a material.
+/// Returns whether a line belongs to a node string, and not to a material.
 fn is_of_string(input: &WriterInput<'_>, line: usize) -> bool {
     input.group(line).is_some_and(|group| group.kind != "material")
 }
 
-/// Returns the lines of each group as chains of vertices.
+/// Returns the lines of each node string's group as chains of vertices, with the index of the group.
 fn strings(input: &WriterInput<'_>) -> Vec<(u32, Vec<u32>)> {
     let mut lines: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
     for cell in input.all(CellKind::Line).filter(|&cell| is_of_string(input, cell)) {

@@ -1,4 +1,4 @@
-//! The keywords of an input file, each with its parameters and the lines of data below it.
+//! Splits an input file into keyword blocks: a keyword, its parameters and its data lines.
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -6,15 +6,17 @@ use crate::text::cursor::Cursor;
 use crate::text::token::{key_value, line_end, unquoted};
 use std::ops::Range;
 
-/// A keyword with what belongs to it.
+/// A keyword of an input file, with its parameters and data lines.
 pub(super) struct Block<'a> {
-    /// In capital letters and without blanks, as neither means anything there.
+    /// The keyword in capital letters and without blanks, since Abaqus ignores case and blanks in keywords.
     pub(super) keyword: Vec<u8>,
-    /// Names, spelled as the keyword is, and values, which are empty if there is none.
+    /// Pairs of a parameter's name and value: names in capital letters without blanks, values without quotation marks.
+    /// A parameter without `=` has an empty value.
     parameters: Vec<(Vec<u8>, &'a [u8])>,
-    /// Where its asterisk stands.
+    /// The offset of the asterisk that starts the keyword.
     pub(super) at: usize,
-    /// The lines of data, from the end of the keyword's last line on.
+    /// The byte range of the data lines: from the line feed after the keyword to the next keyword's asterisk, or to the
+    /// end of the file.
     pub(super) data: Range<usize>,
 }
 
@@ -23,18 +25,19 @@ impl<'a> Block<'a> {
         self.keyword == keyword.as_bytes()
     }
 
-    /// Returns the value of a parameter; an empty one if it has none.
+    /// Returns the value of a parameter: empty if the parameter has no value, `None` if the keyword lacks the
+    /// parameter.
     pub(super) fn parameter(&self, name: &str) -> Option<&'a [u8]> {
         let own = self.parameters.iter().find(|(own, _)| own == name.as_bytes());
         own.map(|&(_, value)| value)
     }
 
-    /// Returns what a parameter names, if it names anything.
+    /// Returns the value of a parameter; `None` if the value is empty or the keyword lacks the parameter.
     pub(super) fn name(&self, parameter: &str) -> Option<&'a [u8]> {
         self.parameter(parameter).filter(|name| !name.is_empty())
     }
 
-    /// Makes an error at the keyword.
+    /// Makes an error located at the keyword's line.
     #[cold]
     pub(super) fn error(
         &self,
@@ -45,7 +48,8 @@ impl<'a> Block<'a> {
         Cursor::on_line_of(source, self.at).error(problem, remedy)
     }
 
-    /// Lists the items of the lines of data, each without blanks around it, with whether it is the last one of its line.
+    /// Lists the comma-separated items of the data lines, trimmed of blanks. A flag marks the last item of each line.
+    /// Comment lines, which start with an asterisk, are skipped.
     pub(super) fn items(&self, source: &'a Source) -> impl Iterator<Item = (&'a [u8], bool)> {
         let lines = source.bytes[self.data.clone()].split(|&byte| byte == b'\n');
         let lines = lines.filter(|line| !line.trim_ascii_start().starts_with(b"*"));
@@ -59,7 +63,8 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Finds all keywords of a file. Comments, which start with two asterisks, are none.
+/// Finds the keyword blocks of a file. An asterisk starts a keyword if only blanks precede the asterisk on its line.
+/// Two asterisks start a comment.
 pub(super) fn blocks(source: &Source) -> Vec<Block<'_>> {
     let (bytes, begin) = (&source.bytes[..], source.begin());
     let opens = |&at: &usize| {
@@ -76,7 +81,9 @@ pub(super) fn blocks(source: &Source) -> Vec<Block<'_>> {
     blocks
 }
 
-/// Reads the lines of a keyword. One that ends in a comma continues in the next line.
+/// Reads the keyword whose asterisk is at the offset `at`. A keyword line that ends in a comma continues on the next
+/// line; comment lines between are skipped. The data range of the block extends to the end of the file, until the
+/// caller finds the next keyword.
 fn block(bytes: &[u8], at: usize) -> Block<'_> {
     let mut end = line_end(bytes, at);
     let mut lines = vec![&bytes[at + 1..end]];
@@ -101,7 +108,7 @@ fn block(bytes: &[u8], at: usize) -> Block<'_> {
     Block { keyword, parameters, at, data: start..bytes.len() }
 }
 
-/// Splits a line at its commas, but those between quotation marks. Items are without blanks around them.
+/// Splits a line at the commas outside quotation marks, and trims blanks around the items.
 fn split(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut is_quoted = false;
     let pieces = line.split(move |&byte| {
@@ -111,7 +118,7 @@ fn split(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     pieces.map(<[u8]>::trim_ascii)
 }
 
-/// Removes blanks, and makes letters capital.
+/// Returns a word in capital letters and without blanks.
 fn plain(word: &[u8]) -> Vec<u8> {
     let letters = word.iter().filter(|byte| !byte.is_ascii_whitespace());
     letters.map(u8::to_ascii_uppercase).collect()

@@ -1,4 +1,5 @@
-//! Which of an input file's blocks are of the mesh: those of the model itself, or of the one part that has elements.
+//! Selects the blocks of an input file that describe the mesh: blocks of the model itself, or of the only part or
+//! instance that contains elements.
 
 use super::blocks::{self, Block};
 use crate::disk::source::Source;
@@ -7,24 +8,26 @@ use crate::text::token::quoted;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// The keywords of a file, and where each stands.
+/// The keyword blocks of an input file, assigned to the model, the assembly, parts and instances.
 pub(super) struct Deck<'a> {
-    /// Each block with its scope.
+    /// The keyword blocks in file order, with the number of the scope that contains each block.
     pub(super) blocks: Vec<(Block<'a>, usize)>,
-    /// The scope that has the elements.
+    /// The scope of the mesh: the scope with elements, else the first scope with nodes, else [`MODEL`].
     pub(super) mesh: usize,
-    /// Which instances are those of the mesh, by their names.
+    /// Maps the name of an instance, in capital letters, to true if the instance holds the mesh or refers to the part
+    /// that holds the mesh.
     instances: HashMap<Vec<u8>, bool>,
     /// Remarks for the user.
     pub(super) notes: Vec<String>,
 }
 
-/// The scope of what is in no part. Each part and each instance has one of its own, from [`ASSEMBLY`] on.
+/// The scope of blocks outside of parts and assemblies. Parts and instances have scopes from 2 on, in file order.
 const MODEL: usize = 0;
-/// The scope of an assembly.
+/// The scope of an assembly's own blocks, outside of instances.
 pub(super) const ASSEMBLY: usize = 1;
 
-/// Keywords that make nodes or elements which have no row.
+/// Keywords that generate or move nodes or elements, so that the rows of `*NODE` and `*ELEMENT` alone do not give the
+/// mesh.
 const GENERATING_KEYWORDS: [&str; 8] =
     ["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SYMMETRICMODELGENERATION"];
 /// Limit on the depth of nested includes.
@@ -35,10 +38,10 @@ impl<'a> Deck<'a> {
         let blocks = blocks::blocks(source);
         let mut deck =
             Deck { blocks: Vec::new(), mesh: MODEL, instances: HashMap::new(), notes: Vec::new() };
-        // The names of the scopes of parts and instances, for messages.
+        // The name of each scope, by number, for messages.
         let mut names = vec!["the model".to_owned(), "the assembly".to_owned()];
         let mut with_elements: Option<usize> = None;
-        // The name of each instance, of its part, and its own scope.
+        // For each instance: its name and the name of its part, both in capital letters, and its scope.
         let mut instances = Vec::new();
         let mut part_names = HashMap::new();
         let mut scope = MODEL;
@@ -84,7 +87,7 @@ impl<'a> Deck<'a> {
         Ok(deck)
     }
 
-    /// Lists the blocks of the mesh with this keyword.
+    /// Lists the blocks of the mesh with the given keyword.
     pub(super) fn of_mesh(&self, keyword: &str) -> impl Iterator<Item = &Block<'a>> {
         let own = self.blocks.iter().filter(move |(block, scope)| {
             *scope == self.mesh && block.keyword == keyword.as_bytes()
@@ -92,7 +95,7 @@ impl<'a> Deck<'a> {
         own.map(|(block, _)| block)
     }
 
-    /// Lists the blocks of the assembly with this keyword, if the mesh is a part of one.
+    /// Lists the blocks of the assembly with the given keyword; none if the file has no assembly.
     pub(super) fn of_assembly(&self, keyword: &str) -> impl Iterator<Item = &Block<'a>> {
         let own = self.blocks.iter().filter(move |(block, scope)| {
             *scope == ASSEMBLY && block.keyword == keyword.as_bytes()
@@ -100,12 +103,16 @@ impl<'a> Deck<'a> {
         own.map(|(block, _)| block)
     }
 
-    /// Whether an instance is one of the mesh.
+    /// Returns whether `instance`, in capital or small letters, names an instance of the mesh.
     pub(super) fn is_of_mesh(&self, instance: &[u8]) -> bool {
         self.instances.get(&instance.to_ascii_uppercase()) == Some(&true)
     }
 
-    /// Checks the files that this one includes.
+    /// Inspects the files of all `*INCLUDE` blocks. Adds a remark if included files have sets, sections or surfaces, or
+    /// cannot be read.
+    ///
+    /// # Errors
+    /// If an included file holds nodes or elements. [`ReadError::Outside`] as for [`included`].
     fn check_included(&mut self, source: &Source) -> Result<(), ReadError> {
         let mut seen = HashSet::new();
         let (mut with_sets, mut unknown) = (Vec::new(), Vec::new());
@@ -148,7 +155,9 @@ impl<'a> Deck<'a> {
     }
 }
 
-/// Checks that a block says itself what nodes and elements it has.
+/// Refuses a block whose own rows do not give all nodes or elements: a keyword that generates or moves nodes, rows in
+/// another file (`INPUT`), or a `SYSTEM` other than Cartesian. `*SYSTEM` without data ends a local system, and is
+/// accepted.
 fn check(source: &Source, block: &Block<'_>) -> Result<(), ReadError> {
     let shown = String::from_utf8_lossy(&block.keyword).into_owned();
     let has_data = || block.items(source).any(|(item, _)| !item.is_empty());
@@ -180,33 +189,35 @@ fn check(source: &Source, block: &Block<'_>) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// What an included file holds.
+/// The most important content of an included file. Later variants outrank earlier variants.
 #[derive(PartialEq, PartialOrd)]
 enum Included {
-    /// Nothing that matters to the mesh.
+    /// Other keywords, such as materials and loads, or a file inspected before.
     Other,
-    /// What cannot be told, as the file is not there.
+    /// Unknown content: the file cannot be read, or the includes are nested too deep.
     Unknown,
-    /// Sets or sections.
+    /// Sets, surfaces or sections, but neither nodes nor elements.
     Sets,
     Mesh,
 }
 
-/// The line of a file that includes another file.
+/// An `*INCLUDE` line of the mesh file or of an included file.
 #[derive(Clone, Copy)]
 struct Inclusion<'a> {
     from: &'a Source,
-    /// Where the keyword stands.
+    /// The offset of the keyword in the bytes of `from`.
     at: usize,
     /// The name of the included file.
     name: &'a [u8],
 }
 
-/// Looks into a file that the mesh file `mesh`, or a file that is included there, includes, once. Its first rows are part of a
-/// list if the list `continues` there.
+/// Returns the content of the file that an `*INCLUDE` line names, including files named there. Files in `seen` are not
+/// inspected again. If `continues`, rows before the file's first keyword belong to the node or element list before the
+/// `*INCLUDE`. `depth` limits how many nested files are opened. `mesh` is the main file.
 ///
 /// # Errors
-/// [`ReadError::Outside`] if the file is outside of the directory of `mesh`, unless the options of `mesh` allow that.
+/// [`ReadError::Outside`] if the file is outside of the directory of `mesh`, unless the options of `mesh` allow other
+/// directories.
 fn included(
     mesh: &Source,
     Inclusion { from, at, name }: Inclusion<'_>,
@@ -251,7 +262,7 @@ fn included(
     Ok(found)
 }
 
-/// Whether a block gives elements a material.
+/// Returns whether a block is a section, such as `*SOLID SECTION`, which assigns a material to a set of elements.
 pub(super) fn is_section(block: &Block<'_>) -> bool {
     block.keyword.ends_with(b"SECTION") && block.name("ELSET").is_some()
 }

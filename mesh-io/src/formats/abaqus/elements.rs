@@ -1,4 +1,4 @@
-//! The elements of a mesh, with the sections, sets and surfaces that they are of.
+//! Visits the elements of the mesh, with the sections, sets and surfaces that contain each element.
 
 use super::blocks::Block;
 use super::deck::Deck;
@@ -15,19 +15,21 @@ use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// The sections, sets and surfaces of the elements, found before the elements are visited. Lists that are not needed
-/// are empty.
+/// The sections, sets and surfaces of the elements, found before the elements are visited. Elements are numbered from 0
+/// over all lists with a kind of cell. Lists that this reading does not need are empty.
 #[derive(Default)]
 pub(super) struct ElementGroups {
-    /// The number of the section of each element, or of the sets that it is in, counted from 1.
+    /// The number of each element's section, counted from 1. Where `*ELSET` sets define regions, each combination of
+    /// sets has a number instead. 0 marks elements without section or set. Empty if element lists define the regions.
     sections: Vec<u32>,
-    /// The names of the sets that are groups.
+    /// The names of the element sets that are visited as groups.
     names: Vec<Vec<u8>>,
-    /// Elements and which of these sets they are in, ascending.
+    /// Pairs of an element and the index in `names` of a set that contains the element, ascending.
     within: Vec<(u32, u32)>,
-    /// The names of surfaces, and where they stand.
+    /// The name of each surface, with the offset of the surface's keyword.
     surfaces: Vec<(Vec<u8>, usize)>,
-    /// Elements, the surface that each has a side in, and the label of the side, ascending.
+    /// Element sides in surfaces, ascending: the element, the index in `surfaces`, and the label of the side, such as
+    /// `S1`.
     sides: Vec<(u32, u32, [u8; 2])>,
 }
 
@@ -55,9 +57,9 @@ impl ElementGroups {
             let name = quoted(name);
             visitor.remark(Remark::Text(format!("a section is of the set {name}, which is not here: vertices at its ends are no constraints")));
         }
-        // Sections of lists of elements need no look at the elements: the lists' sets tell them apart.
+        // If all sections name sets of element lists (`*ELEMENT, ELSET=`), regions follow from the lists alone.
         let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));
-        // Where nothing else tells regions apart, sets do.
+        // If neither sections nor element lists define regions, `*ELSET` sets do.
         let by_members = sections.is_empty() && of_lists.is_empty() && !listed.is_empty();
         let has_surfaces =
             deck.of_mesh("SURFACE").chain(deck.of_assembly("SURFACE")).next().is_some();
@@ -118,7 +120,8 @@ impl ElementGroups {
         Ok(found)
     }
 
-    /// Finds which sides of elements are in surfaces.
+    /// Reads the `*SURFACE` blocks of the mesh and the assembly into `surfaces` and `sides`. A row names an element or
+    /// a set of elements, then the label of a side.
     fn find_sides(
         &mut self,
         source: &Source,
@@ -159,7 +162,7 @@ impl ElementGroups {
         Ok(())
     }
 
-    /// Hands on all elements, and then the sides that are in surfaces.
+    /// Visits all elements, then the element sides in surfaces as lines of groups of the kind `surface`.
     pub(super) fn send(
         self,
         deck: &Deck<'_>,
@@ -168,12 +171,12 @@ impl ElementGroups {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let mut cursor = cursor.clone();
-        // The place of the next element, and what is left of the lists by places.
+        // The index of the next element, and the entries of `within` and `sides` from that element on.
         let (mut place, mut within, mut sides) = (0, &self.within[..], &self.sides[..]);
-        // The groups that the visitor was told of last.
+        // The entries of `within` whose groups were visited last.
         let mut told: &[(u32, u32)] = &[];
         let mut lines: Vec<(u32, [u64; 2])> = Vec::new();
-        // How many elements hold their nodes, and the types of these.
+        // The number of elements that only constrain their nodes, and their types.
         let (mut holding, mut types_of) = (0, BTreeSet::new());
         for List { block, of, kind, set, of_assembly } in lists {
             let rows = &mut rows::data_rows(&mut cursor, block);
@@ -255,8 +258,8 @@ fn send_scopes<'f>(
     *told = now;
 }
 
-/// Visits the nodes of elements that constrain them, and counts the elements. `assembly` is given for elements of an
-/// assembly.
+/// Visits the nodes of constraining elements as points. Returns how many elements have nodes of the mesh. `assembly` is
+/// `None` unless the elements belong to the assembly.
 fn send_constrained_nodes(
     rows: &mut Cursor<'_>,
     assembly: Option<&Deck<'_>>,

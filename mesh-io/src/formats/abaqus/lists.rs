@@ -1,4 +1,4 @@
-//! The lists of elements of the mesh, each of one type.
+//! The element lists of the mesh (`*ELEMENT`), each with one element type.
 
 use super::blocks::Block;
 use super::deck::Deck;
@@ -11,19 +11,24 @@ use crate::text::token::quoted;
 use crate::visit::items::CellKind;
 use crate::visit::rows::volume;
 
-/// A list of elements of one type.
+/// An `*ELEMENT` block, whose elements have the same type.
 pub(super) struct List<'d, 'a> {
     pub(super) block: &'d Block<'a>,
     /// The type, in capital letters.
     pub(super) of: Vec<u8>,
-    /// `None` for elements that only hold their nodes.
+    /// The kind of cell; `None` if the elements only constrain their nodes, as masses, springs and all elements of an
+    /// assembly do.
     pub(super) kind: Option<CellKind>,
-    /// The number of the set that the list names, counted from 1; 0 if it names none.
+    /// The number of the set that the list names by `ELSET`, counted from 1; 0 if the list names no set.
     pub(super) set: i64,
     pub(super) of_assembly: bool,
 }
 
-/// Lists the elements of the mesh, and checks their types.
+/// Returns the element lists of the mesh, then of the assembly.
+///
+/// # Errors
+/// If an element type is unknown, of second order or of a volume, or if the assembly has its own triangles or
+/// quadrilaterals.
 pub(super) fn lists<'d, 'a>(
     source: &Source,
     deck: &'d Deck<'a>,
@@ -49,7 +54,10 @@ pub(super) fn lists<'d, 'a>(
     Ok(lists)
 }
 
-/// Returns the kind of the elements of a type; `None` if they only hold their nodes.
+/// Returns the kind of cell of the element type `of`; `None` if the elements only constrain their nodes.
+///
+/// # Errors
+/// If the type is missing, unknown, of second order or of a volume.
 fn class(source: &Source, block: &Block<'_>, of: &[u8]) -> Result<Option<CellKind>, ReadError> {
     let shown = quoted(of);
     match types::class(of) {

@@ -1,9 +1,9 @@
 //! Input files of Abaqus and CalculiX, `.inp`.
 //!
-//! The format: the Abaqus Keywords Reference Guide, and G. Dhondt, CalculiX CrunchiX User's Manual. Keywords start with an
-//! asterisk, comments with two. Numbers of nodes and elements are arbitrary. Lines, points and quadrilaterals stay fixed, and
-//! so do sides of elements in surfaces. Regions are the sets that lists of elements name, and those of sections. Other
-//! keywords, such as those of materials, loads and steps, are not read.
+//! The format: the Abaqus Keywords Reference Guide, and G. Dhondt, CalculiX CrunchiX User's Manual. Keywords start with
+//! an asterisk, comments with two. Ids of nodes and elements are arbitrary. Vertices of lines, points, quadrilaterals
+//! and of element sides in surfaces stay fixed. Regions are the sets that element lists and sections name. Other
+//! keywords, such as materials, loads and steps, are not read.
 
 mod blocks;
 mod deck;
@@ -69,7 +69,7 @@ impl FormatReader for Abaqus {
     }
 }
 
-/// Lists the blocks that give elements of the mesh a material.
+/// Lists the section blocks of the mesh, which assign materials to sets of elements.
 fn sections<'d, 'a>(deck: &'d Deck<'a>) -> impl Iterator<Item = &'d Block<'a>> {
     let own =
         deck.blocks.iter().filter(|(block, scope)| *scope == deck.mesh && deck::is_section(block));
@@ -104,11 +104,11 @@ fn report_unsupported(deck: &Deck<'_>, visitor: &mut dyn MeshVisitor) {
     }
 }
 
-/// The nodes of the mesh, and their sets.
+/// The node sets of the mesh, with the node ids by which sets list their members.
 #[derive(Default)]
 struct Nodes {
     sets: Sets,
-    /// The number of each node, if sets are asked for.
+    /// The id of each node in file order; `None` if the visitor does not ask for groups.
     tags: Option<Vec<u64>>,
 }
 

@@ -1,4 +1,4 @@
-//! The rows of nodes and elements.
+//! Reads the data lines of `*NODE` and `*ELEMENT`.
 
 use super::blocks::Block;
 use super::deck::Deck;
@@ -19,14 +19,15 @@ pub(super) fn data_rows<'a>(cursor: &mut Cursor<'a>, block: &Block<'_>) -> Curso
     rows
 }
 
-/// Number of nodes, and of nodes with a coordinate of more than [`MAX_NUMBER_LENGTH`] characters.
+/// Node counts: all nodes, and nodes with a coordinate of more than [`MAX_NUMBER_LENGTH`] characters.
 #[derive(Default)]
 pub(super) struct LengthCounts {
     pub(super) all: u64,
     pub(super) long: u64,
 }
 
-/// Hands on the nodes of a block, and counts them.
+/// Visits the nodes of a block, and adds the nodes to `counted`. Third coordinates go to `z_values`, ids to `ids` if
+/// present.
 pub(super) fn send_nodes(
     cursor: &mut Cursor<'_>,
     visitor: &mut dyn MeshVisitor,
@@ -44,10 +45,10 @@ pub(super) fn send_nodes(
     })
 }
 
-/// A node: its number, the offset of x, whether a number is long, x and y, and z with its offset.
+/// A node: the id, (the offset of x, whether x or y exceeds [`MAX_NUMBER_LENGTH`]), x and y, (the offset of z, z).
 type Node = (u64, (usize, bool), [f64; 2], (usize, f64));
 
-/// Number of characters of a number that Abaqus and CalculiX read.
+/// Maximum length of a number in characters. Abaqus and CalculiX ignore all characters beyond this length.
 const MAX_NUMBER_LENGTH: usize = 20;
 
 #[inline]
@@ -69,8 +70,8 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     Ok((id, (x_at, is_long), at, cursor.z_if_any(format_args!("node {id}"))?))
 }
 
-/// Reads the elements of a block, each with its number and nodes, long lists on all threads if `ahead`. A call of `take` that
-/// fails must leave all unchanged.
+/// Reads the elements of a block, and hands the id and nodes of each element to `take`. If `ahead`, long lists are
+/// parsed on all threads. A failed call of `take` must not change any state: the row is read again to report the error.
 pub(super) fn each_element<'a>(
     cursor: &mut Cursor<'a>,
     kind: CellKind,
@@ -100,8 +101,8 @@ pub(super) fn each_element<'a>(
     Ok(())
 }
 
-/// Reads elements of any number of nodes, each with its number. In an assembly the nodes of the mesh are those with the name of one
-/// of its instances, `Part-1-1.7`; all others are left out. `assembly` is given for elements of one.
+/// Reads elements with any number of nodes, and hands the element's id and each node to `take`. With `assembly`, only
+/// nodes of the mesh's instances are read, written as `Part-1-1.7`; all other nodes are skipped.
 pub(super) fn each_constrained<'a>(
     cursor: &mut Cursor<'a>,
     assembly: Option<&Deck<'_>>,
@@ -112,7 +113,7 @@ pub(super) fn each_constrained<'a>(
         loop {
             skip_continuation(cursor);
             if cursor.is_at(b',') {
-                // Between two commas stands no node.
+                // Two adjacent commas stand for a missing node.
                 cursor.at = cursor.at();
                 continue;
             }
@@ -150,10 +151,10 @@ fn skip_continuation(cursor: &mut Cursor<'_>) {
     }
 }
 
-/// Checks that a row has no more nodes than its kind of element.
+/// Checks that a row ends after the nodes of the element.
 ///
 /// # Errors
-/// If the row has another node. The row of a line may end with a node that orients the beam.
+/// If the row has a further node. Rows of lines always pass, as a beam may have a last node for orientation.
 #[inline]
 fn check_row_end(cursor: &Cursor<'_>, kind: CellKind, id: u64) -> Result<(), ReadError> {
     if kind == CellKind::Line || cursor.is_at_end() {

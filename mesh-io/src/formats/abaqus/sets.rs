@@ -1,4 +1,4 @@
-//! Sets of elements or nodes: those of `*ELSET` and `*NSET`, and those that lists of elements and nodes name.
+//! Sets of elements or nodes: defined by `*ELSET` and `*NSET`, or named by element and node lists.
 
 use super::blocks::Block;
 use super::deck::Deck;
@@ -8,34 +8,34 @@ use crate::text::token::{integer, unquoted};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// All sets of one kind.
+/// All element sets, or all node sets, of an input file.
 #[derive(Default)]
 pub(super) struct Sets {
     sets: Vec<Set>,
     numbers: HashMap<Key, usize>,
 }
 
-/// Whether a set is of the assembly, and its name in capital letters, as these make no difference.
+/// The identity of a set: true for a set of the assembly, and the name in capital letters, as names ignore case.
 type Key = (bool, Vec<u8>);
 
 struct Set {
     key: Key,
-    /// The name as it is first written.
+    /// The name, spelled like the first occurrence in the file.
     name: Vec<u8>,
-    /// Whether a program made it for itself.
+    /// Whether the set has the parameter `INTERNAL`: Abaqus/CAE generated the set, not a user.
     is_internal: bool,
     items: Vec<Item>,
 }
 
-/// Members of a set.
+/// One entry of a set's list of members.
 enum Item {
-    /// Every so manyth number from the first to the last one.
+    /// The ids from `first` to `last`, both inclusive, in steps of `step`.
     Numbers {
         first: u64,
         last: u64,
         step: u64,
     },
-    /// By their places in the file.
+    /// A range of positions of nodes or elements in the file.
     Positions(Range<u32>),
     Set(Key),
 }
@@ -52,22 +52,22 @@ impl IdPositions {
         IdPositions(all)
     }
 
-    /// Returns all with numbers in a range, its ends included.
+    /// Returns the entries whose ids are from `first` to `last`, both inclusive.
     fn within(&self, first: u64, last: u64) -> &[(u64, u32)] {
         let start = self.0.partition_point(|&(tag, _)| tag < first);
         let end = self.0.partition_point(|&(tag, _)| tag <= last);
         &self.0[start..end.max(start)]
     }
 
-    /// Returns the places of those with the number that a word stands for.
+    /// Returns the positions of nodes or elements whose id is the whole number `word`; none for any other word.
     pub(super) fn of_word(&self, word: &[u8]) -> impl Iterator<Item = u32> {
         let found = integer(word).map(|number| self.within(number, number));
         found.unwrap_or_default().iter().map(|&(_, place)| place)
     }
 }
 
-/// Number of steps that may still be taken to list members of sets. The limit stops damaged files whose sets include
-/// each other many times.
+/// Remaining number of steps for listing the members of sets. The limit stops damaged files whose sets include each
+/// other many times.
 pub(super) struct WorkBudget(usize);
 
 impl WorkBudget {
@@ -90,7 +90,7 @@ impl WorkBudget {
 }
 
 impl Sets {
-    /// Returns the number of a set, after adding it if it is new.
+    /// Returns the index of the set with the given name. A set with a new name is added, without members.
     pub(super) fn number(&mut self, of_assembly: bool, name: &[u8]) -> usize {
         let key = (of_assembly, name.to_ascii_uppercase());
         let next = self.sets.len();
@@ -102,13 +102,13 @@ impl Sets {
         number
     }
 
-    /// Adds members by their places.
+    /// Adds a range of positions to a set of the mesh.
     pub(super) fn add(&mut self, name: &[u8], places: Range<u32>) {
         let number = self.number(false, name);
         self.sets[number].items.push(Item::Positions(places));
     }
 
-    /// Reads the sets of blocks of this keyword, those of the mesh and those of the assembly.
+    /// Reads the sets of all blocks with the keyword `ELSET` or `NSET`, in the mesh and in the assembly.
     pub(super) fn read(&mut self, source: &Source, deck: &Deck<'_>, keyword: &str) {
         let own = deck.of_mesh(keyword).map(|block| (block, false));
         for (block, of_assembly) in own.chain(deck.of_assembly(keyword).map(|block| (block, true)))
@@ -122,7 +122,8 @@ impl Sets {
         }
     }
 
-    /// Finds a set by its name: in a part the part's, in an assembly its own, or with the name of an instance that of its part.
+    /// Finds a set by name, in the scope of the assembly (`of_assembly`) or of the mesh. `INSTANCE.SET` also finds a
+    /// set of the mesh if `INSTANCE` refers to the mesh.
     pub(super) fn find(&self, deck: &Deck<'_>, of_assembly: bool, name: &[u8]) -> Option<usize> {
         let by =
             |of_assembly, name: &[u8]| self.numbers.get(&(of_assembly, name.to_ascii_uppercase()));
@@ -133,7 +134,10 @@ impl Sets {
         by(of_assembly, name).or_else(of_instance).copied()
     }
 
-    /// Lists the members of a set by their places, ascending.
+    /// Returns the positions of a set's members, ascending and without repeats. Members of included sets count.
+    ///
+    /// # Errors
+    /// If the budget `effort` is exhausted.
     pub(super) fn members(
         &self,
         number: usize,
@@ -167,8 +171,8 @@ impl Sets {
         Ok(members)
     }
 
-    /// Lists the sets that have a name for users, with their numbers. Of two that are called the same, that of the part is called
-    /// after the mesh too.
+    /// Lists the indices and names of sets, without internal sets. A set of the mesh gets the prefix `part.` if the
+    /// assembly has a set of equal name.
     pub(super) fn named(&self) -> impl Iterator<Item = (usize, Vec<u8>)> {
         let own = self.sets.iter().enumerate().filter(|(_, set)| !set.is_internal);
         own.map(|(number, set)| {
@@ -181,9 +185,10 @@ impl Sets {
     }
 }
 
-/// Reads the members that a block lists.
+/// Reads the entries in the data lines of a set's block.
 fn items(source: &Source, deck: &Deck<'_>, block: &Block<'_>, of_assembly: bool) -> Vec<Item> {
-    // In an assembly, plain numbers are those of an instance, or of nodes and elements of the assembly itself.
+    // In an assembly, plain numbers are ids of the block's instance. Without an instance, nodes and elements of the
+    // assembly itself are meant, and skipped.
     let of_instance = block.name("INSTANCE").is_some_and(|name| deck.is_of_mesh(name));
     let is_plain = !of_assembly || of_instance;
     let mut items = Vec::new();
@@ -209,7 +214,7 @@ fn items(source: &Source, deck: &Deck<'_>, block: &Block<'_>, of_assembly: bool)
         match (integer(item), memchr::memchr(b'.', item)) {
             (Some(number), _) if is_plain => items.push(one(number)),
             (Some(_), _) => {}
-            // Of an instance: `Part-1-1.7` or `Part-1-1.inlet`.
+            // A member or a set of an instance: `Part-1-1.7` or `Part-1-1.inlet`.
             (None, Some(point)) if of_assembly && deck.is_of_mesh(&item[..point]) => {
                 let rest = &item[point + 1..];
                 items.push(match integer(rest) {

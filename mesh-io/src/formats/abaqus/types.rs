@@ -1,50 +1,51 @@
-//! The types of elements of Abaqus and CalculiX, by their names.
+//! Classifies element types of Abaqus and CalculiX by name.
 //!
-//! A name is that of a family, the number of nodes or the order, and letters for variants: `CPS4R`, `B31H`, `STRI65`.
+//! A type name consists of a family, the number of nodes or the order, and letters for variants: `CPS4R`, `B31H`,
+//! `STRI65`.
 
 use crate::visit::items::CellKind;
 
-/// What elements of a type are in a mesh of the plane.
+/// The role of an element type in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Class {
     Of(CellKind),
-    /// Elements with nodes on their sides.
+    /// Elements with mid-side nodes, which are not read.
     SecondOrder,
     Volume,
-    /// Elements of any nodes, which stay where they are: masses, springs, connectors, those of a user.
+    /// Elements whose nodes stay fixed, of any number: masses, springs, connectors, user elements.
     Constraining,
 }
 
-/// Families of surfaces, whose names go on with their number of nodes: of the plane and of axial symmetry, shells,
-/// membranes, and rigid surfaces.
+/// Families of surface elements, followed by the number of nodes in a type name: plane, axisymmetric, shell, membrane
+/// and rigid elements.
 const SURFACES: [&str; 25] = [
     "CPS", "CPE", "CPEG", "CAX", "CGAX", "DC2D", "DCC2D", "DCAX", "DCCAX", "AC2D", "ACAX", "EMC2D",
     "COH2D", "COHAX", "CINPS", "CINPE", "CINAX", "GKPS", "GKPE", "WARP2D", "M3D", "SFM3D", "R3D",
     "S", "STRI",
 ];
-/// Those that are shells or membranes, whose first two faces are their sides up and down.
+/// Families of shells, membranes and rigid surfaces, whose faces 1 and 2 are the bottom and the top of the surface.
 const SHELLS: [&str; 6] = ["M3D", "SFM3D", "R3D", "S", "STRI", "DS"];
-/// Families of lines, whose names go on with their number of nodes.
+/// Families of line elements, followed by the number of nodes in a type name.
 const LINES: [&str; 14] = [
     "T2D", "T3D", "R2D", "RB2D", "RB3D", "RAX", "F2D", "FAX", "ASI2D", "ACIN2D", "DC1D", "DCC1D",
     "AC1D", "GK2D",
 ];
-/// Families of lines, whose names go on with their order.
+/// Families of axisymmetric line elements, followed by the order in a type name.
 const BY_ORDER: [&str; 6] = ["SAX", "DSAX", "MAX", "MGAX", "SFMAX", "SFMGAX"];
-/// Families of beams, whose names go on with their order; those of order 3 have two nodes.
+/// Families of beam elements, followed by the order in a type name. Beams of order 3 have two nodes.
 const BEAMS: [&str; 5] = ["B2", "B3", "PIPE2", "PIPE3", "ELBOW3"];
-/// What the names of elements of a volume begin with.
+/// Prefixes of the type names of volume elements.
 const VOLUMES: [&str; 15] = [
     "C3D", "DC3D", "DCC3D", "AC3D", "ACIN3D", "CIN3D", "SC6", "SC8", "CSS8", "COH3D", "EMC3D",
     "GK3D", "Q3D", "F3D", "CCL",
 ];
-/// First letters of the names of elements whose nodes are constraints.
+/// Prefixes of the type names of elements that constrain their nodes.
 const CONSTRAINING: [&str; 17] = [
     "MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "GAP", "DGAP", "CONN", "DCOUP", "JOINT",
     "ITS", "ASI", "PSI", "DRAG", "PC3D", "PD3D", "FRAME",
 ];
 
-/// Returns what elements of a type are; `None` if it is not known. `name` is in capital letters.
+/// Returns the class of an element type; `None` for an unknown type. `name` is in capital letters.
 pub(super) fn class(name: &[u8]) -> Option<Class> {
     let digit = |families: &[&str]| {
         let after = |family: &&str| name.strip_prefix(family.as_bytes())?.first().copied();
@@ -75,8 +76,8 @@ pub(super) fn class(name: &[u8]) -> Option<Class> {
     }
 }
 
-/// Returns which side of an element a label of a surface stands for: 0 for the one between its first two nodes. `None` if it
-/// stands for none, such as the face of a shell. `name` is the type of the element, in capital letters.
+/// Returns the side of an element that a surface names by `label`: 0 for the side between the first two nodes. `None`
+/// for labels of shell faces and for unknown labels. `name` is the element type in capital letters.
 pub(super) fn side(name: &[u8], label: &[u8]) -> Option<usize> {
     let is_shell = SHELLS.iter().any(|family| {
         let rest = name.strip_prefix(family.as_bytes());

@@ -8,12 +8,12 @@ use crate::precision::short_text;
 use crate::visit::items::CellKind;
 use std::fmt::Write;
 
-/// How many numbers a row of a set has.
+/// Maximum number of ids in a data line of `*NSET`.
 const ROW: usize = 16;
 
 pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
     let content = input.content;
-    // Elements of the plane have no third coordinate.
+    // Plane types (CPS3) have no third coordinate, shell types (S3) have one.
     let is_flat = content.z_values.is_empty();
     let mut out = "*HEADING\nmesh\n*NODE\n".to_owned();
     for (vertex, [x, y]) in content.points.iter().enumerate() {

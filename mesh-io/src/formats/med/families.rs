@@ -1,4 +1,4 @@
-//! The families of a MED file, and the groups that each is of.
+//! The families of a MED file: each node and element belongs to one family, and a family stands for groups.
 
 use crate::content::group_label::GroupLabel;
 use crate::hdf5::{Hdf5, Object};
@@ -6,19 +6,19 @@ use crate::visit::items::GroupScope;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The groups of each family of a mesh.
+/// Maps the families of a mesh to their groups.
 #[derive(Default)]
 pub(super) struct Families {
-    /// The numbers of its groups, by the number of the family.
+    /// For each family number, the indices of the family's groups in `names`.
     groups: BTreeMap<i64, Vec<usize>>,
     names: Vec<Vec<u8>>,
 }
 
-/// Number of bytes of a group name.
+/// The length of a group name in bytes, padding included.
 const NAME_LENGTH: usize = 80;
 
 impl Families {
-    /// Reads those of a mesh. What is damaged is left out.
+    /// Reads the families of nodes and elements of the mesh named `mesh`. Damaged families are left out.
     pub(super) fn read(file: &Hdf5<'_>, mesh: &[u8]) -> Families {
         let mut families = Families::default();
         let path = [&b"FAS/"[..], mesh].concat();
@@ -52,7 +52,7 @@ impl Families {
         self.groups.get(&family).map(Vec::as_slice).unwrap_or_default()
     }
 
-    /// Tells that the elements that follow are of a family.
+    /// Visits the groups of a family as the groups of all elements that follow.
     pub(super) fn of_elements(&self, family: i64, visitor: &mut dyn MeshVisitor) {
         let within = |&group: &usize| GroupScope {
             kind: "group",
@@ -63,14 +63,14 @@ impl Families {
         visitor.group_scopes(&groups);
     }
 
-    /// Tells that a node is of a family.
+    /// Visits the groups of a node's family. The tag of a group is its index in `names` plus one.
     pub(super) fn of_node(&self, node: u32, family: i64, visitor: &mut dyn MeshVisitor) {
         for &group in self.of(family) {
             visitor.node_group(node, "group", &GroupLabel::Tag(group as i64 + 1));
         }
     }
 
-    /// Tells the names of the groups that nodes of these families are of.
+    /// Visits the names of the groups that have nodes. `of_nodes` is the family of each node.
     pub(super) fn names(&self, of_nodes: &[i64], visitor: &mut dyn MeshVisitor) {
         let families: BTreeSet<i64> = of_nodes.iter().copied().collect();
         let groups: BTreeSet<usize> =

@@ -1,7 +1,8 @@
 //! MED, the format of Salome and Code_Aster, versions 3 and 4, in HDF5.
 //!
-//! The format: <https://docs.salome-platform.org/latest/dev/MEDCoupling/developer/med-file.html>. Coordinates stand axis by axis,
-//! elements by their type, corner by corner. Each node and element is of one family, a number that stands for some groups.
+//! The format: <https://docs.salome-platform.org/latest/dev/MEDCoupling/developer/med-file.html>. Coordinates are
+//! stored axis by axis, elements type by type, and the nodes of a type corner by corner. Nodes and elements have a
+//! family, a number that stands for groups.
 
 mod families;
 
@@ -27,7 +28,7 @@ use families::Families;
 
 pub(crate) struct Med;
 
-/// A file, and the group of its one mesh at its one time.
+/// A MED file, with the HDF5 groups of its only mesh and of the mesh's only time step.
 struct File<'a> {
     source: &'a Source,
     hdf5: &'a Hdf5<'a>,
@@ -36,10 +37,10 @@ struct File<'a> {
     step: &'a Object,
 }
 
-/// Where the meshes of a file are.
+/// The path of the HDF5 group that contains the meshes of a file.
 const MESHES: &[u8] = b"ENS_MAA";
 
-/// Whether a file is HDF5 with meshes of MED.
+/// Returns whether a file is HDF5 with a group of MED meshes.
 pub(crate) fn is_in(source: &Source) -> Result<bool, ReadError> {
     Ok(source.bytes.starts_with(SIGNATURE) && Hdf5::open(source)?.find(MESHES).is_some())
 }
@@ -141,7 +142,7 @@ impl<'a> File<'a> {
         Cursor::at_byte_offset(self.source, object.at)
     }
 
-    /// The coordinates, and how many nodes there are.
+    /// Returns the coordinates, and how many nodes have coordinates.
     fn nodes(&self) -> Result<(Axes<'a>, usize), ReadError> {
         let object = self.hdf5.child(self.step, b"NOE/COO");
         let dataset = object.map(|object| self.hdf5.dataset(object)).transpose()?.flatten();
@@ -173,7 +174,7 @@ impl<'a> File<'a> {
         ))
     }
 
-    /// Hands on the elements of a type.
+    /// Visits the elements of a type, such as `TR3`. `object` is the HDF5 group of the type.
     fn elements(
         &self,
         name: &[u8],
@@ -217,7 +218,8 @@ impl<'a> File<'a> {
                 format!("the type {} has a list of nodes that is cut short", quoted(name));
             return Err(cursor.error(problem, CORRECT));
         }
-        // All first corners stand before all second ones; the visitor takes them side by side.
+        // The file stores the first corners of all elements, then the second corners, and so on. The visitor takes the
+        // corners of an element side by side.
         let corner = |element: usize, corner: usize| {
             order.whole(&array.bytes[(corner * count + element) * size..][..size])
         };

@@ -1,8 +1,8 @@
 //! Medit's `.meshb`, versions 1 to 4, in either byte order.
 //!
-//! The format: libMeshb's handbook, "The Gamma Mesh Format". Lists are chained: after each keyword stands the offset of
-//! the next. Version 1 has coordinates in single precision. From version 3 on, offsets have 8 bytes, and in version 4
-//! all whole numbers have.
+//! The format: libMeshb's handbook, "The Gamma Mesh Format". Lists are chained: the offset of the next list follows
+//! each keyword. Version 1 has coordinates in single precision. From version 3 on, offsets have 8 bytes; in version 4,
+//! counts, vertex numbers and references have 8 bytes too.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
@@ -25,7 +25,7 @@ use crate::visit::z_values::ZValues;
 
 pub(crate) struct MeditBinary;
 
-/// The widths of numbers in a version of the format, in bytes.
+/// The byte order, and the widths in bytes of numbers in a version of the format.
 #[derive(Clone, Copy)]
 struct Widths {
     order: ByteOrder,
@@ -34,14 +34,14 @@ struct Widths {
     integer: usize,
 }
 
-/// A list of elements that is read later, as it may stand before the vertices.
+/// A list of elements, kept until the vertices are read, as the list may precede the vertices.
 struct List<'a> {
     cursor: Cursor<'a>,
     bytes: &'a [u8],
     kind: CellKind,
-    /// Whether each element has a reference after its vertices.
+    /// Whether a reference follows the vertices of each element.
     referred: bool,
-    /// The name of the list in text files.
+    /// The keyword of the list in text files; also the group name for lists of points.
     name: &'static str,
 }
 
@@ -110,7 +110,7 @@ impl FormatReader for MeditBinary {
                         return Err(volume(cursor, "elements of a volume"));
                     }
                 }
-                // Edges, triangles and quadrilaterals with nodes on their sides.
+                // Edges, triangles and quadrilaterals with mid-side nodes.
                 24..=25 | 27 | 88..=93 => {
                     if integer(cursor, widths, widths.integer, "a count")? > 0 {
                         let problem = format!(
@@ -142,7 +142,8 @@ impl FormatReader for MeditBinary {
             if next == 0 {
                 break;
             }
-            // Lists that share bytes could not be rewritten one without the other.
+            // The next list must start after the present list: lists that share bytes could not be rewritten
+            // independently.
             let end = cursor.at_byte().max(list.at_byte() + 1);
             let place = usize::try_from(next).ok().filter(|&place| place >= end);
             match place {
@@ -183,7 +184,7 @@ impl FormatReader for MeditBinary {
     }
 }
 
-/// Takes a signed whole number of 4 or 8 bytes.
+/// Takes a signed whole number of `size` bytes, 4 or 8. Messages call the number `what`.
 fn integer(
     cursor: &mut Cursor<'_>,
     widths: Widths,
@@ -196,7 +197,7 @@ fn integer(
     bytes.map(|bytes| widths.order.signed(bytes))
 }
 
-/// Takes `count` items of `size` bytes.
+/// Takes `count` items of `size` bytes each. Messages call the items `what`.
 fn items<'a>(
     cursor: &mut Cursor<'a>,
     count: i64,
@@ -258,7 +259,7 @@ fn elements(
     visitor: &mut dyn MeshVisitor,
 ) -> Result<(), ReadError> {
     let List { cursor, bytes, kind, referred, name } = list;
-    // Points have no reference. The list they stand in is their group.
+    // Points have no reference, but the list that contains them is their group.
     let within =
         GroupScope { kind: "list", label: GroupLabel::name(name.as_bytes()), dimension: None };
     visitor.group_scopes(if *referred { &[] } else { std::slice::from_ref(&within) });

@@ -1,4 +1,4 @@
-//! Triangles that are not to be changed, which both of Medit's formats list by their numbers.
+//! Required triangles, whose vertices stay fixed. Both of Medit's formats list required triangles by number.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
@@ -7,10 +7,10 @@ use crate::text::cursor::Cursor;
 use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::visitor::MeshVisitor;
 
-/// Visits the corners of the required triangles as points. `required` are the numbers of the triangles, counted from
-/// 1 through all lists. `counts` are the lengths of the lists of triangles. `triangle` reads the triangle with a
-/// 0-based index in a list, and is called in ascending order. It returns the location, the nodes and the reference of
-/// the triangle.
+/// Visits the corners of the required triangles as points. `required` are the numbers of the triangles, counted from 1
+/// through all lists. `counts` are the lengths of the lists of triangles. `triangle` reads the triangle with a 0-based
+/// index in a list, and returns location, nodes and reference of the triangle. Calls of `triangle` are in ascending
+/// order.
 pub(super) fn send_required_corners<'a>(
     mut required: Vec<u64>,
     counts: &[u64],

@@ -1,8 +1,8 @@
 //! Medit's `.mesh`, as text.
 //!
 //! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and the documentation of
-//! mmg and libMeshb. Edges, corners, required vertices and the vertices of required triangles stay fixed. Required
-//! edges and ridges need no reading, as they are among the edges.
+//! mmg and libMeshb. Corners, required vertices, and the vertices of edges and required triangles stay fixed. Required
+//! edges and ridges are not read, as both are listed among the edges.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -22,10 +22,10 @@ use crate::visit::z_values::ZValues;
 
 pub(crate) struct Medit;
 
-/// The first letters of keywords for volume elements, of first or higher order.
+/// Prefixes of keywords for volume elements, of first or higher order.
 const VOLUMES: [&[u8]; 4] = [b"Tetrahedra", b"Hexahedra", b"Prisms", b"Pyramids"];
 
-/// A list of elements, which may stand before the vertices.
+/// A list of elements. The list may precede the vertices.
 #[derive(Clone)]
 struct List<'a> {
     /// The cursor before the first element.
@@ -36,10 +36,10 @@ struct List<'a> {
 }
 
 impl<'a> List<'a> {
-    /// Hands on the elements. Returns the cursor after them.
+    /// Visits the elements. Returns the cursor after the last element.
     fn send(self, visitor: &mut dyn MeshVisitor) -> Result<Cursor<'a>, ReadError> {
         let List { mut cursor, count, kind, keyword } = self;
-        // Points have no reference. The list they stand in is their group.
+        // Points have no reference, but the list that contains them is their group.
         let list = GroupScope { kind: "list", label: GroupLabel::name(keyword), dimension: None };
         visitor.group_scopes(if kind == CellKind::Point {
             std::slice::from_ref(&list)
@@ -132,7 +132,7 @@ impl FormatReader for Medit {
                         Some(list) if vertices_seen && kind.is_some() => {
                             *cursor = list.clone().send(visitor)?;
                         }
-                        // The lists hold only numbers, so the next word that starts with a letter is a keyword.
+                        // Lists hold numbers alone, so the next word that starts with a letter is a keyword.
                         _ => skip_numbers(cursor),
                     }
                 }
@@ -144,7 +144,7 @@ impl FormatReader for Medit {
         }
         lists.retain(|list| list.kind == CellKind::Triangle);
         let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
-        // The list and the index in it of the next triangle.
+        // The next triangle to be read: the index of its list, and its index in the list.
         let mut next = (0, 0);
         send_required_corners(required, &counts, visitor, |list, index| {
             if next.0 != list {
@@ -165,7 +165,7 @@ impl FormatReader for Medit {
     }
 }
 
-/// Reads a list of numbers, one in each row.
+/// Reads the list `RequiredTriangles`: the list's length, followed by one triangle number per row.
 fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadError> {
     let count = value(cursor, "the number of required triangles")?;
     for done in 0..count {
@@ -175,7 +175,7 @@ fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadEr
     Ok(())
 }
 
-/// Whether a list has elements with nodes on their sides, such as `TrianglesP2`.
+/// Returns whether a keyword names a list of elements with mid-side nodes, such as `TrianglesP2`.
 fn is_of_higher_order(keyword: &[u8]) -> bool {
     let [elements @ .., b'P' | b'Q', b'2'..=b'9'] = keyword else { return false };
     kind_of(elements).is_some()
@@ -191,7 +191,7 @@ fn kind_of(keyword: &[u8]) -> Option<CellKind> {
     }
 }
 
-/// Reads the number after a keyword, on the same row or the next.
+/// Reads the whole number after a keyword, on the keyword's row or a later row.
 fn value(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     if !cursor.next_word() {
         return Err(cursor.error(format!("the file ends before {what}"), CUT_OFF));
@@ -249,7 +249,7 @@ fn vertices(
     Ok(())
 }
 
-/// Reads the nodes and the reference of an element. Points have no reference.
+/// Reads the nodes and the reference of an element. Points have no reference, and get 0.
 #[inline]
 fn element(cursor: &mut Cursor<'_>, kind: CellKind) -> Result<([u64; 4], i64), ReadError> {
     let nodes = nodes(cursor, kind)?;
@@ -283,7 +283,7 @@ fn skip_numbers(cursor: &mut Cursor<'_>) {
     }
 }
 
-/// Whether a word is a keyword. Some numbers start with a letter too, such as NaN.
+/// Returns whether a word is a keyword. Keywords start with a letter, but so do numbers such as NaN.
 fn is_keyword(word: &[u8]) -> bool {
     word.first().is_some_and(u8::is_ascii_alphabetic) && float(word).is_none()
 }

@@ -5,7 +5,7 @@ use crate::export::writer_input::WriterInput;
 use crate::visit::items::CellKind;
 use std::fmt::Write;
 
-/// A list of elements: its name, its keyword in binary files, how many numbers each element has, and the numbers.
+/// A list of elements: name, keyword in binary files, numbers per element (`width`), and the numbers of all elements.
 struct List {
     name: &'static str,
     keyword: i32,
@@ -92,7 +92,7 @@ fn meshb(input: &WriterInput<'_>, medit: &Medit, version: i32) -> Vec<u8> {
         numbers.iter().flat_map(|&number| (number as i32).to_le_bytes()).collect()
     };
     out.extend(ints(&[1, i64::from(version)]));
-    // Writes a keyword, the offset of the next one, and the content between.
+    // Writes a keyword, the offset of the next keyword (0 after the last keyword), and the content between.
     let mut chain = |keyword: i32, content: &[u8]| {
         out.extend(keyword.to_le_bytes());
         let width = if version == 2 { 4 } else { 8 };

@@ -1,4 +1,4 @@
-//! The elements, and the nodes that they hold.
+//! Visits the elements, and the nodes that masses, springs and rigid elements constrain.
 
 use super::nodes::whole;
 use super::types::{Class, RigidFields, class};
@@ -13,20 +13,21 @@ use crate::visit::rows::{all_rows, volume};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::{BTreeSet, HashSet};
 
-/// A card, as far as it is of elements.
+/// A card of the bulk data, reduced to the content that the element reader uses.
 enum Card {
     Element(Element),
-    /// The name of an element that constrains its nodes, and the ids of these nodes.
+    /// The name of a card whose element constrains nodes, and the ids of these nodes.
     Constrains(CardName, Vec<u64>),
+    /// A GRID card with the id of the node; 0 if `card` read the row, since elements need no ids of nodes.
     Node(u64),
     Other(CardName),
 }
 
-/// Hands on all elements.
+/// Visits all elements, then the nodes that elements constrain. Cards of other kinds are reported as unsupported.
 pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
     visitor.region_attributes(vec![RegionAttribute::tags_from_one("property")]);
     let mut cursor = rows.clone();
-    // What elements hold, how many do, and what they are called.
+    // The constrained nodes, the number of constraining elements, and the names of their cards.
     let (mut held, mut holding, mut names) = (Vec::new(), 0, BTreeSet::new());
     let (mut others, asks_for_data) = (BTreeSet::new(), visitor.asks_for_data());
     all_rows(&mut cursor, visitor, card, |cursor, visitor, card| {
@@ -61,7 +62,8 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
     send_constrained_nodes(rows, held, visitor)
 }
 
-/// Visits the nodes that elements constrain. Some ids may be those of scalar points, which are not in the mesh.
+/// Visits the nodes that elements constrain, as points. Ids without a GRID card, such as scalar points, are not in the
+/// mesh and are skipped.
 fn send_constrained_nodes(
     rows: &Cursor<'_>,
     held: Vec<u64>,
@@ -87,7 +89,7 @@ fn send_constrained_nodes(
     })
 }
 
-/// Reads the number of a node.
+/// Reads the id of a GRID card. Any other card is [`Card::Other`].
 fn node(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let line = CardLine::starting_at(cursor.bytes, cursor.row_range().start);
     let name = line.name();
@@ -96,7 +98,10 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     Ok(id.map_or(Card::Other(name), Card::Node))
 }
 
-/// Reads a card if it is one of elements.
+/// Reads a card of an element. Other cards are not parsed.
+///
+/// # Errors
+/// For volume elements, elements with possible mid-side nodes, and fields that are not whole numbers.
 #[inline]
 fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let row = cursor.row_range();
@@ -127,7 +132,7 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let id = whole(cursor, next(), format_args!("the number of a {}", kind.name()))?;
     let property = match has_property.then(&mut next) {
         None => 0,
-        // It is called as the element is.
+        // A blank property has the number of the element.
         Some(b"") => id,
         Some(word) => whole(cursor, word, format_args!("the property of {} {id}", kind.name()))?,
     };
@@ -138,14 +143,14 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     Ok(Card::Element(Element { id, kind, region: [property.cast_signed(), 0], nodes }))
 }
 
-/// Lists the nodes of a rigid element.
+/// Returns the nodes of a rigid element. `words` lists the card's fields, element number first.
 #[cold]
 fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: RigidFields) -> Vec<u64> {
     let _number_of_element = words.next();
-    // The name of a part, such as `UM`, stands before it. At the end of RBE2 may be a real number.
+    // Some fields are no numbers: `UM` precedes dependent nodes in RBE1 and RBE3, and RBE2 may end with a real number.
     let given = words.filter(|word| !word.is_empty());
     let mut nodes = Vec::new();
-    // How many words until the next one is a node.
+    // The number of fields to skip before the next node.
     let mut until = 0;
     let mut first = true;
     for word in given {
@@ -159,9 +164,9 @@ fn rigid<'a>(mut words: impl Iterator<Item = &'a [u8]>, listed: RigidFields) -> 
                 first = false;
             }
             (Some(_), _) => until -= 1,
-            // A weight, after which components come.
+            // A weight, which components follow.
             (None, RigidFields::Weights) if word.contains(&b'.') => until = 1,
-            // The nodes of what follows were named before.
+            // The nodes after `UM` in RBE3 were listed before.
             (None, RigidFields::Nodes | RigidFields::Weights) => break,
             (None, RigidFields::Pairs) => until = 0,
         }

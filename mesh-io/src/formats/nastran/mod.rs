@@ -1,9 +1,9 @@
 //! Bulk data of Nastran.
 //!
-//! The format: the Quick Reference Guides of MSC Nastran and Simcenter Nastran, on the format of bulk data entries, and the
-//! User's Manual of NASTRAN-95. A card is one or more lines of fields, see [`card`]. Lines,
-//! quadrilaterals, and nodes of masses, springs and rigid elements stay fixed. Regions are properties. Other cards, such as those of
-//! materials, constraints and loads, are not read.
+//! The format: the Quick Reference Guides of MSC Nastran and Simcenter Nastran, on the format of bulk data entries, and
+//! the User's Manual of NASTRAN-95. A card is one or more lines of fields, see [`card`]. Vertices of lines and
+//! quadrilaterals, and nodes of masses, springs and rigid elements stay fixed. Each property is a region. Other cards,
+//! such as materials, constraints and loads, are not read.
 
 mod elements;
 mod names;
@@ -43,11 +43,11 @@ impl FormatReader for Nastran {
     }
 }
 
-/// Number of rows by which the format is recognized.
+/// Maximum number of rows that are searched to recognize the format.
 const MAX_DETECTION_ROWS: usize = 1000;
 
-/// Returns whether the first rows of a file are those of Nastran: a statement that only its files have, or a card of
-/// a node or an element.
+/// Returns whether the first [`MAX_DETECTION_ROWS`] rows have a statement that only Nastran uses (`BEGIN BULK`,
+/// `CEND`), or a card of a node or an element.
 pub(crate) fn is_nastran(source: &Source) -> bool {
     let mut cursor = Cursor::new(source).with_syntax(Syntax::CARDS);
     (0..MAX_DETECTION_ROWS).any(|_| cursor.next_row() && is_of_nastran(&cursor))

@@ -1,10 +1,10 @@
-//! Names of properties, which preprocessors write in comments.
+//! Names of properties, which the preprocessors HyperMesh, ANSA and Femap write in comments.
 
 use crate::disk::source::Source;
 use crate::text::token::line_end;
 use crate::visit::visitor::MeshVisitor;
 
-/// Hands on the names of properties.
+/// Visits the names of properties in comments that start a line.
 pub(super) fn send(source: &Source, visitor: &mut dyn MeshVisitor) {
     let bytes = &source.bytes;
     let starts = memchr::memchr_iter(b'$', bytes);
@@ -15,7 +15,7 @@ pub(super) fn send(source: &Source, visitor: &mut dyn MeshVisitor) {
     }
 }
 
-/// Returns the property that a comment names, and its name.
+/// Returns the number and the name of the property that a comment names; `None` for other comments.
 fn parse_comment(comment: &[u8]) -> Option<(i64, &[u8])> {
     let (tag, name) = if let Some(rest) = comment.strip_prefix(b"$HMNAME PROP") {
         // HyperMesh: `$HMNAME PROP       1"skin" 4`

@@ -1,4 +1,4 @@
-//! The nodes: GRID, with what GRDSET says of all of them.
+//! Visits the nodes: GRID cards, and the default coordinate system in GRDSET.
 
 use crate::content::remark::Remark;
 use crate::edit::numbers::CoordinateEncoding;
@@ -14,10 +14,10 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 use std::ops::Range;
 
-/// A card, as far as it is of nodes.
+/// A card of the bulk data, reduced to the content that the node reader uses.
 enum Card {
     Node(Node),
-    /// The coordinate system of nodes that name none, by GRDSET.
+    /// The coordinate system in GRDSET, which applies to nodes without a system.
     System(u64),
     Other,
 }
@@ -29,23 +29,22 @@ struct Node {
     at: [f64; 2],
     z: (usize, f64),
     field_width: FieldWidth,
-    /// Whether it names no coordinate system.
+    /// Whether the card leaves the coordinate system blank.
     is_of_default: bool,
 }
 
-/// Number of characters of the coordinates of a node: the width of the fixed fields, or the longest number in free
-/// field.
+/// The room for a node's coordinates: the width of fixed fields, or the length of the longest number in free field.
 #[derive(Clone, Copy)]
 struct FieldWidth {
     is_free: bool,
-    /// The first of [`WIDTH_PRECISIONS`] that is enough.
+    /// The index of the first precision in [`WIDTH_PRECISIONS`] with enough characters.
     size: usize,
 }
 
-/// The precisions of coordinates of at most 8 characters, of at most 16, and of more.
+/// The precision of coordinates by length: up to 8 characters, up to 16, and longer.
 const WIDTH_PRECISIONS: [Precision; 3] = [Precision::Text8, Precision::Text16, Precision::Double];
 
-/// Number of nodes by field width, for fixed fields and for free field.
+/// Node counts by field width: first for fixed fields, then for free field.
 #[derive(Default)]
 struct FieldWidthCounts([[u64; WIDTH_PRECISIONS.len()]; 2]);
 
@@ -54,8 +53,9 @@ impl FieldWidthCounts {
         self.0[usize::from(is_free)][size] += 1;
     }
 
-    /// Returns the precision that fits into all places: in fixed fields that of the smallest, in free field that of the longest
-    /// number there, as programs may read no more of it. Returns also how many nodes have longer numbers.
+    /// Returns the precision of all coordinates: the smaller of the narrowest fixed field and the longest number in
+    /// free field, as programs may ignore further characters in free field. Also returns the number of nodes with
+    /// longer coordinates.
     fn precision(&self) -> (Precision, u64) {
         let [fixed, free] = &self.0;
         let smallest = fixed.iter().position(|&count| count > 0);
@@ -66,14 +66,18 @@ impl FieldWidthCounts {
     }
 }
 
-/// Hands on all nodes. Returns how coordinates are stored.
+/// Visits all nodes. Returns the encoding of the coordinates.
+///
+/// # Errors
+/// If there is no node, if a node is not in the basic coordinate system, or if nodes may be hidden in included files or
+/// in rows that repeat other rows.
 pub(super) fn send(
     rows: &Cursor<'_>,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<CoordinateEncoding, ReadError> {
     let mut z_values = ZValues::new(visitor);
     let mut rooms = FieldWidthCounts::default();
-    // Where the first node is that names no coordinate system, and the system of such nodes.
+    // The number of nodes, the offset and id of the first node with a blank coordinate system, and the default system.
     let (mut count, mut first_at, mut system) = (0, None, 0);
     let cursor = &mut rows.clone();
     all_rows(cursor, visitor, card, |cursor, visitor, card| {
@@ -113,7 +117,7 @@ pub(super) fn send(
     Ok(numbers)
 }
 
-/// Reads a card if it is one of nodes.
+/// Reads a GRID or GRDSET card. Other cards are not parsed.
 #[inline]
 fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     let row = cursor.row_range();
@@ -175,7 +179,7 @@ fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Ca
             cursor.unusable(Some(own), format_args!("{axis} of node {id}"), "a finite number")
         })?;
     }
-    // In large field it is mostly in the next line.
+    // In large field, z is usually the first field of the next line.
     let in_next_line = || card::lines(bytes, row).nth(1).and_then(|line| line.fields().next());
     let z = next().or_else(|| if line.is_large { in_next_line() } else { None });
     let of_z = word(&z);
@@ -193,7 +197,7 @@ fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Ca
     Ok(Card::Node(Node { id, x_at, at, z, field_width: room, is_of_default: system.is_none() }))
 }
 
-/// Reads the coordinate system that GRDSET names.
+/// Reads the default coordinate system in GRDSET, 0 if the field is blank.
 #[cold]
 fn default_system(cursor: &Cursor<'_>, line: CardLine<'_>) -> Result<Card, ReadError> {
     let field = line.fields().nth(1).unwrap_or(0..0);
@@ -223,7 +227,7 @@ pub(super) fn whole(
     })
 }
 
-/// Returns the real number that a field stands for; a blank one stands for 0.
+/// Returns the real number in a field: 0 for a blank field, `None` if the field is not a number.
 #[inline]
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     if word.is_empty() {

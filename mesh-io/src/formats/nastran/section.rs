@@ -1,12 +1,12 @@
-//! Which lines of a file are its bulk data.
+//! Finds the lines of a file that are bulk data.
 
 use crate::disk::source::Source;
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::line_end;
 
-/// Makes a cursor before the first row of the bulk data, which ends where they do. They start after `BEGIN BULK`, or where the file
-/// starts if it has no other sections, and end before `ENDDATA`.
+/// Makes a cursor before the first row of the bulk data, which does not read beyond the bulk data. Bulk data start
+/// after `BEGIN BULK`, or at the start of a file without other sections, and end before `ENDDATA`.
 pub(super) fn rows(source: &Source) -> Cursor<'_> {
     let bytes = &source.bytes;
     let (mut begin, mut end, mut at) = (None, bytes.len(), source.begin());
@@ -30,7 +30,7 @@ pub(super) fn rows(source: &Source) -> Cursor<'_> {
     rows.with_syntax(Syntax::CARDS)
 }
 
-/// Whether a line is the one before the bulk data.
+/// Returns whether a line is `BEGIN BULK`, which precedes the bulk data.
 pub(super) fn is_begin(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     starts_with(line, b"BEGIN") && starts_with(line[5..].trim_ascii_start(), b"BULK")

@@ -1,20 +1,20 @@
-//! The cards of elements, by their names.
+//! Classifies the cards of elements by name.
 
 use crate::text::card::{CardName, name_bytes};
 use crate::visit::items::CellKind;
 
-/// What elements are in a mesh of the plane.
+/// The role of a card's element in a mesh of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Class {
-    /// Elements with their nodes behind their number and their property.
+    /// Elements whose card lists the number, the property, and then the nodes.
     Of(CellKind),
-    /// Lines with their nodes behind their number, without a property.
+    /// Lines whose card lists the number and then the nodes, without a property.
     Line,
-    /// Elements that constrain the nodes in these fields, counted from the number of the element in field 0.
+    /// Elements that constrain nodes, with the fields of the nodes. The element number is field 0.
     Constraining(&'static [usize]),
-    /// Elements that hold as many nodes as they list.
+    /// Rigid elements, which constrain any number of nodes.
     Rigid(RigidFields),
-    /// Elements with nodes on their sides.
+    /// Elements that may have mid-side nodes, which are not read.
     SecondOrder,
     Volume,
 }
@@ -30,7 +30,7 @@ pub(super) enum RigidFields {
     Weights,
 }
 
-/// Returns what the elements of a card are; `None` if it is not known as one of elements.
+/// Returns the class of a card's element; `None` for unknown names.
 pub(super) fn class(name: &CardName) -> Option<Class> {
     Some(match name_bytes(name) {
         b"CTRIA3" | b"CTRIAR" | b"CTRIA1" | b"CTRIA2" | b"CTRMEM" | b"CTRPLT" | b"CTRBSC"

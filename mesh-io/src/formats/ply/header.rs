@@ -1,4 +1,4 @@
-//! The header of a PLY: the lists of the file, and the properties of their items.
+//! The header of a PLY file: the element lists, and the properties of each list.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::edit::numbers::NumberEncoding;
@@ -8,7 +8,7 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::row_layout::of_rows_or_words;
 use crate::text::token::quoted;
 
-/// The type of a number.
+/// The type of a property's numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Number {
     Integer { size: usize, signed: bool },
@@ -16,10 +16,10 @@ pub(super) enum Number {
     Double,
 }
 
-/// A property that each item of a list has.
+/// A property of a list's items, such as `x` or `vertex_indices`.
 pub(super) struct Property<'a> {
     pub(super) name: &'a [u8],
-    /// The type of the length, if the property is a list.
+    /// The type of the length before the numbers of a list property; `None` for a property of one number.
     pub(super) length: Option<Number>,
     pub(super) number: Number,
 }
@@ -30,13 +30,14 @@ pub(super) struct List<'a> {
     pub(super) properties: Vec<Property<'a>>,
 }
 
-/// The form of items: text, or binary in a byte order.
+/// The encoding of all items: text (`None`), or binary in a byte order.
 #[derive(Clone, Copy)]
 pub(super) struct Items {
     pub(super) order: Option<ByteOrder>,
 }
 
-/// Reads the header: the form of items, and the lists in the order of the file.
+/// Reads the header, and moves the cursor before the first item. Returns the encoding of items, and the element lists
+/// in file order.
 pub(super) fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>>), ReadError> {
     cursor.line();
     let mut items = Items { order: None };
@@ -78,7 +79,7 @@ pub(super) fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>
             }
             b"end_header" => {
                 if items.order.is_none() {
-                    // Many programs read text as words.
+                    // Many programs read text word by word, so items need not start on a new line.
                     let listed = lists.iter().filter(|list| !list.properties.is_empty());
                     let count = listed.fold(0, |sum: u64, list| sum.saturating_add(list.count));
                     cursor.syntax = of_rows_or_words(cursor, cursor.source.bytes.len(), count);
@@ -137,7 +138,7 @@ impl Number {
 }
 
 impl Items {
-    /// Returns how real numbers are stored in the file.
+    /// Returns the encoding of the file's real numbers of a given precision.
     pub(super) fn form(self, precision: Precision) -> NumberEncoding {
         match self.order {
             None => NumberEncoding::Text(precision),

@@ -1,6 +1,6 @@
 //! PLY, as text and in binary of either byte order.
 //!
-//! The format: Turk, The PLY Polygon File Format (1994), <http://paulbourke.net/dataformats/ply/>. These are read: x, y
+//! The format: Turk, The PLY Polygon File Format (1994), <http://paulbourke.net/dataformats/ply/>. The reader uses x, y
 //! and data of vertices, `vertex_indices` or `vertex_index` of faces, `vertex1` and `vertex2` of edges. Other elements
 //! and properties are skipped. Coordinates of the type `float` have single precision in text, too.
 
@@ -62,7 +62,7 @@ impl FormatReader for Ply {
     }
 }
 
-/// The properties of vertices besides coordinates that are single numbers.
+/// The scalar properties of vertices, except coordinates.
 struct Data<'l, 'a> {
     properties: Vec<(usize, &'l Property<'a>)>,
     /// The numbers of each property and their offsets, if the visitor asks for data.
@@ -80,7 +80,7 @@ impl<'l, 'a> Data<'l, 'a> {
         Data { properties, numbers }
     }
 
-    /// Takes the data of the next vertex.
+    /// Adds the data of the next vertex, from the numbers and offsets of all its properties.
     fn push(&mut self, values: &[Vec<f64>], at: &[usize]) {
         let Some(numbers) = &mut self.numbers else { return };
         for ((numbers, places), &(index, _)) in numbers.iter_mut().zip(&self.properties) {
@@ -116,7 +116,7 @@ impl Items {
         from: u64,
         mut take: impl FnMut(&Cursor<'a>, &[Vec<f64>], &[usize]) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
-        // Items without properties take no room in the file, so their count cannot be checked.
+        // Items without properties have no bytes in the file, so the file size cannot limit their count.
         if list.properties.is_empty() {
             return Ok(());
         }
@@ -154,7 +154,7 @@ impl Items {
             });
             match taken {
                 Ok(()) => is_plain |= missing.is_none(),
-                // If one row among many lacks a number, the rows after it are read wrongly.
+                // If a single row lacks a number, later rows are read out of step, so the first short row is the error.
                 Err(error) if is_plain => return Err(missing.unwrap_or(error)),
                 Err(error) => return Err(error),
             }
@@ -162,7 +162,7 @@ impl Items {
         Ok(())
     }
 
-    /// Reads a number. Returns it with its offset. `item` is set to the offset of a binary item's first number.
+    /// Reads a number. Returns the number and its offset. In binary, sets an empty `item` to the offset.
     fn value(
         self,
         cursor: &mut Cursor<'_>,
@@ -252,7 +252,7 @@ impl Items {
         })
     }
 
-    /// Reads elements whose corners are the properties with these names.
+    /// Visits elements, whose corners are the numbers of all properties with the given names.
     fn elements(
         self,
         cursor: &mut Cursor<'_>,
@@ -268,7 +268,7 @@ impl Items {
         self.each(cursor, list, id, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
-            // A number that is negative or not whole is no number of a vertex.
+            // A corner that is negative or not whole becomes `u64::MAX`, which is no vertex.
             let node = |&corner: &f64| match corner >= 0.0 && corner.fract() == 0.0 {
                 true => corner as u64,
                 false => u64::MAX,

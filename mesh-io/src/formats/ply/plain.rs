@@ -1,4 +1,5 @@
-//! Reads lists of a PLY on all threads, as long as they are plain.
+//! Reads the leading items of PLY lists on all threads. A damaged item, or an item of unusual shape, ends this reading:
+//! later items are read one by one.
 
 use super::header::{Items, List, Number, Property};
 use crate::binary::number_field::NumberField;
@@ -11,8 +12,8 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
 impl Items {
-    /// Hands on the first vertices as long as they are plain, if all have the same number of bytes. `x` and `z` are
-    /// indices of properties. Returns how many vertices were taken.
+    /// Visits the leading plain vertices. Returns the number of visited vertices: 0 if a property is a list, since
+    /// binary vertices then differ in size. `x` and `z` are indices of properties.
     pub(super) fn plain_vertices(
         self,
         cursor: &mut Cursor<'_>,
@@ -55,7 +56,8 @@ impl Items {
         taken as u64
     }
 
-    /// Hands on the first elements as long as they are triangles. Returns how many were taken.
+    /// Visits the leading triangles of a list of elements. Returns the number of visited triangles: 0 unless a single
+    /// list property of whole numbers holds all corners.
     pub(super) fn plain_triangles(
         self,
         cursor: &mut Cursor<'_>,
@@ -88,7 +90,8 @@ impl Items {
         };
         let stride = properties.iter().map(size).sum::<usize>();
         let at = properties[..corners].iter().map(size).sum::<usize>();
-        // If elements have other lengths, there may be too few bytes for this many triangles. Then none is taken here.
+        // If some elements have fewer corners, the list may have fewer bytes than `count` triangles. No triangle is
+        // then visited here.
         let Some((bytes, _)) = cursor.peek(list.count, stride) else { return 0 };
         let field = |at: usize, number: Number| {
             NumberField::new(bytes.get(at..), stride, number.size(), order)
@@ -106,8 +109,8 @@ impl Items {
     }
 }
 
-/// Reads vertices of text whose first properties are x and y, on all threads, as long as they are plain. Returns how
-/// many were taken.
+/// Visits the leading plain vertices of a text file on all threads. The first two properties must be x and y. Returns
+/// the number of visited vertices.
 fn vertices_of_text(
     cursor: &mut Cursor<'_>,
     list: &List<'_>,
@@ -146,7 +149,7 @@ fn vertices_of_text(
     taken
 }
 
-/// Reads elements of text on all threads, as long as they are triangles. Returns how many were taken.
+/// Visits the leading triangles of a text file on all threads. Returns the number of visited triangles.
 fn triangles_of_text(cursor: &mut Cursor<'_>, count: u64, visitor: &mut dyn MeshVisitor) -> u64 {
     if !visitor.allows_parallel() || visitor.asks_for_data() {
         return 0;

@@ -6,7 +6,7 @@ use crate::export::writer_input::{WriterInput, text_of};
 use crate::visit::items::CellKind;
 use std::fmt::Write;
 
-/// Writes PLY as text, with data of one number among the properties of vertices.
+/// Writes PLY as text. Point data with one number per vertex become properties of the vertices.
 pub(crate) fn write_ply(input: &WriterInput<'_>) -> String {
     let content = input.content;
     let data: Vec<&DataArray> = input.point_data().collect();

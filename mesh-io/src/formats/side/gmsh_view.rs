@@ -7,7 +7,7 @@ use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::text::token::quoted;
 
-/// A triangle mesh with a number at each vertex, such as a target size, from a view of gmsh.
+/// A triangle mesh with a value at each vertex, such as a target size, read from a gmsh view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GmshView {
     points: Vec<[f64; 2]>,
@@ -18,9 +18,9 @@ pub struct GmshView {
 const SAVE: &str = "Save the view from gmsh as text (.pos), of scalars on triangles (ST)";
 
 impl GmshView {
-    /// Reads the first view of a `.pos` file of gmsh. Its elements must be scalar triangles, `ST(x, y, z, ...){value,
-    /// ...};`. Corners at the same place become one vertex, with the value given there first. Of several time steps,
-    /// the first is read. Third coordinates are ignored.
+    /// Reads the first view of a `.pos` file of gmsh. The elements of the view must be scalar triangles, `ST(x, y, z,
+    /// ...){value, ...};`. Corners with equal x and y become one vertex, with the value of the first corner in the
+    /// file. If a view has several time steps, the first step is read. Third coordinates are ignored.
     ///
     /// # Errors
     /// [`ReadError`] if the file cannot be read, or has no such view.
@@ -45,7 +45,7 @@ impl GmshView {
             parser.skip(b';');
             let mut corners = [0; 3];
             for (k, corner) in corners.iter_mut().enumerate() {
-                // Adding zero makes a negative zero positive, so both are one place.
+                // Adding zero makes a negative zero positive, so both zeros are one place.
                 let place = [places[3 * k] + 0.0, places[3 * k + 1] + 0.0];
                 *corner = *vertices.entry(place.map(f64::to_bits)).or_insert_with(|| {
                     view.points.push(place);
@@ -61,7 +61,7 @@ impl GmshView {
         }
     }
 
-    /// Returns x and y of each vertex, in the order in which the file first has them.
+    /// Returns x and y of each vertex, in the order of their first occurrence in the file.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
     }
@@ -71,7 +71,7 @@ impl GmshView {
         &self.triangles
     }
 
-    /// Returns the number on each vertex, in the order of [`points`](Self::points).
+    /// Returns the value at each vertex, in the order of [`points`](Self::points).
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -103,7 +103,7 @@ impl<'s> Parser<'s> {
         }
     }
 
-    /// Skips a sign. Returns whether it was next.
+    /// Skips the character `sign` after white space and comments. Returns whether `sign` was next.
     fn skip(&mut self, sign: u8) -> bool {
         let is_next = self.rest().first() == Some(&sign);
         self.at += usize::from(is_next);
@@ -143,7 +143,7 @@ impl<'s> Parser<'s> {
         }
     }
 
-    /// Reads at least `least` numbers between two signs.
+    /// Reads a list of at least `least` finite numbers, separated by commas, between the characters `open` and `close`.
     fn list(&mut self, [open, close]: [u8; 2], least: usize) -> Result<Vec<f64>, ReadError> {
         let remedy = "Correct the line, or save the view again";
         if !self.skip(open) {

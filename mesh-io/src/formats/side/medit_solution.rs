@@ -1,4 +1,4 @@
-//! Sizes or tensors for the vertices of a mesh, from a file of their own: Medit's `.sol` and BAMG's metric files.
+//! Sizes or tensors at the vertices of a mesh, read from a separate file: Medit's `.sol` or a metric file of BAMG.
 
 use std::path::Path;
 
@@ -16,8 +16,8 @@ pub struct MeditSolution {
 }
 
 impl MeditSolution {
-    /// Reads a `.sol` file of Medit with one solution at vertices, or a metric file of BAMG. A metric file has the
-    /// number of vertices, how many numbers each has (1 or 3), and then these numbers.
+    /// Reads a `.sol` file of Medit with one solution at vertices, or a metric file of BAMG. A metric file starts with
+    /// the number of vertices and the number of components, 1 or 3. The components of each vertex follow.
     ///
     /// # Errors
     /// [`ReadError`] if the file cannot be read, or is in neither format.
@@ -31,12 +31,12 @@ impl MeditSolution {
         }
     }
 
-    /// Returns how many numbers each vertex has: 1 or 3.
+    /// Returns the number of components per vertex: 1 for sizes, 3 for tensors.
     pub fn components(&self) -> usize {
         self.components
     }
 
-    /// Returns all numbers, [`components`](Self::components) for each vertex.
+    /// Returns the numbers of all vertices, [`components`](Self::components) for each vertex.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -98,10 +98,10 @@ fn bamg(mut cursor: Cursor<'_>) -> Result<MeditSolution, ReadError> {
     }
 }
 
-/// The remedy where there are more numbers than vertices.
+/// The remedy if more numbers follow than the vertices need.
 const COUNT: &str = "Correct the number of vertices, or remove what is too much";
 
-/// Reads a whole number on this row or a later one.
+/// Reads the next whole number, on the current row or a later row.
 fn word(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {
     cursor.next_word();
     cursor.integer(what)

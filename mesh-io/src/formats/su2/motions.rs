@@ -4,7 +4,8 @@ use crate::content::constraints::Affine;
 use crate::text::token::float;
 use crate::visit::items::PeriodicNodes;
 
-/// The motions read so far, in the order of the file.
+/// The centers, angles and translations read so far, in file order. `None` stands for a row that is not three finite
+/// numbers.
 #[derive(Default)]
 pub(crate) struct Motions {
     centers: Vec<Option<[f64; 3]>>,
@@ -14,7 +15,7 @@ pub(crate) struct Motions {
 }
 
 impl Motions {
-    /// Reads the three numbers of a row. `key` tells whether they are a center, angles or a translation.
+    /// Reads a row of three numbers. `key` is `PERIODIC_CENTER`, `PERIODIC_ROTATION` or `PERIODIC_TRANSLATION`.
     pub(crate) fn read(&mut self, key: &[u8], values: &[u8]) {
         let list = match key {
             b"PERIODIC_CENTER" => &mut self.centers,
@@ -31,7 +32,8 @@ impl Motions {
         list.push(numbers.and_then(finite));
     }
 
-    /// Returns all motions of the plane that move something. `None` if there is none, or if one could not be read.
+    /// Returns the motions of the plane, without the identity. `None` if no motion is left, if a row is missing or
+    /// damaged, or if a motion rotates about x or y.
     pub(crate) fn finish(self) -> Option<Vec<PeriodicNodes>> {
         let mut found = Vec::new();
         let Self { centers, angles, translations } = self;

@@ -1,7 +1,8 @@
 //! SU2's `.su2`.
 //!
-//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. A point's number is its position in the list. The index
-//! at the end of its row is not read. Each zone of a multi-zone mesh has its own points, numbered from 0.
+//! The format: <https://su2code.github.io/docs_v7/Mesh-File/>. The number of a point is its 0-based position in the
+//! list. An index at the end of a point's row is ignored. Each zone of a multi-zone mesh has its own points and point
+//! numbers.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -23,10 +24,10 @@ use std::ops::Range;
 
 pub(crate) struct Su2;
 
-/// A list of elements, which may stand before the points.
+/// A list of elements. The list may precede the points.
 struct List<'a> {
     cursor: Cursor<'a>,
-    /// The first elements, if they were read ahead.
+    /// The leading elements that were read on all threads.
     ahead: Vec<Small>,
     count: u64,
     zone: usize,
@@ -34,7 +35,7 @@ struct List<'a> {
     marker: Option<&'a [u8]>,
 }
 
-/// An element with its nodes. Most fit this small type.
+/// An element with its nodes. Most node numbers fit 32 bits, so lists read ahead need less memory.
 type Small = (CellKind, [u32; 4]);
 
 impl FormatReader for Su2 {
@@ -86,7 +87,8 @@ impl FormatReader for Su2 {
                     skip_send_to(cursor);
                     let start = cursor.clone();
                     let ahead = read_ahead(cursor, count, visitor);
-                    // Not `row`: the list is read again below and then returns a better error.
+                    // A list that ends too early is no error here: the list is read again below, which makes a better
+                    // error.
                     for _ in ahead.len() as u64..count {
                         if !cursor.next_row() {
                             break;
@@ -140,7 +142,8 @@ impl FormatReader for Su2 {
     }
 }
 
-/// Hands on the elements of a list, whose nodes are those of a zone.
+/// Visits the elements of a list, whose nodes are numbered within a zone. The range has the zone's points, counted over
+/// all zones.
 fn elements(
     cursor: &mut Cursor<'_>,
     ahead: &[Small],
@@ -181,7 +184,8 @@ fn elements(
     Ok(())
 }
 
-/// Reads the first elements of a long list on all threads, if the visitor allows it, as long as its rows are plain.
+/// Reads the leading elements of a long list on all threads, until a row is not plain. Returns no elements if the
+/// visitor does not allow threads.
 fn read_ahead(cursor: &mut Cursor<'_>, count: u64, visitor: &dyn MeshVisitor) -> Vec<Small> {
     let mut ahead = Vec::new();
     if visitor.allows_parallel() {
@@ -200,8 +204,8 @@ fn read_ahead(cursor: &mut Cursor<'_>, count: u64, visitor: &dyn MeshVisitor) ->
     ahead
 }
 
-/// Skips the row `SEND_TO` between the count of a marker's elements and the elements. It concerns copies in other
-/// processes.
+/// Skips the row `SEND_TO` between the count of a marker's elements and the elements. `SEND_TO` concerns copies of the
+/// marker in other processes.
 fn skip_send_to(cursor: &mut Cursor<'_>) {
     let mut next = cursor.clone();
     if next.next_row() && key_and_values(&mut next).0 == b"SEND_TO" {
@@ -210,13 +214,13 @@ fn skip_send_to(cursor: &mut Cursor<'_>) {
 }
 
 /// Returns the two sides of the equals sign of a row, without comments. If there is no equals sign, returns the row and
-/// nothing.
+/// an empty value.
 fn key_and_values<'a>(cursor: &mut Cursor<'a>) -> (&'a [u8], &'a [u8]) {
     let (key, values) = key_value(cursor.rest());
     (key, values.split(|&byte| byte == b'%').next().unwrap_or_default().trim_ascii())
 }
 
-/// Returns the first of several values.
+/// Returns the first of several values, up to a blank.
 fn first(values: &[u8]) -> &[u8] {
     let end = values.iter().position(|&byte| byte <= b' ').unwrap_or(values.len());
     &values[..end]

@@ -16,8 +16,9 @@ fn is_named_as_triangle(path: &Path) -> bool {
     name.ends_with(".node") || name.ends_with(".ele")
 }
 
-/// Returns the names of the files of the mesh that `source` belongs to. If the name of `source` has another ending, the
-/// first row tells which file it is, and `None` means that the mesh has no other file.
+/// Returns the names of all files of the mesh that `source` belongs to. If the file's name ends in neither `.node` nor
+/// `.ele`, the second number of the first row decides: 2 dimensions make a `.node`, 3 or 6 corners an `.ele`. `None`
+/// for other files, and for a file without counterpart.
 pub(crate) fn names(source: &Source) -> Option<Names> {
     let path = &source.path;
     if is_named_as_triangle(path) {
@@ -40,15 +41,17 @@ pub(crate) fn names(source: &Source) -> Option<Names> {
     }
 }
 
-/// Finds the file with this ending that belongs to a file of another ending. Returns its path without the ending.
+/// Finds the counterpart of `path`, whose name has `ending` after the name of `path` or in place of its extension.
+/// Returns the counterpart's path without `ending`; `None` if no such file exists.
 fn counterpart(path: &Path, ending: &str) -> Option<PathBuf> {
     [path.with_extension(""), path.to_owned()]
         .into_iter()
         .find(|stem| appended(stem, ending).is_file())
 }
 
-/// Loads a file of the mesh that `path` names without an ending, or explains that one of the two files of a mesh is
-/// missing. Returns `None` if `path` exists or names no Triangle mesh.
+/// Loads the `.node` of a mesh that `path` names without an ending. If `path` is a missing `.node` or `.ele` whose
+/// counterpart exists, returns an error that explains the missing file. `None` if `path` exists or names no Triangle
+/// mesh.
 pub(crate) fn load_by_stem(path: &Path) -> Option<Result<Source, ReadError>> {
     let names = Names::of(path);
     if !names.node.is_file() && !names.ele.is_file() {
@@ -79,7 +82,7 @@ pub(super) fn load_companions(given: Source) -> Result<Source, ReadError> {
     Ok(node)
 }
 
-/// Refuses a file that was not read from the disk, where its companions are.
+/// Returns an error: bytes that were not read from a file have no companion files.
 pub(super) fn require_single(source: &Source) -> Result<(), ReadError> {
     Err(one_of_two(source))
 }
@@ -108,6 +111,10 @@ fn missing_file(missing: &Path, names: &Names) -> ReadError {
 }
 
 /// Returns the files that are written for `path`, in the order of [`Source::files`].
+///
+/// # Errors
+/// If `path` has the ending of a compressed file. If an existing file `path` would be read in place of the `.node`, or
+/// a `.poly` of another mesh along with the new files.
 pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
     let refused = |problem: String, remedy: &str| {
         Err(WriteError::Format { path: path.to_owned(), problem, remedy: remedy.into() })

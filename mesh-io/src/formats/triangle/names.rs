@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// The names of a Triangle mesh's files.
+/// The paths of a Triangle mesh's files, whether or not the files exist.
 pub(crate) struct Names {
     pub(crate) node: PathBuf,
     pub(crate) ele: PathBuf,
@@ -16,7 +16,8 @@ impl Names {
             .unwrap_or_else(|| Names::with(|name| appended(path, &format!(".{name}"))))
     }
 
-    /// Returns the files of the mesh that has a file of this name. `None` if the name has none of Triangle's endings.
+    /// Returns the files of the mesh that contains the file `path`. `None` if `path` has none of Triangle's three
+    /// endings.
     pub(crate) fn of_file(path: &Path) -> Option<Names> {
         Self::by_ending(path, &["node", "ele", "poly"])
     }
@@ -39,7 +40,8 @@ impl Names {
     }
 }
 
-/// Spells an ending as another one is spelled: in capitals, with a capital first, or in small letters.
+/// Returns the ending `name` with the capitalization of the ending `other`: capitals, a capital first, or small
+/// letters.
 fn like(other: &str, name: &str) -> String {
     let (first, rest) = name.split_at(1);
     match other.as_bytes() {

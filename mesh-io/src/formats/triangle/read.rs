@@ -24,7 +24,7 @@ use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
 use std::path::{Path, PathBuf};
 
-/// The reader. The source is the `.node`; its companions are the `.ele` and, if there is one, the `.poly`.
+/// The reader of Triangle meshes. The source is the `.node`; its companions are the `.ele` and the optional `.poly`.
 pub(crate) struct Triangle;
 
 impl FormatReader for Triangle {
@@ -61,7 +61,7 @@ struct Vertices<'s> {
     /// The number of attributes of each vertex.
     attributes: u64,
     has_markers: bool,
-    /// Stands before the first vertex.
+    /// The cursor before the first vertex.
     before: Cursor<'s>,
 }
 
@@ -87,7 +87,7 @@ impl<'s> Vertices<'s> {
         let listed = poly.map_or(0, listed_vertices);
         let mut numbers = VertexNumbering { first: 0, count };
         if !visitor.asks_for_nodes() {
-            // The first row tells how vertices are numbered.
+            // The first row has the number from which vertices are counted.
             if cursor.next_row() {
                 numbers.first = cursor.integer("the number of a vertex")?;
             }
@@ -135,7 +135,8 @@ impl<'s> Vertices<'s> {
     }
 }
 
-/// Returns the name of one of `columns` attributes.
+/// Returns the name of the attribute in a 0-based column: `attribute` for a single column, else `attribute1`,
+/// `attribute2` and so on.
 fn column_name(column: u64, columns: u64) -> String {
     match columns {
         1 => "attribute".to_owned(),
@@ -143,17 +144,17 @@ fn column_name(column: u64, columns: u64) -> String {
     }
 }
 
-/// Returns the label that an attribute stands for.
+/// Returns the group label of an attribute: numeric labels for numbers, names for other tokens.
 fn attribute(token: &[u8]) -> GroupLabel {
     float(token).map_or_else(|| GroupLabel::name(token), GroupLabel::number)
 }
 
-/// Returns the label that a marker stands for. Zero is no marker.
+/// Returns the group label of a marker; `None` for zero, which means no marker.
 fn marker(token: &[u8]) -> Option<GroupLabel> {
     (float(token) != Some(0.0)).then(|| attribute(token))
 }
 
-/// Reads the triangles and hands them to the visitor, each with the region and the groups of its attributes.
+/// Visits the triangles of an `.ele`, with the region and the groups of their attributes.
 fn triangles(
     ele: &Source,
     node: &Source,
@@ -194,8 +195,8 @@ fn triangles(
     Ok(())
 }
 
-/// Reads a triangle's row: its number, the numbers of its vertices, and the text of its attributes, which are `columns`
-/// tokens.
+/// Reads a triangle's row. Returns the triangle's number, its vertices, and the text of its attributes, which are
+/// `columns` tokens.
 #[inline]
 fn triangle<'a>(
     cursor: &mut Cursor<'a>,
@@ -217,16 +218,16 @@ fn triangle<'a>(
     Ok((number, corners, cursor.tokens(columns)))
 }
 
-/// Numbers the regions: triangles with equal attributes are of one region.
+/// Numbers the regions: triangles with equal attributes belong to one region.
 #[derive(Default)]
 struct Attributes<'a> {
     /// The number of attributes of each triangle.
     columns: u64,
     texts: Interner<&'a [u8]>,
-    /// The region of each text.
+    /// The region of each attribute text, by the text's number in `texts`.
     regions: Vec<u32>,
     names: Interner<String>,
-    /// The text whose groups the visitor has, and its region.
+    /// The attribute text of the last triangle, whose groups the visitor has, and its region.
     last: Option<(&'a [u8], u32)>,
 }
 
@@ -270,7 +271,7 @@ impl<'a> Attributes<'a> {
     }
 }
 
-/// Returns the tokens of a row's rest. A comma at the end of a token is not part of the token.
+/// Splits the text of attributes into tokens, at blanks and commas.
 fn tokens(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     let is_between = |&byte: &u8| byte <= b' ' || byte == b',';
     text.split(is_between).filter(|token| !token.is_empty())
@@ -286,7 +287,7 @@ fn normalized(attributes: &[u8]) -> String {
     normalized.collect()
 }
 
-/// Hands the segments of a `.poly` to the visitor.
+/// Visits the segments of a `.poly` as lines, with their markers as groups.
 fn segments(
     poly: &Source,
     node: &Source,

@@ -5,7 +5,7 @@ use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 
-/// Returns a cursor before the first row of one of the files.
+/// Returns a cursor before the first row of a `.node`, `.ele` or `.poly`.
 pub(super) fn rows(source: &Source) -> Cursor<'_> {
     // Triangle skips a comma before the blanks that precede a number.
     Cursor::new(source).with_syntax(Syntax::TRAILING)
@@ -18,7 +18,10 @@ pub(super) struct VertexNumbering {
 }
 
 impl VertexNumbering {
-    /// Reads the number of a vertex of `owner`, which `list` must have.
+    /// Reads the vertex number in a row of `owner`, such as a triangle.
+    ///
+    /// # Errors
+    /// If the file `list` contains no vertex of this number.
     #[inline]
     pub(super) fn vertex(
         &self,
@@ -40,7 +43,8 @@ impl VertexNumbering {
         }
     }
 
-    /// Checks the number at the start of a vertex's row. The number of row 0 tells where numbering starts: at 0 or 1.
+    /// Checks the number at the start of a vertex's row. Row 0 determines whether numbering starts at 0 or 1, and later
+    /// numbers must be consecutive.
     #[inline]
     pub(super) fn check(
         &mut self,

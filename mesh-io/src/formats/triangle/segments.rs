@@ -5,26 +5,28 @@ use crate::error::ReadError;
 use crate::formats::triangle::rows::{VertexNumbering, header, rows, vertex_header};
 use crate::text::cursor::Cursor;
 
-/// Returns how many vertices a `.poly` lists, or 0 if its first row is damaged. They are the first vertices of the mesh.
+/// Returns the number of vertices in a `.poly`, or 0 for a damaged first row. The mesh starts with the vertices of the
+/// `.poly`.
 pub(super) fn listed_vertices(poly: &Source) -> u64 {
     vertex_header(&mut rows(poly)).unwrap_or(0)
 }
 
 /// Reads the segments of a `.poly` row by row.
 pub(super) struct Segments<'s> {
-    /// The cursor: after the number of segments at first, then after the vertices of the segment read last.
+    /// The cursor: initially after the number of segments, later after the vertices of the last segment read.
     pub(super) cursor: Cursor<'s>,
     /// The number of segments.
     pub(super) count: u64,
     node: &'s Source,
     /// The numbering of the `.poly`.
     own: VertexNumbering,
-    /// The number of the first vertex in the `.node`.
+    /// The number of the first vertex in the `.node`, 0 or 1.
     first: u64,
 }
 
 impl<'s> Segments<'s> {
-    /// Checks the vertices that the `.poly` lists, and moves to its segments. `numbers` is the numbering of the `.node`.
+    /// Checks the vertices that the `.poly` lists, and moves to its segments. `numbers` is the numbering of the
+    /// `.node`.
     pub(super) fn new(
         poly: &'s Source,
         node: &'s Source,
@@ -32,7 +34,7 @@ impl<'s> Segments<'s> {
     ) -> Result<Self, ReadError> {
         let mut cursor = rows(poly);
         let listed = vertex_header(&mut cursor)?;
-        // The `.poly` may number its vertices from another number on than the mesh.
+        // The `.poly` may count its vertices from 1 and the `.node` from 0, or the reverse.
         let mut own = VertexNumbering { first: numbers.first, count: numbers.count };
         for row in 0..listed {
             cursor.row(row, listed, "vertices")?;
@@ -49,7 +51,8 @@ impl<'s> Segments<'s> {
         Ok(Self { cursor, count, node, own, first: numbers.first })
     }
 
-    /// Reads the segment in row `row` of the list. Returns its number, and the numbers of its vertices in the `.node`.
+    /// Reads the segment in row `row` of the list; rows must be read in order. Returns the segment's number and its
+    /// vertices, renumbered as in the `.node`.
     pub(super) fn segment(&mut self, row: u64) -> Result<(u64, [u64; 2]), ReadError> {
         let Self { cursor, count, node, own, first } = self;
         cursor.row(row, *count, "segments")?;

@@ -23,7 +23,7 @@ pub(crate) fn write(input: &WriterInput<'_>) -> Vec<String> {
     for (cell, number) in input.all(CellKind::Triangle).zip(1..) {
         put!(ele, "{number} {}", input.positions(cell, 1));
         if grouped {
-            // A fraction cannot be a tag, but it can be the name of a group that stands for an attribute.
+            // A fraction cannot be a tag, but can be the name of a group that stands for an attribute.
             let name =
                 input.group(cell).and_then(|group| group.name()).filter(|name| is_number(name));
             put!(
