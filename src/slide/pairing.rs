@@ -41,7 +41,6 @@ impl Slide {
     /// must then lie outside the second side. `points` are the positions of all vertices. Each side may list its
     /// vertices in any order. Vertices inside the mesh are ignored. Returns the number of pairs found, 0 if no such
     /// motion exists.
-    /// motion exists.
     pub fn pair_sides(
         &mut self,
         topology: &Topology<'_>,
