@@ -14,7 +14,7 @@ use crate::worst::regions::around;
 const SHARE: usize = 1000;
 /// Smallest number of triangles that a pass improves.
 const FEWEST: usize = 10;
-/// Largest number of triangles that a pass improves. Even on the largest meshes, the stage then takes only seconds.
+/// Largest number of triangles that a pass improves, so that the stage takes only seconds on the largest meshes.
 const MOST: usize = 1000;
 /// Number of rings of vertices around the worst triangles that move too. With three rings, the worst triangle improves
 /// no further, and f rises more.
@@ -38,8 +38,8 @@ fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
     movable.map(|(_, badness)| *badness).fold(0.0, f64::max)
 }
 
-/// Returns the number of triangles worse than every triangle with a free vertex, of those that no vertex can improve:
-/// all corners are fixed, and none is in `slides`. `slides` must be ascending.
+/// Returns the number of triangles that are worse than every triangle with a free vertex, but have only fixed corners.
+/// Corners in `slides`, an ascending list, do not count as fixed.
 pub(crate) fn stuck(
     problem: &Problem,
     badness: Badness,
