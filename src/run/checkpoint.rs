@@ -18,12 +18,12 @@ pub struct Checkpoint {
     pub(crate) period: Option<PeriodState>,
 }
 
-/// The data by which a checkpoint is matched to its run: mesh, options, goal, and opening sweeps on the CPU.
+/// The run of a checkpoint, as matched on resumption: mesh, options, goal, and opening sweeps on the CPU.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct About {
     /// Hash of the mesh, its targets, and the curves of sliding vertices.
     pub(crate) mesh: u64,
-    /// Options of the run, one on each line.
+    /// Options of the run, one option on each line.
     pub(crate) options: String,
     /// Desired objective and its origin. `None` for a run without a goal.
     pub(crate) goal: Option<(f64, String)>,
@@ -43,7 +43,7 @@ impl Checkpoint {
         opened + self.saved.sweeps()
     }
 
-    /// Returns the name of the adapter that did the last sweep. `None` for the CPU.
+    /// Returns the name of the adapter of the last sweep. `None` for the CPU.
     pub fn adapter(&self) -> Option<&str> {
         Some(&*self.saved.engine.engine).filter(|name| *name != CPU)
     }
@@ -51,8 +51,8 @@ impl Checkpoint {
     /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex, up to 76 once sweeps are
     /// corrected from coarser levels, and up to 128 more if vertices slide.
     ///
-    /// The bytes are [`MAGIC`](Self::MAGIC), the version, records, and a CRC-32 of all bytes before. A record is a name
-    /// and a content, each after its length in bytes. Numbers are little-endian.
+    /// The bytes are [`MAGIC`](Self::MAGIC), the version, records, and a CRC-32 of all bytes before. A record consists
+    /// of name and content, each after its length in bytes. Numbers are little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Self { about, saved, period } = self;
         let mut out = Writer([&Self::MAGIC[..], Self::VERSION].concat());
@@ -107,8 +107,8 @@ impl Checkpoint {
         out.0
     }
 
-    /// Decodes a checkpoint from the bytes of [`to_bytes`](Self::to_bytes). `None` if the bytes were changed, are of
-    /// another version of the format, or are not a checkpoint.
+    /// Decodes a checkpoint from the bytes of [`to_bytes`](Self::to_bytes). `None` for changed bytes, another version
+    /// of the format, or bytes that are no checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (content, sum) = bytes.split_last_chunk()?;
         if crc32(content) != u32::from_le_bytes(*sum) {

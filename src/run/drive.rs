@@ -86,14 +86,14 @@ pub(crate) struct Leg<'l> {
     pub(crate) period: PeriodSource<'l>,
 }
 
-/// A run in progress, from the first sweep of its engine to the last.
+/// An engine with the plan, strategy and history of its run.
 pub(crate) struct Session<E> {
     pub(crate) engine: E,
     plan: Plan,
     strategy: Strategy,
     history: History,
-    /// Number of sweeps between two calls of the observer. The first batch is a single sweep of unknown duration, as
-    /// drivers stop submissions that take seconds.
+    /// Size, in sweeps, of the next batch, after which the observer is called. The first batch is a single sweep of
+    /// unknown duration, as drivers stop submissions that take seconds.
     batch: u32,
 }
 
@@ -198,7 +198,7 @@ impl<E: Engine> Session<E> {
         }
     }
 
-    /// Replaces the targets by those of `problem`, which must have the layout of the run's problem.
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
     pub(crate) fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
         if let Strategy::Corrected(corrections) = &mut self.strategy {
             corrections.set_targets(problem);
@@ -225,7 +225,8 @@ impl<E: Engine> Session<E> {
 /// The counts of sweeps and corrections in the report of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct Counts {
-    /// Number of sweeps before the first correction, in which the metrics of the scheme alternate.
+    /// Number of sweeps with alternating metrics. In runs with corrections, metrics alternate only before the first
+    /// correction.
     pub(crate) alternated: u32,
     pub(crate) corrections: u32,
     pub(crate) levels_left_out: bool,
@@ -249,8 +250,8 @@ impl From<GpuError> for DriveError {
     }
 }
 
-/// Returns the number of sweeps to do next, such that the observer is called about ten times a second. The number does
-/// not affect the result.
+/// Returns the next number of sweeps, such that the observer is called about ten times a second. The number does not
+/// affect the result.
 fn next_batch(batch: u32, took: Duration) -> u32 {
     let fits = 0.1 * f64::from(batch) / took.as_secs_f64().max(1e-6);
     (fits as u32).clamp(1, 4 * batch).min(100)

@@ -1,4 +1,4 @@
-//! The interface between the control of a run and an engine, the CPU or a device.
+//! The interface between the control of a run and the engine, which computes on the CPU or a device.
 
 use glam::DVec2;
 use std::borrow::Cow;
@@ -41,7 +41,7 @@ pub(crate) trait Engine: Send {
     /// Holds free vertices. Later sweeps and corrections move exactly the vertices for which `held` is false.
     fn hold(&mut self, held: &[bool]) -> Result<(), GpuError>;
 
-    /// Replaces the targets by those of `problem`, which must have the layout of the engine's problem.
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the engine's problem.
     fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError>;
 
     /// Returns the present positions of all vertices.
@@ -98,8 +98,8 @@ pub(crate) trait Engine: Send {
     /// Moves all free vertices by `length` times the correction.
     fn move_along(&mut self, length: f64) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// Returns the present state, between two sweeps. If `whole`, the state has all data from which a run continues to
-    /// the same bits. Otherwise the state has only the positions.
+    /// Returns the present state, between two sweeps. If `whole`, a run that continues from the state computes the same
+    /// bits. Otherwise the state has only the positions.
     fn save(&mut self, whole: bool) -> impl Future<Output = Result<EngineState, GpuError>> + Send;
 
     /// Restores a saved state, before the first sweep or between two sweeps. Returns false if the state is from another
@@ -112,8 +112,8 @@ pub(crate) trait Engine: Send {
 /// broken after one pass, and none after two.
 pub(crate) const LEFT_OUT: usize = 2;
 
-/// A correction that is computed but not yet applied. Objectives are mean excesses, f - ideal² of the base metric. EDGE
-/// is replaced by the p-norm with the step's smoothing.
+/// A proposed correction: the objective along it, before any vertex moves. Objectives are mean excesses, f - ideal² of
+/// the base metric. EDGE is replaced by the p-norm with the step's smoothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Mean excess at the present positions.

@@ -1,11 +1,11 @@
-//! The objectives of a run so far, and the reason of its end.
+//! The history of a run: objectives after each sweep, and the reason of the run's end.
 
 use crate::metric::Metric;
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::{Stop, StopRule};
 
-/// Objectives before the first sweep and after each sweep, the index of the best, and the reason why the run has ended.
+/// Objectives before the first sweep and after each sweep, with the stop rule applied to them.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
     rule: StopRule,
@@ -91,7 +91,7 @@ impl History {
         self.remaining = remaining;
     }
 
-    /// Returns whether no objectives have been recorded yet.
+    /// Returns whether the history is still without objectives.
     pub(crate) fn is_empty(&self) -> bool {
         self.f.is_empty()
     }

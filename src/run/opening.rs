@@ -34,11 +34,11 @@ const MOST_SWEEPS: u32 = 120;
 /// The state after sweeps in double precision, from which a device can continue.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Opened {
-    /// Objectives before the first sweep and after each sweep.
+    /// Tracked objectives before the first sweep and after each sweep.
     pub(crate) log: Vec<Objectives>,
     /// Smallest base objective in `log`.
     pub(crate) least: f64,
-    /// Positions of all vertices after the last sweep.
+    /// Normalized positions of all vertices after the last sweep.
     pub(crate) positions: Vec<DVec2>,
     /// Positions of all vertices with the smallest base objective.
     pub(crate) best: Vec<DVec2>,
@@ -110,7 +110,7 @@ impl Opened {
         (self.log.len() as u32).saturating_sub(1)
     }
 
-    /// Returns the log and the best positions of the whole run. `history` and `positions` are those of the sweeps after
+    /// Returns the log and the best positions of the whole run. `history` and `positions` come from the sweeps after
     /// the opening.
     pub(crate) fn followed_by(
         self,

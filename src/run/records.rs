@@ -31,7 +31,7 @@ impl Writer {
         list.iter().for_each(|item| write(self, item));
     }
 
-    /// Writes an optional number as a list of one number or none.
+    /// Writes an optional number as a list: empty for `None`, else with one entry.
     pub(crate) fn optional(&mut self, number: Option<f64>) {
         self.list(number.as_slice(), |out, number| out.real(*number));
     }
@@ -157,7 +157,7 @@ impl<'b> Reader<'b> {
     }
 }
 
-/// The named records of a checkpoint that are still to be read.
+/// The unread records of a checkpoint, with their names.
 pub(crate) struct Records<'b>(Vec<(&'b str, Reader<'b>)>);
 
 impl<'b> Records<'b> {

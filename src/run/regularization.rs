@@ -3,7 +3,7 @@
 //! into WGSL. This rule is the robust one among the rules of Garanzha et al., *Foldover-free maps in 50 lines of code*,
 //! ACM Transactions on Graphics 40 (2021).
 
-/// `least` in the formula: the square of ε if no triangle is inverted.
+/// `least` in the formula: the square of ε on a mesh without inverted triangles.
 pub(crate) const LEAST_SQUARE: f64 = 1e-12;
 /// `share` in the formula: the factor on the square of the smallest area.
 pub(crate) const SQUARE_SHARE: f64 = 0.04;

@@ -11,7 +11,7 @@ pub(crate) const CPU: &str = "cpu";
 /// The state of a run between two sweeps: log, corrections and engine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Saved {
-    /// Objectives before the first sweep and after each sweep.
+    /// Tracked objectives before the first sweep and after each sweep.
     pub(crate) log: Vec<Objectives>,
     /// Estimated remaining gain as a share of f. `None` without an estimate.
     pub(crate) remaining: Option<f64>,
@@ -27,7 +27,7 @@ impl Saved {
     }
 }
 
-/// The state of the host and the stages at the start of a period.
+/// The state of the host and of its stages when a period began.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PeriodState {
     /// Number of sweeps before the period.
@@ -51,12 +51,12 @@ pub(crate) struct EngineState {
     pub(crate) engine: String,
     /// Positions of all vertices, normalized and in the order of the problem.
     pub(crate) positions: Vec<DVec2>,
-    /// Positions of the best state. `None` if the last state is always the best.
+    /// Positions of the best state. `None` if every sweep lowers f.
     pub(crate) best: Option<Vec<DVec2>>,
     /// Roots from which the coarser levels were built, and then the roots to which the levels were fitted, in order.
     /// Empty without levels, or if the state is not whole.
     pub(crate) roots: Vec<Vec<f32>>,
-    /// Named data that only an engine of the same kind can read.
+    /// Named data for engines of equal kind, such as secant pairs.
     pub(crate) own: Vec<(String, Vec<u8>)>,
 }
 
@@ -66,8 +66,7 @@ impl EngineState {
         self.own.push((name.to_owned(), bytemuck::cast_slice(values).to_vec()));
     }
 
-    /// Returns the data called `name`. `None` if no data have this name, or if their length is not that of `count`
-    /// values.
+    /// Returns the data called `name`. `None` for an unknown name, or for data of another length than `count` values.
     pub(crate) fn own<T: Pod>(&self, name: &str, count: usize) -> Option<Vec<T>> {
         let (_, bytes) = self.own.iter().find(|(known, _)| known == name)?;
         let is_whole = bytes.len() == count.checked_mul(size_of::<T>())?;

@@ -21,8 +21,8 @@ pub enum Stop {
     MaxSweeps,
     /// The [`Observer`](crate::Observer) ended the run.
     Canceled,
-    /// A sweep made f infinite or NaN, which indicates a defect. The run returned to the state that was last saved, and
-    /// so undid the sweeps after it.
+    /// A sweep made f infinite or NaN, which indicates a defect. The run returned to its last saved state, and so undid
+    /// later sweeps.
     NotFinite,
 }
 

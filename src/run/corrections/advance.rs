@@ -34,8 +34,7 @@ const SWEEPS_BETWEEN: usize = 5;
 /// Largest number of times that corrections begin. If corrections are refused the last time, sweeps alone end the run.
 const ATTEMPTS: u32 = 5;
 
-/// Gain of a sweep, as a share of the tolerance, below which a run may end. The run ends if the correction is also
-/// expected to gain nothing.
+/// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 const SWEPT: f64 = 0.1;
 
 /// Ratio of the slopes along two successive corrections above which corrections are accelerated. On most meshes, the

@@ -1,5 +1,4 @@
-//! The exponent of EDGE's p-norm in a run with corrections: when the exponent doubles, up to which value, and the gain
-//! of f that is left.
+//! The exponent of EDGE's p-norm in a run with corrections: its doublings, its last value, and the remaining gain of f.
 
 use super::plan_steps::exponents;
 use super::state::{Correcting, Corrections, Stage};
@@ -47,13 +46,12 @@ impl Corrections {
         self.above() > 0.0 && self.is_sharpest()
     }
 
-    /// Returns whether the exponent has its last value, after which it never doubles.
+    /// Returns whether the exponent has reached its last value.
     pub(super) fn is_sharpest(&self) -> bool {
         self.sharpness == *exponents(&self.plan).end()
     }
 
-    /// Returns whether the last sweep, with its correction if any, has lowered the objective too little for the
-    /// exponent.
+    /// Returns whether the last sweep and its correction lowered the objective too little for the present exponent.
     pub(super) fn gains_little(&self, history: &History) -> bool {
         let of_stage = match self.stage {
             Stage::Before { .. } => return false,

@@ -8,9 +8,9 @@ use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
 use crate::run::yielding::yield_now;
 
-/// Number of corrections after which the levels are fitted again, if the stiffness of the mesh has changed. Accelerated
-/// corrections fit the levels after every such change: vertices then move far, and unchanged levels gain little. A
-/// boundary layer that opens up took three times the sweeps with unchanged levels.
+/// Number of corrections after which levels are fitted to a changed stiffness. Accelerated corrections fit the levels
+/// after every such change: vertices then move far, and unchanged levels gain little. A boundary layer that opens up
+/// took three times the sweeps with unchanged levels.
 const REFIT_AFTER: u32 = 2;
 /// Relative decrease of the excess of f since the levels were built or fitted, above which the stiffness counts as
 /// changed.
@@ -65,7 +65,7 @@ impl Corrections {
     }
 
     /// Builds the levels, or fits them to the present stiffness, and passes them to the engine. Returns false if the
-    /// engine has no room for the levels. `now` is the index of the last evaluation in the history.
+    /// engine has no room for the levels. `now` is the history index of the last evaluation.
     pub(super) async fn change_levels(
         &mut self,
         engine: &mut impl Engine,

@@ -8,8 +8,8 @@ use std::ops::RangeInclusive;
 /// Over-relaxation of sweeps before corrections begin, except the first sweep. The value was chosen by measurements on
 /// strongly perturbed and smoothly distorted meshes of 2,000 to a million vertices.
 pub(super) const OMEGA_BEFORE: f64 = 1.5;
-/// Over-relaxation before corrections begin, if metrics alternate. With a larger factor, each metric would have to undo
-/// the overshoot of the previous one.
+/// Over-relaxation before corrections begin, if metrics alternate. With a larger factor, each metric would first undo
+/// the overshoot of the previous metric.
 pub(super) const OMEGA_ALTERNATING: f64 = 1.0;
 /// Over-relaxation of sweeps with corrections, chosen by the same measurements as [`OMEGA_BEFORE`].
 pub(crate) const OMEGA_BETWEEN: f64 = 1.3;

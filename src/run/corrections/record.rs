@@ -8,8 +8,8 @@ use crate::run::stop::{LEAST_SCALE, NOISE, Stop, StopRule};
 /// Window longer than any history, which turns off the tests of the stop rule that depend on the decay.
 const NO_ESTIMATE: usize = 1 << 30;
 
-/// Number of successive estimates for EDGE that must be below the tolerance. Fewer than [`ESTIMATES`] suffice, as the
-/// estimates are of a p-norm near f.
+/// Number of successive estimates that end a run by EDGE if all are below the tolerance. Fewer than [`ESTIMATES`]
+/// suffice, as the estimates are of a p-norm near f.
 const ESTIMATES_FOR_EDGE: usize = 2;
 const STEADY: f64 = 0.3;
 /// Factor on the estimates. In some runs, each correction gained half as much as the previous one, and modes remained

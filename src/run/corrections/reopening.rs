@@ -1,9 +1,9 @@
 //! Reopens triangles that are flat at the minimum of EDGE's p-norm with a low exponent.
 //!
-//! EDGE has no barrier, and a flat triangle with three long edges has a small EDGE. An untangled mesh, or a mesh with a
-//! few vertices out of place, may have such triangles at a local minimum, a few percent above the next one. Sweeps do
-//! not leave this minimum: as the exponent grows, the triangles are flattened up to the shape guard. Triangles that
-//! should be flat by EDGE become flat with high exponents alone, and so become flat again after reopening.
+//! EDGE has no barrier, and a flat triangle with three long edges has a small EDGE. At a local minimum a few percent
+//! above the best, an untangled mesh, or a mesh with misplaced vertices, may have such triangles. Sweeps do not leave
+//! this minimum: as the exponent grows, the triangles are flattened up to the shape guard. Triangles that should be
+//! flat by EDGE become flat with high exponents alone, and so become flat again after reopening.
 
 use super::plan_steps::{FLAT, exponents, reopening_sweep};
 use super::state::{Corrections, Stage};

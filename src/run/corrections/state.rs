@@ -1,4 +1,4 @@
-//! The state of a run with corrections, and the stages of such a run.
+//! The state of a run with corrections: its stage, levels, estimates and acceleration.
 
 use super::plan_steps::exponents;
 use crate::error::GpuError;
@@ -22,7 +22,7 @@ pub(crate) struct Corrections {
     pub(super) attempts: u32,
     /// Number of corrections that were applied.
     pub(super) taken: u32,
-    /// Number of sweeps before the first correction, 0 until then.
+    /// Number of sweeps with alternating metrics; 0 before the first correction.
     pub(super) alternated: u32,
     /// Whether neither the last correction nor a further sweep can gain anything.
     pub(super) settled: bool,
@@ -31,7 +31,7 @@ pub(crate) struct Corrections {
     /// Binary logarithm of the present exponent of EDGE's p-norm.
     pub(super) sharpness: u32,
     /// Objective that corrections lower, f or EDGE's p-norm: one entry for each sweep of the present stage. For f, the
-    /// first entry is f before the stage. The p-norm before the stage is not computed.
+    /// first entry is f before the stage. The p-norm before the stage is unknown.
     pub(super) lowered: Vec<f64>,
     /// Whether corrections are accelerated by secant pairs.
     pub(super) accelerated: bool,
@@ -40,14 +40,15 @@ pub(crate) struct Corrections {
     pub(super) anew: bool,
     /// Whether the engine has coarser levels.
     pub(super) has_levels: bool,
-    /// Indices in the history at which the levels were built, and at which they were last built or fitted.
+    /// History indices of the latest build of the levels, and of the latest build or fit.
     pub(super) built: usize,
     pub(super) fitted: usize,
     /// Latest estimates of the remaining gain as a share of f, infinite for a missing estimate.
     pub(super) estimates: [f64; ESTIMATES],
     /// The error of an engine without room for the levels. Such a run makes no corrections.
     pub(super) left_out: Option<GpuError>,
-    /// Whether flat triangles have been reopened after the exponent doubled, or could not be. Reopening is then over.
+    /// Whether a reopening of flat triangles followed a doubling of the exponent, with or without success. No further
+    /// reopening follows.
     pub(super) was_reopened: bool,
     /// Whether the engine of the saved state, from which the run continues, had no room for the levels.
     pub(super) was_left_out: bool,
@@ -62,7 +63,7 @@ pub(super) struct Correcting {
     pub(super) length: f64,
     /// Number of corrections computed in this stage, with the present levels.
     pub(super) proposed: u32,
-    /// Number of consecutive refused corrections up to the last one.
+    /// Number of refused corrections since the latest accepted correction.
     pub(super) refused: u32,
 }
 
@@ -105,23 +106,22 @@ impl Corrections {
         }
     }
 
-    /// Returns the number of sweeps in which the metrics of the scheme took turns. `None` before the first correction.
+    /// Returns the number of sweeps with alternating metrics. `None` before the first correction.
     pub(crate) fn alternated(&self) -> Option<u32> {
         (self.attempts > 0).then_some(self.alternated)
     }
 
-    /// Returns the number of corrections that were applied.
+    /// Returns the number of applied corrections.
     pub(crate) fn taken(&self) -> u32 {
         self.taken
     }
 
-    /// Returns the error if the engine has no room for the levels, so that the run makes no corrections.
+    /// Returns the error of an engine without room for the levels, with which the run makes no corrections.
     pub(crate) fn left_out(&self) -> Option<&GpuError> {
         self.left_out.as_ref()
     }
 
-    /// Returns whether the run makes no corrections because an engine, this or an earlier one, has no room for the
-    /// levels.
+    /// Returns true if the run makes no corrections, as the present or an earlier engine lacks room for the levels.
     pub(crate) fn is_left_out(&self) -> bool {
         self.was_left_out || self.left_out.is_some()
     }
@@ -158,7 +158,7 @@ impl Corrections {
         }
     }
 
-    /// Replaces the targets by those of `problem`, which must have the same layout.
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
     pub(crate) fn set_targets(&mut self, problem: &Problem) {
         self.problem = problem.clone();
     }

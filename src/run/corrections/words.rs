@@ -27,8 +27,8 @@ impl Corrections {
         words
     }
 
-    /// Restores the state from the words that [`save`](Self::save) returned after `evaluations`. If the engine has no
-    /// levels, a correction builds them first. Returns false for invalid words.
+    /// Restores the state from the words that [`save`](Self::save) returned after `evaluations`. Without levels in the
+    /// engine, the next correction begins by building levels. Returns false for invalid words.
     pub(crate) fn restore(&mut self, words: &[u64], evaluations: usize, has_levels: bool) -> bool {
         let Some(([stage, at, length, attempts, taken, proposed, refused], rest)) =
             words.split_first_chunk()

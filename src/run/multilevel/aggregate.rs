@@ -13,9 +13,9 @@ pub(crate) struct Aggregates {
 }
 
 impl Aggregates {
-    /// Forms an aggregate of each unknown with all its neighbors, if none of them belongs to an aggregate already. Each
-    /// unknown left over then joins the aggregate of a neighbor (Vaněk, Mandel & Brezina, Computing 56, 1996). On a
-    /// triangulation, an aggregate has eight or nine members.
+    /// Joins each unknown and all its neighbors to a new aggregate, in the order of the unknowns. Unknowns with a
+    /// neighbor in an earlier aggregate are left over. Each unknown left over then joins the aggregate of a neighbor
+    /// (Vaněk, Mandel & Brezina, Computing 56, 1996). On a triangulation, an aggregate has eight or nine members.
     pub(crate) fn new<N: Iterator<Item = u32>>(
         unknowns: usize,
         neighbors: impl Fn(usize) -> N,
@@ -45,7 +45,7 @@ impl Aggregates {
         Self { of, count: count as usize }
     }
 
-    /// Lets each unknown without an aggregate join the aggregate of the first neighbor that has one.
+    /// Adds each unknown without an aggregate to the first aggregate among its neighbors.
     pub(crate) fn with_the_rest<N: Iterator<Item = u32>>(
         mut self,
         neighbors: impl Fn(usize) -> N,
@@ -59,7 +59,7 @@ impl Aggregates {
     }
 
     /// Returns the members of all aggregates as compressed rows. The first list has the offset of each aggregate in the
-    /// second list, with the end of the last aggregate as a further entry.
+    /// second list, followed by the length of the second list.
     pub(crate) fn members(&self) -> (Vec<u32>, Vec<u32>) {
         let grouped = || self.of.iter().enumerate().filter(|(_, group)| **group != NONE);
         let mut start = vec![0u32; self.count + 1];

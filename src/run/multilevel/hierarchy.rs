@@ -32,8 +32,7 @@ pub(crate) struct Hierarchy {
     member_start: Vec<u32>,
     member: Vec<u32>,
     root: Vec<f32>,
-    /// Roots before `root`: first the roots from which the levels were built, then the roots to which the levels were
-    /// fitted.
+    /// Roots of the build and of each fit before `root`, in order.
     earlier: Vec<Vec<f32>>,
     inverse_diagonal: Vec<f32>,
     levels: Vec<Level>,
@@ -49,7 +48,7 @@ pub(crate) struct Level {
 
 /// The next coarser level, or the solution on a level without a coarser one.
 pub(crate) enum Coarser {
-    /// A level with fewer unknowns, and the transfers from and to it.
+    /// Transfers between this level and a level with fewer unknowns.
     Level { prolongation: Sparse, restriction: Sparse },
     /// Inverse of the operator in row-major order, which solves the coarsest level.
     Direct(Vec<f32>),
@@ -124,8 +123,8 @@ impl Hierarchy {
         self
     }
 
-    /// Returns the data from which [`of_recipe`](Self::of_recipe) builds equal levels: the roots from which the levels
-    /// were built, and then the roots to which the levels were fitted, in order.
+    /// Returns the data from which [`of_recipe`](Self::of_recipe) builds equal levels: the roots of the build, and then
+    /// the roots of each fit, in order.
     pub(crate) fn recipe(&self) -> Vec<Vec<f32>> {
         self.earlier.iter().chain([&self.root]).cloned().collect()
     }

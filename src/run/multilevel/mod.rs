@@ -1,5 +1,5 @@
-//! The coarser levels of a mesh, and corrections from the levels. With corrections, the number of sweeps until
-//! convergence does not grow with the mesh.
+//! The coarser levels of a mesh, and corrections from the levels. With corrections, runs on meshes of any size converge
+//! in about equally many sweeps.
 //!
 //! Sweeps quickly remove errors between neighbors, but hardly reduce errors that extend over the whole mesh. So after
 //! each sweep, the gradient of the objective is restricted to a hierarchy of graph Laplacians, which approximate the
