@@ -91,7 +91,7 @@ impl History {
         self.remaining = remaining;
     }
 
-    /// Returns whether the history is still without objectives.
+    /// Returns whether the history has no entry yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.f.is_empty()
     }

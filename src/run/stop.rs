@@ -48,7 +48,7 @@ pub struct StopRule {
     pub target: Option<f64>,
     /// Estimated distance of f to its limit, relative to f, below which the run ends. 0 turns this test off.
     pub tolerance: f64,
-    /// Number of sweeps after which the run ends.
+    /// Largest number of sweeps, after which the run ends.
     pub max_sweeps: u32,
 }
 

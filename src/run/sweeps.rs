@@ -39,7 +39,7 @@ impl<E: Engine> StepwiseRun<E> {
 /// A run that its caller drives batch by batch, on the CPU or a device. All calls block.
 pub trait Stepwise {
     /// Does up to `sweeps` further sweeps, fewer if the run ends, and returns the objectives after each sweep. The
-    /// first call also returns the objectives before any sweep, as its first entry.
+    /// first call prepends the objectives of the initial positions.
     ///
     /// # Errors
     /// A [`GpuError`] if the device fails. The run is then lost.
