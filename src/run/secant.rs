@@ -68,7 +68,7 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
-    /// The direction by the two-loop recursion with the identity as M⁻¹.
+    /// Returns the direction by the two-loop recursion with the identity as M⁻¹.
     fn direction(pairs: [([f64; 3], [f64; 3]); 2], g: [f64; 3]) -> [f64; 3] {
         let [(s0, y0), (s1, y1)] = pairs;
         let products =

@@ -207,7 +207,7 @@ fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// An open curve: a straight run along y = 1, and then an arc of radius 1 around (3, 0).
+    /// Returns an open curve: a straight run along y = 1, and then an arc of radius 1 around (3, 0).
     fn slot() -> (Curve, Vec<[f64; 2]>) {
         let mut points: Vec<[f64; 2]> = (0..4).map(|k| [f64::from(k), 1.0]).collect();
         points.extend((1..=6).map(|k| {

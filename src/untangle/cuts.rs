@@ -389,7 +389,7 @@ mod tests {
     use crate::layout::prepare;
     use crate::mesh::Mesh;
 
-    /// A mesh of nine rings around a hole, with 48 vertices each.
+    /// Returns a mesh of nine rings around a hole, with 48 vertices each.
     fn ring() -> Problem {
         let (around, rings) = (48u32, 9u32);
         let mut mesh = Mesh::default();

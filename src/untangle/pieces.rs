@@ -203,7 +203,7 @@ mod tests {
     use crate::mesh::Mesh;
     use glam::DVec2;
 
-    /// A square of 9 × 9 vertices without its central cell. With `lone`, one more vertex inside is fixed.
+    /// Returns a square of 9 × 9 vertices without its central cell. With `lone`, one more vertex inside is fixed.
     fn square_with_a_hole(lone: bool) -> Problem {
         let points = (0..81).map(|k| [f64::from(k % 9), f64::from(k / 9)]).collect();
         let cells = (0..72u32).filter(|k| k % 9 < 8 && *k != 4 * 9 + 4);

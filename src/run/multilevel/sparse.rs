@@ -250,7 +250,7 @@ mod tests {
         dense
     }
 
-    /// A thousand rows, which fill several chunks, with the entries of each row added in two parts.
+    /// Returns a matrix of a thousand rows, which fill several chunks. The entries of each row are added in two parts.
     fn sample() -> Sparse {
         Sparse::from_rows(1000, |row, sum| {
             for k in 0..row % 5 {
