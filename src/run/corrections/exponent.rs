@@ -19,8 +19,8 @@ impl Corrections {
         f64::from(1u32 << self.sharpness)
     }
 
-    /// Returns the distance of f at the minimum of the p-norm from the minimum of f itself, as a share of f: about 0.16
-    /// / k. 0 if the exponent cannot grow, as when the caller has fixed it.
+    /// Returns the distance of f at the minimum of the p-norm from the minimum of f itself, as a share of f: about
+    /// 0.16/k. 0 if the exponent cannot grow, as when the caller has fixed it.
     pub(super) fn above(&self) -> f64 {
         let exponents = exponents(&self.plan);
         if exponents.start() < exponents.end() {

@@ -9,8 +9,8 @@ use crate::run::multilevel::Hierarchy;
 use crate::run::yielding::yield_now;
 
 /// Number of corrections after which levels are fitted to a changed stiffness. Accelerated corrections fit the levels
-/// after every such change: vertices then move far, and unchanged levels gain little. A boundary layer that opens up
-/// took three times the sweeps with unchanged levels.
+/// after every such change: vertices then move far, and unchanged levels gain little. A layer that opens up took three
+/// times the sweeps with unchanged levels.
 const REFIT_AFTER: u32 = 2;
 /// Relative decrease of the excess of f since the levels were built or fitted, above which the stiffness counts as
 /// changed.
