@@ -5,54 +5,54 @@ use crate::run::opening::Opened;
 use crate::run::records::{Reader, Writer};
 use crate::run::saved::{CPU, EngineState, PeriodState, Saved};
 
-/// The state of a run between two sweeps, with all data needed to continue it. On the same engine the continued run
-/// gives the same bits as a run that was never interrupted.
+/// The state of a run between two sweeps, with all data needed to continue the run. On the same engine, the continued
+/// run computes the same bits as a run without interruption.
 ///
-/// A [`CheckpointPolicy`](crate::CheckpointPolicy) receives checkpoints, and [`Run::resume`](crate::Run::resume) continues
-/// from a checkpoint, with the same mesh and the same options.
+/// A [`CheckpointPolicy`](crate::CheckpointPolicy) receives checkpoints. [`Run::resume`](crate::Run::resume) continues
+/// from a checkpoint, with an equal mesh and equal options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     pub(crate) about: About,
     pub(crate) saved: Saved,
-    /// State of the stages; `None` for a run without stages.
+    /// State of the stages. `None` for a run without stages.
     pub(crate) period: Option<PeriodState>,
 }
 
-/// Fingerprint of the mesh and of the options, the goal, and the opening sweeps on the CPU.
+/// The run of a checkpoint, as matched on resumption: mesh, options, goal, and opening sweeps on the CPU.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct About {
-    /// A hash of the mesh, of its targets and of the curves on which vertices slide.
+    /// Hash of the mesh, its targets, and the curves of sliding vertices.
     pub(crate) mesh: u64,
-    /// The options, a line for each.
+    /// Options of the run, one option on each line.
     pub(crate) options: String,
-    /// The desired objective and its origin, if the run has a goal.
+    /// Desired objective and its origin. `None` for a run without a goal.
     pub(crate) goal: Option<(f64, String)>,
-    /// The result of the sweeps on the CPU before a device could begin.
+    /// Result of the sweeps on the CPU before the device began. `None` for a run without such sweeps.
     pub(crate) opened: Option<Opened>,
 }
 
 impl Checkpoint {
-    /// The first bytes of a checkpoint file, whatever the version of the format.
+    /// First bytes of a checkpoint file in every version of the format.
     pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
-    /// The version of the format that this version of the library reads and writes, which follows [`Self::MAGIC`].
+    /// Version of the format that the library reads and writes. The version follows [`Self::MAGIC`].
     const VERSION: &[u8; 2] = b"2\n";
 
-    /// Returns the number of sweeps before the checkpoint.
+    /// Returns the number of sweeps before the checkpoint, opening sweeps included.
     pub fn sweeps(&self) -> u32 {
         let opened = self.about.opened.as_ref().map_or(0, Opened::sweeps);
         opened + self.saved.sweeps()
     }
 
-    /// Returns the name of the adapter that did the last sweep; `None` for the CPU.
+    /// Returns the name of the adapter of the last sweep. `None` for the CPU.
     pub fn adapter(&self) -> Option<&str> {
         Some(&*self.saved.engine.engine).filter(|name| *name != CPU)
     }
 
-    /// Returns the checkpoint as bytes, with a checksum: about 16 bytes for each vertex, up to 76 once sweeps are
+    /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex, up to 76 once sweeps are
     /// corrected from coarser levels, and up to 128 more if vertices slide.
     ///
-    /// The bytes are [`MAGIC`](Self::MAGIC), the version, records of a name and a content, each after its length in
-    /// bytes, and a CRC-32 of all. Numbers are little-endian.
+    /// The bytes are [`MAGIC`](Self::MAGIC), the version, records, and a CRC-32 of all bytes before. A record consists
+    /// of name and content, each after its length in bytes. Numbers are little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Self { about, saved, period } = self;
         let mut out = Writer([&Self::MAGIC[..], Self::VERSION].concat());
@@ -107,8 +107,8 @@ impl Checkpoint {
         out.0
     }
 
-    /// Reads a checkpoint from the bytes that [`to_bytes`](Self::to_bytes) returned. `None` if the bytes are anything
-    /// else, were changed, or are of another version of the format.
+    /// Decodes a checkpoint from the bytes of [`to_bytes`](Self::to_bytes). `None` for changed bytes, another version
+    /// of the format, or bytes that are no checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (content, sum) = bytes.split_last_chunk()?;
         if crc32(content) != u32::from_le_bytes(*sum) {
@@ -230,7 +230,7 @@ mod tests {
             damaged[at] ^= 0x10;
             assert_eq!(Checkpoint::from_bytes(&damaged), None, "byte {at}");
             assert_eq!(Checkpoint::from_bytes(&bytes[..at]), None, "cut at {at}");
-            // A length that no file can have, with a correct checksum.
+            // A length longer than any file, with a correct checksum.
             let mut huge = bytes[..bytes.len() - 4].to_vec();
             let end = (at + 8).min(huge.len());
             huge[at.min(end)..end].fill(0xFF);

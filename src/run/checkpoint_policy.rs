@@ -1,4 +1,4 @@
-//! Saves the state of a run from time to time, so that little is lost if something fails.
+//! Saves the state of a run at intervals, so that a failure loses little work.
 
 use std::time::Duration;
 
@@ -10,13 +10,13 @@ use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::saved::{PeriodState, Saved};
 
-/// Decides when a run takes checkpoints, and whether the run falls back to the CPU if its device fails. Every method has
-/// a default: a run takes no checkpoint, and a failed device ends the run with an error.
+/// Decides when a run takes checkpoints, and whether the run falls back to the CPU if its device fails. Every method
+/// has a default: a run takes no checkpoint, and a failed device ends the run with an error.
 ///
 /// `&mut P` is a policy if `P` is.
 pub trait CheckpointPolicy: Send {
-    /// Returns whether the run takes a checkpoint now. The run asks between two sweeps, about ten times a second. If the
-    /// [`Observer`](crate::Observer) ends the run, the run asks once more, with `is_ending` set.
+    /// Returns whether the run takes a checkpoint now. The run asks between two sweeps, about ten times a second. If
+    /// the [`Observer`](crate::Observer) ends the run, the run asks once more, with `is_ending` set.
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
         let _ = is_ending;
         false
@@ -27,15 +27,15 @@ pub trait CheckpointPolicy: Send {
         let _ = checkpoint;
     }
 
-    /// Returns whether the run continues on the CPU, from its state after sweep `from`, now that the device has failed
-    /// with `error`.
+    /// Returns whether the run continues on the CPU after the device has failed with `error`. The CPU would start from
+    /// the state after sweep `from`.
     fn falls_back_to_cpu(&mut self, error: &GpuError, from: u32) -> bool {
         let _ = (error, from);
         false
     }
 
-    /// Returns the interval at which the run saves its positions in memory, to return to them if a device fails. The
-    /// actual interval is longer if saving would take more than a fiftieth of the time.
+    /// Returns the interval at which the run saves its positions in memory, to return to them if a device fails. If
+    /// saving would take more than 2 % of the time, the run saves at longer intervals.
     fn interval(&self) -> Duration {
         Duration::from_secs(1)
     }
@@ -59,25 +59,25 @@ impl<P: CheckpointPolicy + ?Sized> CheckpointPolicy for &mut P {
     }
 }
 
-/// A policy that takes no checkpoints.
+/// A policy without checkpoints: all methods have their defaults.
 pub(crate) struct NoCheckpoints;
 
 impl CheckpointPolicy for NoCheckpoints {}
 
-/// Returns the state of the host and of the stages when the present period began; `None` in a run without stages.
+/// Returns the state of the host and the stages at the start of the present period. `None` in a run without stages.
 pub(crate) type PeriodSource<'p> = Option<&'p (dyn Fn() -> PeriodState + Sync)>;
 
-/// The divisor of the share of the time that saving positions may take: one in this many.
+/// Smallest ratio of the time between two saves to the time of a save.
 const SHARE: u32 = 50;
 
-/// The checkpoint policy of a run, with the latest state that was saved.
+/// The checkpoint policy of a run, together with the latest saved state.
 pub(crate) struct Checkpointer<'k> {
     pub(crate) policy: &'k mut dyn CheckpointPolicy,
-    /// The data of checkpoints other than the state; `None` for a run without checkpoints.
+    /// Data of checkpoints besides the state. `None` for a run without checkpoints.
     pub(crate) about: Option<About>,
-    /// The latest state that was saved.
+    /// Latest saved state, to which the run returns after a failure.
     pub(crate) last: Option<Saved>,
-    /// When the next state is to be saved; `None` for never.
+    /// Time of the next save. `None` for no further saves.
     due: Option<Instant>,
 }
 
@@ -87,7 +87,7 @@ impl<'k> Checkpointer<'k> {
         Self { policy, about: None, last: None, due }
     }
 
-    /// Saves the state if that is due after some sweeps, or at the end of a run that is canceled.
+    /// Saves the state after some sweeps if a save is due, or if the policy wants a checkpoint.
     pub(crate) async fn after_sweeps(
         &mut self,
         engine: &mut impl Engine,
@@ -103,7 +103,7 @@ impl<'k> Checkpointer<'k> {
         }
         let engine = match engine.save(whole).await {
             Ok(engine) => engine,
-            // Without memory for the state, the run continues. Any other error shows in the next sweep.
+            // Without memory for the state, the run continues. The next sweep reports any other error.
             Err(GpuError::OutOfMemory(_)) => return Ok(()),
             Err(error) => return Err(error),
         };

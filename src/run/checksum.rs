@@ -1,6 +1,6 @@
-//! The checksum of checkpoints.
+//! The checksum of checkpoints, a CRC-32.
 
-/// The remainders of single bytes, each followed by as many zero bytes as the first index says.
+/// CRC remainders: `REMAINDERS[k][b]` is the remainder of byte b followed by k zero bytes.
 static REMAINDERS: [[u32; 256]; 8] = remainders();
 
 const fn remainders() -> [[u32; 256]; 8] {
@@ -20,7 +20,7 @@ const fn remainders() -> [[u32; 256]; 8] {
     of
 }
 
-/// Returns the CRC-32 that gzip and PNG use.
+/// Returns the CRC-32 of gzip and PNG, eight bytes at a time.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let (words, rest) = bytes.as_chunks::<8>();
     let sum = words.iter().fold(!0, |sum: u32, word| {

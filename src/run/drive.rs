@@ -1,4 +1,4 @@
-//! A run in progress: an engine, and the state by which its next sweeps are chosen.
+//! A run in progress: an engine, and the state that determines its next sweeps.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -18,8 +18,8 @@ use crate::run::step::Step;
 use crate::run::stop::Stop;
 use crate::run::sweeps;
 
-/// A callback that receives the progress of a run and can end the run: any `FnMut(&Progress) -> ControlFlow<()>` that is
-/// `Send`. In a browser, which has no threads to send to, `Send` is not required.
+/// A callback that receives the progress of a run and can end the run: any `FnMut(&Progress) -> ControlFlow<()>` that
+/// is `Send`. Browsers have no threads, so `Send` is not required there.
 #[cfg(not(target_family = "wasm"))]
 pub trait Observer: FnMut(&Progress) -> ControlFlow<()> + Send {}
 
@@ -33,14 +33,14 @@ pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
 #[cfg(target_family = "wasm")]
 impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
 
-/// The progress of a run.
+/// The progress of a run, as reported to an [`Observer`].
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// The part of the run in progress.
     pub phase: Phase,
-    /// Number of sweeps done. [`Phase::Reference`] takes up to three runs, each counted from 0.
+    /// Number of completed sweeps. [`Phase::Reference`] takes up to three runs, each counted from 0.
     pub sweep: u32,
-    /// The objective by the base metric of the scheme in use.
+    /// Objective by the base metric of the scheme in use.
     pub f: f64,
 }
 
@@ -52,53 +52,53 @@ pub enum Phase {
     Reference,
     /// The smoothing of the mesh.
     Smoothing,
-    /// The stage after the last sweep in which the worst triangles are improved
-    /// ([`Options::improve_worst`](crate::Options::improve_worst)). It consists of passes, not of sweeps.
+    /// The stage after the last sweep that improves the worst triangles
+    /// ([`Options::improve_worst`](crate::Options::improve_worst)). The stage counts passes instead of sweeps.
     Improving,
 }
 
-/// Whether the sweeps of a run are corrected.
+/// Whether corrections from coarser levels follow the sweeps of a run.
 enum Strategy {
-    /// Sweeps alone.
+    /// Sweeps without corrections.
     Sweeps,
-    /// Sweeps corrected from coarser levels.
+    /// Sweeps with corrections from coarser levels.
     Corrected(Box<Corrections>),
 }
 
-/// Lists all distinct steps that a run by `plan` can take.
+/// Returns all distinct steps that a run by `plan` can take.
 pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
     if corrected { Corrections::steps(plan) } else { plan.steps() }
 }
 
-/// A leg of a run: sweeps between two works of the host.
+/// A leg of a run: the sweeps between two stages on the host.
 #[derive(Clone, Copy)]
 pub(crate) struct Leg<'l> {
-    /// The leg ends after this sweep.
+    /// Last sweep of the leg, counted from the start of the session.
     pub(crate) until: u32,
     /// Whether a device without room for the coarser levels is an error: true for
     /// [`Method::Multilevel`](crate::Method::Multilevel).
     pub(crate) requires_levels: bool,
-    /// The phase in reports to the observer.
+    /// Phase in reports to the observer.
     pub(crate) phase: Phase,
-    /// Sweeps on the CPU before the engine began. Reports to the observer add this number.
+    /// Number of sweeps on the CPU before the engine began, which reports to the observer include.
     pub(crate) done: u32,
-    /// The state of the host and of the stages, for checkpoints.
+    /// Source of the state of the host and the stages, for checkpoints.
     pub(crate) period: PeriodSource<'l>,
 }
 
-/// A run in progress. The engine lives as long as the run.
+/// An engine with the plan, strategy and history of its run.
 pub(crate) struct Session<E> {
     pub(crate) engine: E,
     plan: Plan,
     strategy: Strategy,
     history: History,
-    /// Number of sweeps to do between two calls of the observer. Begins with one, as the duration of a sweep is not known
-    /// yet, and drivers stop submissions that take seconds.
+    /// Size, in sweeps, of the next batch, after which the observer is called. The first batch is a single sweep of
+    /// unknown duration, as drivers stop submissions that take seconds.
     batch: u32,
 }
 
 impl<E: Engine> Session<E> {
-    /// Begins a run by `plan` on an engine that stands at its start, or after the sweeps that `log` records.
+    /// Begins a run by `plan` on an engine at its start, or after the sweeps in `log`.
     pub(crate) fn new(
         engine: E,
         problem: &Problem,
@@ -114,7 +114,7 @@ impl<E: Engine> Session<E> {
         Self { engine, plan: plan.clone(), strategy, history, batch: 1 }
     }
 
-    /// Returns to a saved state.
+    /// Returns to a saved state. [`DriveError::Foreign`] if the state does not fit the run.
     pub(crate) fn restore(&mut self, saved: Saved) -> Result<(), DriveError> {
         let Saved { log, remaining, corrections, engine: state } = saved;
         self.history = History::resumed(&self.plan, &log, remaining);
@@ -136,7 +136,7 @@ impl<E: Engine> Session<E> {
         &self.history
     }
 
-    /// Sweeps to the end of a leg, or of the run. Returns the reason if the run ends.
+    /// Sweeps to the end of a leg. Returns the reason if the run ends, and `None` at the end of the leg.
     pub(crate) async fn advance(
         &mut self,
         leg: Leg<'_>,
@@ -179,7 +179,7 @@ impl<E: Engine> Session<E> {
         }
     }
 
-    /// Does up to `sweeps` further sweeps, or fewer if the run ends.
+    /// Does up to `sweeps` further sweeps, fewer if the run ends.
     async fn sweep(&mut self, sweeps: u32) -> Result<(), GpuError> {
         let Self { engine, plan, strategy, history, .. } = self;
         match strategy {
@@ -188,8 +188,8 @@ impl<E: Engine> Session<E> {
         }
     }
 
-    /// Takes note that the host has moved vertices after `from` sweeps, or has changed targets. The objectives are `now`,
-    /// and the run goes on. Lower objectives of the sweeps after `from` no longer count.
+    /// Records that the host has moved vertices after `from` sweeps, or has changed targets. `now` are the objectives
+    /// at the new state, from which the run continues. Lower objectives of sweeps after `from` no longer count.
     pub(crate) fn disturbed(&mut self, from: u32, now: Objectives) {
         self.history.replace_after(from, now);
         self.history.end(None, self.history.remaining());
@@ -198,7 +198,7 @@ impl<E: Engine> Session<E> {
         }
     }
 
-    /// Takes the targets of a problem with the same layout.
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
     pub(crate) fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
         if let Strategy::Corrected(corrections) = &mut self.strategy {
             corrections.set_targets(problem);
@@ -206,7 +206,7 @@ impl<E: Engine> Session<E> {
         self.engine.set_targets(problem)
     }
 
-    /// Returns the counts of a run for its report.
+    /// Returns the counts of sweeps and corrections for the report.
     pub(crate) fn counts(&self) -> Counts {
         let sweeps = self.history.sweeps();
         match &self.strategy {
@@ -222,24 +222,25 @@ impl<E: Engine> Session<E> {
     }
 }
 
-/// The counts of a run for its report.
+/// The counts of sweeps and corrections in the report of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct Counts {
-    /// Number of sweeps in which the metrics of the scheme took turns.
+    /// Number of sweeps with alternating metrics. In runs with corrections, metrics alternate only before the first
+    /// correction.
     pub(crate) alternated: u32,
     pub(crate) corrections: u32,
     pub(crate) levels_left_out: bool,
 }
 
-/// The reason why a run could not be completed.
+/// The reason why a run cannot continue.
 pub(crate) enum DriveError {
     /// The device failed.
     Device(GpuError),
-    /// The device has no room for the coarser levels, and the run requires them.
+    /// The run requires the coarser levels, but the device has no room for them.
     LeftOut(GpuError),
-    /// f is infinite or NaN after this sweep.
+    /// f is infinite or NaN after the given sweep.
     NotFinite { sweep: u32 },
-    /// The saved state is from another mesh.
+    /// The saved state does not fit the mesh, the plan or the engine.
     Foreign,
 }
 
@@ -249,8 +250,8 @@ impl From<GpuError> for DriveError {
     }
 }
 
-/// Returns the number of sweeps to do next, chosen so that the observer is called about ten times a second. Results do
-/// not depend on it.
+/// Returns the next number of sweeps, such that the observer is called about ten times a second. The number does not
+/// affect the result.
 fn next_batch(batch: u32, took: Duration) -> u32 {
     let fits = 0.1 * f64::from(batch) / took.as_secs_f64().max(1e-6);
     (fits as u32).clamp(1, 4 * batch).min(100)

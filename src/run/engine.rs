@@ -1,4 +1,4 @@
-//! The interface between the control of a run and the engine that computes it.
+//! The interface between the control of a run and the engine, which computes on the CPU or a device.
 
 use glam::DVec2;
 use std::borrow::Cow;
@@ -13,61 +13,61 @@ use crate::run::objectives::Objectives;
 use crate::run::saved::EngineState;
 use crate::run::step::Step;
 
-/// Computes a run, on the CPU or a device: sweeps, objectives, and corrections from coarser levels. Positions are
-/// normalized and in the order of the [`Problem`].
+/// Sweeps, objectives and corrections from coarser levels, on the CPU or a device. Positions are normalized and in the
+/// order of the [`Problem`].
 ///
-/// An engine does not decide which sweep comes next. Calls return an error if the device fails; the run is then lost.
+/// The caller decides which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {
-    /// Does one sweep.
+    /// Visits every free vertex once, by `step`.
     fn sweep(&mut self, step: &Step) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// Evaluates the tracked objectives at the current positions.
+    /// Evaluates the tracked objectives at the present positions.
     fn objectives(&mut self) -> impl Future<Output = Result<Objectives, GpuError>> + Send;
 
-    /// Does sweeps until all `steps` are done or the stop rule of the history ends the run. Records the objectives
-    /// after each sweep, and before the first if the history is empty. Stores the best state.
+    /// Sweeps by `steps` in order, until all are done or the stop rule of the history ends the run. Records the
+    /// objectives after each sweep. If the history is empty, records the objectives before the first sweep too. Stores
+    /// the best state.
     ///
-    /// A device may do all sweeps in one submission, and apply the stop rule itself.
+    /// A device may do all sweeps in one submission, and apply the stop rule by itself.
     fn sweeps(
         &mut self,
         steps: &[Step],
         history: &mut History,
     ) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// Moves the vertices to `positions`, those of all vertices, between two sweeps. Forgets what later corrections would
-    /// be accelerated from.
+    /// Moves all vertices to `positions`, between two sweeps. Drops the secant pairs of earlier corrections.
     fn set_positions(&mut self, positions: &[DVec2]) -> Result<(), GpuError>;
 
-    /// Holds free vertices: from then on sweeps and corrections move exactly those for which `held` is false.
+    /// Holds free vertices. Later sweeps and corrections move exactly the vertices for which `held` is false.
     fn hold(&mut self, held: &[bool]) -> Result<(), GpuError>;
 
-    /// Takes the targets of a problem that has the same layout, and other targets than before.
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the engine's problem.
     fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError>;
 
-    /// Returns the current positions of all vertices.
+    /// Returns the present positions of all vertices.
     fn positions(&mut self) -> impl Future<Output = Result<Cow<'_, [DVec2]>, GpuError>> + Send;
 
-    /// Returns the positions of all vertices in the best of the states whose objectives were evaluated. That is the
-    /// last state if every sweep by the plan lowers f.
+    /// Returns the positions of all vertices in the best evaluated state. If every sweep of the plan lowers f, the best
+    /// state is the last one.
     fn best_positions(&mut self) -> impl Future<Output = Result<Vec<DVec2>, GpuError>> + Send;
 
-    /// Returns the coarser levels, if the engine has any, and leaves it without.
+    /// Removes the coarser levels from the engine and returns them. `None` if the engine has no levels.
     fn take_hierarchy(&mut self) -> Option<Hierarchy>;
 
-    /// Hands the coarser levels to the engine. Fails with [`GpuError::Limit`] if there is no room for them.
+    /// Gives the coarser levels to the engine. Fails with [`GpuError::Limit`] if the device has no room for the levels.
     fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
 
-    /// Returns, for each free vertex, the root r = √((|λ₁| + |λ₂|) / 2 / degree), with λ the eigenvalues of the Hessian of
-    /// Σ q² over the patch by the base metric. `smoothing` makes EDGE smooth. The levels are built from edge weights
+    /// Returns, for each free vertex, the root r = √((|λ₁| + |λ₂|) / 2 / degree), with λ the eigenvalues of the Hessian
+    /// of Σ q² over the patch by the base metric. `smoothing` makes EDGE smooth. The levels are built from edge weights
     /// r(v) r(w).
     fn stiffness_roots(
         &mut self,
         smoothing: Smoothing,
     ) -> impl Future<Output = Result<Vec<f32>, GpuError>> + Send;
 
-    /// Does one sweep, then computes the correction from the coarser levels and tries it at `length`. If `accelerated`,
-    /// the correction also uses secant pairs, the changes of the gradient since earlier accelerated corrections; see
-    /// [`secant`](crate::run::secant). If not, the pairs are dropped.
+    /// Sweeps once, then computes the correction from the coarser levels and evaluates it at `length`. If
+    /// `accelerated`, the correction also uses secant pairs, the changes of the gradient since earlier accelerated
+    /// corrections; see [`secant`](crate::run::secant). If not, the engine drops its pairs.
     fn propose(
         &mut self,
         step: &Step,
@@ -75,12 +75,13 @@ pub(crate) trait Engine: Send {
         accelerated: bool,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
-    /// Forgets what is remembered of the last corrections, for the next to be accelerated from anew.
+    /// Drops the secant pairs, so that the next accelerated correction starts without any.
     fn forget(&mut self);
 
-    /// Leaves vertices out of the last correction, and tries what remains of it at `length`: those of triangles that the correction
-    /// would invert or bring to break the shape guard at this length, [`LEFT_OUT`] times, as triangles between them and others
-    /// may give way only then. If `anew`, the correction is first computed again without their gradients.
+    /// Excludes vertices from the last correction, and evaluates the rest of the correction at `length`. Excluded are
+    /// the vertices of triangles that a move by `length` would invert or push over the shape guard. [`LEFT_OUT`] passes
+    /// exclude vertices, as further triangles may break next to excluded ones. If `anew`, the engine first computes the
+    /// correction again without the gradients of the excluded vertices.
     fn leave_out(
         &mut self,
         length: f64,
@@ -88,7 +89,7 @@ pub(crate) trait Engine: Send {
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
     /// Returns the mean excess, as in a [`Proposal`], after a move of all free vertices by `length` times the
-    /// correction. `None` if that inverts a triangle or breaks the shape guard.
+    /// correction. `None` if the move inverts a triangle or breaks the shape guard.
     fn excess_along(
         &mut self,
         length: f64,
@@ -97,28 +98,29 @@ pub(crate) trait Engine: Send {
     /// Moves all free vertices by `length` times the correction.
     fn move_along(&mut self, length: f64) -> impl Future<Output = Result<(), GpuError>> + Send;
 
-    /// Returns the present state, between two sweeps. If `whole`, it has all data needed to continue to the same bits,
-    /// else only the positions.
+    /// Returns the present state, between two sweeps. If `whole`, a run that continues from the state computes the same
+    /// bits. Otherwise the state has only the positions.
     fn save(&mut self, whole: bool) -> impl Future<Output = Result<EngineState, GpuError>> + Send;
 
-    /// Restores a saved state, before the first sweep or between two. Returns whether the state is from this mesh and from an engine
-    /// that this one can continue. A state that is not whole leaves the engine without coarser levels.
+    /// Restores a saved state, before the first sweep or between two sweeps. Returns false if the state is from another
+    /// mesh, or from an engine that this engine cannot continue. If the state is not whole, the engine has no coarser
+    /// levels afterward.
     fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError>;
 }
 
-/// Number of times that vertices are left out of a correction. On meshes of 2,000 vertices, some triangles were still
-/// broken after one time, and none after two.
+/// Number of passes that exclude vertices from a correction. On meshes of 2,000 vertices, some triangles were still
+/// broken after one pass, and none after two.
 pub(crate) const LEFT_OUT: usize = 2;
 
-/// A correction that has been computed but not taken. Objectives are mean excesses: f - ideal² of the base metric, of which EDGE is
-/// replaced by what the step's smoothing makes of it.
+/// A proposed correction: the objective along it, before any vertex moves. Objectives are mean excesses, f - ideal² of
+/// the base metric. EDGE is replaced by the p-norm with the step's smoothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
-    /// The objective without the correction.
+    /// Mean excess at the present positions.
     pub(crate) here: f64,
-    /// The derivative of the objective along the correction.
+    /// Derivative of the mean excess along the correction.
     pub(crate) slope: f64,
-    /// The objective at the length that was tried. `None` if that inverts a triangle or breaks the shape guard. Only
-    /// meaningful if `slope` is negative.
+    /// Mean excess after a move by the tried length. `None` if the move inverts a triangle or breaks the shape guard.
+    /// Meaningful only if `slope` is negative.
     pub(crate) there: Option<f64>,
 }

@@ -1,19 +1,18 @@
-//! The objectives of a run so far, and whether it is over.
+//! The history of a run: objectives after each sweep, and the reason of the run's end.
 
 use crate::metric::Metric;
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::{Stop, StopRule};
 
-/// The objectives before the first sweep and after each, the best of them, and the reason why the run has ended, if it
-/// has.
+/// Objectives before the first sweep and after each sweep, with the stop rule applied to them.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
     rule: StopRule,
     base: Metric,
     window: usize,
     log: Vec<Objectives>,
-    /// The base objective of each entry of `log`.
+    /// Base objective of each entry of `log`.
     f: Vec<f64>,
     best: usize,
     stop: Option<Stop>,
@@ -21,7 +20,7 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// Makes an empty history of a run by `plan`.
+    /// Creates an empty history of a run by `plan`.
     pub(crate) fn new(plan: &Plan) -> Self {
         Self {
             rule: plan.stop,
@@ -35,8 +34,7 @@ impl History {
         }
     }
 
-    /// Makes the history of a run that continues, from the objectives so far and the share of f that is estimated to be
-    /// left.
+    /// Creates the history of a run that continues, from the objectives so far and the estimate of the remaining gain.
     pub(crate) fn resumed(plan: &Plan, log: &[Objectives], remaining: Option<f64>) -> Self {
         let mut history = Self::new(plan);
         for objectives in log {
@@ -46,13 +44,13 @@ impl History {
         history
     }
 
-    /// Returns the first sweep after `known` evaluations after which the base objective is not finite, if there is one.
+    /// Returns the first sweep with an infinite or NaN base objective, if any, from evaluation `known` on.
     pub(crate) fn first_not_finite(&self, known: usize) -> Option<u32> {
         (known..self.f.len()).find(|&k| !self.f[k].is_finite()).map(|k| k as u32)
     }
 
-    /// Adds the objectives before the first sweep or after the next one, without applying the stop rule. Returns
-    /// whether the base objective is the least so far.
+    /// Adds the objectives before the first sweep or after the next sweep, without the stop rule. Returns whether the
+    /// base objective is the smallest so far.
     pub(crate) fn add(&mut self, objectives: Objectives) -> bool {
         let evaluation = self.f.len();
         let f = objectives.of(self.base).unwrap_or(f64::NAN);
@@ -65,8 +63,8 @@ impl History {
         is_best
     }
 
-    /// Replaces the objectives after the last sweep by `now`, and those after earlier sweeps than that, down to sweep `from` + 1,
-    /// if they are lower.
+    /// Replaces the objectives after the last sweep by `now`. Replaces the objectives after sweep `from` + 1 and later
+    /// sweeps too, if their base objective is smaller than that of `now`.
     pub(crate) fn replace_after(&mut self, from: u32, now: Objectives) {
         let (last, f) = (self.sweeps() as usize, now.of(self.base).unwrap_or(f64::NAN));
         for k in from as usize + 1..=last {
@@ -78,7 +76,7 @@ impl History {
             (0..self.f.len()).fold(0, |best, k| if self.f[k] < self.f[best] { k } else { best });
     }
 
-    /// Adds objectives as [`add`](Self::add) does, and applies the stop rule.
+    /// Adds objectives like [`add`](Self::add), and applies the stop rule.
     pub(crate) fn record(&mut self, objectives: Objectives) -> bool {
         let is_best = self.add(objectives);
         self.stop = self.rule.judge(&self.f, self.best, self.window);
@@ -86,44 +84,44 @@ impl History {
         is_best
     }
 
-    /// Sets the reason why the run has ended, if it has, and the share of f that is estimated to be left. For callers
-    /// that apply the stop rule themselves.
+    /// Sets the reason why the run has ended (`None` to continue), and the estimated remaining gain as a share of f.
+    /// Callers that apply the stop rule themselves use this function.
     pub(crate) fn end(&mut self, stop: Option<Stop>, remaining: Option<f64>) {
         self.stop = stop;
         self.remaining = remaining;
     }
 
-    /// Whether nothing has been recorded yet.
+    /// Returns whether the history has no entry yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.f.is_empty()
     }
 
-    /// Returns the number of sweeps recorded.
+    /// Returns the number of recorded sweeps.
     pub(crate) fn sweeps(&self) -> u32 {
         (self.f.len() as u32).saturating_sub(1)
     }
 
-    /// Returns the base objective before the first sweep and after each.
+    /// Returns the base objective before the first sweep and after each sweep.
     pub(crate) fn f(&self) -> &[f64] {
         &self.f
     }
 
-    /// Returns the latest base objective; NaN if none is recorded.
+    /// Returns the latest base objective; NaN for an empty history.
     pub(crate) fn last(&self) -> f64 {
         self.f.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// Returns the least base objective; NaN if none is recorded.
+    /// Returns the smallest base objective; NaN for an empty history.
     pub(crate) fn least(&self) -> f64 {
         self.f.get(self.best).copied().unwrap_or(f64::NAN)
     }
 
-    /// Returns all objectives, before the first sweep and after each.
+    /// Returns the tracked objectives before the first sweep and after each sweep.
     pub(crate) fn log(&self) -> &[Objectives] {
         &self.log
     }
 
-    /// Returns all objectives and drops the rest.
+    /// Returns the tracked objectives and drops all other data.
     pub(crate) fn into_log(self) -> Vec<Objectives> {
         self.log
     }
@@ -133,13 +131,12 @@ impl History {
         self.rule
     }
 
-    /// Returns the reason why the run has ended, if it has.
+    /// Returns the reason why the run has ended. `None` while the run continues.
     pub(crate) fn stop(&self) -> Option<Stop> {
         self.stop
     }
 
-    /// Returns the share of f that is estimated to be left to gain; `None` if there is no estimate. See
-    /// [`StopRule::remaining`].
+    /// Returns the estimated remaining gain as a share of f. `None` without an estimate; see [`StopRule::remaining`].
     pub(crate) fn remaining(&self) -> Option<f64> {
         self.remaining
     }

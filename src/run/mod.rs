@@ -1,5 +1,5 @@
-//! The control of a run: options, the steps of a plan, the stop rule, and the loop over sweeps. An [`Engine`] computes
-//! the sweeps, on the CPU or a device.
+//! The control of a run: the plan with its steps, the stop rule, corrections, checkpoints, and the loop over sweeps. An
+//! [`Engine`] computes the sweeps, on the CPU or a device.
 
 mod checkpoint;
 mod checkpoint_policy;

@@ -1,13 +1,13 @@
-//! The values of the objective by each metric.
+//! The values of the objective by the tracked metrics.
 
 use crate::metric::Metric;
 
-/// The objective f = (1/n) Σ q² (Park & Shontz, equation 1) by each of the metrics that were evaluated.
+/// The objective f = (1/n) Σ q² (Park & Shontz, equation 1) by each evaluated metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Objectives([f64; Metric::ALL.len()]);
 
 impl Objectives {
-    /// Makes objectives of which none has been evaluated yet.
+    /// Returns objectives without a value by any metric.
     pub(crate) fn untracked() -> Self {
         Self([f64::NAN; Metric::ALL.len()])
     }
@@ -17,17 +17,17 @@ impl Objectives {
         self.0[metric as usize] = value;
     }
 
-    /// Returns the value by each metric, NaN for those not evaluated.
+    /// Returns the objective by each metric, NaN for metrics that were not evaluated.
     pub(crate) fn values(&self) -> [f64; Metric::ALL.len()] {
         self.0
     }
 
-    /// Makes objectives of these values, NaN for those not evaluated.
+    /// Creates objectives from values by each metric, NaN for metrics that were not evaluated.
     pub(crate) fn of_values(values: [f64; Metric::ALL.len()]) -> Self {
         Self(values)
     }
 
-    /// Returns the objective by `metric`, if it was evaluated.
+    /// Returns the objective by `metric`. `None` if the objective was not evaluated.
     pub fn of(&self, metric: Metric) -> Option<f64> {
         Some(self.0[metric as usize]).filter(|f| !f.is_nan())
     }

@@ -1,4 +1,4 @@
-//! The plan of a run, the same for every engine: the step of each sweep, and the stop rule.
+//! The plan of a run, common to all engines: the step of each sweep, and the stop rule.
 
 use crate::metric::{Metric, Scheme};
 use crate::options::{Derivatives, Options, PNormExponent, Paper};
@@ -6,50 +6,50 @@ use crate::run::line_search::{self, LONGEST};
 use crate::run::step::Step;
 use crate::run::stop::StopRule;
 
-/// All parameters by which engines do the same sweeps.
+/// The parameters that determine the sweeps of a run on every engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The metrics of the sweeps, in turn.
+    /// Metrics of the sweeps, in turn.
     pub scheme: Scheme,
-    /// Over-relaxation by each metric, in the order of [`Metric::ALL`].
+    /// Over-relaxation factor by metric, in the order of [`Metric::ALL`].
     pub omega: [f64; Metric::ALL.len()],
     /// Number of sweeps before over-relaxation starts.
     pub plain_sweeps: u32,
-    /// The most Newton steps per visit of a vertex.
+    /// Largest number of Newton steps in one visit of a vertex.
     pub inner: u32,
-    /// How each metric is differentiated, in the order of [`Metric::ALL`].
+    /// Method of differentiation by metric, in the order of [`Metric::ALL`].
     pub derivatives: [Derivatives; Metric::ALL.len()],
-    /// The exponent of EDGE's p-norm.
+    /// Exponent of EDGE's p-norm, sweep by sweep.
     pub sharpness: PNormExponent,
     /// The rule by which the run ends.
     pub stop: StopRule,
-    /// Whether the history holds the objective of every metric, not of the base metric alone.
+    /// Whether the history holds the objective of every metric, or of the base metric alone.
     pub track_all: bool,
-    /// The shape guard of metrics without a barrier: no step may leave a triangle with an inverse mean ratio above
-    /// this, unless its patch already had a worse one. If the metric's own
-    /// [`shape_guard`](crate::metric::Properties::shape_guard) is smaller, that is used instead.
+    /// Shape guard of metrics without a barrier: the largest inverse mean ratio of a triangle after a step. A patch
+    /// that already had a worse triangle may keep a triangle as bad. A smaller
+    /// [`shape_guard`](crate::metric::Properties::shape_guard) of the metric replaces this number.
     pub shape_guard: f64,
-    /// The guard of all metrics: no step may leave a triangle with an inverse mean ratio above this, unless its patch
-    /// already had a worse one. Infinite for no guard.
+    /// Guard of all metrics: the largest inverse mean ratio of a triangle after a step. A patch that already had a
+    /// worse triangle may keep a triangle as bad. Infinite for no guard.
     pub worst_guard: f64,
-    /// How many times as long as Newton's a step by a metric with a barrier may be tried where nearly flat triangles make up most of
-    /// a patch's objective; 1 for never.
+    /// Upper limit of the factor by which steps of metrics with a barrier are lengthened, where nearly flat triangles
+    /// make up most of a patch's objective. 1 turns lengthening off.
     pub longest: f64,
-    /// Whether a penalty keeps sweeps by EDGE off the shape guard, as in runs with corrections.
+    /// Whether a penalty keeps sweeps by EDGE away from the shape guard, as in runs with corrections.
     pub is_guard_penalized: bool,
 }
 
 impl Plan {
-    /// Returns the plan of sweeps with these options, for code that drives sweeps itself. Ignores a
-    /// [`Goal`](crate::Goal), and corrections from coarser levels.
+    /// Returns the plan of sweeps with the given options, for code that drives sweeps itself. The plan has no
+    /// [`Goal`](crate::Goal) and no corrections from coarser levels.
     pub fn new(options: &Options) -> Self {
         Self::with(options, None, options.edge_norm.unwrap_or(PNormExponent::FIXED))
     }
 
-    /// Returns the plan of a run with these options, which ends when the base objective is below `target`, if a target is
-    /// given.
+    /// Returns the plan of a run with the given options. If `target` is given, the run ends when the base objective
+    /// falls below it.
     pub(crate) fn toward(options: &Options, target: Option<f64>) -> Self {
-        // Sweeps by EDGE that another metric judges are few, and by no p-norm that grows.
+        // If another metric judges sweeps by EDGE, such sweeps are few, so the exponent of the p-norm stays fixed.
         let is_corrected_edge = options.is_multilevel() && !options.scheme.base().is_smooth();
         let usual = match (is_corrected_edge, target) {
             (true, Some(_)) => PNormExponent::CORRECTED,
@@ -88,14 +88,14 @@ impl Plan {
         }
     }
 
-    /// Returns the step of a sweep; sweeps count from 1.
+    /// Returns the step of a sweep. Sweeps count from 1.
     pub fn step(&self, sweep: u32) -> Step {
         let metric = self.scheme.metric(sweep);
         let omega = if sweep <= self.plain_sweeps { 1.0 } else { self.omega[metric as usize] };
         self.step_with(metric, omega, self.sharpness.of(sweep))
     }
 
-    /// Lists all distinct steps that [`step`](Self::step) can return.
+    /// Returns all distinct steps that [`step`](Self::step) can return.
     pub(crate) fn steps(&self) -> Vec<Step> {
         let PNormExponent { first, last, .. } = self.sharpness;
         let mut steps = Vec::new();
@@ -117,7 +117,7 @@ impl Plan {
         self.step_with(self.scheme.base(), omega, self.sharpness.largest())
     }
 
-    /// Returns a step of `metric` with over-relaxation `omega`, and with `sharpness`, the log2 of EDGE's exponent.
+    /// Returns a step of `metric` with over-relaxation `omega`. `sharpness` is the binary logarithm of EDGE's exponent.
     pub(crate) fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> Step {
         let of_metric = match metric.properties().shape_guard {
             own if own.is_finite() => self.shape_guard.min(own),
@@ -137,20 +137,20 @@ impl Plan {
         }
     }
 
-    /// Returns this plan without a stop rule, for a run that the caller ends.
+    /// Returns the plan without a stop rule, for a run that the caller ends.
     pub(crate) fn endless(mut self) -> Self {
         self.stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
         self
     }
 
-    /// Whether every sweep lowers the base objective, so that the last state is the best. With finite differences it
-    /// does not, as the minimum that they find is slightly off.
+    /// Returns whether every sweep lowers the base objective, so that the last state is the best. Sweeps with finite
+    /// differences may raise the objective, as their minimum is slightly off.
     pub fn is_monotone(&self) -> bool {
         let base = self.scheme.base();
         self.scheme.is_monotone() && self.derivatives[base as usize] == Derivatives::Analytic
     }
 
-    /// Lists the metrics whose objective is evaluated after each sweep.
+    /// Returns the metrics whose objectives are evaluated after each sweep.
     pub fn tracked(&self) -> Vec<Metric> {
         if self.track_all { Metric::ALL.to_vec() } else { vec![self.scheme.base()] }
     }

@@ -1,16 +1,16 @@
-//! The bytes of a checkpoint: named records of numbers, lists and texts.
+//! The encoding of checkpoints: named records of numbers, lists and texts.
 
 use glam::DVec2;
 
 use crate::metric::Metric;
 use crate::run::objectives::Objectives;
 
-/// Writes numbers with their least byte first, lists after their length, and named records.
+/// Encodes little-endian numbers, lists after their length, and named records.
 #[derive(Default)]
 pub(crate) struct Writer(pub(crate) Vec<u8>);
 
 impl Writer {
-    /// Writes a record: its name, the length of its content, and the content that `write` writes.
+    /// Writes a record: its name, the length of its content in bytes, and the content written by `write`.
     pub(crate) fn record(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
         let mut content = Self::default();
         write(&mut content);
@@ -31,7 +31,7 @@ impl Writer {
         list.iter().for_each(|item| write(self, item));
     }
 
-    /// Writes a list of one number, or an empty list for `None`.
+    /// Writes an optional number as a list: empty for `None`, else with one entry.
     pub(crate) fn optional(&mut self, number: Option<f64>) {
         self.list(number.as_slice(), |out, number| out.real(*number));
     }
@@ -58,12 +58,12 @@ impl Writer {
     }
 }
 
-/// Reads the bytes that a [`Writer`] wrote. Every method returns `None` if the bytes are anything else.
+/// Decodes the bytes that a [`Writer`] wrote. Every method returns `None` if the bytes do not fit.
 #[derive(Clone, Copy)]
 pub(crate) struct Reader<'b>(pub(crate) &'b [u8]);
 
 impl<'b> Reader<'b> {
-    /// Reads records up to the end of the bytes.
+    /// Splits the rest of the bytes into records.
     pub(crate) fn records(mut self) -> Option<Records<'b>> {
         let mut records = Vec::new();
         while !self.0.is_empty() {
@@ -87,7 +87,7 @@ impl<'b> Reader<'b> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// Reads a number of 32 bits.
+    /// Reads a number that must fit 32 bits.
     pub(crate) fn count(&mut self) -> Option<u32> {
         u32::try_from(self.number()?).ok()
     }
@@ -104,7 +104,7 @@ impl<'b> Reader<'b> {
         self.number().map(f64::from_bits)
     }
 
-    /// Reads a list of items that each take at least `least` bytes, so that an impossible length is refused.
+    /// Reads a list. Each item takes at least `least` bytes, so a length that exceeds the rest of the bytes is refused.
     pub(crate) fn list<T>(
         &mut self,
         least: usize,
@@ -117,7 +117,7 @@ impl<'b> Reader<'b> {
         (0..length).map(|_| read(self)).collect()
     }
 
-    /// Reads a list of up to one item.
+    /// Reads an optional item: a list of at most one item.
     pub(crate) fn option<T>(
         &mut self,
         read: impl FnMut(&mut Self) -> Option<T>,
@@ -157,11 +157,11 @@ impl<'b> Reader<'b> {
     }
 }
 
-/// Named records that have not been read yet.
+/// The unread records of a checkpoint, with their names.
 pub(crate) struct Records<'b>(Vec<(&'b str, Reader<'b>)>);
 
 impl<'b> Records<'b> {
-    /// Reads the content of the record called `name` by `read`. `None` if the record is missing, or if `read` leaves bytes
+    /// Reads the content of the record `name` by `read`. `None` if the record is missing, or if `read` leaves bytes
     /// unread.
     pub(crate) fn read<T>(
         &mut self,
@@ -186,7 +186,7 @@ impl<'b> Records<'b> {
         }
     }
 
-    /// Succeeds if every record was read.
+    /// Returns `Some` if every record was read, and `None` otherwise.
     pub(crate) fn end(self) -> Option<()> {
         self.0.is_empty().then_some(())
     }

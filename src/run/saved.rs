@@ -1,72 +1,72 @@
-//! The state of a run between two sweeps, from which it can continue.
+//! The state of a run between two sweeps, from which the run can continue.
 
 use bytemuck::Pod;
 use glam::DVec2;
 
 use crate::run::objectives::Objectives;
 
-/// The name of the CPU engine in [`EngineState::engine`].
+/// Name of the CPU engine in [`EngineState::engine`].
 pub(crate) const CPU: &str = "cpu";
 
-/// The state of a run between two sweeps.
+/// The state of a run between two sweeps: log, corrections and engine.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Saved {
-    /// The objectives before the first sweep and after each.
+    /// Tracked objectives before the first sweep and after each sweep.
     pub(crate) log: Vec<Objectives>,
-    /// The share of f that is estimated to be left to gain.
+    /// Estimated remaining gain as a share of f. `None` without an estimate.
     pub(crate) remaining: Option<f64>,
-    /// The state of the corrections, if the run has any.
+    /// State of the corrections as words. `None` for a run of sweeps alone.
     pub(crate) corrections: Option<Vec<u64>>,
     pub(crate) engine: EngineState,
 }
 
 impl Saved {
-    /// Number of sweeps done.
+    /// Returns the number of completed sweeps.
     pub(crate) fn sweeps(&self) -> u32 {
         (self.log.len() as u32).saturating_sub(1)
     }
 }
 
-/// The state of the host and of the stages in a period: what they were when the period began.
+/// The state of the host and of its stages when a period began.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PeriodState {
-    /// The number of sweeps before the period.
+    /// Number of sweeps before the period.
     pub(crate) began: u32,
-    /// The positions before the period, normalized and in the order of the problem.
+    /// Positions before the period, normalized and in the order of the problem.
     pub(crate) before: Vec<DVec2>,
-    /// f by the base metric before the period.
+    /// Base objective f before the period.
     pub(crate) f_before: f64,
-    /// For each free vertex, whether sweeps are not to move it.
+    /// For each free vertex, whether sweeps leave the vertex at its position.
     pub(crate) held: Vec<bool>,
-    /// The last sweep on the device, after which the CPU continued; `None` if the CPU did not take over.
+    /// Last sweep on the device, after which the CPU continued. `None` if the engine has not changed.
     pub(crate) on_cpu_from: Option<u32>,
-    /// The name and the state of each stage, in the order in which the stages work.
+    /// Name and encoded state of each stage, in the order of their work.
     pub(crate) stages: Vec<(String, Vec<u8>)>,
 }
 
 /// The state of an engine between two sweeps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct EngineState {
-    /// [`CPU`], or the name of the adapter.
+    /// Name of the engine: [`CPU`], or the name of the adapter.
     pub(crate) engine: String,
-    /// The positions of all vertices, normalized and in the order of the problem.
+    /// Positions of all vertices, normalized and in the order of the problem.
     pub(crate) positions: Vec<DVec2>,
-    /// The positions in the best state, if that may differ from the last one.
+    /// Positions of the best state. `None` if every sweep lowers f.
     pub(crate) best: Option<Vec<DVec2>>,
-    /// The roots that the coarser levels were built from, and then those that they were fitted to, in order. Empty if
-    /// there are no levels, or if the state is not whole.
+    /// Roots from which the coarser levels were built, and then the roots to which the levels were fitted, in order.
+    /// Empty without levels, or if the state is not whole.
     pub(crate) roots: Vec<Vec<f32>>,
-    /// Named data that only an engine of the same kind can read.
+    /// Named data for engines of equal kind, such as secant pairs.
     pub(crate) own: Vec<(String, Vec<u8>)>,
 }
 
 impl EngineState {
-    /// Adds named data that only an engine of the same kind can read.
+    /// Adds named data for engines of the same kind.
     pub(crate) fn add<T: Pod>(&mut self, name: &str, values: &[T]) {
         self.own.push((name.to_owned(), bytemuck::cast_slice(values).to_vec()));
     }
 
-    /// Returns the data with this name, if they consist of `count` values.
+    /// Returns the data called `name`. `None` for an unknown name, or for data of another length than `count` values.
     pub(crate) fn own<T: Pod>(&self, name: &str, count: usize) -> Option<Vec<T>> {
         let (_, bytes) = self.own.iter().find(|(known, _)| known == name)?;
         let is_whole = bytes.len() == count.checked_mul(size_of::<T>())?;

@@ -1,15 +1,15 @@
 //! Acceleration of corrections by secant pairs: the scalars of the limited-memory BFGS method with two pairs.
 //!
-//! A secant pair is how far the free vertices moved from one correction to the next, s, and how the gradient g of Σ q²
-//! changed meanwhile, y. From two pairs and the correction M⁻¹ of the coarser levels, the two-loop recursion (Nocedal,
-//! Math. Comp. 35, 1980) makes a direction. It accounts for what the levels do not represent: stretched triangles, and
-//! vertices with many neighbors.
+//! A secant pair consists of the move s of the free vertices from one correction to the next, and of the change y of
+//! the gradient g of Σ q² meanwhile. From two pairs and the correction M⁻¹ of the coarser levels, the two-loop
+//! recursion (Nocedal, Math. Comp. 35, 1980) computes a direction. The direction accounts for properties that the
+//! levels do not represent: stretched triangles, and vertices with many neighbors.
 //!
-//! The direction is -(M⁻¹(g - Σ aᵢ yᵢ) + Σ cᵢ sᵢ). The functions here compute aᵢ and cᵢ from inner products; pair 0 is
-//! the newer one. `shaders/secants/sum_secants.wgsl` does the same on a device.
+//! The direction is -(M⁻¹(g - Σ aᵢ yᵢ) + Σ cᵢ sᵢ). The functions here compute aᵢ and cᵢ from inner products, where pair
+//! 0 is the newer one. `shaders/secants/sum_secants.wgsl` computes the same numbers on a device.
 
-/// A pair is used only if the slope along its step changed by at least this share of its value before. A smaller change
-/// is rounding.
+/// Smallest change of the slope along a pair's step, relative to the slope before, with which the pair is used. A
+/// smaller change is rounding.
 pub(crate) const LEAST_CURVATURE: f64 = 1e-3;
 
 /// Inner products of two secant pairs and the gradient.
@@ -17,15 +17,15 @@ pub(crate) const LEAST_CURVATURE: f64 = 1e-3;
 pub(crate) struct Products {
     /// s·g for each pair.
     pub(crate) along: [f64; 2],
-    /// s·y for each pair; 0 for a pair that is not used.
+    /// s·y for each pair; 0 for an unused pair.
     pub(crate) curvature: [f64; 2],
     /// s of the older pair times y of the newer pair.
     pub(crate) across: f64,
 }
 
 impl Products {
-    /// Makes the products of two pairs, with the curvature of the new pair set to 0 if it is not used. A curvature of 0
-    /// for the old pair means that it does not exist or is not used.
+    /// Creates the products of two pairs. If the new pair fails the test of [`LEAST_CURVATURE`], its curvature is set
+    /// to 0. The curvature of the old pair is 0 if the pair does not exist or is unused.
     pub(crate) fn new(along: [f64; 2], curvature: [f64; 2], across: f64) -> Self {
         let [new, old] = curvature;
         let slope_before = along[0] - new;
@@ -33,15 +33,15 @@ impl Products {
         Self { along, curvature: [if counts { new } else { 0.0 }, old], across }
     }
 
-    /// Returns the factors aᵢ of y in the vector that the levels are applied to.
+    /// Returns the factors aᵢ on yᵢ in the vector to which the levels are applied.
     pub(crate) fn before(&self) -> [f64; 2] {
         let newer = share(self.along[0], self.curvature[0]);
         let older = share(self.along[1] - newer * self.across, self.curvature[1]);
         [newer, older]
     }
 
-    /// Returns the factors cᵢ of s in the direction. `before` are the aᵢ, `corrected` the products of each y with the
-    /// result of the levels.
+    /// Returns the factors cᵢ on sᵢ in the direction. `before` has the aᵢ, and `corrected` the inner products of each
+    /// yᵢ with the result of the levels.
     pub(crate) fn after(&self, before: [f64; 2], corrected: [f64; 2]) -> [f64; 2] {
         let older = match self.curvature[1] {
             0.0 => 0.0,
@@ -55,7 +55,7 @@ impl Products {
     }
 }
 
-/// A product divided by a curvature, or 0 if the pair is not used.
+/// Returns a product divided by a curvature; 0 for an unused pair.
 fn share(product: f64, curvature: f64) -> f64 {
     if curvature == 0.0 { 0.0 } else { product / curvature }
 }
@@ -68,8 +68,7 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
-    /// The direction by the two-loop recursion, with the identity in place of the levels, computed by the functions
-    /// here.
+    /// Returns the direction by the two-loop recursion with the identity as M⁻¹.
     fn direction(pairs: [([f64; 3], [f64; 3]); 2], g: [f64; 3]) -> [f64; 3] {
         let [(s0, y0), (s1, y1)] = pairs;
         let products =
@@ -92,8 +91,7 @@ mod tests {
 
     #[test]
     fn two_pairs_of_a_quadratic_in_the_plane_give_newtons_step() {
-        // The Hessian is diag(4, 9, 1), and nothing moves along the third axis. The two steps are conjugate, as they
-        // are along axes.
+        // The Hessian is diag(4, 9, 1), and no vertex moves along the third axis. Steps along two axes are conjugate.
         let pairs = [([1.0, 0.0, 0.0], [4.0, 0.0, 0.0]), ([0.0, 1.0, 0.0], [0.0, 9.0, 0.0])];
         assert_eq!(direction(pairs, [8.0, -18.0, 5.0]), [-2.0, 2.0, -5.0]);
     }

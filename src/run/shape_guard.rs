@@ -1,4 +1,4 @@
-//! The guards of a run, which bound how far triangles may be flattened.
+//! The guards of a run: limits of the inverse mean ratio of triangles.
 
 use glam::DVec2;
 
@@ -7,9 +7,9 @@ use crate::options::Guard;
 use crate::parallel::map_parts;
 use crate::run::plan::Plan;
 
-/// Sets the guards of a run from these positions. The bound is the largest inverse mean ratio among the triangles with
-/// a free vertex. It applies to metrics without a barrier, which do not measure shape and could flatten a good mesh,
-/// and with [`Guard::Worst`] to all.
+/// Sets the guards of a run by the given positions. The bound is the largest inverse mean ratio among the triangles
+/// with a free vertex. The bound applies to metrics without a barrier, which do not measure shape and could flatten a
+/// good mesh. With [`Guard::Worst`], the bound applies to all metrics.
 pub(crate) fn set_guards(plan: &mut Plan, guard: Guard, problem: &Problem, positions: &[DVec2]) {
     let is_finite = |guard: f64| guard.is_finite();
     let metrics = plan.scheme.metrics();
@@ -22,7 +22,8 @@ pub(crate) fn set_guards(plan: &mut Plan, guard: Guard, problem: &Problem, posit
     }
 }
 
-/// Returns the largest inverse mean ratio among the triangles with a free vertex, infinite if one of them is inverted or flat.
+/// Returns the largest inverse mean ratio among the triangles with a free vertex. Infinite if such a triangle is
+/// inverted or flat.
 pub(crate) fn worst_movable(problem: &Problem, positions: &[DVec2]) -> f64 {
     let ratio = |t: &[u32; 3]| {
         if !problem.can_move(t) {

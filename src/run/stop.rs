@@ -1,4 +1,4 @@
-//! The stop rule.
+//! The stop rule: whether a run ends after a sweep, judged from the history of the base objective.
 
 use crate::metric::Scheme;
 
@@ -6,22 +6,23 @@ use crate::metric::Scheme;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stop {
-    /// The base objective has gone the share of the way to the desired one that the [`Goal`](crate::Goal) asks for.
+    /// The base objective has reached the value that the [`Goal`](crate::Goal) of the run asks for.
     Reached,
     /// The estimated distance to the limit is below the tolerance, or f no longer changes.
     Converged,
-    /// The base objective no longer improves: a goal is out of reach, or the sweeps of an alternating scheme lead away
+    /// The base objective no longer improves. A goal is out of reach, or the sweeps of an alternating scheme lead away
     /// from the optimum of the base metric.
     Stalled,
-    /// f no longer changes, but only because the shape guard holds vertices back. By the metric alone they would
-    /// flatten triangles further. [`Outcome::held_back`](crate::Outcome::held_back) is the number of these vertices.
+    /// f no longer changes, but only because the shape guard holds vertices back. By the metric alone, the vertices
+    /// would flatten triangles further. [`Outcome::held_back`](crate::Outcome::held_back) is the number of such
+    /// vertices.
     HeldBack,
-    /// [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps were done.
+    /// The run has done [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps.
     MaxSweeps,
     /// The [`Observer`](crate::Observer) ended the run.
     Canceled,
-    /// A sweep made f infinite or NaN, which no sweep should. The run went back to the state that was last saved, so
-    /// the sweeps after it are undone.
+    /// A sweep made f infinite or NaN, which indicates a defect. The run returned to its last saved state, and so undid
+    /// later sweeps.
     NotFinite,
 }
 
@@ -43,38 +44,38 @@ impl Stop {
 /// Decides after every sweep whether a run ends, from the base objective alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopRule {
-    /// The run ends when the base objective is below this.
+    /// Value of the base objective below which the run ends. `None` without a goal.
     pub target: Option<f64>,
-    /// The run ends when the estimated distance of f to its limit, relative to f, is below this. 0 turns this test off.
+    /// Estimated distance of f to its limit, relative to f, below which the run ends. 0 turns this test off.
     pub tolerance: f64,
-    /// The run ends after this many sweeps.
+    /// Largest number of sweeps, after which the run ends.
     pub max_sweeps: u32,
 }
 
-/// A change of f over a window below this share of f is rounding, not progress.
+/// Relative change of f over a window below which f counts as constant up to rounding.
 pub(crate) const NOISE: f64 = 1e-9;
-/// If f is above the best one by less than this share, it has not become worse: the evaluation of f on a device has
-/// such errors.
+/// Relative distance from the best f within which f has not become worse. Evaluations of f on a device have errors of
+/// this size.
 pub(crate) const JITTER: f64 = 1e-6;
-/// The least value relative to which shares of f are taken. By some metrics, such as AREA, f may go to 0, and its last
-/// digits are then settled by rounding alone.
+/// Smallest value of f relative to which shares of f are computed. By some metrics, such as AREA, f may go to 0, where
+/// rounding alone determines its last digits.
 pub(crate) const LEAST_SCALE: f64 = 1e-6;
-/// The value that rounding gives an f that should be 0, as by AREA: the mean square of relative errors of some 1e-16. A
-/// lower f below this is no gain.
+/// Absolute decrease of f that counts as rounding. If f should be 0, as by AREA, rounding leaves the mean square of
+/// relative errors of some 1e-16.
 pub(crate) const ROUNDING: f64 = 1e-28;
 
 impl StopRule {
-    /// Returns the longer of the two windows, in sweeps, from which the remaining distance is estimated. Both windows
-    /// are multiples of the scheme's period, so that sweeps by the same metrics are compared.
+    /// Returns the longer of the two windows, in sweeps, from which the remaining gain is estimated. Both windows are
+    /// multiples of the scheme's period, so that sweeps by equal metrics are compared.
     pub fn window(scheme: &Scheme) -> u32 {
         8u32.next_multiple_of(2 * scheme.period())
     }
 
-    /// Returns the reason why the run ends after the last sweep of `history`, or `None` if it continues. `history` is
-    /// the base objective before the first sweep and after each, `best` the index of the least, `window` the result of
-    /// [`Self::window`]. With an empty history the run continues.
+    /// Returns the reason why the run ends after the last sweep of `history`, or `None` if the run continues. `history`
+    /// has the base objective before the first sweep and after each sweep. `best` is the index of the smallest entry,
+    /// and `window` the result of [`Self::window`]. With an empty history, the run continues.
     ///
-    /// `shaders/finish.wgsl` has the same rule for runs that are judged on the device.
+    /// `shaders/finish.wgsl` implements the same rule for runs that are judged on the device.
     pub fn judge(&self, history: &[f64], best: usize, window: usize) -> Option<Stop> {
         let (last, f) = (history.len().checked_sub(1)?, *history.last()?);
         if self.target.is_some_and(|target| f < target) {
@@ -84,7 +85,7 @@ impl StopRule {
             let scale = f.max(LEAST_SCALE);
             let still = (history[last - window] - f).abs() <= NOISE * scale;
             if still || last.saturating_sub(best) >= 2 * window {
-                // f no longer changes, or no longer improves. Without a goal, no change is convergence.
+                // f no longer changes, or no longer improves. Without a goal, a constant f is convergence.
                 let level =
                     still || history.get(best).is_some_and(|&best| f - best <= JITTER * scale);
                 let done = level && self.target.is_none();
@@ -97,9 +98,9 @@ impl StopRule {
         (last as u32 >= self.max_sweeps).then_some(Stop::MaxSweeps)
     }
 
-    /// Estimates the share of f that is left to gain after the last sweep of `history`. It is twice the gain that
-    /// remains in a geometric decay, because the slowest modes do not show in a window. `None` if `history` is shorter
-    /// than two windows, or the gains do not decay.
+    /// Estimates the gain that remains after the last sweep of `history`, as a share of f. The estimate is twice the
+    /// remaining gain of a geometric decay, because the slowest modes do not show in a window. `None` if `history` is
+    /// shorter than two windows, or if the gains do not decay.
     pub fn remaining(&self, history: &[f64], window: usize) -> Option<f64> {
         let last = history.len().checked_sub(1)?;
         if last < window.saturating_mul(2) {
@@ -114,8 +115,8 @@ impl StopRule {
     }
 }
 
-/// Returns the gain that remains in a geometric decay, given the gains of two successive windows. Infinite if the gains
-/// do not decay.
+/// Returns the remaining gain of a geometric decay, given the gains of two successive windows. Infinite if the gains do
+/// not decay.
 fn remaining_gain(before: f64, gain: f64) -> f64 {
     if gain > 0.0 && gain < before { gain * gain / (before - gain) } else { f64::INFINITY }
 }

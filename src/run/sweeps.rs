@@ -1,4 +1,4 @@
-//! Runs of sweeps alone, by one metric or by several in turn.
+//! Runs of sweeps without corrections, by one metric or by several metrics in turn.
 
 use glam::DVec2;
 
@@ -9,7 +9,7 @@ use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::stop::Stop;
 
-/// Does up to `sweeps` further sweeps of the plan, or fewer if the run ends.
+/// Does up to `sweeps` further sweeps of the plan, fewer if the run ends.
 pub(crate) async fn advance(
     engine: &mut impl Engine,
     plan: &Plan,
@@ -22,7 +22,7 @@ pub(crate) async fn advance(
     engine.sweeps(&steps, history).await
 }
 
-/// A run of sweeps that its caller drives batch by batch, for benchmarks and experiments.
+/// A run that its caller drives batch by batch, for benchmarks and experiments.
 pub(crate) struct StepwiseRun<E> {
     engine: E,
     plan: Plan,
@@ -38,17 +38,17 @@ impl<E: Engine> StepwiseRun<E> {
 
 /// A run that its caller drives batch by batch, on the CPU or a device. All calls block.
 pub trait Stepwise {
-    /// Does up to `sweeps` further sweeps, or fewer if the run ends, and returns the objectives after each. The first
-    /// call also returns, in front, the objectives before the first sweep.
+    /// Does up to `sweeps` further sweeps, fewer if the run ends, and returns the objectives after each sweep. The
+    /// first call prepends the objectives of the initial positions.
     ///
     /// # Errors
     /// A [`GpuError`] if the device fails. The run is then lost.
     fn advance(&mut self, sweeps: u32) -> Result<Vec<Objectives>, GpuError>;
 
-    /// Returns the reason why the run has ended, if it has.
+    /// Returns the reason why the run has ended. `None` while the run can continue.
     fn stop(&self) -> Option<Stop>;
 
-    /// Returns the normalized positions of the best state so far, by the base metric.
+    /// Returns the normalized positions of the state with the smallest base objective so far.
     ///
     /// # Errors
     /// A [`GpuError`] if the device fails.

@@ -1,10 +1,9 @@
-//! Pauses between pieces of work on the CPU inside a future.
+//! Pauses in futures that do long work on the CPU.
 
 use std::future::poll_fn;
 use std::task::Poll;
 
-/// Lets the executor run other tasks before this future continues. If the caller blocks on the future, it continues at
-/// once.
+/// Lets the executor run other tasks before the future continues. A caller that blocks on the future sees no pause.
 pub(crate) async fn yield_now() {
     let mut yielded = false;
     poll_fn(|context| {

@@ -1,36 +1,36 @@
-//! Acceleration of rounds: extrapolates the last rounds to where further ones would lead.
+//! Acceleration of periods: extrapolates the results of the last periods toward their limit.
 
 use glam::DVec2;
 
 use crate::run::records::{Reader, Writer};
 use crate::slide::params::{Params, read_params, write_params};
 
-/// The most rounds that are stored.
+/// Largest number of stored periods.
 const MOST: usize = 6;
-/// Tikhonov term of Anderson's least squares, relative to the diagonal of the normal equations. Without the term, similar
-/// residuals would make the equations singular.
+/// Tikhonov term of Anderson's least squares, relative to the diagonal of the normal equations. Without the term,
+/// similar residuals would make the equations singular.
 const LEAST: f64 = 1e-10;
 
-/// The latest rounds, for Anderson's acceleration (D. G. Anderson, J. ACM 12, 1965) of the map from one round to the
-/// next. The results of the rounds are combined so that their changes along the curves cancel as far as possible.
+/// Results of the latest periods, for Anderson's acceleration (D. G. Anderson, J. ACM 12, 1965) of the map from one
+/// period to the next. A combination of the results makes their changes along the curves cancel as far as possible.
 #[derive(Default)]
 pub(crate) struct Acceleration(Vec<Past>);
 
-/// The result of a round.
+/// Parameters and positions at the end of one period.
 struct Past {
-    /// The change of each parameter in the round, divided by the edge length there.
+    /// Change of each parameter in the period, relative to the edge length at the vertex.
     change: Vec<f64>,
     params: Params,
     positions: Vec<DVec2>,
 }
 
 impl Acceleration {
-    /// Drops all rounds.
+    /// Drops all stored periods.
     pub(crate) fn forget(&mut self) {
         self.0.clear();
     }
 
-    /// Writes the stored rounds to a checkpoint.
+    /// Writes the stored periods to a checkpoint.
     pub(crate) fn save(&self, out: &mut Writer) {
         out.list(&self.0, |out, Past { change, params, positions }| {
             out.reals(change);
@@ -39,8 +39,8 @@ impl Acceleration {
         });
     }
 
-    /// Reads rounds from a checkpoint, of the curves that `params` belong to and of `vertices` vertices. `None` if they
-    /// are of other curves.
+    /// Reads stored periods from a checkpoint, for a mesh with `vertices` vertices and curves like those of `params`.
+    /// Returns `None` for counts of another mesh, and for numbers that are not finite.
     pub(crate) fn restored(
         params: &Params,
         vertices: usize,
@@ -58,8 +58,8 @@ impl Acceleration {
         (past.len() <= MOST).then_some(Self(past))
     }
 
-    /// Stores a round. Returns parameters and positions from which the next round may begin; the caller must check that
-    /// they are sound.
+    /// Stores a period and returns the combined parameters and positions, from which the next period may begin. The
+    /// caller must check that triangles and curves are valid there. `None` for the first period.
     pub(crate) fn next(
         &mut self,
         change: Vec<f64>,
@@ -92,12 +92,12 @@ impl Acceleration {
     }
 }
 
-/// Returns the weights of the columns whose weighted sum, added to `start`, has the least sum of squares. `None` if
-/// there are no columns.
+/// Returns the weights that minimize |`start` + weighted sum of `columns`|². `None` if `columns` is empty or a weight
+/// is not finite.
 fn least_squares(columns: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let count = columns.len();
-    // The normal equations, solved by Gaussian elimination. They are positive definite, as their diagonal is raised.
+    // The normal equations, solved by Gaussian elimination. Their raised diagonal makes them positive definite.
     let row = |i: usize| {
         let mut row: Vec<f64> = columns.iter().map(|column| dot(&columns[i], column)).collect();
         row[i] *= 1.0 + LEAST;
@@ -124,7 +124,7 @@ fn least_squares(columns: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// A linear map with slow and fast components. After as many rounds as it has components, the fixed point is found.
+    /// A linear map with slow and fast components. Three components need three periods before the fixed point is found.
     #[test]
     fn the_fixed_point_of_a_linear_map_is_found() {
         let rates = [0.9, -0.5, 0.3];

@@ -1,4 +1,4 @@
-//! The chains of vertices that curves pass through, from corner to corner.
+//! Chains of boundary and line edges from corner to corner, through which curves pass.
 
 use std::collections::BTreeSet;
 
@@ -8,25 +8,25 @@ use crate::slide::options::Slide;
 use crate::slide::partners::{Partner, Partners};
 use crate::topology::Topology;
 
-/// A curve turns at a vertex if the angle exceeds this, in radians, plus the possible effect of rounded coordinates.
+/// Angle in radians above which a curve turns at a vertex. The possible effect of rounded coordinates is added.
 const STRAIGHT: f64 = 1e-6;
 
-/// The vertices of a curve, in order.
+/// The vertices of a curve, in order along the curve.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chain {
-    /// The first and the last vertex do not move, unless the curve is closed.
+    /// Vertices as indices in the mesh. The two ends of an open curve are corners and stay fixed.
     pub(crate) vertices: Vec<u32>,
-    /// Whether the last vertex is joined to the first.
+    /// True for a chain without corners, whose last vertex is joined to the first by an edge.
     pub(crate) is_closed: bool,
-    /// For each edge, whether it is part of a straight run of several edges.
+    /// For each edge, true if the edge belongs to a straight run of two or more edges.
     pub(crate) straight: Vec<bool>,
-    /// The partners of the vertices, in the same order, if they form pairs with the vertices of another curve.
+    /// Partners of the vertices, in the order of `vertices`. `None` if the vertices have no partners on another curve.
     pub(crate) image: Option<Vec<u32>>,
 }
 
-/// Returns the chains with a vertex that may slide, in an order that depends only on the numbers of vertices, and the
-/// number of pairs that do not move because the motion of the others does not fit them. Of two chains whose vertices
-/// form pairs, only one is returned.
+/// Returns the chains with at least one sliding vertex, ordered by vertex indices. Of two chains whose vertices form
+/// pairs, only one is returned. The second result counts the pairs that stay because the common motion does not fit
+/// them.
 pub(crate) fn chains(
     points: &[[f64; 2]],
     topology: &Topology<'_>,
@@ -41,12 +41,12 @@ pub(crate) fn chains(
     let partners = Partners::new(&slide.periodic, points, shortest);
     let mut held = slide.held.clone();
     held.sort_unstable();
-    // The angle by which the curve turns at a vertex, if exactly one curve passes through it.
+    // The turn of the curve at a vertex. `None` unless exactly one curve passes through the vertex.
     let turn = |v: u32| match edges.at(v) {
         &[(_, a), (_, b)] => Some(turn_between(at(a), at(v), at(b))),
         _ => None,
     };
-    // Partners have to agree, even if rounding makes their curves differ.
+    // Partners must agree about corners, even if rounding makes their curves differ.
     let with_partner = |v: u32| std::iter::once(v).chain(partners.of(v).map(|to| to.vertex));
     let is_flat = |v: u32| with_partner(v).all(|v| turn(v).is_some_and(|turn| turn.is_flat()));
     let is_straight = |a: u32, b: u32| is_flat(a) || is_flat(b);
@@ -60,8 +60,8 @@ pub(crate) fn chains(
         }
     };
     let must_stay = |v: u32| partners.stays(v) || with_partner(v).any(is_corner_itself);
-    // Whether the curve at a vertex's partner continues to both sides as it does at the vertex, with vertices of the
-    // same pairs.
+    // Whether the curve at the partner continues to both sides like the curve at the vertex, with partners as
+    // neighbors.
     let is_matched = |v: u32, Partner { vertex: partner, motion }: Partner| {
         let goes_on = |from: u32, to: u32| {
             let pair = [at(from), at(to)];
@@ -87,7 +87,7 @@ pub(crate) fn chains(
             walked[v as usize] = true;
             vertices.push(v);
             let other = edges.at(v).iter().map(|&(_, other)| other).find(|&other| other != last);
-            // Two vertices share only one edge, so there is another vertex.
+            // Two vertices share at most one edge, so the vertex has another neighbor.
             let Some(next) = other else { break };
             (last, v) = (v, next);
         }
@@ -118,7 +118,7 @@ pub(crate) fn chains(
         let mut image: Option<Vec<u32>> =
             chain.vertices[inner..chain.vertices.len() - inner].iter().map(of).collect();
         if let (Some(image), false) = (&mut image, chain.is_closed) {
-            // The ends of the other chain: the neighbor nearest to where the motion takes the end of this one.
+            // Ends of the other chain: the neighbor nearest to the image of this chain's end under the motion.
             let end = |end: u32, last: u32| {
                 let Partner { vertex, motion } = partners.of(last)?;
                 let there = |v: &u32| at(*v).distance(motion.at(at(end)));
@@ -135,8 +135,8 @@ pub(crate) fn chains(
     (joined(chains, image), partners.unlike)
 }
 
-/// Assigns to each chain its image. Leaves out chains that are images of earlier ones, and chains that are their own
-/// image.
+/// Assigns partners to each chain. Leaves out chains of partners of an earlier chain, and chains whose partners are on
+/// the chain itself.
 fn joined(chains: Vec<Chain>, image: impl Fn(&Chain) -> Option<Vec<u32>>) -> Vec<Chain> {
     let inner = |vertices: &[u32], is_closed: bool| match is_closed {
         true => vertices.to_vec(),
@@ -163,11 +163,11 @@ fn joined(chains: Vec<Chain>, image: impl Fn(&Chain) -> Option<Vec<u32>>) -> Vec
     kept
 }
 
-/// The turn of a curve at a vertex.
+/// The turn of a curve at a vertex, unsigned.
 struct Turn {
-    /// The angle in radians, from 0 to π.
+    /// Angle in radians, from 0 to π.
     angle: f64,
-    /// The part of the angle that the rounding of coordinates may cause.
+    /// Largest angle in radians that the rounding of coordinates alone may cause.
     rounding: f64,
 }
 
@@ -185,7 +185,7 @@ fn turn_between(a: DVec2, v: DVec2, b: DVec2) -> Turn {
     Turn { angle: before.perp_dot(after).atan2(before.dot(after)).abs(), rounding }
 }
 
-/// Edges of curves, in both directions, ascending.
+/// Edges of curves as (start, end), in both directions, in ascending order.
 struct Edges(Vec<(u32, u32)>);
 
 impl Edges {
@@ -204,7 +204,7 @@ impl Edges {
         Self(edges)
     }
 
-    /// Returns the edges at a vertex.
+    /// Returns the edges that start at a vertex.
     fn at(&self, v: u32) -> &[(u32, u32)] {
         let start = self.0.partition_point(|&(from, _)| from < v);
         let count = self.0[start..].iter().take_while(|&&(from, _)| from == v).count();

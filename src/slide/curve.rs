@@ -1,33 +1,33 @@
-//! A curve through vertices: straight where they are on a line, a piecewise cubic elsewhere.
+//! Curves through the vertices of chains: straight along straight runs, and piecewise cubic elsewhere.
 
 use glam::DVec2;
 
 use crate::slide::chains::Chain;
 use crate::slide::options::Slide;
 
-/// The largest value of u (1 - u)² for u from 0 to 1.
+/// The maximum of u (1 - u)² over u from 0 to 1.
 const MOST: f64 = 4.0 / 27.0;
 
-/// A curve, in the unit of the mesh. A parameter identifies a point of it: the length of the lines between the given
-/// vertices up to there. On a closed curve, parameters that differ by its whole length identify the same point.
+/// A curve through given vertices, in the unit of the mesh. The parameter at a vertex is the summed length of the lines
+/// between the given vertices before. On a closed curve, parameters that differ by the period identify the same point.
 ///
-/// Between two given vertices the curve is a cubic over the line between them. Its slope at a vertex is that of the
-/// circle through the vertex and its two neighbors, or smaller where the curve would otherwise leave the line by more
-/// than the bound.
+/// Between two given vertices, the curve is a cubic over the line that joins them. The slope of the cubic at a vertex
+/// is the slope of the circle through the vertex and its two neighbors. A factor reduces both slopes of a cubic that
+/// would leave its line by more than the bound.
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
-    /// The given vertices. For a closed curve, the first is repeated at the end.
+    /// Positions of the given vertices. A closed curve repeats its first vertex at the end.
     knots: Vec<DVec2>,
-    /// The parameter of each knot.
+    /// Parameter of each knot, ascending from 0.
     params: Vec<f64>,
-    /// The slopes of each piece relative to its line, at its start and its end.
+    /// Slopes of each cubic relative to its line, at the start and at the end of the line.
     slopes: Vec<[f64; 2]>,
-    /// The largest allowed distance of each knot from the lines between vertices that have moved.
+    /// For each knot, the largest allowed distance from the lines between moved vertices.
     bounds: Vec<f64>,
     is_closed: bool,
 }
 
-/// A point of a curve, and its derivatives by the parameter.
+/// A point of a curve, with its first and second derivative by the parameter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) point: DVec2,
@@ -56,8 +56,8 @@ impl Curve {
             };
             let (a, b) = (lines[before], lines[after]);
             let turn = a.perp_dot(b).atan2(a.dot(b));
-            // The share of the turn that is between the line before and the tangent. Next to a straight run, the
-            // tangent has the run's direction.
+            // Share of the turn between the line before and the tangent. Next to a straight run, the tangent has the
+            // direction of the run.
             let share = match (straight[before], straight[after]) {
                 (true, _) => 0.0,
                 (false, true) => 1.0,
@@ -70,7 +70,7 @@ impl Curve {
             if straight[piece] {
                 return [0.0; 2];
             }
-            // At a corner, a piece takes the slope of its other end, like an arc of a circle.
+            // At a corner, a piece takes the negative slope of its other end, like an arc of a circle.
             let start = start.or(end.map(|end| -end)).unwrap_or(0.0);
             let end = end.unwrap_or(-start);
             let length = lines[piece].length();
@@ -88,7 +88,7 @@ impl Curve {
         Self { knots, params, slopes, bounds, is_closed: *is_closed }
     }
 
-    /// Makes the curve through the partners of a chain's vertices. It uses the parameters of the chain's own curve.
+    /// Returns the curve through the partners of a chain's vertices, with the parameters of the chain's own curve.
     pub(crate) fn of_partners(
         &self,
         points: &[[f64; 2]],
@@ -100,22 +100,22 @@ impl Curve {
         Self { params: self.params.clone(), ..Self::new(points, &chain, slide) }
     }
 
-    /// The parameters of the given vertices.
+    /// Returns the parameters of the given vertices, without the repeated vertex of a closed curve.
     pub(crate) fn params(&self) -> &[f64] {
         &self.params[..self.params.len() - usize::from(self.is_closed)]
     }
 
-    /// The length of the lines of a closed curve.
+    /// Returns the total length of the lines, which is the period of a closed curve.
     pub(crate) fn period(&self) -> f64 {
         self.params[self.params.len() - 1]
     }
 
-    /// Returns the parameter of the same point within the first turn around a closed curve.
+    /// Returns the equivalent parameter within the first turn around a closed curve, from 0 to the period.
     fn wrapped(&self, param: f64) -> f64 {
         if self.is_closed { param.rem_euclid(self.period()) } else { param }
     }
 
-    /// Returns the point of a parameter, with derivatives.
+    /// Returns the point at a parameter, with derivatives.
     pub(crate) fn at(&self, param: f64) -> Place {
         let param = self.wrapped(param);
         let after = self.params.partition_point(|&start| start <= param);
@@ -129,14 +129,14 @@ impl Curve {
         let slope = a * v * (1.0 - 3.0 * u) + b * u * (3.0 * u - 2.0);
         let bend = a * (6.0 * u - 4.0) + b * (6.0 * u - 2.0);
         Place {
-            // On a line parallel to an axis, one coordinate is exactly that of both ends.
+            // On a line parallel to an axis, one coordinate stays exactly equal to that of both ends.
             point: p + line * u + across * height,
             first: along + across * (slope / length),
             second: across * (bend / length / length),
         }
     }
 
-    /// Returns the given vertices strictly between two parameters, each with its parameter.
+    /// Returns the indices of the given vertices strictly between two parameters, each with its parameter.
     fn knots_between(&self, low: f64, high: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
         let period = if self.is_closed { self.period() } else { 0.0 };
         let turns = if self.is_closed { (low / period).floor() } else { 0.0 };
@@ -150,8 +150,8 @@ impl Curve {
         (first..).map(knot).take_while(move |&(_, param)| param < high)
     }
 
-    /// Whether the given vertices between `low` and `high` are near the two lines that join the points of `low`,
-    /// `middle` and `high`.
+    /// Returns whether the two lines that join the points at `low`, `middle` and `high` pass near all given vertices
+    /// between `low` and `high`. For each vertex, `bounds` has the largest allowed distance.
     pub(crate) fn is_near(&self, [low, middle, high]: [f64; 3]) -> bool {
         let [from, over, to] = [low, middle, high].map(|param| self.at(param).point);
         self.knots_between(low, high).all(|(knot, param)| {
@@ -160,8 +160,9 @@ impl Curve {
         })
     }
 
-    /// Returns how far a line between two points of the curve is from the lines between the given vertices: the largest
-    /// of the distances of the given vertices in between and of the line's first end.
+    /// Returns the larger of two distances, in the unit of the mesh. One is the largest distance of the given vertices
+    /// between `low` and `high` from the line that joins the points at both parameters. The other is the distance of
+    /// the line's start from the line between the two given vertices around `low`.
     pub(crate) fn off(&self, low: f64, high: f64) -> f64 {
         let ends = [low, high].map(|param| self.at(param).point);
         let far = self.knots_between(low, high).map(|(knot, _)| distance(self.knots[knot], ends));
@@ -176,7 +177,7 @@ impl Curve {
     pub(crate) fn find(&self, point: DVec2, vertex: usize, tolerance: f64) -> Option<f64> {
         let pieces = self.slopes.len();
         let steps = if self.is_closed { pieces / 2 + 1 } else { pieces };
-        // Outward from the given vertex, alternating forward and back.
+        // Pieces in the order of their distance from the given vertex, alternately forward and back.
         let outward = (0..=steps as isize).flat_map(|k| [k, -1 - k]);
         outward.map(|k| vertex as isize + k).find_map(|at| {
             let turns = at.div_euclid(pieces as isize);
@@ -195,7 +196,7 @@ impl Curve {
     }
 }
 
-/// Returns the distance of a point from the line segment between two others.
+/// Returns the distance of a point from the line segment between two other points.
 fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
     let line = to - from;
     let share = ((point - from).dot(line) / line.length_squared()).clamp(0.0, 1.0);
@@ -206,7 +207,7 @@ fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A curve from corner to corner: a straight run along y = 1, and then an arc around (3, 0) of radius 1.
+    /// Returns an open curve: a straight run along y = 1, and then an arc of radius 1 around (3, 0).
     fn slot() -> (Curve, Vec<[f64; 2]>) {
         let mut points: Vec<[f64; 2]> = (0..4).map(|k| [f64::from(k), 1.0]).collect();
         points.extend((1..=6).map(|k| {

@@ -1,5 +1,4 @@
-//! Sliding vertices: vertices of the boundary and of lines inside the domain move along the curve that they are on,
-//! from corner to corner.
+//! Sliding vertices: vertices of the boundary and of lines inside the domain move along curves, from corner to corner.
 
 mod acceleration;
 mod chains;

@@ -1,4 +1,4 @@
-//! Visits of vertices on curves: safeguarded Newton steps along the curve.
+//! Visits of sliding vertices: safeguarded Newton steps along a curve.
 
 use glam::DVec2;
 
@@ -14,7 +14,7 @@ use crate::slide::side::Side;
 /// Limit of a step, as a share of the parameter distance to the neighboring vertex on the curve.
 const NEAREST: f64 = 0.8;
 
-/// The parameters of a vertex and its neighbors on a curve.
+/// Curve parameters of a vertex (`at`) and of its neighbors before (`low`) and after (`high`).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Window {
     pub(crate) low: f64,
@@ -25,39 +25,39 @@ pub(crate) struct Window {
 /// The vertex that a visit moves.
 #[derive(Clone, Copy)]
 pub(crate) struct Visited<'a> {
-    /// The curves of the vertex and, if the vertex has a partner, of the partner.
+    /// The curve of the vertex. If the vertex has a partner, the second side is the curve of the partner.
     pub(crate) sides: &'a [Side],
-    /// The index of the vertex in its track.
+    /// Index of the vertex in its track.
     pub(crate) k: usize,
     pub(crate) window: Window,
     pub(crate) reach: Reach,
 }
 
-/// The rule by which vertices move.
+/// The objective and the bounds by which vertices slide.
 #[derive(Clone, Copy)]
 pub(crate) struct Rule<'a> {
     pub(crate) step: &'a Step,
-    /// Lower limit of triangles' altitudes, normalized; 0 for no limit.
+    /// Lower limit of the altitudes of triangles, in normalized units; 0 for no limit.
     pub(crate) floor: f64,
 }
 
-/// Limits the distance of a vertex from its given position.
+/// Limit of the distance between a sliding vertex and its given position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
-    /// The parameter of the given position.
+    /// Curve parameter of the given position.
     pub(crate) start: f64,
-    /// The largest distance from the given position, in the unit of the mesh; infinite for no bound.
+    /// Largest distance from the given position, in the unit of the mesh; infinite for no bound.
     pub(crate) most: f64,
 }
 
 impl Reach {
-    /// Whether the curve point of a parameter is in reach.
+    /// Returns whether the curve point at a parameter is in reach of the given position.
     pub(crate) fn allows(self, curve: &Curve, at: f64) -> bool {
         self.most.is_infinite()
             || curve.at(at).point.distance(curve.at(self.start).point) <= self.most
     }
 
-    /// Returns a step from a parameter, shortened so that it stays in reach if the curve is straight.
+    /// Returns a step `way` from the parameter `at`, shortened to end in reach if the curve is straight.
     fn shortened(self, way: f64, at: f64) -> f64 {
         if self.most.is_infinite() {
             return way;
@@ -67,13 +67,13 @@ impl Reach {
     }
 }
 
-/// The share of the distance from the given position that rounding may add.
+/// Share by which [`Reach::most`] is reduced, so that rounding cannot exceed the bound.
 const ROUNDING: f64 = 1e-9;
 
-/// Takes one Newton step along the curve by [`SearchRule::CURVE`]. No altitude falls below the floor of `rule`. Returns
-/// the new parameter if the vertices move. The step moves the vertex `k` of a curve, or both vertices `k` of two curves
-/// that share their parameters. For two curves the objective is the sum over both patches, and both patches must allow
-/// the step.
+/// Takes one Newton step along the curve by [`SearchRule::CURVE`]. Returns the new parameter, or `None` if the vertex
+/// stays. No altitude falls below the floor of `rule`. A step moves vertex `k` of a curve, or both vertices `k` of two
+/// curves with common parameters. For two curves, the objective is the sum over both patches, and both patches must
+/// allow the step.
 pub(crate) fn visit(
     problem: &Problem,
     positions: &[DVec2],
@@ -95,16 +95,16 @@ pub(crate) fn visit(
     (has_stepped && to != at && low < to && to < high).then_some(to)
 }
 
-/// The visited vertex, or its partner, on its curve.
+/// The visited vertex or its partner, with its curve and patch.
 struct OnCurve<'a> {
     side: &'a Side,
-    /// The present position of the vertex.
+    /// Present position of the vertex, normalized.
     here: DVec2,
     patch: FanPatch,
 }
 
-/// The summed objective of a vertex and its partner, as a function of their common curve parameter. Positions of the
-/// search are (parameter, 0).
+/// The summed objective of a vertex and its partner, as a function of the common curve parameter. The search works in
+/// points (parameter, 0).
 struct CurveObjective<'a> {
     problem: &'a Problem,
     on_curves: Vec<OnCurve<'a>>,
@@ -137,7 +137,7 @@ impl Objective<f64> for CurveObjective<'_> {
         Dual { value, gradient: [slope, 0.0], hessian: [curvature, 0.0, 0.0] }
     }
 
-    /// Returns the Newton step by the parameter, shortened to keep the order of the vertices on the curve.
+    /// Returns the Newton step of the parameter, shortened so that vertices keep their order on the curve.
     fn direction(&self, here: &Dual, _: f64) -> Direction<f64> {
         let Window { low, at, high } = self.window;
         let ([slope, _], [curvature, ..]) = (here.gradient, here.hessian);

@@ -1,31 +1,32 @@
-//! The options of sliding: which vertices slide, and how far they may leave the given curve.
+//! The options of sliding: lines, corners, periodic pairs, and the distance that vertices may leave the given curves.
 
 use crate::error::{MeshError, SmoothError};
 use crate::options::OptionRange;
 use crate::periodic::Periodic;
 
-/// Which vertices slide along the curve they are on, and how curves are continued between their vertices; set by
+/// The vertices that slide along curves, and the form of the curves between vertices; set by
 /// [`Smoother::set_slide`](crate::Smoother::set_slide).
 ///
-/// Curves are chains of edges of the boundary and of [`lines`](Self::lines). Corners do not move. These are the ends of
-/// curves, vertices where more than two such edges meet, [`held`](Self::held) vertices, and vertices at which a curve
-/// turns by more than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight runs
-/// stay straight; elsewhere vertices move along a piecewise cubic through the given positions of the vertices.
+/// Curves are chains of edges of the boundary and of [`lines`](Self::lines). Corners do not move. Corners are the ends
+/// of curves, vertices where more than two edges of curves meet, [`held`](Self::held) vertices, and vertices where a
+/// curve turns by more than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight
+/// runs stay straight. Elsewhere, vertices move along a piecewise cubic through the given positions of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
-    /// A vertex at which a curve turns by more than this is a corner. In degrees, from 0 to 180.
+    /// Turn of a curve, in degrees from 0 to 180, above which a vertex is a corner.
     pub corner_angle: f64,
-    /// The largest distance, in the unit of the mesh, of a vertex from the lines between the given vertices, and of a
-    /// given vertex from the lines between vertices that have moved. `None` for a tenth of the edge there.
+    /// Largest distance, in the unit of the mesh, between given and moved lines: of a moved vertex from the lines
+    /// between given vertices, and of a given vertex from the lines between moved vertices. `None` for a tenth of the
+    /// local edge length.
     pub hausdorff: Option<f64>,
-    /// Edges of triangles that are parts of curves in addition to those of the boundary: between regions, or on lines
-    /// inside a region. Pairs that are not edges, and edges with a free vertex, are ignored.
+    /// Edges of curves besides the boundary: between regions, or on lines inside a region. Pairs that are not edges of
+    /// triangles are ignored, and so are edges with a free vertex.
     pub lines: Vec<[u32; 2]>,
-    /// Vertices that do not slide. In any order, repeats allowed.
+    /// Fixed vertices that do not slide, in any order. Repeats are allowed.
     pub held: Vec<u32>,
-    /// Pairs of vertices that slide together: either both slide, so that the motion still takes one to the other, or
-    /// neither. Vertices that no motion fits, or that are in several pairs, do not move. [`Self::pair_sides`] and
-    /// [`Self::pair_by`] find pairs.
+    /// Pairs of vertices that slide together, so that the motion maps one partner to the other throughout a run. If one
+    /// partner cannot slide, neither moves. Vertices also stay if no motion fits their pair, or if they are in several
+    /// pairs. [`Self::pair_sides`] and [`Self::pair_by`] find pairs.
     pub periodic: Vec<Periodic>,
 }
 
@@ -37,12 +38,12 @@ impl Default for Slide {
 }
 
 impl Slide {
-    /// Returns the bound on the distance from an edge of the given length, in the unit of the mesh.
+    /// Returns the bound on the distance from a line whose edge has the length `edge`, in the unit of the mesh.
     pub(crate) fn bound(&self, edge: f64) -> f64 {
         self.hausdorff.unwrap_or(0.1 * edge)
     }
 
-    /// Returns all data as words, by whose hash a checkpoint tells the curves of its run.
+    /// Returns all data as words. Checkpoints store a hash of the words, and are refused for other curves.
     pub(crate) fn words(&self) -> Vec<u64> {
         let Self { corner_angle, hausdorff, lines, held, periodic } = self;
         let mut words = vec![corner_angle.to_bits(), hausdorff.unwrap_or(-1.0).to_bits()];
@@ -60,7 +61,7 @@ impl Slide {
         words
     }
 
-    /// Checks the ranges of numbers, and that all listed vertices exist.
+    /// Checks the ranges of the numbers, and the indices of all listed vertices.
     pub(crate) fn check(&self, vertices: usize) -> Result<(), SmoothError> {
         let pairs = self.periodic.iter().flat_map(|periodic| periodic.pairs.as_flattened());
         let mut listed = self.held.iter().chain(self.lines.as_flattened()).chain(pairs);

@@ -1,4 +1,4 @@
-//! Finds pairs of vertices from their positions.
+//! Finds periodic pairs of vertices from positions on the boundary.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use crate::slide::partners::Partners;
 use crate::slide::rigid::Rigid;
 use crate::topology::Topology;
 
-/// The direction along which vertices are sorted for the search. It is oblique to the axes and to other usual
-/// directions of sides. Its length is at most 1.
+/// Direction along which the search sorts vertices, with a length of at most 1. The direction is oblique to the axes
+/// and to other usual directions of sides.
 const ACROSS: DVec2 = DVec2::new(0.796, 0.605);
 
 impl Slide {
-    /// Adds the pairs of boundary vertices such that the motion takes the first vertex to the position of the second.
-    /// `points` are the positions of all vertices. Returns the number of pairs found: 0 if the motion is neither a
-    /// translation nor a rotation, or moves no vertex.
+    /// Adds the pairs of boundary vertices of which `motion` maps the first to the position of the second. `points` are
+    /// the positions of all vertices. Returns the number of pairs found: 0 if the motion is neither a translation nor a
+    /// rotation, or moves no vertex.
     pub fn pair_by(
         &mut self,
         topology: &Topology<'_>,
@@ -36,10 +36,11 @@ impl Slide {
         found
     }
 
-    /// Adds the pairs of vertices on two sides of the boundary, if a translation or rotation takes all vertices of one
-    /// side to those of the other, and the inside at one side to the outside at the other. `points` are the positions
-    /// of all vertices. The vertices of a side may be in any order; those that are not on the boundary are ignored.
-    /// Returns the number of pairs found, 0 if there is no such motion.
+    /// Adds the pairs of vertices on two sides of the boundary, by a motion found from the sides. A translation or
+    /// rotation must map all vertices of the first side to vertices of the second side. Triangles at the first side
+    /// must then lie outside the second side. `points` are the positions of all vertices. Each side may list its
+    /// vertices in any order. Vertices inside the mesh are ignored. Returns the number of pairs found, 0 if no such
+    /// motion exists.
     pub fn pair_sides(
         &mut self,
         topology: &Topology<'_>,
@@ -52,7 +53,7 @@ impl Slide {
         if from.len() != to.len() || ahead.is_empty() {
             return 0;
         }
-        // Along the other side the boundary runs in the opposite direction.
+        // Along the other side, the boundary runs in the opposite direction.
         back.iter_mut().for_each(|run| run.reverse());
         let run = ahead.swap_remove(0);
         let matching = back.iter().filter(|other| other.len() == run.len());
@@ -75,11 +76,11 @@ impl Slide {
     }
 }
 
-/// The boundary of a mesh.
+/// Positions and order of the boundary vertices of a mesh.
 struct Boundary<'p> {
     points: &'p [[f64; 2]],
-    /// For each vertex the next one along the boundary, with the mesh on the left, and the length of the shorter edge
-    /// at the vertex. If several boundaries meet at a vertex, any of them.
+    /// For each vertex, the next vertex along the boundary, with the mesh on the left, and the length of the shorter
+    /// edge at the vertex. Where several boundaries meet, the next vertex is on any of them.
     next: BTreeMap<u32, (u32, f64)>,
 }
 
@@ -105,12 +106,12 @@ impl<'p> Boundary<'p> {
         self.points[vertex as usize].into()
     }
 
-    /// Returns the length of the shorter boundary edge at a vertex.
+    /// Returns the length of the shorter boundary edge at a vertex, 0 for vertices inside.
     fn edge(&self, vertex: u32) -> f64 {
         self.next.get(&vertex).map_or(0.0, |&(_, edge)| edge)
     }
 
-    /// Returns those of the given vertices that are on the boundary, ascending, each once.
+    /// Returns the given vertices that are on the boundary, in ascending order and without repeats.
     fn listed(&self, vertices: &[u32]) -> Vec<u32> {
         let mut listed: Vec<u32> =
             vertices.iter().copied().filter(|v| self.next.contains_key(v)).collect();
@@ -119,8 +120,8 @@ impl<'p> Boundary<'p> {
         listed
     }
 
-    /// Returns the runs of consecutive boundary vertices, from end to end, formed by the given vertices, which are
-    /// ascending. Closed runs are left out.
+    /// Returns the open runs of consecutive boundary vertices among the given ones, each from end to end. `listed` must
+    /// be ascending. Closed runs are left out.
     fn runs(&self, listed: &[u32]) -> Vec<Vec<u32>> {
         let after = |v: u32| {
             let &(next, _) = self.next.get(&v)?;
@@ -136,7 +137,8 @@ impl<'p> Boundary<'p> {
         starts.map(run).collect()
     }
 
-    /// Returns the pairs of a vertex in `from` and one in `to` such that the motion takes the first to the second.
+    /// Returns pairs of a vertex of `from` and the vertex of `to` nearest to its image under the motion, within the
+    /// tolerance.
     fn pairs(&self, motion: Rigid, from: &[u32], to: &[u32]) -> Vec<[u32; 2]> {
         let along = |point: DVec2| point.dot(ACROSS);
         let mut sorted: Vec<(f64, u32)> = to.iter().map(|&v| (along(self.at(v)), v)).collect();

@@ -2,7 +2,7 @@
 
 use crate::run::records::{Reader, Writer};
 
-/// The parameters of the vertices of each curve. Two curves whose vertices form pairs share them.
+/// Curve parameters of the vertices, one list for each curve. Two curves whose vertices form pairs share a list.
 pub(crate) type Params = Vec<Vec<f64>>;
 
 /// Writes parameters to a checkpoint.
@@ -10,8 +10,8 @@ pub(crate) fn write_params(params: &Params, out: &mut Writer) {
     out.list(params, |out, of_curve| out.reals(of_curve));
 }
 
-/// Reads parameters from a checkpoint. `None` if a parameter is not finite, or if a curve has another number of
-/// parameters than in `like`.
+/// Reads parameters from a checkpoint. Returns `None` if a parameter is not finite, or if `like` has lists of other
+/// lengths.
 pub(crate) fn read_params(like: &Params, from: &mut Reader<'_>) -> Option<Params> {
     let params = from.list(8, Reader::reals)?;
     let counts = |params: &Params| params.iter().map(Vec::len).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! The pairs of vertices that slide together, and the vertices of pairs that do not move.
+//! Pairs of vertices that slide together, and the vertices that stay because of their pairs.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,29 +7,29 @@ use glam::DVec2;
 use crate::periodic::Periodic;
 use crate::slide::rigid::Rigid;
 
-/// The other vertex of a pair, and the motion that takes this one to it.
+/// The partner of a vertex, and the motion that maps the vertex to its partner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Partner {
     pub(crate) vertex: u32,
     pub(crate) motion: Rigid,
 }
 
-/// The pairs of a mesh.
+/// The pairs of a mesh, checked for a common motion.
 #[derive(Debug, Default)]
 pub(crate) struct Partners {
     links: BTreeMap<u32, Vec<Partner>>,
-    /// Vertices that do not move, as no motion fits their pair or they are in several pairs.
+    /// Vertices that stay, because no motion fits their pair or because they are in several pairs.
     stay: BTreeSet<u32>,
-    /// Number of pairs that the motion of the others does not fit.
+    /// Number of pairs that the common motion does not fit.
     pub(crate) unlike: usize,
 }
 
 impl Partners {
-    /// How far the second vertex of a pair may be from where the motion takes the first, as a share of the edges there.
+    /// Largest distance of a vertex from the image of its partner, as a share of the shorter local edge.
     pub(crate) const AGREE: f64 = 1e-4;
 
-    /// Checks the given pairs of vertices at `points`. `edge` returns the length of a curve's edges at a vertex, and 0
-    /// for a vertex that is on no curve.
+    /// Checks the given pairs of vertices at `points`. `edge` returns the length of the shortest curve edge at a
+    /// vertex, and 0 for a vertex on no curve.
     pub(crate) fn new(
         periodic: &[Periodic],
         points: &[[f64; 2]],
@@ -50,7 +50,7 @@ impl Partners {
                         partners.link(b, Partner { vertex: a, motion: motion.inverse() });
                     }
                     None => {
-                        // A vertex that is on no curve does not slide, so it does not affect other pairs.
+                        // A vertex on no curve does not slide, so it does not affect other pairs.
                         partners.unlike += 1;
                         partners.stay.extend([a, b]);
                     }
@@ -70,8 +70,7 @@ impl Partners {
         }
     }
 
-    /// Adds vertices that are in several pairs to those that do not move, and then all partners of vertices that do not
-    /// move.
+    /// Adds vertices of several pairs to the vertices that stay, and then the partners of all vertices that stay.
     fn settle(&mut self) {
         let several = self.links.iter().filter(|(_, links)| links.len() > 1);
         self.stay.extend(several.map(|(&vertex, _)| vertex));
@@ -85,22 +84,22 @@ impl Partners {
         }
     }
 
-    /// Whether a vertex does not move because of its pairs.
+    /// Returns whether pairs keep a vertex from moving.
     pub(crate) fn stays(&self, vertex: u32) -> bool {
         self.stay.contains(&vertex)
     }
 
-    /// Returns the partner of a vertex, if it has one.
+    /// Returns the first partner of a vertex, or `None`.
     pub(crate) fn of(&self, vertex: u32) -> Option<Partner> {
         self.links.get(&vertex)?.first().copied()
     }
 
-    /// Whether two vertices are a pair.
+    /// Returns whether two vertices form a pair.
     pub(crate) fn are_pair(&self, a: u32, b: u32) -> bool {
         self.links.get(&a).into_iter().flatten().any(|link| link.vertex == b)
     }
 
-    /// Whether the motion takes the first point to the second, within the tolerance for pairs at edges of this length.
+    /// Returns whether the motion maps the first point to the second, within [`Self::AGREE`] times the length `edge`.
     pub(crate) fn agree(motion: Rigid, pair: [DVec2; 2], edge: f64) -> bool {
         motion.takes(pair, Self::AGREE * edge)
     }

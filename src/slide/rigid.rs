@@ -1,21 +1,21 @@
-//! Rigid motions of the plane, found from pairs of points.
+//! Rigid motions of the plane, fitted to pairs of points.
 
 use glam::DVec2;
 
 use crate::periodic::Motion;
 
-/// How far the columns of a given motion may be from those of a rigid one.
+/// Tolerance within which the columns of a given matrix must be orthonormal.
 const RIGID: f64 = 1e-6;
-/// The most pairs from which candidates for a motion are made.
+/// Largest number of pairs from which candidate motions are made.
 const SAMPLES: usize = 16;
 
-/// A translation or a rotation.
+/// A translation or a rotation of the plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rigid {
-    /// Cosine and sine of the angle.
+    /// Cosine and sine of the rotation angle.
     turn: DVec2,
     from: DVec2,
-    /// The point to which `from` is moved.
+    /// Image of the point `from`.
     to: DVec2,
 }
 
@@ -24,16 +24,17 @@ impl Rigid {
         Self { turn: DVec2::X, from, to }
     }
 
-    /// Returns the motion that takes two points to two others, if their distances are the same within the tolerance.
+    /// Returns the motion that maps `a` to `b` and `c` to `d`. `None` if the distance from `a` to `c` differs from that
+    /// of their images by more than the tolerance.
     fn through([a, b]: [DVec2; 2], [c, d]: [DVec2; 2], tolerance: f64) -> Option<Self> {
         let (before, after) = (c - a, d - b);
         let is_rigid = (before.length() - after.length()).abs() <= tolerance;
-        // The quotient of the two vectors as complex numbers.
+        // Quotient of the two vectors as complex numbers.
         let turn = DVec2::new(before.dot(after), before.perp_dot(after)).try_normalize()?;
         is_rigid.then_some(Self { turn, from: a, to: b })
     }
 
-    /// Converts a given motion, if it is rigid.
+    /// Converts a matrix. `None` if the matrix is not finite, or not a translation or rotation within [`RIGID`].
     pub(crate) fn of([x, y]: Motion) -> Option<Self> {
         let [first, second] = [0, 1].map(|k| DVec2::new(x[k], y[k]));
         let is_rigid =
@@ -46,7 +47,7 @@ impl Rigid {
         })
     }
 
-    /// Returns the point to which a point is moved.
+    /// Returns the image of a point.
     pub(crate) fn at(self, point: DVec2) -> DVec2 {
         self.to + self.turn.rotate(point - self.from)
     }
@@ -56,9 +57,9 @@ impl Rigid {
         Self { turn: DVec2::new(self.turn.x, -self.turn.y), from: self.to, to: self.from }
     }
 
-    /// Returns the motion that takes the first point to the second for the most pairs, within the tolerance of each.
-    /// Candidates are the given motion, then translations of single pairs, then motions through two pairs; of equally
-    /// good ones the first is taken.
+    /// Returns the motion that fits most pairs: it maps the first point to the second within the tolerance of the pair.
+    /// Candidates are the given motion, translations by single pairs, and motions through two pairs. The first of
+    /// several equally good candidates wins. `None` without candidates.
     pub(crate) fn of_pairs(given: Option<Motion>, pairs: &[([DVec2; 2], f64)]) -> Option<Self> {
         let count = pairs.len();
         let step = count.div_ceil(SAMPLES).max(1);
@@ -82,7 +83,7 @@ impl Rigid {
         best.map(|(_, motion)| motion)
     }
 
-    /// Whether the motion takes the first point of a pair to the second, within its tolerance.
+    /// Returns whether the motion maps the first point of a pair to the second within a distance of `tolerance`.
     pub(crate) fn takes(self, pair: [DVec2; 2], tolerance: f64) -> bool {
         let [from, to] = pair;
         self.at(from).distance(to) <= tolerance
@@ -100,7 +101,7 @@ mod tests {
         let there = Rigid::of(matrix).unwrap();
         let points = (0..40).map(|k| DVec2::new(f64::from(k), f64::from(k % 7)));
         let mut pairs: Vec<_> = points.map(|p| ([p, there.at(p)], 1e-9)).collect();
-        // A few pairs do not fit, and the very first is one of them.
+        // Three of forty pairs do not fit, among them the first pair.
         for k in [0, 16, 21] {
             pairs[k].0[1] += DVec2::new(0.1, 0.0);
         }

@@ -1,4 +1,4 @@
-//! Curves with the vertices on them.
+//! A curve together with the vertices on it.
 
 use crate::layout::Problem;
 use crate::patch::Fan;
@@ -7,18 +7,19 @@ use crate::slide::curve::{Curve, Place};
 use crate::slide::options::Slide;
 use crate::topology::Topology;
 
-/// A curve and its vertices, in order. Only vertices with a fan slide: all except the ends of a curve that is not
-/// closed.
+/// A curve and its vertices, in order along the curve. Only vertices with a fan slide: all vertices of a closed curve,
+/// and all but the two ends of an open curve.
 #[derive(Clone, Debug)]
 pub(crate) struct Side {
     pub(crate) curve: Curve,
-    /// The numbers of the vertices in the mesh.
+    /// Indices of the vertices in the mesh.
     pub(crate) vertices: Vec<u32>,
     pub(crate) fans: Vec<Option<Fan>>,
 }
 
 impl Side {
-    /// Makes the curve of a chain and, if the chain has partners, the curve of these, which shares the parameters.
+    /// Returns the curve of a chain. If the chain has partners, a second side follows: the curve of the partners, with
+    /// equal parameters.
     pub(crate) fn of(
         points: &[[f64; 2]],
         topology: &Topology<'_>,
@@ -40,14 +41,15 @@ impl Side {
         std::iter::once(own).chain(image).collect()
     }
 
-    /// Returns the point of a parameter and its derivatives by the parameter, normalized like the problem.
+    /// Returns the point at a parameter and its derivatives by the parameter, in the normalized coordinates of the
+    /// problem.
     pub(crate) fn at(&self, problem: &Problem, param: f64) -> Place {
         let (center, scale) = problem.normalization();
         let Place { point, first, second } = self.curve.at(param);
         Place { point: (point - center) * scale, first: first * scale, second: second * scale }
     }
 
-    /// Whether a vertex slides.
+    /// Returns whether the vertex of index `k` slides.
     pub(crate) fn slides(&self, k: usize) -> bool {
         self.fans[k].is_some()
     }

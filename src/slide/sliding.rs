@@ -1,4 +1,4 @@
-//! The sliding vertices of a mesh, and sweeps over them.
+//! The sliding vertices of a mesh, and sweeps of Newton steps along their curves.
 
 use glam::DVec2;
 
@@ -13,10 +13,10 @@ use crate::slide::side::Side;
 use crate::topology::Topology;
 
 impl Slide {
-    /// Returns the vertices, ascending, that are not free and have moved in a way that sliding does not allow: not
-    /// along their curve, past a neighbor on it, or not as far as their partner. `before` are the given positions,
-    /// `after` the present ones, which are stored with the precision `stored`. Vertices that are missing in a list are
-    /// not returned.
+    /// Returns the fixed vertices whose move sliding does not allow, in ascending order. An allowed move follows the
+    /// curve, passes no neighbor, and matches the move of the partner. `before` has the given positions and `after` the
+    /// present ones, rounded to `stored`. Vertices missing in a list are not returned. If a list is incomplete, every
+    /// fixed vertex that moved is returned.
     pub fn astray(
         &self,
         topology: &Topology<'_>,
@@ -42,20 +42,20 @@ impl Slide {
     }
 }
 
-/// The most rounds in which vertices go back because their neighbors did.
+/// Largest number of rounds that reset vertices of a curve, as each reset may put a neighbor out of order.
 const GIVE_WAY: u32 = 5;
-/// The largest difference between the parameters of partners, as a multiple of the rounding of a coordinate.
+/// Largest difference between the curve parameters of partners, in units of the rounding error of a coordinate.
 const TOGETHER: f64 = 4.0;
 
-/// The curves of a mesh, with the vertices that slide on them.
+/// All curves of a mesh on which vertices slide, alone or in pairs.
 #[derive(Clone, Debug)]
 pub(crate) struct Sliding {
     tracks: Vec<Track>,
-    /// Number of pairs that do not move because the motion of the others does not fit them.
+    /// Number of pairs that stay because the motion of the other pairs does not fit them.
     unlike: usize,
 }
 
-/// A curve and, if its vertices form pairs with those of another curve, that curve.
+/// A curve on which vertices slide. If the vertices have partners, the second side is the curve of the partners.
 #[derive(Clone, Debug)]
 struct Track {
     sides: Vec<Side>,
@@ -69,7 +69,7 @@ impl Sliding {
         Self { tracks: chains.into_iter().map(track).collect(), unlike }
     }
 
-    /// Renumbers the vertices of the curves as a problem does.
+    /// Replaces vertex indices in the mesh by indices in the problem. The mesh has `vertices` vertices.
     pub(crate) fn numbered(mut self, problem: &Problem, vertices: usize) -> Self {
         let mut number = vec![u32::MAX; vertices];
         for (new, &v) in (0..).zip(problem.vertices()) {
@@ -82,13 +82,13 @@ impl Sliding {
         self
     }
 
-    /// Number of vertices that slide.
+    /// Returns the number of sliding vertices, partners included.
     pub(crate) fn count(&self) -> usize {
         let sides = self.tracks.iter().flat_map(|track| &track.sides);
         sides.flat_map(|side| &side.fans).flatten().count()
     }
 
-    /// Returns the vertices that slide, by their numbers in the problem, ascending.
+    /// Returns the sliding vertices as indices in the problem, in ascending order.
     pub(crate) fn vertices(&self) -> Vec<u32> {
         let sides = self.tracks.iter().flat_map(|track| &track.sides);
         let fans = sides.flat_map(|side| &side.fans).flatten();
@@ -97,19 +97,20 @@ impl Sliding {
         vertices
     }
 
-    /// Returns the number of pairs that slide, and that of pairs that do not move because the motion of the others does
-    /// not fit them.
+    /// Returns the number of sliding pairs, and the number of pairs that stay because the common motion does not fit
+    /// them.
     pub(crate) fn pairs(&self) -> [usize; 2] {
         let second = self.tracks.iter().flat_map(|track| track.sides.get(1));
         [second.flat_map(|side| &side.fans).flatten().count(), self.unlike]
     }
 
-    /// Returns the parameters of the given positions.
+    /// Returns the curve parameters of the given positions.
     pub(crate) fn start(&self) -> Params {
         self.tracks.iter().map(|track| track.start().to_vec()).collect()
     }
 
-    /// Returns the vertices that have left their given positions: their numbers in the mesh, and their positions.
+    /// Returns the vertices whose parameter differs from the given one: index in the mesh, and position in the unit of
+    /// the mesh.
     pub(crate) fn moved(&self, params: &Params) -> Vec<(u32, [f64; 2])> {
         let of_side = |(side, params): (&Side, &[f64])| {
             let all = side.vertices.iter().zip(params).zip(side.curve.params());
@@ -119,14 +120,14 @@ impl Sliding {
         self.sides(params).flat_map(of_side).collect()
     }
 
-    /// Iterates over all curves, each with the parameters of its vertices.
+    /// Iterates over all curves, partner curves included, with the parameters of their vertices.
     fn sides<'a>(&'a self, params: &'a Params) -> impl Iterator<Item = (&'a Side, &'a [f64])> {
         let all = self.tracks.iter().zip(params);
         all.flat_map(|(track, params)| track.sides.iter().map(move |side| (side, &params[..])))
     }
 
-    /// Evaluates a function of a vertex's number in the mesh for each vertex of each curve. Of the values for a vertex
-    /// and its partner it takes the smaller one.
+    /// Evaluates `of` for the vertices of all curves, given their indices in the mesh. For partners, the smaller of the
+    /// two values is returned.
     pub(crate) fn for_each_vertex(&self, of: impl Fn(u32) -> f64) -> Params {
         let least = |track: &Track, k: usize| {
             let all = track.sides.iter().map(|side| of(side.vertices[k]));
@@ -136,7 +137,7 @@ impl Sliding {
         self.tracks.iter().map(of_track).collect()
     }
 
-    /// Returns the changes of parameters, divided by the mean length of the two given edges there.
+    /// Returns the change of each parameter, relative to the mean length of the two given edges at the vertex.
     pub(crate) fn change(&self, before: &Params, after: &Params) -> Vec<f64> {
         let of_track = |((track, before), after): ((&Track, &Vec<f64>), &Vec<f64>)| {
             let start = track.start();
@@ -149,9 +150,9 @@ impl Sliding {
         self.tracks.iter().zip(before).zip(after).flat_map(of_track).collect()
     }
 
-    /// Writes the points of the curve parameters `params` to `positions`. Up to [`GIVE_WAY`] times, each vertex that would
-    /// pass a neighbor, leave the tolerance of the given lines or exceed its reach is reset to its parameter in `safe`.
-    /// Returns false if some vertex still does.
+    /// Writes the curve points of the parameters `params` to `positions`. Before, at most [`GIVE_WAY`] rounds reset
+    /// vertices to their parameter in `safe`: each vertex that would pass a neighbor, leave the tolerance of the given
+    /// lines, or exceed its reach. Returns false if some vertex still does.
     pub(crate) fn place(
         &self,
         problem: &Problem,
@@ -183,7 +184,8 @@ impl Sliding {
         })
     }
 
-    /// Whether every sliding vertex lies between its neighbors on the curve, and every other vertex at its given parameter.
+    /// Returns whether every sliding vertex is strictly between its neighbors on the curve, and every other vertex at
+    /// its given parameter.
     pub(crate) fn is_in_order(&self, params: &Params) -> bool {
         self.tracks.iter().zip(params).all(|(track, params)| {
             let is_in_order = |k: usize| match track.slides(k) {
@@ -197,8 +199,8 @@ impl Sliding {
         })
     }
 
-    /// Returns the largest distance of the lines between vertices from those between the given positions, in the unit
-    /// of the mesh.
+    /// Returns the largest distance between the lines through the vertices at `params` and the lines through the given
+    /// positions, in the unit of the mesh.
     pub(crate) fn off(&self, params: &Params) -> f64 {
         let of_track = |(track, params): (&Track, &Vec<f64>)| {
             let edges = (0..params.len()).filter(|&k| track.slides(k) || k == 0);
@@ -211,9 +213,9 @@ impl Sliding {
         self.tracks.iter().zip(params).map(of_track).fold(0.0, f64::max)
     }
 
-    /// Visits every vertex that slides, curve by curve, forward and then back. Moves it by a safeguarded Newton step
-    /// along its curve. It stays within `reach` of its given position, in the unit of the mesh, and no altitude falls
-    /// below `floor`. Partners move together.
+    /// Visits every sliding vertex, curve by curve, forward and then back, with one safeguarded Newton step along the
+    /// curve. Every vertex stays within `reach` of its given position, in the unit of the mesh. No altitude falls below
+    /// the floor of `rule`. Partners move together.
     pub(crate) fn sweep(
         &self,
         problem: &Problem,
@@ -235,9 +237,9 @@ impl Sliding {
         }
     }
 
-    /// Returns those of the given vertices, by ascending numbers in the mesh, that are not on their curve, not between
-    /// their given neighbors on it, or not at the same parameter as their partner. All vertices are at `points`, whose
-    /// coordinates may have errors of `rounding`.
+    /// Returns the vertices of the list that left their curve, passed a neighbor, or left their partner's parameter.
+    /// `vertices` are ascending indices in the mesh, `points` the positions of all vertices of the mesh. `rounding`
+    /// bounds the error of a coordinate.
     pub(crate) fn astray(&self, vertices: &[u32], points: &[[f64; 2]], rounding: f64) -> Vec<u32> {
         let mut astray = vertices.to_vec();
         for track in &self.tracks {
@@ -280,8 +282,8 @@ impl Sliding {
         astray
     }
 
-    /// Sets vertices back to their given positions if their partner is at its own. `points` are in the order of the
-    /// mesh. Returns the number of vertices set back.
+    /// Moves vertices back to their given positions if their partner has its given position. `before` and `points` are
+    /// in the order of the mesh. Returns the number of vertices moved back.
     pub(crate) fn return_partners(&self, before: &[[f64; 2]], points: &mut [[f64; 2]]) -> usize {
         let mut returned = 0;
         for track in &self.tracks {
@@ -304,12 +306,12 @@ impl Sliding {
 }
 
 impl Track {
-    /// The parameters of the given positions.
+    /// Returns the parameters of the given positions, common to both sides.
     fn start(&self) -> &[f64] {
         self.sides[0].curve.params()
     }
 
-    /// Number of vertices on each curve.
+    /// Returns the number of vertices on each side.
     fn count(&self) -> usize {
         self.sides[0].vertices.len()
     }
@@ -318,7 +320,7 @@ impl Track {
         self.sides[0].slides(k)
     }
 
-    /// Moves the sliding vertices of index `k` to a parameter.
+    /// Moves the vertices of index `k` on all sides to a parameter, if they slide.
     fn follow(&self, problem: &Problem, k: usize, param: f64, positions: &mut [DVec2]) {
         for side in &self.sides {
             if let Some(fan) = &side.fans[k] {
@@ -327,8 +329,8 @@ impl Track {
         }
     }
 
-    /// Returns `known` for the vertex before (-1) or after (1) another one. On a closed curve the parameter continues
-    /// past the first vertex.
+    /// Returns `known` for the vertex before (`to` = -1) or after (1) vertex `k`. On a closed curve, parameters
+    /// continue past the first vertex: by one period for each turn.
     fn neighbor(&self, k: usize, to: isize, known: impl Fn(usize) -> Option<f64>) -> Option<f64> {
         let (at, count) = (k as isize + to, self.count() as isize);
         let turns = at.div_euclid(count);
@@ -336,12 +338,12 @@ impl Track {
         Some(param + turns as f64 * self.sides[0].curve.period())
     }
 
-    /// Returns the bound on a vertex.
+    /// Returns the bound on the distance of vertex `k` from its given position.
     fn reach(&self, reach: &[f64], k: usize) -> Reach {
         Reach { start: self.start()[k], most: reach[k] }
     }
 
-    /// Returns the parameters of a vertex and its neighbors.
+    /// Returns the parameters of vertex `k` and of its two neighbors.
     fn window(&self, params: &[f64], k: usize) -> Window {
         let neighbor = |to| self.neighbor(k, to, |i| Some(params[i])).unwrap_or(params[k]);
         Window { low: neighbor(-1), at: params[k], high: neighbor(1) }

@@ -1,11 +1,12 @@
-//! Cuts: a mesh is cut along straight lines into pieces whose boundaries turn inward but little.
+//! Cuts a mesh along straight lines into pieces whose boundaries turn inward by less than a sixth of a turn.
 //!
-//! Free vertices at the means of their neighbors are a good start where the boundary is convex. Around holes and in bays
-//! triangles are folded over then, and where a hole was turned or taken to another place, sweeps do not find out which way
-//! round it the mesh is to go. So a line is drawn between two boundary vertices in the plane, and a path of edges between the
-//! same two vertices comes to lie on it. First such lines join all boundaries of a piece to one. Whichever path is taken, the
-//! piece can be laid out without a fold then, if it has vertices enough. Further lines cut off what turns inward. The vertices
-//! of all paths are held while the others are put at the means of their neighbors, and not after that.
+//! If the boundary of a mesh is convex, the means of neighbors are a good start for its free vertices. Around holes and
+//! in bays, means of neighbors fold triangles over. If a hole was turned or moved elsewhere, sweeps do not find the
+//! direction in which the mesh must wind around the hole. A cut fixes the direction: a straight line joins two boundary
+//! vertices in the plane, and the vertices of a path of edges between them are moved onto the line. The first lines
+//! join all boundaries of a piece to one boundary. The piece can then be laid out without a fold along every path, if
+//! it has vertices enough. Further lines cut off the bays. The vertices of all paths are held while the other vertices
+//! move to the means of their neighbors, and move freely afterward.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -17,47 +18,52 @@ use crate::layout::Problem;
 use crate::parallel::map_parts;
 use crate::untangle::pieces::{Boundary, Corner, Pieces};
 
-/// The most corners of all boundaries of a piece that are tried as ends of a line.
+/// Largest number of corners, on all boundaries of a piece together, that are tried as ends of a line.
 const TRIED: usize = 1024;
-/// The same for a line within one boundary, where all pairs are tried.
+/// Largest number of corners of a single boundary of which all pairs are tried as ends of a line.
 const TRIED_WITHIN: usize = 256;
-/// The most by which chance makes a line seem worse: enough that trials differ, and that none begins with a bad line.
+/// Largest factor by which [`Short::ByChance`] raises the rating of a line. The factor makes trials differ, but no
+/// trial begins with a bad line.
 const CHANCE: f64 = 1.3;
-/// The most corners from which paths are measured.
+/// Largest number of corners from which a search measures path lengths.
 const SOURCES: usize = 24;
-/// The most that a chain of a boundary may turn inward, in radians: a sixth of a turn.
+/// Largest angle by which a chain of a boundary may turn inward without a cut, in radians: a sixth of a turn.
 const INWARD: f64 = PI / 3.0;
-/// The most length of a line within one boundary, as a share of the boundary that it cuts off.
+/// Largest length of a line within one boundary, relative to the part of the boundary that the line cuts off.
 const SHARE: f64 = 0.7;
-/// Pieces of so few triangles are left as they are.
+/// Size of a piece, in triangles, up to which the piece is not cut.
 const FEWEST: usize = 8;
-/// Pieces of more boundaries are left as they are: many vertices inside are fixed, each a boundary by itself.
+/// Largest number of boundaries of a piece that is cut. A piece with more boundaries has many fixed vertices inside,
+/// and each fixed vertex is a boundary.
 const MOST_BOUNDARIES: usize = 256;
-/// The most triangles of all pieces that are cut, in units of all triangles, so that cuts take no longer than sweeps.
+/// Upper limit of the triangles of all pieces that are cut, in units of the triangles of the mesh. The limit keeps the
+/// time of cuts below the time of the sweeps.
 const MOST_WORK: usize = 256;
 
-/// What is short where a line joins two boundaries. There is no telling which of them leads to the least distorted mesh.
+/// How candidate lines between two boundaries are ranked, smallest rating first. No ranking leads to the least
+/// distorted mesh in all cases.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Short {
-    /// The line in the plane.
+    /// Length of the straight line.
     Line,
-    /// The line and the path, as nearly as they are equally long.
+    /// Rating max³ / min² of the lengths of line and path, which favors short lines with a path of similar length.
     Both,
-    /// The path of edges.
+    /// Length of the path of edges.
     Path,
-    /// As by `Both`, but another line may be taken that is nearly as good, by chance: the number tells trials apart.
+    /// Rating of `Both` times a pseudorandom factor from 1 to [`CHANCE`], so that another line may win that is nearly
+    /// as good. The number selects the random numbers of the trial.
     ByChance(u32),
 }
 
-/// What was cut.
+/// The vertices on cuts, with their positions.
 pub(super) struct Cuts {
-    /// Whether each vertex stays: it is not free, or on a cut.
+    /// Flag of each vertex: true if the vertex is fixed or on a cut.
     pub(super) held: Vec<bool>,
-    /// Where each vertex is. Vertices on no cut are where they were.
+    /// Position of each vertex. Vertices on no cut keep their positions.
     pub(super) positions: Vec<DVec2>,
 }
 
-/// Cuts a mesh, given the area that triangles should have at each vertex.
+/// Cuts a mesh by one ranking of lines. `areas` are the target areas at the vertices.
 pub(super) fn cut(problem: &Problem, areas: &[f64], positions: &[DVec2], short: Short) -> Cuts {
     let mut cutter = Cutter::new(problem, areas, positions.to_vec(), short);
     let mut open = cutter.pieces.all();
@@ -71,21 +77,21 @@ pub(super) fn cut(problem: &Problem, areas: &[f64], positions: &[DVec2], short: 
     Cuts { held: cutter.pieces.into_held(), positions: cutter.positions }
 }
 
-/// A corner by the number of its boundary and its own.
+/// A corner: index of the boundary, and index of the corner within the boundary.
 type Place = (usize, usize);
 
 struct Cutter<'p> {
     problem: &'p Problem,
     pieces: Pieces<'p>,
-    /// The length that edges should have at each vertex, up to a factor.
+    /// Target edge length at each vertex, up to a common factor.
     lengths: Vec<f64>,
     positions: Vec<DVec2>,
     short: Short,
-    /// How many edges each free vertex of the piece at hand is from its boundaries.
+    /// For each free vertex of the piece that is cut, the number of edges to the nearest held vertex.
     depth: Vec<u32>,
-    /// What the path to each free vertex costs.
+    /// Cost of the cheapest path found so far to each free vertex.
     cost: Vec<u64>,
-    /// The vertex before each on that path.
+    /// Predecessor of each vertex on its cheapest path.
     before: Vec<u32>,
 }
 
@@ -104,7 +110,8 @@ impl<'p> Cutter<'p> {
         }
     }
 
-    /// Cuts a piece once. Returns whether it needed it and could be cut.
+    /// Cuts a piece once, and moves the vertices of the path onto the line. Returns whether the piece needed a cut and
+    /// a path was found.
     fn cut(&mut self, piece: &[u32]) -> bool {
         let boundaries = self.pieces.boundaries(piece);
         let ends = match &boundaries[..] {
@@ -117,7 +124,7 @@ impl<'p> Cutter<'p> {
         let [from, to] = ends.map(|(b, i)| &boundaries[b][i]);
         self.measure_depths(piece);
         let path = self.path(from, to);
-        // Distances along the line are those of the path, but for a factor.
+        // Distances along the line are proportional to distances along the path.
         let length = |v: u32| self.lengths[v as usize];
         let mut reached = 0.5 * length(from.vertex);
         let mut along = Vec::with_capacity(path.len());
@@ -138,7 +145,8 @@ impl<'p> Cutter<'p> {
         self.positions[corner.vertex as usize]
     }
 
-    /// The best line between two of several boundaries.
+    /// Returns the line with the best rating between corners of two different boundaries, of the lines inside the
+    /// piece.
     fn between(&self, boundaries: &[Boundary]) -> Option<[Place; 2]> {
         let sampled = |most: usize| -> Vec<Place> {
             let most = most.div_ceil(boundaries.len());
@@ -165,7 +173,7 @@ impl<'p> Cutter<'p> {
                     None => line,
                     Some(paths) => {
                         let path = self.reached(paths, corner(to));
-                        // How much they differ counts twice.
+                        // The ratio of the two lengths counts twice.
                         let both = line.max(path).powi(3) / line.min(path).powi(2);
                         match self.short {
                             Short::Path => path,
@@ -188,7 +196,8 @@ impl<'p> Cutter<'p> {
         lines.find(|line| self.is_clear(boundaries, line))
     }
 
-    /// The best line between two corners of the only boundary of a piece; none if it turns inward but little.
+    /// Returns the best line between two corners of the only boundary of a piece. `None` if no chain turns inward by
+    /// more than [`INWARD`], or if every short line leaves the piece.
     fn within(&self, boundary: &Boundary) -> Option<[Place; 2]> {
         if self.most_inward(boundary) <= INWARD {
             return None;
@@ -216,14 +225,14 @@ impl<'p> Cutter<'p> {
         lines.find(|line| self.is_clear(all, line))
     }
 
-    /// The most that a chain of a boundary turns inward, in radians.
+    /// Returns the largest angle by which a chain of a boundary turns inward, in radians.
     fn most_inward(&self, boundary: &Boundary) -> f64 {
         let n = boundary.len();
         let (mut most, mut inward) = (0.0f64, 0.0f64);
-        // Twice around, for chains that go on beyond the last corner.
+        // Two rounds also measure chains that pass the last corner of the boundary.
         for i in n..3 * n {
             let [a, b, c] = [i - 1, i, i + 1].map(|k| self.at(&boundary[k % n]));
-            // At the end of a line that the piece is on both sides of.
+            // At the free end of a line, the piece is on both sides and the boundary turns back.
             let turn = if a == c { -PI } else { (b - a).angle_to(c - b) };
             inward = (inward - turn).max(0.0);
             most = most.max(inward);
@@ -231,7 +240,7 @@ impl<'p> Cutter<'p> {
         most
     }
 
-    /// Whether a line between two corners stays in the piece.
+    /// Returns whether a line between two corners stays inside the piece.
     fn is_clear(&self, boundaries: &[Boundary], line: &[Place; 2]) -> bool {
         let [p, q] = line.map(|(b, i)| self.at(&boundaries[b][i]));
         let opens = |(b, i): Place, to: DVec2| self.opens(&boundaries[b], i, to);
@@ -249,7 +258,7 @@ impl<'p> Cutter<'p> {
         p != q && opens(line[0], q) && opens(line[1], p) && !boundaries.iter().any(meets)
     }
 
-    /// Whether the line from a corner of a boundary toward a place begins in the piece.
+    /// Returns whether the line from corner `i` of a boundary toward `to` begins inside the piece.
     fn opens(&self, boundary: &Boundary, i: usize, to: DVec2) -> bool {
         let n = boundary.len();
         let [a, b, c] = [i + n - 1, i, i + 1].map(|k| self.at(&boundary[k % n]));
@@ -262,7 +271,8 @@ impl<'p> Cutter<'p> {
         !boundary[i].inside.is_empty() && (a == c || is_inside)
     }
 
-    /// About how long the path of the fewest edges is from a corner to each vertex that is not held, infinite where there is none.
+    /// Estimates the length of the path with the fewest edges from a corner to each free vertex. The length is infinite
+    /// for vertices without a path, and for held vertices.
     fn path_lengths(&self, from: &Corner) -> Vec<f64> {
         let step = |v: u32, k: u32| 0.5 * (self.lengths[v as usize] + self.lengths[k as usize]);
         let mut length = vec![f64::INFINITY; self.problem.free_count()];
@@ -283,16 +293,17 @@ impl<'p> Cutter<'p> {
         length
     }
 
-    /// The length of the path to a corner, given those to the vertices that are not held.
+    /// Returns the length of the path to a corner, from the lengths `paths` to the vertices that are not held.
     fn reached(&self, paths: &[f64], to: &Corner) -> f64 {
         let of = |&v: &u32| paths[v as usize] + 0.5 * self.lengths[v as usize];
         let least = to.inside.iter().map(of).fold(f64::INFINITY, f64::min);
         least + 0.5 * self.lengths[to.vertex as usize]
     }
 
-    /// Counts the edges from the vertices of a piece to its boundaries, and forgets what paths cost there.
+    /// Counts the edges from each vertex of a piece to the nearest boundary, and resets the costs of paths in the
+    /// piece.
     fn measure_depths(&mut self, piece: &[u32]) {
-        // The piece has each vertex once for each of its triangles there.
+        // The list of the piece repeats a vertex for each of its triangles.
         const UNSEEN: u32 = u32::MAX;
         for v in self.pieces.inside(piece) {
             self.depth[v as usize] = UNSEEN;
@@ -321,10 +332,11 @@ impl<'p> Cutter<'p> {
         }
     }
 
-    /// The best path between two corners of a piece, without its ends: short, and away from boundaries, as no triangle
-    /// between the path and a boundary can follow what becomes of both.
+    /// Returns the cheapest path between two corners of a piece, without its ends; empty if no path exists. Cheap paths
+    /// are short and keep away from boundaries: held vertices on both sides distort the triangles between a path and a
+    /// boundary.
     fn path(&mut self, from: &Corner, to: &Corner) -> Vec<u32> {
-        // An edge costs twice as much near a boundary as four edges away.
+        // An edge at a boundary costs twice as much as an edge at a vertex of depth 4.
         let price = |depth: &[u32], v: u32| 100 + 200 / u64::from(depth[v as usize].max(1));
         let mut heap = BinaryHeap::new();
         let start = u32::MAX;
@@ -356,7 +368,7 @@ impl<'p> Cutter<'p> {
     }
 }
 
-/// A number from 0 to 1 for a trial and two vertices, without any pattern (SplitMix64).
+/// Returns a pseudorandom number from 0 to 1 for a trial and two vertices, by the mixing function of SplitMix64.
 fn chance(trial: u32, [from, to]: [u32; 2]) -> f64 {
     let seed = u64::from(trial).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let mut x = (u64::from(from) << 32 | u64::from(to)) ^ seed;
@@ -365,7 +377,7 @@ fn chance(trial: u32, [from, to]: [u32; 2]) -> f64 {
     ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// The numbers of some corners of a boundary, `most` at most, evenly along it.
+/// Returns the indices of at most `most` corners, evenly spaced along a boundary.
 fn samples(boundary: &Boundary, most: usize) -> impl Iterator<Item = usize> + use<> {
     let step = boundary.len().div_ceil(most.max(1)).max(1);
     (0..boundary.len()).step_by(step)
@@ -377,7 +389,7 @@ mod tests {
     use crate::layout::prepare;
     use crate::mesh::Mesh;
 
-    /// Rings of 48 vertices each around a hole.
+    /// Returns a mesh of nine rings around a hole, with 48 vertices each.
     fn ring() -> Problem {
         let (around, rings) = (48u32, 9u32);
         let mut mesh = Mesh::default();
@@ -432,7 +444,7 @@ mod tests {
             let moved = cuts.positions[v] != problem.positions()[v];
             assert!(!moved || on_cuts.contains(&v), "{v}");
         }
-        // Of two neighbors on a cut it goes straight on from one to the other.
+        // Every vertex on a cut has two held neighbors in opposite directions.
         let mut straight = 0;
         for &v in &on_cuts {
             let held = problem.ring_of(v as u32).iter().filter(|&&k| cuts.held[k as usize]);

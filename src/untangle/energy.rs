@@ -1,18 +1,18 @@
 //! The energy that untangling lowers: the inverse mean ratio with a regularized area, finite for inverted triangles.
 //!
-//! For a triangle with the sum of squared lengths S and the signed area A, which should have the area T, it is
-//! s / χ(ε, d) with s = S / (4√3 T) and d = A / T. χ(ε, d) = (d + √(ε² + d²)) / 2 goes to max(d, 0) as ε goes to 0: a
-//! barrier that rises at the area 0 while triangles beyond it still feel where it is.
+//! The energy of a triangle is s / χ(ε, d), with s = S / (4√3 T) and d = A / T. S is the sum of the squared edge
+//! lengths, A the signed area, and T the target area. χ(ε, d) = (d + √(ε² + d²)) / 2 goes to max(d, 0) as ε goes to 0.
+//! A barrier then rises at the area 0, but triangles beyond the barrier still have a gradient toward positive areas.
 //!
 //! Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, *Foldover-free maps in 50 lines of code*, ACM Transactions on
 //! Graphics 40 (2021), equations 2 to 5, with the shape term alone.
 
 use crate::metric::{Dual, EdgeSlopes, Real};
 
-/// S of an equilateral triangle in units of its area.
+/// S of an equilateral triangle of unit area.
 const IDEAL: f64 = 4.0 * 1.732_050_807_568_877_2;
 
-/// χ(ε, d) and √(ε² + d²), without cancellation.
+/// Returns χ(ε, d) and √(ε² + d²), without cancellation.
 #[inline(always)]
 fn regularized<T: Real>(epsilon: f64, d: T) -> (T, T) {
     let root = Real::sqrt(d * d + epsilon * epsilon);
@@ -20,24 +20,24 @@ fn regularized<T: Real>(epsilon: f64, d: T) -> (T, T) {
     (Real::max(d, d.constant(0.0)) + rest, root)
 }
 
-/// A triangle seen from one of its corners, or one in each lane.
+/// A triangle as seen from a corner: two edges and the target area. With lanes as numbers, four triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct Corner<T> {
-    /// The edges from the corner to the two others, counter-clockwise unless the triangle is inverted.
+    /// Edges from the corner to the other two vertices, counter-clockwise unless the triangle is inverted.
     pub(crate) edges: [[T; 2]; 2],
-    /// One over the area T that the triangle should have.
+    /// 1 / T, the reciprocal of the target area of the triangle.
     pub(crate) inverse_target: T,
 }
 
 impl<T: Real> Corner<T> {
-    /// d, the signed area in units of the target.
+    /// Returns d, the signed area in units of the target area.
     #[inline(always)]
     pub(crate) fn area(&self) -> T {
         let [[ax, ay], [bx, by]] = self.edges;
         (ax * by - ay * bx) * 0.5 * self.inverse_target
     }
 
-    /// s, the sum of the squared lengths in units of what it is for an equilateral triangle of the target area.
+    /// Returns s, the sum of the squared edge lengths relative to an equilateral triangle of the target area.
     #[inline(always)]
     fn squares(&self) -> T {
         let [[ax, ay], [bx, by]] = self.edges;
@@ -46,13 +46,14 @@ impl<T: Real> Corner<T> {
         sum * self.inverse_target * (1.0 / IDEAL)
     }
 
-    /// The energy of the triangle.
+    /// Returns the energy s / χ(ε, d) of the triangle.
     #[inline(always)]
     pub(crate) fn energy(&self, epsilon: f64) -> T {
         self.squares() / regularized(epsilon, self.area()).0
     }
 
-    /// The energy with its derivatives by the visited vertex, on whose position the edges depend by `slopes`.
+    /// Returns the energy with its derivatives by the position of the visited vertex. `slopes` are the derivatives of
+    /// the two edges by that position.
     #[inline(always)]
     pub(crate) fn expansion(&self, slopes: impl EdgeSlopes, epsilon: f64) -> Dual<T> {
         let [[ax, ay], [bx, by]] = self.edges;
@@ -60,7 +61,7 @@ impl<T: Real> Corner<T> {
         let (chi, root) = regularized(epsilon, self.area());
         let s = self.squares();
         let unit = self.inverse_target * (1.0 / IDEAL);
-        // Half the gradient of the sum of squared lengths, over the slope α if both edges have it.
+        // Half the gradient of the sum of squared lengths. If both edges have the slope α, α is a common factor.
         let (fx, fy, factor) = match third == 0.0 {
             true => (ax + bx, ay + by, 2.0 * alpha),
             false => (
@@ -73,7 +74,7 @@ impl<T: Real> Corner<T> {
         let ss = unit * (2.0 * (alpha * alpha + beta * beta + third * third));
         let half = self.inverse_target * 0.5;
         let (dx, dy) = ((by * alpha - ay * beta) * half, (ax * beta - bx * alpha) * half);
-        // The derivatives of 1/χ by d.
+        // First and second derivative of 1/χ by d.
         let one = chi.constant(1.0);
         let (inverse, inverse_root) = (one / chi, one / root);
         let first = inverse * inverse_root * -1.0;
@@ -115,7 +116,7 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_energy() {
-        // At a good triangle, at a flat one, and at inverted ones.
+        // The visited vertex at a good triangle, at a flat triangle, and at inverted triangles.
         for at in [[0.0, 0.0], [0.75, 0.625], [1.5, 1.5], [4.0, 3.0]].map(DVec2::from) {
             for epsilon in [1e-2, 0.3, 2.0] {
                 let found = corner(at).expansion(Own, epsilon);
@@ -153,7 +154,7 @@ mod tests {
                 [Dual::variable(x, 0, slope), Dual::variable(y, 1, slope)]
             };
             let [a, b] = [edge(a, slopes.0), edge(b, slopes.1)];
-            // The area is positive, where the energy without regularization needs no maximum.
+            // The area is positive, and χ(0, d) = d without a maximum.
             let inverse_target = a[0].constant(inverse_target);
             let dual = Corner { edges: [a, b], inverse_target };
             let expected = dual.squares() / dual.area();

@@ -1,4 +1,4 @@
-//! How far a mesh is untangled, by exact predicates on the values that will be stored.
+//! Counts the bad triangles of a mesh by exact predicates, on coordinates rounded to the precision of the output.
 
 use std::collections::HashSet;
 
@@ -12,18 +12,18 @@ use crate::topology::Topology;
 use crate::topology::overlapping_star;
 use crate::topology::predicates::bad_triangles;
 
-/// The mesh that is judged.
+/// A mesh with the precision in which exact predicates judge its triangles.
 pub(super) struct Judge<'m> {
     pub(super) mesh: &'m Mesh,
     pub(super) topology: &'m Topology<'m>,
     pub(super) problem: &'m Problem,
-    /// The precision in which points will be stored.
+    /// Precision to which points are rounded before exact predicates judge the triangles.
     pub(super) stored: Precision,
 }
 
 impl Judge<'_> {
-    /// The triangles of the mesh that are inverted or flat with the vertices at `points`, and those with a free vertex that
-    /// are so flat that double precision cannot judge them. In ascending order.
+    /// Returns the triangles of the mesh that are inverted or flat with the vertices at `points`, in ascending order.
+    /// Triangles with a free vertex that are too flat for double precision count as flat.
     pub(super) fn bad_triangles(&self, points: &[[f64; 2]]) -> Vec<BadTriangle> {
         let triangles = self.topology.triangles();
         let mut bad = bad_triangles(points, triangles);
@@ -38,7 +38,7 @@ impl Judge<'_> {
         bad
     }
 
-    /// Judges positions of the problem, rounded to what will be stored.
+    /// Judges normalized positions of the problem, converted to the units of the mesh and rounded to `stored`.
     pub(super) fn judged(&self, positions: &[DVec2]) -> Judgment {
         let mut points = self.problem.denormalize(self.mesh, positions);
         for x in points.as_flattened_mut() {
@@ -54,12 +54,13 @@ impl Judge<'_> {
     }
 }
 
-/// What is wrong with a mesh.
+/// The rounded points of a mesh, with the bad triangles that they have.
 pub(super) struct Judgment {
-    /// The positions in the mesh's order and units.
+    /// Position of every vertex, in the order and units of the mesh, rounded to the stored precision.
     pub(super) points: Vec<[f64; 2]>,
-    /// See [`Judge::bad_triangles`].
+    /// Inverted and flat triangles, see [`Judge::bad_triangles`].
     pub(super) left: Vec<BadTriangle>,
-    /// If `left` is empty: a vertex around which triangles wind more than once, if there is one.
+    /// If `left` is empty: the first free vertex around which triangles wind more than once. `None` if there is no such
+    /// vertex.
     pub(super) overlapping: Option<u32>,
 }

@@ -1,8 +1,9 @@
-//! Untangling: moving free vertices until no triangle is inverted or flat.
+//! Untangling: moves free vertices until no triangle is inverted or flat.
 //!
-//! Sweeps of Newton steps lower an `energy` that is finite for inverted triangles too. At first only vertices near bad
-//! triangles move, then more. If that does not do it, the free vertices are put at the means of their neighbors, and each
-//! sweep is followed by a step from coarser levels. Then the mesh is cut (`cuts`) into pieces in which means are a good start.
+//! Sweeps of Newton steps lower an `energy` that is finite for inverted triangles too. At first, only vertices near bad
+//! triangles move, then vertices within more edges. If triangles stay bad, the free vertices are moved to the means of
+//! their neighbors, and a step from coarser levels follows each sweep. At last, the mesh is cut (`cuts`) into pieces,
+//! in which the means of neighbors are a good start.
 
 mod cuts;
 pub(crate) mod energy;
@@ -28,55 +29,60 @@ use judge::{Judge, Judgment};
 use stages::{STAGES, Stage, Start};
 use state::{Region, State};
 
-/// If more than this share of the triangles are bad, all vertices move from the start.
+/// Share of bad triangles (0 to 1) above which all vertices move from the start.
 const MANY: f64 = 0.05;
 
-/// The number of ends of stages that are kept to go on from.
+/// Largest number of results of cuts that are kept for [`Start::Nearest`].
 const ENDS: usize = 3;
 
 /// The progress of [`untangle`], for a display.
 #[derive(Clone, Copy, Debug)]
 pub struct Untangling {
-    /// Number of sweeps done.
+    /// Number of completed sweeps.
     pub sweep: u32,
-    /// Number of triangles that are inverted or flat.
+    /// Number of triangles that are inverted or flat in double precision, among the triangles that the sweep changes.
     pub bad: usize,
 }
 
 /// The result of [`untangle`].
 #[derive(Clone, Debug)]
 pub struct Untangled {
-    /// Position of every vertex, in the mesh's order and units. Vertices that are not free are where they were.
+    /// Position of every vertex, in the order and units of the mesh. Fixed vertices keep their coordinates.
     pub points: Vec<[f64; 2]>,
-    /// Number of triangles that were inverted or flat, or so flat that double precision cannot judge them.
+    /// Number of inverted or flat triangles of the given mesh. Triangles too flat for double precision count as flat.
     pub bad_before: usize,
-    /// The triangles that still are, in ascending order, by exact predicates on the values of `points`. None if the mesh is
-    /// untangled. Those that double precision cannot judge ([`Smoother::beyond_precision`](crate::Smoother::beyond_precision))
-    /// are listed as flat if one of their vertices is free.
+    /// Triangles of the result that are inverted or flat, by exact predicates on `points`. The list is in ascending
+    /// order, and empty if the mesh is untangled. Triangles that double precision cannot judge
+    /// ([`Smoother::beyond_precision`](crate::Smoother::beyond_precision)) are listed as flat if they have a free
+    /// vertex.
     pub left: Vec<BadTriangle>,
-    /// Those of `left` that no move can mend, as none of their vertices is free.
+    /// Bad triangles of the given mesh without a free vertex. No move of vertices can turn such triangles.
     pub hopeless: Vec<BadTriangle>,
-    /// A vertex around which triangles wind more than once though none is inverted, if there is one.
+    /// A free vertex around which triangles wind more than once, although every triangle is feasible. `None` if there
+    /// is no such vertex, or if triangles are left bad.
     pub overlapping: Option<u32>,
-    /// Number of sweeps done.
+    /// Number of completed sweeps, over all starts.
     pub sweeps: u32,
-    /// Number of vertices that are not where they were.
+    /// Number of vertices whose coordinates in `points` differ from those of the given mesh.
     pub moved: usize,
 }
 
-/// Moves free vertices until no triangle is inverted or flat, if that can be done: connectivity, boundary and fixed
-/// vertices stay. Triangles so flat that double precision cannot judge them are opened as well. Only vertices near bad triangles move unless that is not enough. On the CPU.
+/// Moves free vertices, on the CPU, until no triangle is inverted or flat. Connectivity, boundary and fixed vertices
+/// stay. Triangles too flat for double precision are opened as well. If moves of the vertices near bad triangles
+/// suffice, all other vertices keep their coordinates.
 ///
-/// Windings are made consistent across edges, and such that the area that the boundary of each part encloses is positive.
-/// `stored` is the precision in which the points will be stored: they are rounded to it and then judged. `observe` is called
-/// after each sweep and can end the work; what is reached by then is returned.
+/// Windings are first made consistent across edges. The boundary of each connected part then encloses a positive area.
+/// Points are rounded to `stored`, the precision of the file or buffer to be written, before exact predicates judge the
+/// triangles. The function calls `observe` after each sweep. If `observe` breaks, the function returns the best points
+/// reached so far.
 ///
-/// The energy and its regularization are those of Garanzha et al., *Foldover-free maps in 50 lines of code*, ACM
-/// Transactions on Graphics 40 (2021). There is no proof that every mesh that can be untangled is.
+/// The energy and its regularization are by Garanzha et al., *Foldover-free maps in 50 lines of code*, ACM Transactions
+/// on Graphics 40 (2021). There is no proof that the method untangles every mesh for which feasible positions exist.
 ///
 /// # Errors
-/// [`MeshError`] if the mesh cannot be read as one of the plane; see [`Topology::by_area`]. [`MeshError::Closed`] if a part of
-/// it has no boundary. Triangles that stay inverted are no error: [`Untangled::left`] lists them.
+/// [`MeshError`] if the mesh is not a valid plane mesh; see [`Topology::by_area`]. [`MeshError::Closed`] if an
+/// edge-connected part of a tangled mesh has no boundary edge. Triangles that stay inverted are no error:
+/// [`Untangled::left`] lists such triangles.
 pub fn untangle(
     mesh: &Mesh,
     stored: Precision,
@@ -115,11 +121,13 @@ struct Work<'m> {
     judge: Judge<'m>,
     problem: &'m Problem,
     state: State<'m>,
-    /// The coarser levels of all free vertices, once they are needed.
+    /// Coarser levels of all free vertices. `None` until [`Start::Means`] builds the levels.
     levels: Option<Hierarchy>,
-    /// The vertices held by each cut so far.
+    /// Held vertices of each cut so far, as one flag for each vertex. A cut with the held vertices of an earlier cut is
+    /// skipped.
     tried: Vec<Vec<bool>>,
-    /// Positions at the ends of stages after cuts, and how far they were from the goal; the nearest first.
+    /// Results of stages after cuts: [`Assessment::far`](state::Assessment::far) and the positions, in ascending order
+    /// of the former. At most [`ENDS`] results are kept.
     ends: Vec<(f64, Vec<DVec2>)>,
 }
 
@@ -131,8 +139,8 @@ impl<'m> Work<'m> {
         Self { judge, problem, state, levels: None, tried: Vec::new(), ends: Vec::new() }
     }
 
-    /// Takes the positions into the result if fewer triangles are bad than there. Returns whether none is left that could be
-    /// mended.
+    /// Judges the present positions, and stores the points in `result` if fewer triangles are bad than before. Returns
+    /// true if only hopeless triangles of `result` are bad, and no triangles wind twice around a vertex.
     fn is_done(&self, result: &mut Untangled) -> bool {
         let Judgment { points, left, overlapping } = self.judge.judged(&self.state.positions);
         let separates = result.overlapping.is_some() && overlapping.is_none();
@@ -161,12 +169,13 @@ impl<'m> Work<'m> {
         }
     }
 
-    /// Brings the vertices where a stage starts. Returns those that it moves; `None` if there is no reason for the stage.
+    /// Moves the vertices to the start of a stage, and returns the region that the stage sweeps. Returns `None` to skip
+    /// the stage.
     fn begin(&mut self, start: &Start, result: &Untangled) -> Option<Region> {
         match *start {
             Start::Near(rings) => {
                 let share = result.left.len() as f64 / self.problem.triangles().len() as f64;
-                // Sweeps that have left no fewer bad triangles are not worth going on with.
+                // If sweeps have not lowered the number of bad triangles, sweeps over more rings are not tried.
                 let in_vain = result.sweeps > 0 && result.left.len() == result.bad_before;
                 let is_useful = share <= MANY && !in_vain;
                 return is_useful.then(|| Region::around(self.problem, &self.bad(), rings));
@@ -179,11 +188,11 @@ impl<'m> Work<'m> {
             }
             Start::Cut(short) => {
                 let held = self.state.cut(short);
-                // Without holes all rules find the same cuts, or none.
+                // Without holes, all rules find equal cuts, or none.
                 if self.tried.contains(&held) {
                     return None;
                 }
-                // The levels of the others alone find the means in a fifth of the iterations.
+                // Levels of the free vertices that are not held find the means in a fifth of the iterations.
                 self.state.make_harmonic(&self.state.hierarchy(&held), &held);
                 self.tried.push(held);
             }
@@ -193,7 +202,7 @@ impl<'m> Work<'m> {
         Some(Region::whole(self.problem))
     }
 
-    /// Sweeps until the stage ends. Breaks if nothing is left to do, or if `observe` wants so.
+    /// Sweeps the region until the stage ends. Breaks if only hopeless triangles are bad, or if `observe` breaks.
     fn sweep(
         &mut self,
         stage: &Stage,
@@ -221,7 +230,8 @@ impl<'m> Work<'m> {
             }
             result.sweeps += 1;
             now = self.state.assess(region);
-            // The exact judgment takes a pass over the whole mesh.
+            // The exact judgment takes a pass over the whole mesh, so sweeps first wait for a good count in double
+            // precision.
             if now.bad <= result.hopeless.len() && self.is_done(result) {
                 return ControlFlow::Break(());
             }
@@ -241,7 +251,7 @@ impl<'m> Work<'m> {
         ControlFlow::Continue(())
     }
 
-    /// The triangles of the problem that are inverted or flat, or so by rounding.
+    /// Returns the triangles of the problem that are inverted or flat, either exactly or in double precision.
     fn bad(&self) -> Vec<u32> {
         let positions = &self.state.positions;
         let points: Vec<[f64; 2]> = positions.iter().map(|p| p.to_array()).collect();

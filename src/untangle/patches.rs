@@ -1,4 +1,4 @@
-//! Loops of untangling over vertices and triangles, four at a time.
+//! Loops of untangling over vertices and triangles, in groups of four (one in each lane).
 
 use fearless_simd::Level;
 use fearless_simd::prelude::*;
@@ -11,15 +11,15 @@ use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, with_instructions}
 use crate::patch::{Objective, SearchRule, newton_step};
 use crate::untangle::energy::Corner;
 
-/// Number of fours of vertices of one task.
+/// Number of groups of four vertices in one parallel task.
 const FOURS: usize = 256;
-/// Number of triangles of one task.
+/// Number of triangles in one parallel task.
 const TRIANGLES: usize = 1 << 12;
 
-/// Four free vertices with equally many neighbors. Lanes beyond the last vertex repeat that vertex.
+/// Four free vertices with equally many neighbors. Lanes beyond the last vertex of a group repeat the last vertex.
 pub(super) type Four = [u32; LANES];
 
-/// Some free vertices in fours, in their order.
+/// Returns vertices in groups of four, in the given order. Consecutive vertices of equal degree form the groups.
 pub(super) fn fours(problem: &Problem, vertices: impl Iterator<Item = u32>) -> Vec<Four> {
     let vertices: Vec<u32> = vertices.collect();
     let alike = vertices.chunk_by(|&v, &k| problem.ring_of(v).len() == problem.ring_of(k).len());
@@ -27,27 +27,28 @@ pub(super) fn fours(problem: &Problem, vertices: impl Iterator<Item = u32>) -> V
     fours.map(|four| std::array::from_fn(|lane| four[lane.min(four.len() - 1)])).collect()
 }
 
-/// A mesh while it is untangled.
+/// A mesh with its present positions and target areas, for one pass of untangling.
 #[derive(Clone, Copy)]
 pub(super) struct Tangle<'a> {
     pub(super) problem: &'a Problem,
     pub(super) positions: &'a [DVec2],
-    /// The area that triangles should have at each vertex.
+    /// Target area at each vertex, in normalized units. The target area of a triangle is the mean over its vertices.
     pub(super) targets: &'a [f64],
 }
 
 impl Tangle<'_> {
-    /// Where a Newton step with a line search takes each vertex. No two of them may be neighbors.
+    /// Returns the position of each vertex after a Newton step with a line search. No two of the vertices may be
+    /// neighbors.
     pub(super) fn steps(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
         self.visits::<true>(fours, epsilon)
     }
 
-    /// The gradient of the energy at each vertex.
+    /// Returns the gradient of the energy by the position of each vertex.
     pub(super) fn gradients(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
         self.visits::<false>(fours, epsilon)
     }
 
-    /// Where steps take vertices if `STEPS`, and the gradients if not.
+    /// Returns positions after steps if `STEPS`, and gradients otherwise.
     fn visits<const STEPS: bool>(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
         let mut found = vec![[DVec2::ZERO; LANES]; fours.len()];
         for_each_chunk(&mut found, FOURS, |first, found| {
@@ -72,7 +73,7 @@ impl Tangle<'_> {
         found
     }
 
-    /// The energy of all triangles, summed in an order that does not depend on the number of threads.
+    /// Returns the energy of all triangles. Threads do not change the order of the sum.
     pub(super) fn energy(&self, epsilon: f64) -> f64 {
         let sums = map_parts(
             self.problem.triangles().chunks(TRIANGLES),
@@ -101,7 +102,7 @@ impl Tangle<'_> {
         (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
     }
 
-    /// A triangle, given its vertices.
+    /// Returns a triangle, seen from its first vertex.
     #[inline]
     pub(super) fn triangle(&self, vertices: &[u32; 3]) -> Corner<f64> {
         let [p, q, r] = vertices.map(|v| self.positions[v as usize].to_array());
@@ -110,7 +111,8 @@ impl Tangle<'_> {
     }
 }
 
-/// The triangles with one corner at `at` and others at `ends`, given three times the areas that they should have.
+/// Returns the triangles with one corner at `at` and the others at `p` and `q`. `targets` are three times the target
+/// areas.
 #[inline(always)]
 fn corner<T: Real>(at: [T; 2], [p, q]: [[T; 2]; 2], targets: T) -> Corner<T> {
     Corner { edges: edges(at, [p, q]), inverse_target: at[0].constant(3.0) / targets }
@@ -133,13 +135,13 @@ fn lanes<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> 
 struct EnergyRings<'r, S: Simd> {
     /// Regularization width ε of the energy, in units of the target area.
     epsilon: f64,
-    /// For each neighbor its position, and the inverse target area of the triangle with the next neighbor. Neighbors are in
-    /// counter-clockwise order, with the first repeated at the end.
+    /// For each neighbor, its position and the inverse target area of the triangle with the next neighbor. Neighbors
+    /// are in counter-clockwise order, and the first neighbor is repeated at the end.
     ring: &'r [(Points<S>, Lanes<S>)],
 }
 
 impl<'r, S: Simd> EnergyRings<'r, S> {
-    /// Reads the one-rings into `scratch`.
+    /// Reads the one-rings of four vertices into `scratch`.
     #[inline(always)]
     fn gather(
         simd: S,
@@ -168,7 +170,7 @@ impl<'r, S: Simd> EnergyRings<'r, S> {
         Self { epsilon, ring: scratch }
     }
 
-    /// The triangle between the neighbors `i` and `i` + 1 with the vertices at `at`.
+    /// Returns the triangle between the neighbors `i` and `i` + 1, with the visited vertices at `at`.
     #[inline(always)]
     fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
         let ((p, inverse_target), (q, _)) = (self.ring[i], self.ring[i + 1]);

@@ -1,38 +1,39 @@
-//! The pieces into which held vertices part a mesh, and the boundaries of each.
+//! The pieces into which held vertices divide a mesh, and the boundaries of each piece.
 
 use std::collections::{BTreeMap, HashSet};
 
 use crate::layout::Problem;
 
-/// Stands for no triangle across an edge, and for no piece.
+/// Marks an edge without a triangle across, and a triangle without a piece.
 const NONE: u32 = u32::MAX;
 
-/// A corner on a boundary of a piece.
+/// A corner of the boundary of a piece.
 pub(super) struct Corner {
     pub(super) vertex: u32,
-    /// The neighbors of the vertex between the edges of the boundary before and after it. None of them is held.
+    /// Neighbors of the vertex inside the piece, between the boundary edges before and after the vertex. No such
+    /// neighbor is held.
     pub(super) inside: Vec<u32>,
 }
 
-/// A closed boundary of a piece, with the piece on its left. A vertex is met as often as the piece touches it; a held vertex that
-/// no held edge joins to others is a boundary by itself.
+/// A closed boundary of a piece, with the piece on its left. A vertex occurs once for each time that the boundary
+/// passes it. A held vertex without a held edge is a boundary of one corner.
 pub(super) type Boundary = Vec<Corner>;
 
-/// A mesh of which some vertices are held. Edges between two of them part it.
+/// A mesh whose held vertices divide it: edges with two held ends separate pieces.
 pub(super) struct Pieces<'p> {
     problem: &'p Problem,
-    /// For each edge of each triangle the same edge of the triangle across it. Edge 3 t + i of triangle t goes from
-    /// its corner i to the next.
+    /// For each half-edge, the opposite half-edge in the triangle across, or `NONE`. Half-edge 3 t + i of triangle t
+    /// runs from corner i of the triangle to the next corner.
     across: Vec<u32>,
     held: Vec<bool>,
-    /// The piece that each triangle was last found in.
+    /// Index of the piece to which the latest search assigned each triangle, or `NONE`.
     piece_of: Vec<u32>,
-    /// The number of pieces found so far.
+    /// Number of pieces found in all searches, which is the index of the next piece.
     count: u32,
 }
 
 impl<'p> Pieces<'p> {
-    /// Holds the vertices that are not free.
+    /// Creates the pieces with all fixed vertices held.
     pub(super) fn new(problem: &'p Problem) -> Self {
         let free = problem.free_count();
         Self {
@@ -53,32 +54,34 @@ impl<'p> Pieces<'p> {
         self.held[vertex as usize]
     }
 
-    /// Whether each vertex is held.
+    /// Returns for each vertex whether cuts or the problem hold it.
     pub(super) fn into_held(self) -> Vec<bool> {
         self.held
     }
 
-    /// The vertices of a piece that are not held, each once for each of its triangles there.
+    /// Returns the vertices of a piece that are not held. A vertex occurs once for each triangle of the piece around
+    /// it.
     pub(super) fn inside<'a>(&'a self, piece: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
         let corners = piece.iter().flat_map(|&t| self.problem.triangles()[t as usize]);
         corners.filter(|&v| !self.is_held(v))
     }
 
-    /// The neighbors of a vertex that are not held; of one that is not held itself.
+    /// Returns the neighbors of a vertex that are not held. `vertex` must not be held either.
     pub(super) fn neighbors(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         self.problem.ring_of(vertex).iter().copied().filter(|&k| !self.is_held(k))
     }
 
-    /// The pieces of the whole mesh, as lists of triangles.
+    /// Returns the pieces of the whole mesh, each a list of triangles.
     pub(super) fn all(&mut self) -> Vec<Vec<u32>> {
         let all: Vec<u32> = (0..self.piece_of.len() as u32).collect();
         self.parted(&all)
     }
 
-    /// The pieces into which the vertices that are held now part a piece, but for triangles of held vertices alone.
+    /// Divides a piece at the edges whose ends are both held by now. Returns the new pieces, except for pieces whose
+    /// vertices are all held.
     pub(super) fn parted(&mut self, piece: &[u32]) -> Vec<Vec<u32>> {
         let first = self.count;
-        // Pieces that were found before are parted now.
+        // A piece of an earlier search is divided anew.
         let is_open = |of: u32| of == NONE || of < first;
         let mut found = Vec::new();
         for &seed in piece.iter() {
@@ -110,7 +113,7 @@ impl<'p> Pieces<'p> {
         found
     }
 
-    /// The boundaries of a piece.
+    /// Returns the closed boundaries of a piece: along held edges, and one for each held vertex without a held edge.
     pub(super) fn boundaries(&self, piece: &[u32]) -> Vec<Boundary> {
         let (mut seen, mut met) = (HashSet::new(), HashSet::new());
         let mut boundaries = Vec::new();
@@ -141,14 +144,15 @@ impl<'p> Pieces<'p> {
         boundaries
     }
 
-    /// The held edge that follows another one around the piece on its left, and the vertices between the two.
+    /// Returns the held half-edge that follows `edge` around the piece on its left, and the vertices inside between the
+    /// two.
     fn turned(&self, edge: u32) -> (u32, Vec<u32>) {
         let mut inside = Vec::new();
         let mut next = following(edge);
         while !self.parts(next) {
             inside.push(self.edge(next)[1]);
             match self.across[next as usize] {
-                // An edge on the boundary of the mesh is held.
+                // Edges on the boundary of the mesh have two fixed ends, so this case never occurs.
                 NONE => break,
                 other => next = following(other),
             }
@@ -156,24 +160,24 @@ impl<'p> Pieces<'p> {
         (next, inside)
     }
 
-    /// The ends of an edge.
+    /// Returns the start and the end of a half-edge.
     fn edge(&self, edge: u32) -> [u32; 2] {
         let corners = self.problem.triangles()[edge as usize / 3];
         [corners[edge as usize % 3], corners[(edge as usize + 1) % 3]]
     }
 
-    /// Whether an edge parts pieces: both ends are held.
+    /// Returns whether a half-edge divides pieces: both of its ends are held.
     fn parts(&self, edge: u32) -> bool {
         self.edge(edge).iter().all(|&v| self.is_held(v))
     }
 }
 
-/// The next edge of the same triangle.
+/// Returns the next half-edge of the triangle, counter-clockwise.
 fn following(edge: u32) -> u32 {
     edge / 3 * 3 + (edge + 1) % 3
 }
 
-/// For each edge of each triangle the same edge of the triangle across it.
+/// Returns for each half-edge the opposite half-edge in the triangle across, or `NONE`.
 fn across(triangles: &[[u32; 3]]) -> Vec<u32> {
     let key = |a: u32, b: u32| u64::from(a.min(b)) << 32 | u64::from(a.max(b));
     let mut edges: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
@@ -199,7 +203,7 @@ mod tests {
     use crate::mesh::Mesh;
     use glam::DVec2;
 
-    /// A square of nine by nine vertices without the cell in its middle, and with a lone fixed vertex if told so.
+    /// Returns a square of 9 × 9 vertices without its central cell. With `lone`, one more vertex inside is fixed.
     fn square_with_a_hole(lone: bool) -> Problem {
         let points = (0..81).map(|k| [f64::from(k % 9), f64::from(k / 9)]).collect();
         let cells = (0..72u32).filter(|k| k % 9 < 8 && *k != 4 * 9 + 4);
@@ -208,7 +212,7 @@ mod tests {
         prepare(&Mesh { points, triangles, fixed }).unwrap().1
     }
 
-    /// The doubled area that a boundary encloses, negative if it goes clockwise.
+    /// Returns twice the area that a boundary encloses, negative if the boundary runs clockwise.
     fn doubled_area(problem: &Problem, boundary: &Boundary) -> f64 {
         let at = |corner: &Corner| problem.positions()[corner.vertex as usize];
         let next = boundary.iter().skip(1).chain(boundary.first());
@@ -224,13 +228,14 @@ mod tests {
         let mut boundaries = pieces.boundaries(&all[0]);
         boundaries.sort_by_key(Vec::len);
         let lengths: Vec<usize> = boundaries.iter().map(Vec::len).collect();
-        // But for two corners of the square, whose triangles have no free vertex.
+        // The square has 32 boundary vertices. Two corners of the square are left out, as their triangles have no free
+        // vertex.
         assert_eq!(lengths, [1, 4, 30]);
         // The mesh of unit cells is scaled by a power of two.
         let scale = doubled_area(&problem, &boundaries[2]) / 126.0;
         assert!(scale > 0.0 && scale.log2().fract() == 0.0);
         assert_eq!(doubled_area(&problem, &boundaries[1]), -2.0 * scale);
-        // A vertex by itself has its neighbors inside, each for two triangles.
+        // A lone fixed vertex has six neighbors inside, each in two triangles.
         assert_eq!(boundaries[0][0].inside.len(), 12);
         let touches =
             |v: &u32| problem.ring_of(*v).iter().any(|&k| k as usize >= problem.free_count());
@@ -257,7 +262,7 @@ mod tests {
         assert_eq!(joined.len(), 1);
         let boundaries = pieces.boundaries(&joined[0]);
         assert_eq!(boundaries.len(), 1);
-        // The path and its ends are met from both sides, but for two triangles whose vertices are all held.
+        // The boundary passes the path and its ends on both sides, except at two triangles whose vertices are all held.
         assert_eq!(boundaries[0].len(), 30 + 4 + 2 * 4 - 2);
         hold(&mut pieces, 6..8);
         let parted = pieces.parted(&joined[0]);

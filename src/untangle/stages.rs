@@ -1,9 +1,10 @@
-//! What untangling tries, in which order, and for how long.
+//! The sequence of starts of untangling: positions, moving vertices, and number of sweeps.
 
 use crate::untangle::cuts::Short;
 use crate::untangle::state::Assessment;
 
-/// What is done in turn until the mesh is untangled. Cuts by each rule untangle some meshes that the other rules do not.
+/// Starts in the order of trials, until the mesh is untangled. Cuts by each rule untangle some meshes that cuts by the
+/// other rules leave tangled.
 pub(super) const STAGES: [Stage; 19] = [
     Stage { start: Start::Near(2), sweeps: 10 },
     Stage { start: Start::Near(6), sweeps: 20 },
@@ -29,39 +30,43 @@ pub(super) const STAGES: [Stage; 19] = [
 /// Sweeps from one start.
 pub(super) struct Stage {
     pub(super) start: Start,
-    /// The number of sweeps; see [`Stage::patience`].
+    /// Number of sweeps of the stage; see [`Stage::patience`].
     sweeps: u32,
 }
 
-/// Where vertices are when a stage begins, and which of them move.
+/// The positions of the vertices when a stage begins, and the vertices that the stage moves.
 pub(super) enum Start {
-    /// Those move that are within so many edges of bad triangles, from where they are.
+    /// Present positions. Only free vertices within the given number of edges of bad triangles move.
     Near(u32),
-    /// All move, from the means of their neighbors.
+    /// Means of neighbors. All free vertices move.
     Means,
-    /// All move, from their means within the pieces into which the mesh is [cut](super::cuts).
+    /// Means of neighbors within the pieces into which the mesh is [cut](super::cuts). All free vertices move.
     Cut(Short),
-    /// All move, from the positions at the end of a stage after a cut: that which came nearest to the goal, each once.
+    /// The result of an earlier stage after a cut, with the smallest inverted area. All free vertices move. Each result
+    /// is a start only once.
     Nearest,
 }
 
-/// How long a stage goes on.
+/// The conditions that end the sweeps of a stage.
 pub(super) struct Patience {
-    /// The number of sweeps from which on the stage ends when sweeps have gained too little.
+    /// Number of sweeps from which on an insufficient gain ends the stage.
     pub(super) fewest: u32,
-    /// The number of sweeps at which the stage ends.
+    /// Largest number of sweeps of the stage.
     pub(super) most: u32,
-    /// The gain is judged each time so many sweeps are done.
+    /// Number of sweeps between two judgments of the gain.
     pub(super) often: u32,
-    /// It is enough if the most inverted triangle has at most this share of the inverted area that it had,
+    /// Share of the former inverted area (0 to 1) to which the most inverted triangle must shrink for a sufficient
+    /// gain.
     area: f64,
-    /// or if at most this share of the bad triangles is left.
+    /// Share of the former bad triangles (0 to 1) that may be left for a sufficient gain, as an alternative to `area`.
     bad: f64,
 }
 
 impl Stage {
-    /// After a cut, sweeps go on beyond their number while the mesh gets nearer quickly. From the nearest state they go on
-    /// while it gets nearer at all, up to their number: large meshes take hundreds of sweeps.
+    /// Returns the conditions that end the stage. After a cut, sweeps continue up to fourfold, while 50 sweeps halve
+    /// the inverted area of the most inverted triangle. From the nearest result, up to 1,000 sweeps follow, while 100
+    /// sweeps lower the inverted area by a quarter or the bad triangles by a tenth. Large meshes take hundreds of
+    /// sweeps.
     pub(super) fn patience(&self) -> Patience {
         let sweeps = self.sweeps;
         match self.start {
@@ -79,8 +84,8 @@ impl Stage {
 }
 
 impl Patience {
-    /// Whether sweeps have gained enough to go on. Where no triangle is inverted, but some wind twice around a vertex, there is
-    /// nothing to gain.
+    /// Returns whether sweeps have gained enough to continue. Sweeps cannot improve a mesh in which no triangle is
+    /// inverted but some triangles wind twice around a vertex.
     pub(super) fn goes_on(&self, before: Assessment, now: Assessment) -> bool {
         let nearer = now.least >= self.area * before.least;
         now.bad > 0 && (nearer || now.bad as f64 <= self.bad * before.bad as f64)

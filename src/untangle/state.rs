@@ -1,4 +1,4 @@
-//! The positions of a mesh while it is untangled, and what moves them.
+//! The positions of a mesh during untangling, with the sweeps, corrections and cuts that move the vertices.
 
 use glam::{DVec2, Vec2};
 
@@ -9,25 +9,25 @@ use crate::run::multilevel::{Hierarchy, Search};
 use crate::untangle::cuts::{Short, cut};
 use crate::untangle::patches::{Four, Tangle, fours};
 
-/// Number of vertices or triangles of one task.
+/// Number of vertices or triangles in one parallel task.
 const CHUNK: usize = 1 << 12;
 
-/// Positions and what they are judged by.
+/// The positions of a mesh that is untangled, with its target areas.
 pub(crate) struct State<'p> {
     problem: &'p Problem,
     pub(crate) positions: Vec<DVec2>,
-    /// The target area at each vertex.
+    /// Target area at each vertex, in normalized units.
     targets: Vec<f64>,
-    /// The length of the last global step.
+    /// Length of the last global step, as a multiple of the correction.
     length: f64,
 }
 
-/// The areas of the triangles in a region.
+/// A summary of the signed areas of the triangles in a region.
 #[derive(Clone, Copy)]
 pub(crate) struct Assessment {
-    /// The least area, in units of its target.
+    /// Smallest signed area relative to the target area, negative if a triangle is inverted.
     pub(crate) least: f64,
-    /// Number of triangles whose rounded area is not positive.
+    /// Number of triangles whose area, computed in double precision, is not positive.
     pub(crate) bad: usize,
 }
 
@@ -45,16 +45,17 @@ impl Assessment {
     }
 }
 
-/// The vertices that move, and the triangles that they change.
+/// The vertices of a sweep, and all triangles whose shape the sweep changes.
 pub(crate) struct Region {
-    /// By color.
+    /// Vertices by color, in groups of four.
     vertices: Vec<Vec<Four>>,
-    /// By number in the problem.
+    /// Indices of the triangles in the problem.
     triangles: Vec<u32>,
 }
 
 impl Region {
-    /// The free vertices of some triangles, and those within `rings` edges of them.
+    /// Returns the region of the free vertices within `rings` edges of the bad triangles. Paths of edges stop at fixed
+    /// vertices.
     pub(crate) fn around(problem: &Problem, bad: &[u32], rings: u32) -> Region {
         let free = problem.free_count();
         let mut inside = vec![false; problem.positions().len()];
@@ -89,7 +90,7 @@ impl Region {
         }
     }
 
-    /// All free vertices.
+    /// Returns the region of all free vertices and all triangles of the problem.
     pub(crate) fn whole(problem: &Problem) -> Region {
         Region {
             vertices: problem.colors().iter().map(|c| fours(problem, c.clone())).collect(),
@@ -107,7 +108,7 @@ impl<'p> State<'p> {
         Tangle { problem: self.problem, positions, targets: &self.targets }
     }
 
-    /// How far the region is from being untangled.
+    /// Returns the smallest area and the number of bad triangles of a region at the present positions.
     pub(crate) fn assess(&self, region: &Region) -> Assessment {
         let tangle = self.tangle(&self.positions);
         let area = |&t: &u32| tangle.triangle(&self.problem.triangles()[t as usize]).area();
@@ -119,7 +120,7 @@ impl<'p> State<'p> {
         parts.into_iter().fold(Assessment::EMPTY, Assessment::and)
     }
 
-    /// Visits every vertex of the region once, color by color.
+    /// Visits every vertex of the region once, color by color, with a Newton step each.
     pub(crate) fn sweep(&mut self, region: &Region, epsilon: f64) {
         for fours in &region.vertices {
             let moved = self.tangle(&self.positions).steps(fours, epsilon);
@@ -131,22 +132,24 @@ impl<'p> State<'p> {
         }
     }
 
-    /// Cuts the mesh and puts vertices on the cuts. Returns which vertices are to be held: those, and all that are not free.
+    /// Cuts the mesh and moves vertices onto the cuts. Returns true for vertices on cuts and for fixed vertices.
     pub(crate) fn cut(&mut self, short: Short) -> Vec<bool> {
         let cuts = cut(self.problem, &self.targets, &self.positions, short);
         self.positions = cuts.positions;
         cuts.held
     }
 
-    /// The coarser levels for [`global_step`](Self::global_step) and [`make_harmonic`](Self::make_harmonic).
+    /// Builds the coarser levels for [`global_step`](Self::global_step) and [`make_harmonic`](Self::make_harmonic).
+    /// Corrections from the levels move no `held` vertex.
     pub(crate) fn hierarchy(&self, held: &[bool]) -> Hierarchy {
         Hierarchy::of_sizes(self.problem, &self.targets, held)
     }
 
-    /// Moves all free vertices along a correction from the coarser levels, as far as the energy falls. The region is the whole mesh.
+    /// Moves all free vertices along a correction from the coarser levels, to a length at which the energy is lower.
+    /// `region` must be the whole mesh.
     pub(crate) fn global_step(&mut self, region: &Region, hierarchy: &Hierarchy, epsilon: f64) {
         let gradient = self.gradient(region, epsilon);
-        // The levels compute in single precision, and near flat triangles the gradient may be beyond it.
+        // The levels compute in single precision, whose range a gradient near flat triangles may exceed.
         let most = largest(&gradient);
         let unit = if most > 0.0 && most.is_finite() { 1.0 / most } else { return };
         let scaled: Vec<Vec2> = collect(gradient.len(), |v| (gradient[v] * unit).as_vec2());
@@ -176,7 +179,7 @@ impl<'p> State<'p> {
         }
     }
 
-    /// The gradient of the energy by the positions of the free vertices, zero outside of the region.
+    /// Returns the gradient of the energy by the positions of the free vertices, zero outside the region.
     fn gradient(&self, region: &Region, epsilon: f64) -> Vec<DVec2> {
         let mut gradient = vec![DVec2::ZERO; self.problem.free_count()];
         for fours in &region.vertices {
@@ -190,13 +193,14 @@ impl<'p> State<'p> {
         gradient
     }
 
-    /// Puts every vertex that is not held at the weighted mean of its neighbors. Within convex boundaries of held vertices no
-    /// triangle is then inverted (Tutte 1963); elsewhere it is a start. By conjugate gradients, preconditioned by the levels.
+    /// Moves every vertex that is not held to the weighted mean of its neighbors, by conjugate gradients preconditioned
+    /// by the levels. If held vertices form a convex boundary, no triangle inside is inverted (Tutte 1963). Elsewhere,
+    /// the means are only a start.
     pub(crate) fn make_harmonic(&mut self, hierarchy: &Hierarchy, held: &[bool]) {
         const ITERATIONS: usize = 200;
         let free = self.problem.free_count();
         let problem = self.problem;
-        // The weighted sum of the differences to the neighbors; nothing where a vertex is held.
+        // The weighted sum of the differences to the neighbors, zero for held vertices.
         let differences = |v: usize, at: &(dyn Fn(usize) -> DVec2 + Sync)| -> DVec2 {
             if held[v] {
                 return DVec2::ZERO;
@@ -218,7 +222,7 @@ impl<'p> State<'p> {
                 false => residual[v] * f64::from(diagonal[v]) - coarse[v].as_dvec2() * most,
             })
         };
-        // Both coordinates at once, each with step lengths of its own.
+        // Both coordinates are solved for at once, with separate step lengths.
         let dot = |a: &[DVec2], b: &[DVec2]| -> DVec2 {
             let parts = map_ranges(free, CHUNK, |range| {
                 a[range.clone()].iter().zip(&b[range]).map(|(a, b)| a * b).sum::<DVec2>()
@@ -254,7 +258,7 @@ impl<'p> State<'p> {
     }
 }
 
-/// The largest coordinate of some vectors, without its sign.
+/// Returns the largest absolute coordinate of the vectors, 0 if there are none.
 fn largest(vectors: &[DVec2]) -> f64 {
     let parts = map_parts(vectors.chunks(CHUNK), |_, part| {
         part.iter().fold(0.0, |most: f64, v| most.max(v.abs().max_element()))
@@ -262,7 +266,7 @@ fn largest(vectors: &[DVec2]) -> f64 {
     parts.into_iter().fold(0.0, f64::max)
 }
 
-/// Changes each of some vectors, given its index.
+/// Applies `change` to each vector and its index, on all threads.
 fn update(vectors: &mut [DVec2], change: impl Fn(usize, &mut DVec2) + Sync) {
     for_each_chunk(vectors, CHUNK, |first, vectors| {
         vectors.iter_mut().enumerate().for_each(|(i, vector)| change(first + i, vector));

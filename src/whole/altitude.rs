@@ -1,5 +1,5 @@
-//! The stage that keeps the altitude of every triangle from falling below the least altitude of the given mesh. The vertices of
-//! triangles that are too low go back, and stay there while the others move on.
+//! The stage that bounds altitudes: no altitude falls below the smallest altitude of the given mesh. Vertices of
+//! triangles below the bound go back and are held, while other vertices move on.
 
 use std::cmp::Ordering;
 
@@ -14,19 +14,19 @@ use crate::topology::Topology;
 use crate::whole::host::Host;
 use crate::whole::stage::{Judged, Period, Stage, Worked};
 
-/// Number of sweeps in a period, until a period after which no vertex goes back.
+/// Number of sweeps in a period, while the stage still moves vertices back.
 const SWEEPS: u32 = 2;
-/// The most periods.
+/// Largest number of periods, after which the run ends.
 const PERIODS: u32 = 60;
-/// Number of times that the way of vertices is halved before they go back completely.
+/// Number of halvings of the moves of vertices, before the moves are undone.
 const HALVED: u32 = 3;
 
-/// Returns the least altitude of some triangles.
+/// Returns the smallest altitude of the given triangles.
 fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
     triangles.iter().map(|t| altitude(t.map(&at))).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the least altitude of a triangle with the vertices at the problem's positions, normalized.
+/// Returns the smallest normalized altitude of the triangles, with vertices at the problem's positions.
 pub(crate) fn least_of(problem: &Problem) -> f64 {
     least(problem.triangles(), |v| problem.positions()[v as usize])
 }
@@ -42,7 +42,7 @@ fn bring_back(
 ) -> Vec<u32> {
     let mut returned = Vec::new();
     loop {
-        // NaN counts as below the floor.
+        // An altitude of NaN counts as below the floor.
         let is_low = |t: &&[u32; 3]| {
             let altitude = altitude(t.map(|v| points[v as usize]));
             altitude.partial_cmp(&floor).is_none_or(|order| order == Ordering::Less)
@@ -65,8 +65,8 @@ fn bring_back(
     }
 }
 
-/// Sets back vertices so that the least altitude of a mesh is not less than before, for points as they are written.
-/// Returns the number of these vertices.
+/// Moves vertices of a result back until no altitude is below the smallest altitude of the given mesh, for points as
+/// they are written. Returns the number of vertices moved back.
 pub(crate) fn restore(
     topology: &Topology<'_>,
     before: &[[f64; 2]],
@@ -82,21 +82,21 @@ pub(crate) fn restore(
     returned.len()
 }
 
-/// The stage that keeps the least altitude of the start.
+/// The stage that bounds altitudes by the smallest altitude of the start.
 pub(crate) struct AltitudeStage<'s> {
     problem: &'s Problem,
-    /// The least altitude, normalized.
+    /// Smallest altitude at the start of the run, normalized.
     least: f64,
-    /// Whether no vertex went back after the last period.
+    /// Whether no further vertex was held after the last period.
     is_clean: bool,
-    /// Whether the number of the last sweeps had no limit. It has none after a period in which no vertex went back.
+    /// Whether the last period began without a limit of sweeps, because the period before held no further vertex.
     was_clean: bool,
-    /// Number of periods done.
+    /// Number of completed periods.
     count: u32,
 }
 
 impl<'s> AltitudeStage<'s> {
-    /// Takes the least altitude of a triangle with the vertices at the problem's positions.
+    /// Creates the stage, with the smallest altitude of the problem's positions as the bound.
     pub(crate) fn new(problem: &'s Problem) -> Self {
         Self { problem, least: least_of(problem), is_clean: false, was_clean: false, count: 0 }
     }
@@ -111,7 +111,7 @@ impl Stage for AltitudeStage<'_> {
         if self.is_clean { u32::MAX } else { SWEEPS }
     }
 
-    /// The vertices of triangles that have become too low go back, and are held from then on.
+    /// Moves the vertices of triangles below the bound back, and holds them in all later sweeps.
     fn work(
         &mut self,
         host: &mut Host<'_>,

@@ -1,4 +1,4 @@
-//! The engine of a run, which may change from a device to the CPU.
+//! The engine of a run, which a failure of the device may replace by the CPU engine.
 
 use std::borrow::Cow;
 
@@ -12,13 +12,13 @@ use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, EngineState, History, Objectives, Proposal, Step};
 use crate::whole::device::DeviceEngine;
 
-/// An engine on the CPU or on a device.
+/// The CPU engine or the engine of a device, by one interface.
 pub(crate) enum AnyEngine<'g> {
     Cpu(Box<CpuEngine>),
     Device(DeviceEngine<'g>),
 }
 
-/// Calls a method of the engine.
+/// Calls a method on the engine inside an [`AnyEngine`].
 macro_rules! on {
     ($self:ident, $engine:ident => $call:expr) => {
         match $self {

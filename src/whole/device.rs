@@ -1,4 +1,4 @@
-//! The device of a run.
+//! The device on which a run sweeps, and its engine.
 
 use glam::DVec2;
 
@@ -11,7 +11,7 @@ use crate::run::{Plan, Step};
 /// The engine on a device.
 pub(crate) type DeviceEngine<'s> = Box<GpuEngine<'s>>;
 
-/// A device, and how a run waits for it.
+/// A device, and whether a run blocks or awaits until the device has results.
 #[derive(Clone, Copy)]
 pub(crate) struct Device<'s> {
     gpu: &'s Gpu,
@@ -19,27 +19,27 @@ pub(crate) struct Device<'s> {
 }
 
 impl<'s> Device<'s> {
-    /// A device for which the thread of the run waits.
+    /// Returns a device for whose results the thread of the run blocks.
     pub(crate) fn blocking(gpu: &'s Gpu) -> Self {
         Self { gpu, waiting: Waiting::Block }
     }
 
-    /// A device that the application polls while it awaits the run.
+    /// Returns a device that the application polls while it awaits the run.
     pub(crate) fn awaited(gpu: &'s Gpu) -> Self {
         Self { gpu, waiting: Waiting::Await }
     }
 
-    /// Fails if a mesh of this size does not fit the device.
+    /// Checks the size of a mesh, and fails if the device has too little room.
     pub(crate) fn check_size(self, size: MeshSize) -> Result<(), GpuError> {
         self.gpu.check_size(size)
     }
 
-    /// Fails if the device drops digits.
+    /// Checks the arithmetic of the device, and fails if kernels lose digits of pairs of floats.
     pub(crate) async fn check_arithmetic(self) -> Result<(), GpuError> {
         self.gpu.arithmetic_checked(self.waiting).await
     }
 
-    /// Returns an engine for a run by a plan that may take `steps`; see [`GpuEngine::new`].
+    /// Returns an engine for a run by `plan`, which may take `steps`; see [`GpuEngine::new`].
     pub(crate) fn engine(
         self,
         problem: &Problem,

@@ -1,4 +1,4 @@
-//! The loop of a whole run: sweeps on the engine, and the work of stages on the host between them.
+//! The loop of a whole run: sweeps on the engine, and stages on the host between sweeps.
 
 use crate::error::SmoothError;
 use crate::resume;
@@ -8,8 +8,8 @@ use crate::whole::host::{Host, objectives};
 use crate::whole::live::{Ended, Live, Moved};
 use crate::whole::stage::{Judged, Period, Stage};
 
-/// Sweeps until the run ends, and lets the stages work after each period, in their order. The last of them decides when
-/// the run ends.
+/// Sweeps until the run ends. After each period, all stages work, in order. The last stage decides whether the run
+/// ends.
 pub(crate) async fn drive(
     mut live: Live<'_>,
     stages: &mut [&mut dyn Stage],
@@ -83,7 +83,7 @@ pub(crate) async fn drive(
     }
 }
 
-/// Returns the state of the host and of the stages in a period that began after `began` sweeps.
+/// Returns the state of the host and the stages for a checkpoint, in a period that began after `began` sweeps.
 fn saved(
     host: &Host<'_>,
     stages: &[&mut dyn Stage],
@@ -106,7 +106,7 @@ fn saved(
     }
 }
 
-/// Returns the host and the stages to a saved state. `None` if it is not of a run on this mesh with these stages.
+/// Restores the host and the stages from a saved state. `None` if the state belongs to another mesh or to other stages.
 fn restore(period: &PeriodState, host: &mut Host<'_>, stages: &mut [&mut dyn Stage]) -> Option<()> {
     if period.stages.len() != stages.len() {
         return None;

@@ -7,25 +7,25 @@ use crate::layout::Problem;
 use crate::parallel::map_parts;
 use crate::run::{Objectives, Plan};
 
-/// The state that stages change between sweeps. Positions are normalized, and of all vertices.
+/// The state that stages change between sweeps. Positions are normalized and include fixed vertices.
 pub(crate) struct Host<'r> {
-    /// The layout, with the present targets.
+    /// Layout of the mesh, with the present targets.
     pub(crate) problem: Problem,
     pub(crate) plan: &'r Plan,
-    /// The positions before the sweeps, which keep all bounds.
+    /// Positions before the sweeps of the period, which keep all bounds.
     pub(crate) before: Vec<DVec2>,
-    /// f by the base metric before the sweeps.
+    /// f by the base metric at `before`.
     pub(crate) f_before: f64,
-    /// The present positions: those after the sweeps, until a stage changes them.
+    /// Present positions: those at the end of the sweeps, until a stage moves vertices.
     pub(crate) positions: Vec<DVec2>,
-    /// For each free vertex, whether sweeps are not to move it.
+    /// For each free vertex, whether later sweeps leave the vertex at its position.
     pub(crate) held: Vec<bool>,
-    /// Whether the targets have changed since the last sweep.
+    /// Whether a stage has changed targets since the last sweep.
     pub(crate) has_new_targets: bool,
 }
 
 impl<'r> Host<'r> {
-    /// Makes the state before the first sweep. No vertex is held.
+    /// Creates the state before the first sweep, with no vertex held.
     pub(crate) fn new(problem: Problem, plan: &'r Plan, positions: &[DVec2]) -> Self {
         let held = vec![false; problem.free_count()];
         let f_before = f(&problem, plan, positions);
@@ -33,24 +33,24 @@ impl<'r> Host<'r> {
         Self { problem, plan, before, f_before, positions, held, has_new_targets: false }
     }
 
-    /// Begins a period at the present positions, where f by the base metric is `f`.
+    /// Begins a period at the present positions. `f` is the objective by the base metric there.
     pub(crate) fn begin_period(&mut self, f: f64) {
         self.before.clone_from(&self.positions);
         self.f_before = f;
     }
 
-    /// Returns f by the base metric at some positions.
+    /// Returns f by the base metric at the given positions.
     pub(crate) fn f(&self, positions: &[DVec2]) -> f64 {
         f(&self.problem, self.plan, positions)
     }
 
-    /// Returns the guard of the run.
+    /// Returns the shape guard of sweeps by the base metric.
     pub(crate) fn guard(&self) -> f64 {
         self.plan.base_step(1.0).shape_guard
     }
 
-    /// Whether a move from `from` leaves no triangle inverted or flat, and none with an inverse mean ratio that is both
-    /// worse than before and above the guard.
+    /// Returns whether a move from `from` to `to` is sound: no triangle may become inverted or flat, and none may have
+    /// an inverse mean ratio both above the guard and worse than before.
     pub(crate) fn is_sound(&self, from: &[DVec2], to: &[DVec2]) -> bool {
         let (problem, guard) = (&self.problem, self.guard());
         let ratio = |positions: &[DVec2], t: &[u32; 3]| {
@@ -66,13 +66,13 @@ impl<'r> Host<'r> {
     }
 }
 
-/// Evaluates f by the base metric of a plan.
+/// Returns f by the base metric of a plan.
 fn f(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> f64 {
     let base = plan.scheme.base();
     base.ideal_squared() + mean_excess(base, problem, positions)
 }
 
-/// Evaluates the objectives that a plan tracks.
+/// Returns the objectives that a plan tracks.
 pub(crate) fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
     let mut objectives = Objectives::untracked();
     for metric in plan.tracked() {

@@ -1,4 +1,4 @@
-//! Improves the worst triangles after the sweeps of a run, and assesses the result.
+//! Improves the worst triangles after the sweeps of a run, and evaluates the gain.
 
 use glam::DVec2;
 
@@ -11,23 +11,24 @@ use crate::whole::altitude;
 use crate::whole::live::Ended;
 use crate::worst::{Badness, Rules, improve, stuck, worst_movable};
 
-/// The share that rounding may add to the worst inverse mean ratio.
+/// Share by which rounding may raise the worst inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
 
-/// A stage that improved the worst triangles. Its result is assessed by the coordinates as they are written.
+/// The result of the stage that improves the worst triangles, evaluated at the coordinates as they are written.
 pub(crate) struct Improving {
     badness: Badness,
-    /// Number of vertices that moved.
+    /// Number of vertices that the stage moved.
     vertices: usize,
-    /// The largest badness before the stage.
+    /// Largest badness of a movable triangle before the stage.
     worst: f64,
-    /// The objective by the base metric before and after the stage.
+    /// Objective by the base metric at the start and at the end of the stage.
     pub(crate) f: [f64; 2],
 }
 
 impl Improving {
-    /// Improves the worst triangles of a mesh after a run, if the options ask for it. No vertex goes farther than
-    /// `bounds` from the start of the run. If the observer ends the stage, the run counts as canceled.
+    /// Improves the worst triangles of a mesh after a run. `None` if [`Options::improve_worst`] is `None`, or if the
+    /// run was canceled or failed. `bounds` limit the distance of each free vertex from the start of the run. If the
+    /// observer ends the stage, the run counts as canceled.
     pub(crate) fn after(
         ended: &mut Ended,
         options: &Options,
@@ -65,15 +66,15 @@ impl Improving {
         Some(Self { badness, vertices, worst: worst_before, f: [before, f(positions)] })
     }
 
-    /// Whether the worst triangle is better than in the mesh before the run.
+    /// Returns whether the worst triangle is better than in the mesh before the run.
     pub(crate) fn is_better(&self, problem: &Problem, positions: &[DVec2]) -> bool {
         let worst = |positions| worst_movable(problem, self.badness, positions);
         self.vertices > 0 && worst(positions) < worst(problem.positions()) * (1.0 - NOISE)
     }
 
-    /// Returns the result of the stage, with the vertices at `positions` as they are written, where the objective is
-    /// `f`. If `is_written` is false, these are the positions before the run, and the stage has changed nothing.
-    /// `slides` are the vertices that may slide, by their numbers in the problem, ascending.
+    /// Returns the outcome of the stage, with the vertices at `positions` as they are written, and `f` the objective
+    /// there. If `is_written` is false, `positions` are those before the run, and the stage has changed nothing.
+    /// `slides` are the sliding vertices as indices in the problem, in ascending order.
     pub(crate) fn outcome(
         &self,
         problem: &Problem,

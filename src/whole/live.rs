@@ -1,5 +1,5 @@
-//! The sweeps of a whole run, on the engines that they need: on a device, after sweeps in double precision if triangles are
-//! too flat for it, and on the CPU once the device has failed.
+//! The sweeps of a whole run on several engines: in double precision while triangles are too flat for a device, on the
+//! device, and on the CPU after a failure of the device.
 
 use std::cmp::Ordering;
 
@@ -21,49 +21,50 @@ use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;
 use crate::whole::host::objectives;
 
-/// The largest sum of q² - ideal² that a device is given. It is far below the largest single, 3e38, as formulas of
-/// metrics of size multiply powers of their arguments.
+/// Largest sum of q² - ideal² with which a device begins. The limit is far below the largest f32, 3e38, as metrics of
+/// size multiply powers of their arguments.
 const MOST_ON_DEVICE: f64 = 1e15;
 
-/// What a run is to do.
+/// The mesh, device and options of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct Spec<'s> {
     pub(crate) problem: &'s Problem,
     pub(crate) device: Option<Device<'s>>,
     pub(crate) options: &'s Options,
     pub(crate) phase: Phase,
-    /// Whether the host moves vertices between sweeps.
+    /// Whether stages on the host move vertices between sweeps.
     pub(crate) is_staged: bool,
 }
 
-/// A state to which the run can return.
+/// A state to which a run can return, between two sweeps.
 struct Point {
-    /// The objectives before the first sweep and after each.
+    /// Tracked objectives before the first sweep and after each sweep.
     log: Vec<Objectives>,
-    /// The positions after the last sweep.
+    /// Normalized positions of all vertices after the last sweep.
     positions: Vec<DVec2>,
 }
 
-/// A run in progress, on one engine as long as nothing fails.
+/// A run in progress, on a single engine unless that engine fails.
 pub(crate) struct Live<'s> {
-    /// The layout, with the present targets.
+    /// Layout of the mesh, with the present targets.
     pub(crate) problem: Problem,
     pub(crate) plan: Plan,
     spec: Spec<'s>,
-    /// The device that sweeps; `None` for the CPU.
+    /// Device for the next sweeps. `None` for the CPU.
     device: Option<Device<'s>>,
-    /// `None` before the first sweep, and after the device has failed.
+    /// Present session. `None` before the first sweep, and once the device has failed.
     session: Option<Session<AnyEngine<'s>>>,
-    /// Where the run begins, or stood when the host moved vertices last.
+    /// State at the start of the run, or at the end of the latest stage that moved vertices.
     last: Point,
     held: Vec<bool>,
     opened: Option<Opened>,
-    /// The number of sweeps after which the CPU takes over, because triangles are too flat or too small for the device.
+    /// Number of sweeps before the CPU replaced a device for which triangles are too flat or too small. `None` without
+    /// such a change.
     on_cpu_from: Option<u32>,
     fault: Option<DeviceFault>,
 }
 
-/// The end of the sweeps of a run.
+/// The result of a run's sweeps: positions, history, counts, and the reason of the end.
 pub(crate) struct Ended {
     pub(crate) history: Vec<Objectives>,
     pub(crate) positions: Vec<DVec2>,
@@ -76,7 +77,8 @@ pub(crate) struct Ended {
 }
 
 impl<'s> Live<'s> {
-    /// Prepares a run by `plan` from some positions, or from a checkpoint of a run that began there.
+    /// Prepares a run by `plan` from the positions `from`. With `resumed`, the run continues from a checkpoint of a run
+    /// from these positions.
     pub(crate) async fn new(
         spec: Spec<'s>,
         mut plan: Plan,
@@ -121,35 +123,35 @@ impl<'s> Live<'s> {
         })
     }
 
-    /// Whether sweeps are corrected from coarser levels.
+    /// Returns whether corrections from coarser levels follow the sweeps.
     fn is_corrected(&self) -> bool {
         self.spec.options.is_multilevel() && self.problem.free_count() > 0
     }
 
-    /// Returns the number of sweeps done. Sweeps that opened triangles for a device do not count.
+    /// Returns the number of completed sweeps, without the sweeps that opened triangles for a device.
     pub(crate) fn sweeps(&self) -> u32 {
         let log =
             self.session.as_ref().map_or(&self.last.log[..], |session| session.history().log());
         (log.len() as u32).saturating_sub(1)
     }
 
-    /// Returns the positions where the run begins, or stood when the host moved vertices last.
+    /// Returns the positions at the start of the run, or at the end of the latest stage that moved vertices.
     pub(crate) fn start(&self) -> &[DVec2] {
         &self.last.positions
     }
 
-    /// Returns the number of sweeps after which the CPU took over from the device, if the CPU did.
+    /// Returns the number of sweeps before the CPU replaced the device. `None` without such a change.
     pub(crate) fn on_cpu_from(&self) -> Option<u32> {
         self.on_cpu_from
     }
 
-    /// Returns the share of f that is estimated to be left to gain, from the sweeps alone.
+    /// Returns the estimated remaining gain as a share of f, from the sweeps alone.
     pub(crate) fn remaining(&self) -> Option<f64> {
         self.session.as_ref().and_then(|session| session.history().remaining())
     }
 
-    /// Sweeps until `until` sweeps are done, or the run ends. Returns the best positions, and the reason if the run ends.
-    /// Checkpoints take the state of the host and of the stages from `period`.
+    /// Sweeps until the run has done `until` sweeps, or ends before. Returns the best positions, and the reason if the
+    /// run ends. `period` is the source of the state of the host and the stages, for checkpoints.
     pub(crate) async fn sweep(
         &mut self,
         until: u32,
@@ -164,7 +166,7 @@ impl<'s> Live<'s> {
                 Err(DriveError::NotFinite { sweep }) => {
                     let error = GpuError::NotFinite { sweep };
                     if self.device.is_none() || self.fall_back(error, checkpointer).is_err() {
-                        // Sweeps after the last work of the stages may have gone beyond their bounds.
+                        // Sweeps after the last stages may have moved vertices beyond the bounds of the stages.
                         let saved = checkpointer.last.take().filter(|_| !self.spec.is_staged);
                         return Ok((self.undone(saved), Some(Stop::NotFinite)));
                     }
@@ -195,14 +197,14 @@ impl<'s> Live<'s> {
         Ok((positions, stop))
     }
 
-    /// Makes an engine in a saved state, or where the run stood when the host moved vertices last.
+    /// Creates an engine in a saved state, or in the state that `last` has.
     fn begun(&self, saved: Option<Saved>) -> Result<Session<AnyEngine<'s>>, DriveError> {
         let Self { problem, plan, last: Point { log, positions }, held, .. } = self;
         let corrected = self.is_corrected();
         let mut engine = match self.device {
             None => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, positions.clone(), plan))),
             Some(device) => {
-                // The host judges a run with corrections or with stages, so the device must not end it.
+                // The host judges runs with corrections or stages, so the device must not end them.
                 let is_judged_by_host = corrected || self.spec.is_staged;
                 let judged = if is_judged_by_host { plan.clone().endless() } else { plan.clone() };
                 let steps = steps(plan, corrected);
@@ -219,7 +221,8 @@ impl<'s> Live<'s> {
         Ok(session)
     }
 
-    /// Leaves the device if the policy lets the run go on on the CPU. Without a device, or if the policy refuses, returns the error.
+    /// Leaves the device, so that the run continues on the CPU. Returns the error if the run has no device, or if the
+    /// policy refuses.
     fn fall_back(
         &mut self,
         error: GpuError,
@@ -236,8 +239,8 @@ impl<'s> Live<'s> {
         Ok(())
     }
 
-    /// Returns to the state that was last saved, or to where the host moved vertices last, because a later sweep made f
-    /// infinite or NaN. Returns the positions there.
+    /// Returns to the last saved state, or to the state of `last`, because a later sweep made f infinite or NaN.
+    /// Returns the positions of this state.
     fn undone(&mut self, saved: Option<Saved>) -> Vec<DVec2> {
         if let Some(Saved { log, engine, .. }) = saved {
             self.last = Point { log, positions: engine.best.unwrap_or(engine.positions) };
@@ -249,8 +252,8 @@ impl<'s> Live<'s> {
         self.last.positions.clone()
     }
 
-    /// Takes the positions that the host has given the vertices after the sweeps from `from` on, the vertices that it holds,
-    /// and the targets that it has changed.
+    /// Records the changes of the stages after sweep `from`: the positions of vertices, the held vertices, and the
+    /// targets. Sends the changes to the engine.
     pub(crate) fn write_back(
         &mut self,
         from: u32,
@@ -260,7 +263,7 @@ impl<'s> Live<'s> {
         let Moved { positions, swept_to, held, targets, now } = moved;
         let Some(mut session) = self.session.take() else { return Ok(()) };
         session.disturbed(from, now);
-        // A state that was saved before is not that of the stages any more.
+        // The state that was saved before belongs to other positions and stages.
         checkpointer.last = None;
         self.last = Point { log: session.history().log().to_vec(), positions: positions.to_vec() };
         let is_held_anew = self.held != held;
@@ -288,7 +291,7 @@ impl<'s> Live<'s> {
             Ok(()) => self.session = Some(session),
             Err(error) => self.fall_back(error, checkpointer)?,
         }
-        // A device cannot sweep a mesh in which the host has made triangles too flat for it.
+        // A device cannot sweep a mesh with triangles that a stage has made too flat.
         let is_flat = || opening::obstacle(&self.problem, positions) != Obstacle::None;
         if self.device.is_some() && positions != swept_to && is_flat() {
             self.on_cpu_from = Some(self.sweeps());
@@ -297,7 +300,7 @@ impl<'s> Live<'s> {
         Ok(())
     }
 
-    /// Ends the run with its vertices at `positions`.
+    /// Ends the run for the reason `stop`, with the vertices at `positions`.
     pub(crate) fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> Ended {
         let Self { plan, problem, last, session, .. } = self;
         let none = Counts { alternated: 0, corrections: 0, levels_left_out: false };
@@ -339,22 +342,22 @@ impl<'s> Live<'s> {
     }
 }
 
-/// The changes that the host makes between sweeps.
+/// The changes that stages on the host make between sweeps.
 pub(crate) struct Moved<'h> {
     pub(crate) positions: &'h [DVec2],
-    /// The positions after the sweeps.
+    /// Positions at the end of the sweeps, before the stages moved vertices.
     pub(crate) swept_to: &'h [DVec2],
-    /// Which free vertices are held from now on; empty for none.
+    /// For each free vertex, whether later sweeps hold it; empty if no vertex is held.
     pub(crate) held: &'h [bool],
-    /// The problem with the new targets, if targets have changed.
+    /// The problem with new targets. `None` if the targets have not changed.
     pub(crate) targets: Option<&'h Problem>,
-    /// The objectives at the positions, by the targets.
+    /// Objectives at `positions`, by the present targets.
     pub(crate) now: Objectives,
 }
 
-/// Opens triangles that are too flat for a device, by sweeps on the CPU. Returns the device that continues, and these
-/// sweeps, if there were any. If they do not open every triangle, or triangles are too small for a device, no device is
-/// returned, and the whole run is done on the CPU.
+/// Opens triangles that are too flat for a device by sweeps on the CPU. Returns the device of the run and these sweeps,
+/// if any were needed. The run stays on the CPU, without a device, if a triangle is too small for the device, or if the
+/// sweeps cannot open every triangle.
 async fn opened<'s>(
     spec: &Spec<'s>,
     plan: &Plan,
@@ -364,12 +367,12 @@ async fn opened<'s>(
     if device.is_none() {
         return Ok((None, None));
     }
-    // If sizes differ very much, the sums of some metrics exceed the range of single precision.
+    // If sizes of triangles differ very much, sums of some metrics exceed the range of single precision.
     let sum =
         |metric: &Metric| mean_excess(*metric, problem, from) * problem.triangles().len() as f64;
     let is_huge = |metric: &Metric| {
         let is_ratio = metric.properties().is_inverse_mean_ratio;
-        // A sum that is NaN counts as too large.
+        // A sum of NaN counts as too large.
         !is_ratio && sum(metric).partial_cmp(&MOST_ON_DEVICE) != Some(Ordering::Less)
     };
     if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {

@@ -1,5 +1,5 @@
-//! Whole runs: sweeps on the engines that they need, the stages between them, and the improvement of the worst triangles
-//! after them.
+//! Whole runs: sweeps on one engine or on several in turn, stages between the sweeps, and the improvement of the worst
+//! triangles after the last sweep.
 
 pub(crate) mod altitude;
 mod any_engine;

@@ -1,5 +1,4 @@
-//! The stage that keeps vertices within a distance of their start: after some sweeps, vertices beyond their bound are brought
-//! back to it.
+//! The stage that bounds moves. After some sweeps, vertices too far from their start are moved back to their bound.
 
 use glam::DVec2;
 
@@ -21,27 +20,27 @@ use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
 
 /// Number of sweeps in a period.
 const SWEEPS: u32 = 3;
-/// Number of times that a period visits the vertices at their bound.
+/// Number of times that a period visits the held vertices, which are at their bound.
 const VISITS: u32 = 3;
-/// Limit of the halvings of a period's move, which is halved until it lowers f and keeps triangles sound.
+/// Largest number of halvings of a period's move, until the move lowers f and keeps triangles sound.
 const HALVED: u32 = 5;
-/// A vertex that has moved by more than this share of its bound is at its bound.
+/// Distance from the start at which a vertex is held, as a share of the bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
 
-/// How far each vertex may move.
+/// The stage that limits the distance of each vertex from its start.
 pub(crate) struct MoveLimitStage<'s> {
     problem: &'s Problem,
-    /// The largest distance of each vertex of the mesh from its start, in the unit of the mesh.
+    /// Largest distance of each vertex of the mesh from its start, in the unit of the mesh.
     all: Vec<f64>,
-    /// The largest distance of each free vertex from its start, normalized.
+    /// Largest distance of each free vertex from its start, normalized.
     bounds: Vec<f64>,
     fans: Vec<Fan>,
     rule: PeriodRule,
 }
 
 impl<'s> MoveLimitStage<'s> {
-    /// Makes bounds so that no vertex moves by more than `most` times the mean edge length there, given the precision
-    /// in which positions are stored.
+    /// Creates the stage. Each vertex may move by `most` times the mean edge length at the vertex, less a reserve for
+    /// positions rounded to the precision `stored`.
     pub(crate) fn new(
         mesh: &Mesh,
         topology: &Topology<'_>,
@@ -73,7 +72,7 @@ impl<'s> MoveLimitStage<'s> {
         }
     }
 
-    /// Returns how far each free vertex may be from its start, normalized.
+    /// Returns the largest distance of each free vertex from its start, normalized.
     pub(crate) fn bounds(&self) -> &[f64] {
         &self.bounds
     }
@@ -83,26 +82,26 @@ impl<'s> MoveLimitStage<'s> {
         sliding.for_each_vertex(|v| self.all[v as usize])
     }
 
-    /// Returns the bound of a free vertex.
+    /// Returns the circle around its start that bounds a free vertex.
     fn bound(&self, v: usize) -> Circle {
         Circle { center: self.problem.positions()[v], radius: self.bounds[v] }
     }
 
-    /// Returns the position of a free vertex, brought back to its bound if it is beyond.
+    /// Returns the position nearest to `to` within the bound of a free vertex.
     fn within(&self, v: usize, to: DVec2) -> DVec2 {
         self.bound(v).nearest(to)
     }
 
-    /// Moves the vertices to where the sweeps have moved them, as far as bounds allow, or a part of the way, if that lowers
-    /// the objective and is sound. If not, vertices that would go beyond their bounds are held. Returns whether the vertices
-    /// were moved.
+    /// Moves each vertex to its swept position, or to its bound if the position is beyond. Halves the moves until f
+    /// falls and triangles stay sound. After [`HALVED`] halvings without success, the vertices return, and vertices
+    /// swept beyond their bounds are held. Returns whether the vertices moved.
     fn take(&self, host: &mut Host<'_>) -> bool {
         let mut share = 1.0;
         for _ in 0..=HALVED {
             let mut there = host.before.clone();
             let moved = there[..self.bounds.len()].iter_mut().zip(&host.positions);
             for (v, (place, to)) in moved.enumerate() {
-                // With a share of 1, the position is exactly that of `to`.
+                // With a share of 1, the position equals `to` exactly.
                 let wanted = if share == 1.0 { *to } else { *place + (*to - *place) * share };
                 *place = self.within(v, wanted);
             }
@@ -119,7 +118,7 @@ impl<'s> MoveLimitStage<'s> {
         false
     }
 
-    /// Visits the vertices at the limit of their moves, and takes a step of [`SearchRule::BOUND`] at each.
+    /// Takes a step at each held vertex by [`SearchRule::BOUND`]. Held vertices are at their bound.
     fn visit_held(&self, host: &mut Host<'_>, step: &Step) {
         let Step { metric, sharpness, shape_guard, .. } = *step;
         let (formulas, smoothing) = (metric.formulas(), Smoothing::of(sharpness));
@@ -133,7 +132,7 @@ impl<'s> MoveLimitStage<'s> {
     }
 }
 
-/// The objective of a vertex at the limit of its move. Trials beyond the limit are projected to the circle.
+/// The objective of a held vertex, at the circle of its bound. Trials beyond the bound are projected to the circle.
 struct BoundObjective<'a> {
     metric: MetricObjective<'a, FanPatch, AnyFormulas>,
     bound: Circle,
@@ -144,8 +143,8 @@ impl Objective<f64> for BoundObjective<'_> {
         self.metric.expansion(at)
     }
 
-    /// Returns the negative gradient, divided by the largest curvature. The step moves a vertex along its bound as well
-    /// as inward.
+    /// Returns the negative gradient, divided by the largest curvature. Steps move a vertex along its bound as well as
+    /// inward.
     fn direction(&self, here: &Dual, _: f64) -> Direction<f64> {
         let ([x, y], [xx, xy, yy]) = (here.gradient, here.hessian);
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
@@ -199,13 +198,13 @@ impl Stage for MoveLimitStage<'_> {
         Ok(Worked { is_settled, has_moved_free: false })
     }
 
-    /// Whether all free vertices are within their bounds.
+    /// Returns whether all free vertices are within their bounds.
     fn allows(&self, positions: &[DVec2]) -> bool {
         let start = self.problem.positions().iter().zip(positions);
         start.zip(&self.bounds).all(|((start, now), bound)| now.distance(*start) <= *bound)
     }
 
-    /// Holds the vertices that are at their bound, and releases the others.
+    /// Holds the vertices at their bound, and releases all other vertices.
     fn follow(&mut self, host: &mut Host<'_>) {
         for (v, held) in host.held.iter_mut().enumerate() {
             let distance = host.positions[v].distance(self.problem.positions()[v]);

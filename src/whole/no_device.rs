@@ -1,4 +1,4 @@
-//! Stands in for the device of a run in a build without the feature `gpu`.
+//! Types in place of the device of a run, for builds without the feature `gpu`.
 
 use glam::DVec2;
 
@@ -7,10 +7,10 @@ use crate::layout::Problem;
 use crate::mesh::MeshSize;
 use crate::run::{Plan, Step};
 
-/// A device, of which there is none.
+/// The device of a run. The type has no value, as no device exists.
 pub(crate) type Device<'s> = &'s NoDevice;
 
-/// The engine on a device.
+/// The engine on a device, likewise without a value.
 pub(crate) type DeviceEngine<'s> = &'s NoDevice;
 
 /// A type without values.

@@ -1,4 +1,4 @@
-//! The stage in which vertices slide: sweeps along the curves, after some sweeps over the free vertices.
+//! The stage in which vertices slide: sweeps along curves, after some sweeps over the free vertices.
 
 use glam::DVec2;
 
@@ -13,32 +13,32 @@ use crate::topology::predicates::orientation;
 use crate::whole::host::Host;
 use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
 
-/// Number of sweeps in a period. With two, a run takes as many sweeps and more periods; with four, it takes more sweeps.
+/// Number of sweeps in a period. With two sweeps, a run takes more periods and as many sweeps; with four, more sweeps.
 const SWEEPS: u32 = 3;
-/// Number of times that a period sweeps along the curves, forward and back. Curves have so few vertices that it costs
-/// little.
+/// Number of times that a period sweeps along the curves, forward and back. Curves have few vertices, so each time is
+/// cheap.
 const SLIDES: u32 = 3;
 
-/// The share of an altitude that rounding may take.
+/// Share by which the bound on altitudes is raised, as a reserve for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The vertices that slide, and where the run has moved them.
+/// The sliding vertices of a run, with their present parameters along the curves.
 pub(crate) struct SlideStage<'s> {
     sliding: &'s Sliding,
     params: Params,
-    /// How far each vertex may be from its given position, in the unit of the mesh.
+    /// Largest distance of each vertex from its given position, in the unit of the mesh.
     reach: Params,
-    /// The least altitude that sliding may leave, normalized; 0 for no bound.
+    /// Lower limit of altitudes after sliding, normalized; 0 for no limit.
     floor: f64,
-    /// Number of periods done.
+    /// Number of completed periods.
     count: u32,
     memory: Acceleration,
     rule: PeriodRule,
 }
 
 impl<'s> SlideStage<'s> {
-    /// Begins at the given positions. Vertices go no farther than `reach`, if there is one, and leave no altitude below
-    /// `floor`, which is 0 for no bound.
+    /// Creates the stage at the given positions. `reach` limits the distances of vertices from their given positions,
+    /// if given. `floor` is the lower limit of altitudes, 0 for no limit.
     pub(crate) fn new(
         sliding: &'s Sliding,
         reach: Option<Params>,
@@ -56,14 +56,14 @@ impl<'s> SlideStage<'s> {
         }
     }
 
-    /// Returns the positions of the vertices that have slid, with their numbers in the mesh. The normalized positions do not
-    /// hold all of their digits.
+    /// Returns the sliding vertices that have moved, as indices in the mesh with their positions. Normalized positions
+    /// would lack some digits of the coordinates.
     pub(crate) fn moved(&self) -> Vec<(u32, [f64; 2])> {
         self.sliding.moved(&self.params)
     }
 
-    /// Returns the result of sliding in a run that ended at `points`. If nothing was gained, it is that of the
-    /// unchanged mesh.
+    /// Returns the result of sliding in a run that ended at `points`. If the run `gains` nothing, the mesh is
+    /// unchanged.
     pub(crate) fn slid(
         &self,
         mesh: &Mesh,
@@ -97,7 +97,8 @@ impl Stage for SlideStage<'_> {
         SWEEPS
     }
 
-    /// Sweeps along the curves. Then takes the accelerated step from the last periods, if that lowers the objective.
+    /// Sweeps along the curves, then extrapolates the last periods. The extrapolated positions are taken if f is lower
+    /// there and all bounds hold.
     fn work(
         &mut self,
         host: &mut Host<'_>,

@@ -1,4 +1,4 @@
-//! The interface of stages: the work of a run on the host between sweeps, and the decision whether the run ends.
+//! The interface of stages: work on the host between sweeps, and the decision whether the run ends.
 
 use glam::DVec2;
 
@@ -7,81 +7,81 @@ use crate::run::records::{Reader, Writer};
 use crate::run::{Stop, StopRule};
 use crate::whole::host::Host;
 
-/// Work on the host between sweeps on the engine.
+/// A stage of a run: work on the host between sweeps on the engine.
 pub(crate) trait Stage: Send + Sync {
-    /// The name of the stage in checkpoints.
+    /// Returns the name of the stage in checkpoints.
     fn name(&self) -> &'static str;
 
-    /// The most sweeps before the stage works again.
+    /// Returns the largest number of sweeps before the stage works again.
     fn period(&self) -> u32;
 
-    /// Works on the state after some sweeps. Before it moves vertices in another way than the sweeps did, it asks
-    /// `allows`, which answers for the stages before it.
+    /// Works on the state after some sweeps. A stage that moves free vertices otherwise than the sweeps did first asks
+    /// `allows`, which applies the bounds of earlier stages.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] if a target has no finite place.
+    /// [`MeshError::NotFinite`] if the stage must evaluate a target at an infinite or NaN position.
     fn work(
         &mut self,
         host: &mut Host<'_>,
         allows: &dyn Fn(&[DVec2]) -> bool,
     ) -> Result<Worked, MeshError>;
 
-    /// Whether the stage allows the free vertices to be at these positions.
+    /// Returns whether the bounds of the stage allow the free vertices at the given positions.
     fn allows(&self, _positions: &[DVec2]) -> bool {
         true
     }
 
-    /// Takes note that a later stage has moved free vertices.
+    /// Adapts the stage to a later stage that has moved free vertices.
     fn follow(&mut self, _host: &mut Host<'_>) {}
 
-    /// Decides whether the run ends. The driver asks the last stage of the run alone.
+    /// Decides whether the run ends. The driver asks only the last stage of a run.
     fn judge(&mut self, period: &Period) -> Judged;
 
-    /// Writes the state of the stage between two periods.
+    /// Writes the state of the stage between two periods to a checkpoint.
     fn save(&self, out: &mut Writer);
 
-    /// Returns to a state that [`save`](Self::save) wrote, with the vertices of `host` where they were then. `None` if the
-    /// state is not of a run on this mesh.
+    /// Restores a state that [`save`](Self::save) wrote. The vertices of `host` have the positions of the saved period.
+    /// `None` if the state belongs to a run on another mesh.
     fn restore(&mut self, host: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()>;
 }
 
-/// The result of the work of a stage.
+/// Effects of a stage's work in one period.
 #[derive(Clone, Copy)]
 pub(crate) struct Worked {
-    /// Whether the run may end, as far as the stage knows.
+    /// Whether the stage would let the run end.
     pub(crate) is_settled: bool,
     /// Whether the stage has moved free vertices otherwise than the sweeps did.
     pub(crate) has_moved_free: bool,
 }
 
-/// A period consists of sweeps and the work of all stages after the sweeps.
+/// A finished period: sweeps, and the work of all stages after the sweeps.
 pub(crate) struct Period {
     /// f by the base metric before and after the period.
     pub(crate) f: [f64; 2],
-    /// The reason why the sweeps ended, if they ended by themselves.
+    /// Reason why the run ended during the sweeps. `None` if the sweeps reached the end of the period.
     pub(crate) swept: Option<Stop>,
-    /// The share of f that is left to gain, as estimated from the sweeps alone.
+    /// Estimated remaining gain as a share of f, from the sweeps alone.
     pub(crate) remaining: Option<f64>,
-    /// Whether every stage is settled.
+    /// Whether every stage is settled, see [`Worked::is_settled`].
     pub(crate) is_settled: bool,
-    /// Whether all free vertices are held.
+    /// Whether stages hold all free vertices.
     pub(crate) all_held: bool,
-    /// Whether no more sweeps may be done.
+    /// Whether the run has reached its largest number of sweeps.
     pub(crate) is_last: bool,
 }
 
-/// The judgement after a period.
+/// A decision after a period.
 pub(crate) struct Judged {
-    /// The reason why the run ends, if it does.
+    /// Reason why the run ends. `None` if the run continues.
     pub(crate) stop: Option<Stop>,
-    /// The share of f that is estimated to be left to gain.
+    /// Estimated remaining gain as a share of f. `None` without an estimate.
     pub(crate) remaining: Option<f64>,
 }
 
-/// Number of estimates in a row that must agree before a run ends, as the gains of periods are irregular.
+/// Number of consecutive estimates that must agree before a run ends, as the gains of periods are irregular.
 const ESTIMATES: u32 = 2;
 
-/// The stop rule of a run, applied to f at the ends of periods.
+/// The stop rule of a run, applied to f at the end of each period.
 pub(crate) struct PeriodRule {
     rule: StopRule,
     f: Vec<f64>,

@@ -1,5 +1,5 @@
-//! The stage for targets that belong to points of the plane: after some sweeps, targets are evaluated at the new positions of
-//! the vertices.
+//! The stage for targets that belong to points of the plane. After some sweeps, the targets are evaluated at the new
+//! positions of the vertices.
 
 use glam::DVec2;
 
@@ -14,15 +14,14 @@ use crate::whole::stage::{Judged, Period, Stage, Worked};
 
 /// Number of sweeps in a period.
 const SWEEPS: u32 = 5;
-/// Number of times that the move of a period is halved if f does not fall along it.
+/// Largest number of times that the stage halves the move of a period, until f falls.
 const HALVED: u32 = 4;
-/// Number of periods in a row with gains of at most the tolerance, after which a run ends.
+/// Number of consecutive periods with remaining gains within the tolerance, after which a run ends.
 const SETTLED: u32 = 2;
-/// When the remaining gain is estimated from the gains of two periods, the second counts as at most this share of the
-/// first.
+/// Largest ratio of the gains of two successive periods that an estimate of the remaining gain assumes.
 const SLOWEST: f64 = 0.95;
 
-/// Sets the targets of a problem to those of a field at the positions of its vertices.
+/// Replaces the targets of a problem by the values of a field at the positions of the vertices.
 ///
 /// # Errors
 /// [`MeshError::NotFinite`] if a position is not finite.
@@ -38,23 +37,23 @@ pub(crate) fn set_targets_of(
     Ok(())
 }
 
-/// A field of targets that follow the vertices.
+/// The stage that evaluates a field of targets at the vertices after each period.
 pub(crate) struct TargetFieldStage<'s> {
     mesh: &'s Mesh,
     field: &'s TargetField,
     tolerance: f64,
-    /// The gain of the last period.
+    /// Gain of f in the last period. `None` before the first period.
     gained: Option<f64>,
-    /// Number of periods in a row with gains of at most the tolerance.
+    /// Number of consecutive periods with remaining gains within the tolerance.
     settled: u32,
-    /// Whether the last period has moved the vertices.
+    /// Whether vertices moved in the last period.
     has_moved: bool,
-    /// Whether the targets of the run are no longer those of the start.
+    /// True once the stage has evaluated targets again.
     has_followed: bool,
 }
 
 impl<'s> TargetFieldStage<'s> {
-    /// Begins a run that ends at this tolerance.
+    /// Creates the stage of a run that ends at the given tolerance, a share of f.
     pub(crate) fn new(mesh: &'s Mesh, field: &'s TargetField, tolerance: f64) -> Self {
         let tolerance = tolerance.max(NOISE);
         Self {
@@ -84,8 +83,9 @@ impl Stage for TargetFieldStage<'_> {
         SWEEPS
     }
 
-    /// Moves the vertices to where the sweeps have moved them, or a part of the way, if that lowers f with the targets there and
-    /// inverts nothing.
+    /// Moves the vertices to their swept positions, and evaluates the targets there. Halves the move until f falls by
+    /// the new targets and no triangle is inverted. After [`HALVED`] halvings without success, the vertices return to
+    /// their former positions.
     fn work(
         &mut self,
         host: &mut Host<'_>,
@@ -96,7 +96,7 @@ impl Stage for TargetFieldStage<'_> {
         self.has_moved = false;
         for _ in 0..=HALVED {
             let way = host.before.iter().zip(&to);
-            // With a share of 1, the positions are exactly the given ones.
+            // With a share of 1, the positions equal the given positions exactly.
             let there: Vec<DVec2> = match share == 1.0 {
                 true => to.clone(),
                 false => way.map(|(from, to)| *from + (*to - *from) * share).collect(),

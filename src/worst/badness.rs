@@ -1,4 +1,4 @@
-//! The badness of triangles, by which the worst ones are improved.
+//! The badness of triangles: the squared measure by which the worst triangles are found and improved.
 
 use glam::DVec2;
 
@@ -8,16 +8,18 @@ use crate::options::WorstBy;
 use crate::patch::{FanCorner, FanPatch};
 use crate::topology::predicates::is_positive;
 
-/// √3/6: the doubled area of an equilateral triangle, divided by the sum of its squared lengths.
+/// √3/6: twice the area of an equilateral triangle, divided by the sum of its squared edge lengths.
 const IDEAL: f64 = 0.288_675_134_594_812_9;
 
-/// A measure of triangles; larger is worse. It is a square, so that it has smooth derivatives: that of the inverse mean
-/// ratio, of the inverse of the sine of the least angle, or of the inverse of the least altitude.
+/// A squared measure of triangles, larger for worse ones: the inverse mean ratio, 1 / sine of the smallest angle, or 1
+/// / smallest altitude. The squares have smooth derivatives.
 #[derive(Clone, Copy)]
 pub(crate) struct Badness(pub(crate) WorstBy);
 
 impl Badness {
-    /// Returns numbers whose maximum is the badness of a triangle, and how many there are.
+    /// Returns the candidates for the badness of a triangle, and their number: 1 for the mean ratio, 3 for angle and
+    /// altitude (one for each angle or edge). The badness is the maximum of the candidates, and p-norms sum powers of
+    /// each.
     fn terms<T: Real>(self, corner: &Corner<T>) -> ([T; 3], usize) {
         let [a, b, c] = corner.squared_lengths();
         let area = corner.doubled_area();
@@ -27,13 +29,13 @@ impl Badness {
                 let sum = (a + b + c) * IDEAL;
                 ([sum * sum * per_area; 3], 1)
             }
-            // A sine is the doubled area divided by the lengths of two edges.
+            // The sine of an angle is twice the area, divided by the lengths of its two edges.
             WorstBy::MinAngle => ([a * b * per_area, a * c * per_area, b * c * per_area], 3),
             WorstBy::Altitude => ([a * per_area, b * per_area, c * per_area], 3),
         }
     }
 
-    /// Whether triangles are measured after their target maps are applied.
+    /// Returns whether the measure applies to triangles transformed by their target maps.
     pub(crate) fn is_of_targets(self) -> bool {
         self.0 != WorstBy::Altitude
     }
@@ -47,7 +49,7 @@ impl Badness {
         }
     }
 
-    /// Returns the badness of a triangle, as returned by [`seen`](Self::seen); infinite if it is inverted or flat.
+    /// Returns the badness of a triangle given by [`seen`](Self::seen); infinite for an inverted or flat triangle.
     pub(crate) fn of(self, corner: &Corner<f64>) -> f64 {
         if !is_sound(corner) {
             return f64::INFINITY;
@@ -56,21 +58,21 @@ impl Badness {
         terms.into_iter().fold(0.0, f64::max)
     }
 
-    /// Returns the badness of the worst triangle of a patch, with the vertex at `at`.
+    /// Returns the badness of the worst triangle of a patch, with the visited vertex at `at`.
     pub(crate) fn worst_of(self, patch: &FanPatch, at: DVec2) -> f64 {
         let of = |triangle: &FanCorner| self.of(&self.seen(triangle, at, patch.mean_area));
         patch.corners.iter().map(of).fold(0.0, f64::max)
     }
 
-    /// Returns the sum of the terms of a triangle, as returned by [`seen`](Self::seen), each divided by `unit` and
-    /// raised to the power 2^doublings.
+    /// Returns Σ (candidate / `unit`)^k, with k = 2^`doublings`, over the candidates of a triangle given by
+    /// [`seen`](Self::seen).
     pub(crate) fn power(self, corner: &Corner<f64>, unit: f64, doublings: u32) -> f64 {
         let (terms, count) = self.terms(corner);
         terms[..count].iter().map(|term| power(term / unit, doublings)).sum()
     }
 
-    /// Returns the same sum as [`power`](Self::power), with its derivatives by the vertex that the edges of the
-    /// triangle start from.
+    /// Returns the sum of [`power`](Self::power) with its derivatives by the vertex at which the edges of the triangle
+    /// start.
     pub(crate) fn power_derivatives(
         self,
         corner: &Corner<f64>,
@@ -102,12 +104,12 @@ impl Badness {
     }
 }
 
-/// Returns x to the power 2^doublings.
+/// Returns x^k with k = 2^`doublings`.
 fn power(x: f64, doublings: u32) -> f64 {
     (0..doublings).fold(x, |x, _| x * x)
 }
 
-/// Whether a triangle is neither inverted nor flat.
+/// Returns whether a triangle is neither inverted nor flat, both exactly and in double precision.
 fn is_sound(corner: &Corner<f64>) -> bool {
     is_positive(&[[0.0; 2], corner.a, corner.b], &[0, 1, 2]) && corner.doubled_area() > 0.0
 }
@@ -128,7 +130,7 @@ mod tests {
         let [p, q, r] = POINTS.map(DVec2::from);
         let (a, b, c) = (p.distance(q), p.distance(r), q.distance(r));
         let area = (q - p).perp_dot(r - p);
-        // Heron's formula and the law of cosines, which the code under test does not use.
+        // Heron's formula and the law of cosines, which the tested code does not use.
         let half = 0.5 * (a + b + c);
         let heron = 2.0 * (half * (half - a) * (half - b) * (half - c)).sqrt();
         assert!((heron - area).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! A region of a mesh in which the worst triangle is improved, independently of the rest.
+//! A region of a mesh whose worst triangle is improved independently of other regions.
 
 use std::collections::HashMap;
 
@@ -12,43 +12,43 @@ use crate::patch::{
 use crate::run::Step;
 use crate::worst::badness::Badness;
 
-/// The log2 of the exponents of the p-norms that are lowered in turn.
+/// Binary logarithms of the exponents k of the p-norms, in the order in which a region lowers the norms.
 const DOUBLINGS: [u32; 3] = [3, 5, 7];
-/// Limit of the visits of a vertex by one exponent.
+/// Largest number of visits of a vertex with one exponent.
 const VISITS: u32 = 10;
-/// Visits by an exponent end if a pass moves every vertex by less than this share of an edge.
+/// Longest move of a pass, as a share of an edge, below which the visits with an exponent end.
 const SETTLED: f64 = 1e-3;
-/// Number of visits of each vertex to regain what f lost.
+/// Number of visits of each vertex by the metric of the run, which regain f as far as the worst triangle allows.
 const RELAXING: u32 = 10;
 
-/// Bounds that every new position of a vertex must keep.
+/// Bounds that every trial position of a vertex must keep, and the measure of the worst triangles.
 pub(crate) struct Rules<'a> {
     pub(crate) badness: Badness,
-    /// A step of the metric that the run minimizes.
+    /// The step of the run: metric and exponent that vertices lower to regain f.
     pub(crate) step: Step,
-    /// The largest inverse mean ratio that a triangle may have, after its target map is applied.
+    /// Largest inverse mean ratio of a triangle, after its target map is applied.
     pub(crate) shape: f64,
-    /// The lower limit of altitudes, normalized; 0 for no limit.
+    /// Lower limit of the altitudes of triangles, in normalized units; 0 for no limit.
     pub(crate) floor: f64,
-    /// Upper limits of the distances between free vertices and their start positions, normalized; `None` for no limit.
+    /// Upper limits of the distances between free vertices and their start positions, normalized. `None` for no limit.
     pub(crate) bounds: Option<&'a [f64]>,
 }
 
-/// A triangle at a vertex: the other two corners, counter-clockwise, and its target map.
+/// A triangle at a vertex: the other two corners, counter-clockwise, and the target map of the triangle.
 struct Side {
     ends: [u32; 2],
     map: Option<TargetMap<f64>>,
 }
 
-/// Some free vertices, and the triangles around each. Vertices are numbered within the region; vertices that move come
-/// first.
+/// Free vertices that move together, with the triangles around each. Indices within the region begin with the moving
+/// vertices, and their fixed neighbors follow.
 pub(crate) struct Region<'a> {
     rules: &'a Rules<'a>,
-    /// The numbers in the problem of the vertices that move.
+    /// Indices of the moving vertices in the problem.
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
     stars: Vec<Vec<Side>>,
-    /// For each moving vertex, the circle that bounds its moves.
+    /// For each moving vertex, the circle that limits its position.
     bounds: Vec<Circle>,
     mean_area: f64,
 }
@@ -87,8 +87,8 @@ impl<'a> Region<'a> {
     }
 
     /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
-    /// possible. Returns the new positions, with the vertices' numbers in the problem, or `None` if the worst triangle
-    /// cannot be improved.
+    /// possible. Returns the new positions with the indices of the vertices in the problem. `None` if the worst
+    /// triangle cannot be improved.
     pub(crate) fn improve(mut self) -> Option<Vec<(u32, DVec2)>> {
         let count = self.vertices.len();
         let before = self.worst();
@@ -107,7 +107,7 @@ impl<'a> Region<'a> {
             }
         }
         let (worst, positions) = best;
-        // Rounding alone is no gain.
+        // A gain within rounding is no improvement.
         let is_better = worst < before * (1.0 - 1e-9);
         if !is_better {
             return None;
@@ -121,7 +121,7 @@ impl<'a> Region<'a> {
         Some(self.vertices.into_iter().zip(self.positions).collect())
     }
 
-    /// Returns the triangles around a vertex, in coordinates.
+    /// Returns the triangles around a vertex, with the positions of their corners.
     fn patch(&self, v: usize) -> FanPatch {
         let corner = |side: &Side| FanCorner {
             ends: side.ends.map(|end| self.positions[end as usize]),
@@ -131,14 +131,14 @@ impl<'a> Region<'a> {
         FanPatch { corners, mean_area: self.mean_area, min_altitude: self.rules.floor }
     }
 
-    /// Returns the badness of the worst triangle.
+    /// Returns the badness of the worst triangle of the region.
     fn worst(&self) -> f64 {
         let of = |v| self.rules.badness.worst_of(&self.patch(v), self.positions[v]);
         (0..self.vertices.len()).map(of).fold(0.0, f64::max)
     }
 
-    /// Takes a Newton step by the p-norm of the triangles around a vertex. Returns the length of the step, divided by
-    /// the length of an edge.
+    /// Takes a Newton step that lowers the p-norm of the triangles around a vertex. Returns the length of the step,
+    /// relative to the length of an edge at the vertex.
     fn visit(&mut self, v: usize, doublings: u32) -> f64 {
         let (patch, badness) = (&self.patch(v), self.rules.badness);
         let unit = badness.worst_of(patch, self.positions[v]);
@@ -146,7 +146,7 @@ impl<'a> Region<'a> {
         self.step(v, patch, &power, f64::INFINITY)
     }
 
-    /// Takes a Newton step by the metric of the run, after which no triangle around the vertex is worse than `limit`.
+    /// Takes a Newton step by the metric of the run. No triangle around the vertex becomes worse than `limit`.
     fn relax(&mut self, v: usize, limit: f64) {
         let Step { metric, sharpness, .. } = self.rules.step;
         let (patch, smoothing) = (&self.patch(v), Smoothing::of(sharpness));
@@ -156,8 +156,8 @@ impl<'a> Region<'a> {
         self.step(v, patch, &metric, limit);
     }
 
-    /// Moves a vertex by a Newton step of an objective by [`SearchRule::WORST`], within all rules. Returns the length of
-    /// the step, divided by the length of an edge.
+    /// Moves a vertex by a Newton step of `objective`, by [`SearchRule::WORST`], within all rules. Returns the length
+    /// of the step, relative to the length of an edge at the vertex.
     fn step(
         &mut self,
         v: usize,
@@ -179,7 +179,7 @@ impl<'a> Region<'a> {
     }
 }
 
-/// The sum over a patch of the terms of badness, each divided by `unit` and raised to the power 2^doublings.
+/// The p-norm of a patch without the root: the sum of [`Badness::power`] over its triangles.
 struct PowerObjective<'a> {
     patch: &'a FanPatch,
     badness: Badness,
@@ -210,13 +210,13 @@ impl Objective<f64> for PowerObjective<'_> {
     }
 }
 
-/// An objective for positions of a vertex that keep all rules.
+/// An objective whose trials are accepted only at positions that keep all rules.
 struct Constrained<'a> {
     objective: &'a dyn Objective<f64>,
     patch: &'a FanPatch,
     rules: &'a Rules<'a>,
     bound: Circle,
-    /// The largest badness that a triangle around the vertex may have.
+    /// Largest badness that a triangle around the vertex may have; infinite for no limit.
     limit: f64,
 }
 

@@ -1,9 +1,9 @@
-//! Finds the vertices that may move while the worst triangles are improved.
+//! Finds the regions of free vertices that move while the worst triangles are improved.
 
 use crate::layout::Problem;
 
-/// Returns the free vertices of some triangles and of `rings` rings around them, ascending, in separate lists for parts
-/// that no triangle joins.
+/// Returns the free vertices of the given triangles and of `rings` rings around them. Each edge-connected region has
+/// its own list, in ascending order.
 pub(crate) fn around(problem: &Problem, triangles: &[u32], rings: u32) -> Vec<Vec<u32>> {
     let free = problem.free_count() as u32;
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! The stage after a run in which the worst triangles are improved.
+//! The stage after a run that improves the worst triangles.
 
 use glam::DVec2;
 
@@ -9,25 +9,26 @@ use crate::worst::badness::Badness;
 use crate::worst::region::{Region, Rules};
 use crate::worst::regions::around;
 
-/// One of this many triangles with a free vertex is improved, the worst ones first.
+/// Number of triangles of the mesh for each triangle that a pass improves. The worst triangles with a free vertex come
+/// first.
 const SHARE: usize = 1000;
-/// Smallest number of triangles to improve.
+/// Smallest number of triangles that a pass improves.
 const FEWEST: usize = 10;
-/// Largest number of triangles to improve. The stage then takes seconds for the largest mesh.
+/// Largest number of triangles that a pass improves, so that the stage takes only seconds on the largest meshes.
 const MOST: usize = 1000;
-/// The number of rings of vertices around these triangles that move too. With three, the worst triangle improves no
-/// further, and f rises more.
+/// Number of rings of vertices around the worst triangles that move too. With three rings, the worst triangle improves
+/// no further, and f rises more.
 const RINGS: u32 = 2;
-/// The stage ends after this number of passes at the latest.
+/// Largest number of passes.
 const PASSES: u32 = 10;
-/// The stage ends after a pass in which the worst badness of the mesh fell by less than this share. The share of the
-/// inverse mean ratio is half as much, as badness is its square.
+/// Relative drop of the worst badness below which no further pass follows. The inverse mean ratio drops by half this
+/// share, as badness is its square.
 const LEAST_GAIN: f64 = 0.01;
-/// A pass is undone unless the worst badness of the mesh has fallen by more than this share: the first one by a thousandth of the
-/// measure, of which badness is the square, the following ones by more than rounding.
+/// Relative drop of the worst badness below which a pass is undone and the stage ends. For the first pass, 2e-3 is a
+/// thousandth of the measure, whose square is the badness. For later passes, 1e-9 excludes gains by rounding.
 const LEAST_KEPT: [f64; 2] = [2e-3, 1e-9];
 
-/// Returns the largest badness of a triangle with a free vertex.
+/// Returns the largest badness among triangles with a free vertex.
 pub(crate) fn worst_movable(problem: &Problem, badness: Badness, positions: &[DVec2]) -> f64 {
     worst_of(problem, &all(problem, badness, positions))
 }
@@ -37,8 +38,8 @@ fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
     movable.map(|(_, badness)| *badness).fold(0.0, f64::max)
 }
 
-/// Returns the number of triangles that are worse than the worst one with a free vertex, and have no vertex that is
-/// free or in `slides`, which is ascending.
+/// Returns the number of triangles that are worse than every triangle with a free vertex, but have only fixed corners.
+/// Corners in `slides`, an ascending list, do not count as fixed.
 pub(crate) fn stuck(
     problem: &Problem,
     badness: Badness,
@@ -53,7 +54,7 @@ pub(crate) fn stuck(
     pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
 }
 
-/// Returns the badness of every triangle.
+/// Returns the badness of every triangle of the problem.
 fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
     collect(problem.triangles().len(), |t| {
         let t = problem.triangles()[t];
@@ -63,10 +64,10 @@ fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
     })
 }
 
-/// Improves the worst triangles of a mesh with its vertices at `positions`, in independent regions around them. Passes
-/// continue as long as the worst triangle of the mesh becomes less bad and `goes_on`, called before each pass, allows
-/// it. A pass without such a gain is undone. No triangle becomes worse than the worst triangle of its region was.
-/// Returns the count of moved vertices.
+/// Improves the worst triangles of a mesh with its vertices at `positions`, in independent regions. Passes continue
+/// while the worst triangle of the mesh becomes less bad. `goes_on`, called before each pass, may end them. A pass
+/// without a sufficient gain is undone. No triangle becomes worse than the former worst triangle of its region. Returns
+/// the number of vertices that moved.
 pub(crate) fn improve(
     problem: &Problem,
     rules: &Rules<'_>,

@@ -1,4 +1,4 @@
-//! The sweeps and corrections of a run: when corrections begin, pause and end.
+//! The sweeps and corrections of a run, and the conditions under which corrections begin, pause and end.
 
 use super::plan_steps::{
     OMEGA_ALTERNATING, OMEGA_BEFORE, OMEGA_BETWEEN, exponents, reopening_sweep,
@@ -14,35 +14,35 @@ use crate::run::plan::Plan;
 use crate::run::step::Step;
 use crate::run::stop::{LEAST_SCALE, NOISE};
 
-/// Corrections begin when a sweep alone lowers the excess of f over its ideal value by less than this share. Earlier,
-/// a few bad triangles would force every correction to be short.
+/// Relative decrease of the excess of f over its ideal value by one sweep alone, below which corrections begin.
+/// Earlier, a few bad triangles would force every correction to be short.
 const SWEEPS_PAY: f64 = 0.1;
-/// After [`MANY_SWEEPS`] sweeps alone, corrections begin by this share instead. On a mesh whose ideal can be reached, each sweep may lower the
-/// excess by the same 15 %, for hundreds of sweeps.
+/// Replaces [`SWEEPS_PAY`] after [`MANY_SWEEPS`] sweeps alone. On a mesh whose ideal can be reached, each sweep may
+/// lower the excess by 15 %, for hundreds of sweeps.
 const MANY_SWEEPS_PAY: f64 = 0.2;
 const MANY_SWEEPS: usize = 12;
-/// A correction shorter than this helps so little that it counts as refused, though it is taken. For EDGE lengths are a
-/// tenth of the usual ones, as its p-norm is stiffer across its kinks than the levels assume.
+/// Length below which a correction counts as refused although it is applied, as it helps little. For EDGE, lengths are
+/// a tenth of the usual ones: its p-norm is stiffer across its kinks than the levels assume.
 const SHORT: f64 = 0.05;
 const SHORT_FOR_EDGE: f64 = 0.005;
-/// The least length that is tried first for EDGE; see [`LEAST_FIRST`] for other metrics.
+/// Smallest first trial of a length for EDGE; see [`LEAST_FIRST`] for other metrics.
 const LEAST_FIRST_FOR_EDGE: f64 = 0.1;
-/// Number of refused corrections in a row after which the run goes back to sweeps alone.
+/// Number of consecutive refused corrections after which the run returns to sweeps alone.
 const MOST_REFUSED: u32 = 2;
-/// The least number of sweeps alone before corrections begin again.
+/// Smallest number of sweeps alone before corrections begin again.
 const SWEEPS_BETWEEN: usize = 5;
-/// The most times that corrections can begin. If they are refused the last time, the run ends with sweeps alone.
+/// Largest number of times that corrections begin. If corrections are refused the last time, sweeps alone end the run.
 const ATTEMPTS: u32 = 5;
 
-/// A run ends if a correction is expected to gain nothing and a sweep gains less than this share of the tolerance.
+/// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 const SWEPT: f64 = 0.1;
 
-/// Corrections are accelerated once the slope along one is more than this share of the slope along the one before. On
-/// most meshes it falls to a sixth or less each time, and there is nothing to gain.
+/// Ratio of the slopes along two successive corrections above which corrections are accelerated. On most meshes, the
+/// slope falls to a sixth or less each time, and acceleration gains nothing.
 const ACCELERATED_FROM: f64 = 0.3;
 
 impl Corrections {
-    /// Lists all distinct steps that a run can take.
+    /// Returns all distinct steps that a run with corrections can take.
     pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
         let base = plan.scheme.base();
         let by_base = [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, base.properties().omega];
@@ -58,7 +58,8 @@ impl Corrections {
         exponents(plan).flat_map(of_exponent).collect()
     }
 
-    /// Does up to `sweeps` further sweeps, or fewer if the run ends. Those that [reopen](super::reopening) triangles are not counted.
+    /// Does up to `sweeps` further sweeps, fewer if the run ends. Sweeps that [reopen](super::reopening) triangles are
+    /// not counted.
     pub(crate) async fn advance(
         &mut self,
         engine: &mut impl Engine,
@@ -88,13 +89,13 @@ impl Corrections {
         Ok(())
     }
 
-    /// Returns the metrics of sweeps alone, in turn. They alternate until corrections have begun once.
+    /// Returns the metrics of sweeps alone, in turn. After corrections have begun once, only the base metric is left.
     fn turns(&self) -> &[Metric] {
         let metrics = self.plan.scheme.metrics();
         if self.attempts == 0 { metrics } else { &metrics[..1] }
     }
 
-    /// Returns the step of a sweep alone, after `done` of them.
+    /// Returns the step of a sweep alone, after `done` such sweeps.
     fn step_before(&self, done: usize) -> Step {
         let turns = self.turns();
         let omega = match done {
@@ -105,7 +106,7 @@ impl Corrections {
         self.plan.step_with(turns[done % turns.len()], omega, self.sharpness)
     }
 
-    /// Does one sweep before corrections. Decides whether they begin with the next.
+    /// Sweeps once without a correction, and decides whether corrections begin with the next sweep.
     async fn sweep_before(
         &mut self,
         engine: &mut impl Engine,
@@ -115,7 +116,7 @@ impl Corrections {
         let done = history.f().len();
         engine.sweep(&self.step_before(done - 1)).await?;
         let objectives = engine.objectives().await?;
-        // If metrics alternate, compares with the last sweep by the same metric.
+        // If metrics alternate, the comparison is with the last sweep by the same metric.
         let period = self.turns().len();
         let last = self.excess(history, done.saturating_sub(period));
         let f = objectives.of(self.metric()).unwrap_or(f64::NAN);
@@ -125,7 +126,7 @@ impl Corrections {
         };
         let pays = 1.0 - (1.0 - share).powi(period as i32);
         let gain = last - (f - self.metric().ideal_squared());
-        // Equal where f has its ideal value.
+        // The two sides are equal if f has its ideal value.
         if done >= until.max(period) && gain <= pays * last {
             if self.attempts == 0 {
                 self.alternated = done as u32;
@@ -137,14 +138,14 @@ impl Corrections {
         Ok(objectives)
     }
 
-    /// Does one sweep after corrections have ended.
+    /// Sweeps once in the stage after the last correction.
     async fn sweep_without(&self, engine: &mut impl Engine) -> Result<Objectives, GpuError> {
         let own = self.metric().properties().omega;
         engine.sweep(&self.step(own)).await?;
         engine.objectives().await
     }
 
-    /// Does one sweep and then a correction, if one lowers the objective.
+    /// Sweeps once, then computes a correction and applies it if it lowers the objective.
     async fn sweep_and_correct(
         &mut self,
         engine: &mut impl Engine,
@@ -167,15 +168,15 @@ impl Corrections {
         let mut length = Search::first_length(last_length, least_first);
         let step = self.step(OMEGA_BETWEEN);
         let mut proposal = engine.propose(&step, length, self.accelerated).await?;
-        // Levels by which a correction of all vertices leads uphill are no longer of the present stiffness.
+        // If the correction of all vertices leads uphill, the levels no longer fit the stiffness of the mesh.
         let misleads = proposal.slope > 0.0 && !self.metric().is_smooth();
         let proposed = if misleads { self.drop_levels(engine) } else { proposed + 1 };
         if proposal.slope < 0.0 && proposal.there.is_none() && step.shape_guard.is_finite() {
             proposal = engine.leave_out(length, !self.accelerated).await?;
         }
         let Proposal { here, slope, there } = proposal;
-        // The slope is the squared norm of the gradient, weighted by the levels: about twice what is left to gain in
-        // smooth modes. The other modes are left to sweeps, each of which removes most of them.
+        // The slope is the squared norm of the gradient, weighted by the levels: about twice the gain left in smooth
+        // modes. Sweeps remove the other modes, most of them in a single sweep.
         let ideal = self.metric().ideal_squared();
         let scale = (here + ideal).max(LEAST_SCALE);
         let swept = self.lowered.last().map_or(f64::INFINITY, |f| f - ideal - here);
@@ -197,12 +198,12 @@ impl Corrections {
             }
             None => (here, last_length, refused + 1),
         };
-        // The secant pairs may be the reason why a direction fails, so they are dropped.
+        // Secant pairs may be the reason why a direction fails, so a refused correction drops them.
         let slow = self.slope.is_some_and(|before| slope < ACCELERATED_FROM * before);
         self.accelerated = (self.accelerated || slow) && refused == 0;
         self.slope = Some(slope);
         self.stage = match refused {
-            // With the last exponent, what is left is near the errors of single precision.
+            // With the last exponent, the remaining gain is near the errors of single precision.
             MOST_REFUSED if self.attempts == ATTEMPTS || self.has_grown() => {
                 Stage::Without { since: done }
             }
@@ -210,7 +211,7 @@ impl Corrections {
             _ => Stage::Correcting(Correcting { since, length, proposed, refused }),
         };
         self.lowered.push(ideal + excess);
-        // If f may rise, the engine stores the best state when it evaluates the objectives.
+        // If f may rise, the engine evaluates the objectives and stores the best state.
         if self.plan.track_all || !self.plan.is_monotone() {
             return engine.objectives().await;
         }

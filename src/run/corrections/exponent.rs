@@ -1,23 +1,26 @@
-//! The exponent of EDGE's p-norm in a run with corrections: when it doubles, how far it does, and what it leaves of f.
+//! The exponent of EDGE's p-norm in a run with corrections: its doublings, its last value, and the remaining gain of f.
 
 use super::plan_steps::exponents;
 use super::state::{Correcting, Corrections, Stage};
 use crate::options::PNormExponent;
 use crate::run::history::History;
 
-/// The exponent k of EDGE's p-norm doubles once a sweep with its correction lowers the p-norm by less than this share over k. A third of it
-/// takes a few sweeps more and ends a little lower; three times as much leaves more to the last exponents, which gain little a sweep.
+/// Relative decrease of the p-norm by a sweep with its correction, times the exponent k, below which k doubles. A third
+/// of this number costs a few more sweeps and ends slightly lower. Three times as much leaves more sweeps to the last
+/// exponents, which gain little with each sweep.
 const RAISED_BELOW: f64 = 3e-3;
-/// The p-norm with the last exponent is lowered to within this part of what that leaves of f.
+/// Smallest tolerance of the p-norm, as a share of the distance [`above`](Corrections::above) from the minimum of f.
+/// With the last exponent, a closer minimum of the p-norm would hardly lower f.
 const PART: f64 = 0.3;
 
 impl Corrections {
-    /// The present exponent of EDGE's p-norm.
+    /// Returns the present exponent k of EDGE's p-norm.
     pub(super) fn exponent(&self) -> f64 {
         f64::from(1u32 << self.sharpness)
     }
 
-    /// The share of f by which the exponent keeps it above a minimum of its own. None is told of an exponent that the caller has chosen.
+    /// Returns the distance of f at the minimum of the p-norm from the minimum of f itself, as a share of f: about
+    /// 0.16/k. 0 if the exponent cannot grow, as when the caller has fixed it.
     pub(super) fn above(&self) -> f64 {
         let exponents = exponents(&self.plan);
         if exponents.start() < exponents.end() {
@@ -27,7 +30,8 @@ impl Corrections {
         }
     }
 
-    /// The tolerance of what corrections lower, such that f is within this one as far as the exponent allows.
+    /// Returns the tolerance for the objective that corrections lower. f is then within `tolerance`, as far as the
+    /// exponent allows.
     pub(super) fn tolerance_of_norm(&self, tolerance: f64) -> f64 {
         let above = self.above();
         if tolerance > 0.0 && above > 0.0 {
@@ -37,17 +41,17 @@ impl Corrections {
         }
     }
 
-    /// Whether the exponent has doubled as often as it is going to.
+    /// Returns whether the exponent has doubled to its last value.
     pub(super) fn has_grown(&self) -> bool {
         self.above() > 0.0 && self.is_sharpest()
     }
 
-    /// Whether the exponent is not going to double any more.
+    /// Returns whether the exponent has reached its last value.
     pub(super) fn is_sharpest(&self) -> bool {
         self.sharpness == *exponents(&self.plan).end()
     }
 
-    /// Whether the last sweep, with its correction if it has one, has lowered the objective by little.
+    /// Returns whether the last sweep and its correction lowered the objective too little for the present exponent.
     pub(super) fn gains_little(&self, history: &History) -> bool {
         let of_stage = match self.stage {
             Stage::Before { .. } => return false,
@@ -61,14 +65,14 @@ impl Corrections {
         gained_little || self.settled
     }
 
-    /// Doubles the exponent of EDGE's p-norm after the evaluation `last`.
+    /// Doubles the exponent of EDGE's p-norm after the evaluation of index `last`.
     pub(super) fn raise_exponent(&mut self, last: usize) {
         self.sharpness += 1;
         self.settled = false;
         match self.stage {
             Stage::Before { .. } => {}
             Stage::Correcting(Correcting { length, .. }) => self.begin_correcting(last, length),
-            // Corrections that the guard refuses by one exponent may be taken by the next.
+            // The guard may accept corrections with the next exponent that it refuses with the present one.
             Stage::Without { .. } if self.has_levels => self.begin_correcting(last, 1.0),
             Stage::Without { .. } => self.stage = Stage::Without { since: last },
         }

@@ -1,4 +1,4 @@
-//! When the coarser levels are built, and fitted to a mesh that has changed.
+//! Decides when the coarser levels are built, and when they are fitted to a mesh that has changed.
 
 use super::plan_steps::OMEGA_BETWEEN;
 use super::state::Corrections;
@@ -8,22 +8,22 @@ use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
 use crate::run::yielding::yield_now;
 
-/// Number of corrections tried after which the levels are fitted again, if the stiffness of the mesh has changed.
-/// Accelerated corrections fit them whenever it has changed: vertices then move far, and levels that stay as they were
-/// built gain little (a layer that opens up took three times the sweeps).
+/// Number of corrections after which levels are fitted to a changed stiffness. Accelerated corrections fit the levels
+/// after every such change: vertices then move far, and unchanged levels gain little. A layer that opens up took three
+/// times the sweeps with unchanged levels.
 const REFIT_AFTER: u32 = 2;
-/// The stiffness counts as changed if the excess of f has dropped by more than this share since the levels were built
-/// or fitted.
+/// Relative decrease of the excess of f since the levels were built or fitted, above which the stiffness counts as
+/// changed.
 const REFIT_IF: f64 = 0.15;
-/// Once corrections are accelerated, the levels are built anew when the excess of f has dropped by more than this share since they
-/// were built: the factors by which they are fitted are only close to the Galerkin operators. So there are at most four fits
-/// between, and as many for the exponents of EDGE, whose roots are kept for checkpoints.
+/// Relative decrease of the excess of f since the levels were built, above which accelerated corrections build them
+/// again. Fits by factors only approximate the Galerkin operators. At most four fits follow a build, and the exponents
+/// of EDGE cause at most four. So checkpoints store few lists of roots.
 const REBUILD_IF: f64 = 0.5;
-/// By EDGE, levels are fitted each time that the exponent has doubled as often. Never, the last exponents took ten times the sweeps; each
-/// time, a few less.
+/// Number of doublings of EDGE's exponent between two fits of the levels. Without fits, the last exponents took ten
+/// times the sweeps. With a fit after each doubling, they took slightly fewer sweeps.
 const REFIT_EVERY: u32 = 3;
 
-/// How levels come to stand for the present stiffness of the mesh.
+/// How the levels adapt to the present stiffness of the mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Change {
     Build,
@@ -31,8 +31,8 @@ pub(super) enum Change {
 }
 
 impl Corrections {
-    /// Decides how the levels change before the next correction. `proposed` is the number of corrections tried in this
-    /// stage, `now` the index of the last evaluation.
+    /// Decides how the levels change before the next correction, `None` for no change. `proposed` is the number of
+    /// corrections computed in this stage, `now` the index of the last evaluation in the history.
     pub(super) fn change_of_levels(
         &self,
         history: &History,
@@ -56,16 +56,16 @@ impl Corrections {
         }
     }
 
-    /// Drops the levels, so that they are built anew before the next correction. Returns the number of corrections proposed with the new
-    /// ones.
+    /// Drops the levels, which are then built again before the next correction. Returns 0, the number of corrections
+    /// computed with the new levels.
     pub(super) fn drop_levels(&mut self, engine: &mut impl Engine) -> u32 {
         engine.take_hierarchy();
         self.has_levels = false;
         0
     }
 
-    /// Builds the levels, or fits them to the present stiffness, and hands them to the engine. Returns whether the
-    /// engine has room for them. `now` is the index of the last evaluation.
+    /// Builds the levels, or fits them to the present stiffness, and passes them to the engine. Returns false if the
+    /// engine has no room for the levels. `now` is the history index of the last evaluation.
     pub(super) async fn change_levels(
         &mut self,
         engine: &mut impl Engine,
@@ -73,7 +73,7 @@ impl Corrections {
         now: usize,
     ) -> Result<bool, GpuError> {
         yield_now().await;
-        // Levels that are not needed again are freed before new ones are built.
+        // Levels that are replaced are freed before new levels are built.
         let before = engine.take_hierarchy().filter(|_| change == Change::Fit);
         self.fitted = now;
         if before.is_none() {

@@ -1,4 +1,4 @@
-//! Runs with corrections from coarser levels.
+//! Runs with corrections from coarser levels, as opposed to sweeps alone.
 
 mod advance;
 mod exponent;

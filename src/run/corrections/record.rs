@@ -1,30 +1,32 @@
-//! The log of a run with corrections, and the stop rule as the stages of such a run apply it.
+//! The log of a run with corrections, and the stop rule for each stage of such a run.
 
 use super::state::{Correcting, Corrections, ESTIMATES, Stage};
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
 use crate::run::stop::{LEAST_SCALE, NOISE, Stop, StopRule};
 
-/// A window longer than any history. It turns off the tests of the stop rule that depend on the decay.
+/// Window longer than any history, which turns off the tests of the stop rule that depend on the decay.
 const NO_ESTIMATE: usize = 1 << 30;
 
-/// As many as [`ESTIMATES`] for EDGE, where they are of a p-norm that is near f by itself.
+/// Number of successive estimates that end a run by EDGE if all are below the tolerance. Fewer than [`ESTIMATES`]
+/// suffice, as the estimates are of a p-norm near f.
 const ESTIMATES_FOR_EDGE: usize = 2;
 const STEADY: f64 = 0.3;
-/// Factor on the estimates. Some runs gained half as much each time and were left with modes that the last
-/// corrections had not touched. With three estimates and without the factor, 5 of 21 runs from hard starts estimated
-/// too little, by up to a third.
+/// Factor on the estimates. In some runs, each correction gained half as much as the previous one, and modes remained
+/// that the last corrections had not touched. With three estimates and without the factor, 5 of 21 runs from hard
+/// starts estimated too little, by up to a third.
 const CAUTION: f64 = 1.5;
 
 impl Corrections {
-    /// Records objectives and applies the stop rule to the present stage.
+    /// Records the objectives of a sweep, applies the stop rule to the present stage, and doubles EDGE's exponent if
+    /// due.
     pub(super) fn record(&mut self, objectives: Objectives, history: &mut History) {
         history.add(objectives);
-        // The decay is extrapolated from the present stage only, and from the last exponent only. With corrections a
-        // window of one sweep is enough, as they leave no slow modes.
+        // The decay is extrapolated only from the present stage, and only with the last exponent. With corrections, a
+        // window of one sweep is enough, as corrections leave no slow modes.
         let (of_stage, window) = match self.stage {
             Stage::Before { .. } => (history.f(), NO_ESTIMATE),
-            // A refused correction gains little, however much is left to gain.
+            // A refused correction gains little, even if much is left to gain.
             Stage::Correcting(Correcting { refused: 1.., .. }) => (&self.lowered[..], NO_ESTIMATE),
             Stage::Correcting(_) => (&self.lowered[..], 1),
             Stage::Without { since } => {
@@ -61,7 +63,7 @@ impl Corrections {
                 (None, false) => None,
             });
         }
-        // f cannot fall below its ideal value, so no estimate is needed where it is nearly there.
+        // f cannot fall below its ideal value, so near the ideal the distance is known without an estimate.
         let f = history.last();
         let above_ideal = (f - self.metric().ideal_squared()) / f.max(LEAST_SCALE);
         let asked = history.rule().tolerance;
@@ -81,13 +83,13 @@ impl Corrections {
     }
 }
 
-/// Returns the index of the least value, the first if there are several.
+/// Returns the index of the smallest value, the first of several equal ones. 0 if there are no values.
 fn least(values: &[f64]) -> usize {
     let indices = 0..values.len();
     indices.min_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0)
 }
 
-/// Whether the last two gains of f were each less than [`STEADY`] times the one before.
+/// Returns whether each of the last two gains of f was less than [`STEADY`] times the gain before.
 fn decays_steadily(f: &[f64]) -> bool {
     let [.., a, b, c, d] = f else { return false };
     let gains = [a - b, b - c, c - d];

@@ -1,9 +1,9 @@
-//! Reopens triangles that lie flat where EDGE's p-norm with a low exponent is least.
+//! Reopens triangles that are flat at the minimum of EDGE's p-norm with a low exponent.
 //!
-//! EDGE has no barrier, and a flat triangle whose three edges are long is cheap by it. A mesh that was untangled, or has a few vertices
-//! out of place, may have such triangles in a minimum of their own, a few percent above the next one, which they do not leave: as the
-//! exponent grows they are flattened up to the shape guard. Where flat triangles are good by EDGE, they are so by high exponents
-//! alone, and come again.
+//! EDGE has no barrier, and a flat triangle with three long edges has a small EDGE. At a local minimum a few percent
+//! above the best, an untangled mesh, or a mesh with misplaced vertices, may have such triangles. Sweeps do not leave
+//! this minimum: as the exponent grows, the triangles are flattened up to the shape guard. Triangles that should be
+//! flat by EDGE become flat with high exponents alone, and so become flat again after reopening.
 
 use super::plan_steps::{FLAT, exponents, reopening_sweep};
 use super::state::{Corrections, Stage};
@@ -12,20 +12,24 @@ use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::shape_guard::worst_movable;
 
-/// The log2 of the exponent up to which flat triangles are not by the choice of EDGE.
+/// Binary logarithm of the largest exponent at which flat triangles are reopened. With exponents up to this one, flat
+/// triangles are not optimal by EDGE itself.
 const LAST: u32 = 3;
-/// If the exponent has not doubled after this number of sweeps, flat triangles are reopened then. Most runs take three to eight.
+/// Number of sweeps after which flat triangles are reopened although the exponent has not doubled. Most runs need three
+/// to eight sweeps for the first doubling.
 const LATEST: u32 = 12;
-/// The least number of sweeps, and the most if triangles are still flat. With half as many, runs take some ten sweeps more.
+/// Smallest number of sweeps, and the largest if triangles stay flat. With half as many, runs take some ten sweeps
+/// more.
 const SWEEPS: u32 = 8;
 const MOST_SWEEPS: u32 = 32;
-/// Sweeps end in vain if one lowers the largest inverse mean ratio by less than this share.
+/// Relative decrease of the largest inverse mean ratio by a sweep, below which reopening ends without success.
 const OPENS: f64 = 0.02;
 
 impl Corrections {
-    /// Reopens flat triangles if there are any after the exponent `has_doubled` or was to do so, and goes back to the first exponent.
-    /// Once because it was due, once because it has doubled. If sweeps do not open all of them, as the mesh may leave no room, the
-    /// state before is restored, and the run goes on from there.
+    /// Reopens flat triangles if a movable triangle is flatter than [`FLAT`], and returns to the first exponent. Acts
+    /// at most twice: at sweep [`LATEST`] if the exponent has not doubled, and after a doubling (`has_doubled`). If
+    /// sweeps leave a triangle flat, as the mesh may have no room, the former state is restored, and the run continues
+    /// from there.
     pub(super) async fn reopen(
         &mut self,
         engine: &mut impl Engine,
@@ -67,7 +71,7 @@ impl Corrections {
         for objectives in log {
             history.add(objectives);
         }
-        // The levels are of the stiffness of other triangles.
+        // The levels fit the stiffness of the triangles before, which have changed shape.
         self.drop_levels(engine);
         (self.settled, self.sharpness) = (false, first);
         self.stage = Stage::Before { until: history.f().len() };

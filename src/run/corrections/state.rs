@@ -1,4 +1,4 @@
-//! The state of a run with corrections, and its stages.
+//! The state of a run with corrections: its stage, levels, estimates and acceleration.
 
 use super::plan_steps::exponents;
 use crate::error::GpuError;
@@ -8,8 +8,9 @@ use crate::run::history::History;
 use crate::run::plan::Plan;
 use crate::run::step::Step;
 
-/// Number of estimates in a row that must agree before a run with accelerated corrections ends, as its gains are
-/// irregular. One is enough if the last gains were each less than 0.3 times (`STEADY` in `record.rs`) the one before.
+/// Number of successive estimates below the tolerance that end a run with accelerated corrections, whose gains are
+/// irregular. One estimate is enough if each of the last gains was less than 0.3 times the gain before (`STEADY` in
+/// `record.rs`).
 pub(super) const ESTIMATES: usize = 4;
 
 /// The state of a run with corrections from coarser levels.
@@ -17,68 +18,70 @@ pub(crate) struct Corrections {
     pub(super) problem: Problem,
     pub(super) plan: Plan,
     pub(super) stage: Stage,
-    /// Number of times that corrections have begun.
+    /// Number of times that a stage of corrections has begun.
     pub(super) attempts: u32,
-    /// Number of corrections taken.
+    /// Number of corrections that were applied.
     pub(super) taken: u32,
-    /// Number of sweeps after which corrections began for the first time; 0 before.
+    /// Number of sweeps with alternating metrics; 0 before the first correction.
     pub(super) alternated: u32,
-    /// Whether the last correction was expected to gain nothing.
+    /// Whether neither the last correction nor a further sweep can gain anything.
     pub(super) settled: bool,
-    /// The slope along the last correction of the present stage.
+    /// Slope along the last correction of the present stage. `None` before the first correction.
     pub(super) slope: Option<f64>,
-    /// log2 of the present exponent of EDGE's p-norm.
+    /// Binary logarithm of the present exponent of EDGE's p-norm.
     pub(super) sharpness: u32,
-    /// The objective that corrections lower, f or EDGE's p-norm, after each sweep of the present stage. For f it begins
-    /// with the value before the stage; that of the p-norm is not known.
+    /// Objective that corrections lower, f or EDGE's p-norm: one entry for each sweep of the present stage. For f, the
+    /// first entry is f before the stage. The p-norm before the stage is unknown.
     pub(super) lowered: Vec<f64>,
     /// Whether corrections are accelerated by secant pairs.
     pub(super) accelerated: bool,
-    /// Whether the engine is to forget the pairs that it has. Never so between two sweeps.
+    /// Whether the engine must drop its old secant pairs, as a stage with acceleration begins. `advance` resets the
+    /// flag before it returns, so saved states need no such flag.
     pub(super) anew: bool,
-    /// Whether the engine has levels.
+    /// Whether the engine has coarser levels.
     pub(super) has_levels: bool,
-    /// The indices in the history at which the levels were built, and at which they were last built or fitted.
+    /// History indices of the latest build of the levels, and of the latest build or fit.
     pub(super) built: usize,
     pub(super) fitted: usize,
-    /// The latest estimates of the share of f that is left to gain, infinite if there is none.
+    /// Latest estimates of the remaining gain as a share of f, infinite for a missing estimate.
     pub(super) estimates: [f64; ESTIMATES],
-    /// The error if there are no corrections, as the engine has no room for the levels.
+    /// The error of an engine without room for the levels. Such a run makes no corrections.
     pub(super) left_out: Option<GpuError>,
-    /// Whether triangles that lie flat at a low exponent have been reopened after it had doubled, or cannot be.
+    /// Whether a reopening of flat triangles followed a doubling of the exponent, with or without success. No further
+    /// reopening follows.
     pub(super) was_reopened: bool,
-    /// Whether the engine had no room for the levels before the run continued from a saved state.
+    /// Whether the engine of the saved state, from which the run continues, had no room for the levels.
     pub(super) was_left_out: bool,
 }
 
-/// The stage of corrections.
+/// The state of the stage that corrects sweeps.
 #[derive(Clone, Copy)]
 pub(super) struct Correcting {
-    /// The index in the history at which the stage began.
+    /// Index in the history at which the stage began.
     pub(super) since: usize,
-    /// The length of the last correction taken.
+    /// Length of the last applied correction.
     pub(super) length: f64,
-    /// The number of corrections tried in this stage.
+    /// Number of corrections computed in this stage, with the present levels.
     pub(super) proposed: u32,
-    /// The number of corrections refused in a row at the end.
+    /// Number of refused corrections since the latest accepted correction.
     pub(super) refused: u32,
 }
 
-/// The stage of a run. `since` and `until` are indices in the history.
+/// The stages of a run. `since` and `until` are indices in the history.
 #[derive(Clone, Copy)]
 pub(super) enum Stage {
-    /// Sweeps alone, at least up to `until`, and then as long as they gain enough: by the metrics of the scheme in
-    /// turn, or by the base metric once corrections have been tried.
+    /// Sweeps alone at least up to `until`, and then while each sweep gains enough. The metrics of the scheme take
+    /// turns until corrections have begun once; later sweeps are by the base metric.
     Before { until: usize },
-    /// Each sweep, by the base metric, is followed by a correction.
+    /// Sweeps by the base metric, each followed by a correction.
     Correcting(Correcting),
-    /// Sweeps alone by the base metric to the end, as corrections do not help or the engine has no room for the
-    /// levels.
+    /// Sweeps alone by the base metric to the end of the run, because corrections do not help or the engine has no room
+    /// for the levels.
     Without { since: usize },
 }
 
 impl Corrections {
-    /// Makes the state at the start of a run.
+    /// Creates the state at the start of a run.
     pub(crate) fn new(problem: &Problem, plan: &Plan) -> Self {
         Self {
             problem: problem.clone(),
@@ -103,22 +106,22 @@ impl Corrections {
         }
     }
 
-    /// Returns the number of sweeps in which the metrics of the scheme took turns, once these are over.
+    /// Returns the number of sweeps with alternating metrics. `None` before the first correction.
     pub(crate) fn alternated(&self) -> Option<u32> {
         (self.attempts > 0).then_some(self.alternated)
     }
 
-    /// Returns the number of corrections taken so far.
+    /// Returns the number of applied corrections.
     pub(crate) fn taken(&self) -> u32 {
         self.taken
     }
 
-    /// Returns the error if the run has no corrections, as the engine has no room for the levels.
+    /// Returns the error of an engine without room for the levels, with which the run makes no corrections.
     pub(crate) fn left_out(&self) -> Option<&GpuError> {
         self.left_out.as_ref()
     }
 
-    /// Whether the run has no corrections, as the engine has no room for the levels.
+    /// Returns true if the run makes no corrections, as the present or an earlier engine lacks room for the levels.
     pub(crate) fn is_left_out(&self) -> bool {
         self.was_left_out || self.left_out.is_some()
     }
@@ -132,9 +135,10 @@ impl Corrections {
         self.plan.step_with(self.metric(), omega, self.sharpness)
     }
 
-    /// Begins a stage of corrections after `done` evaluations, with this length. What came before says nothing about it.
+    /// Begins a stage of corrections after `done` evaluations. `length` is the first length to try. Estimates and
+    /// slopes of earlier stages are dropped.
     pub(super) fn begin_correcting(&mut self, done: usize, length: f64) {
-        // EDGE's p-norm is always much stiffer across its kinks than along them, which the levels do not know.
+        // EDGE's p-norm is always much stiffer across its kinks than along them, which the levels do not represent.
         (self.slope, self.accelerated) = (None, !self.metric().is_smooth());
         self.anew = self.accelerated;
         self.estimates = [f64::INFINITY; ESTIMATES];
@@ -142,8 +146,8 @@ impl Corrections {
         self.stage = Stage::Correcting(Correcting { since: done, length, proposed: 0, refused: 0 });
     }
 
-    /// Takes note that the host has moved vertices, or has changed targets: what sweeps gained before tells nothing about later
-    /// ones, and secant pairs are of other positions. `f` is the objective now.
+    /// Records that the host has moved vertices or changed targets. Earlier gains then predict nothing, and secant
+    /// pairs belong to other positions. `f` is the objective at the new state.
     pub(crate) fn disturbed(&mut self, f: f64) {
         (self.slope, self.settled) = (None, false);
         self.estimates = [f64::INFINITY; ESTIMATES];
@@ -154,12 +158,12 @@ impl Corrections {
         }
     }
 
-    /// Takes the targets of a problem with the same layout.
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
     pub(crate) fn set_targets(&mut self, problem: &Problem) {
         self.problem = problem.clone();
     }
 
-    /// Returns the excess of the base objective over its ideal value, at an index of the history.
+    /// Returns the excess of the base objective over its ideal value, at an index in the history.
     pub(super) fn excess(&self, history: &History, evaluation: usize) -> f64 {
         history.f()[evaluation] - self.metric().ideal_squared()
     }

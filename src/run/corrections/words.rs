@@ -1,10 +1,10 @@
-//! The state of a corrected run as words of a checkpoint.
+//! The state of a run with corrections, encoded as words of a checkpoint.
 
 use super::plan_steps::exponents;
 use super::state::{Correcting, Corrections, ESTIMATES, Stage};
 
 impl Corrections {
-    /// Returns the state that decides how the run continues, as numbers for [`restore`](Self::restore).
+    /// Returns the state that determines how the run continues, as words for [`restore`](Self::restore).
     pub(crate) fn save(&self) -> Vec<u64> {
         let (stage, at, length, proposed, refused) = match self.stage {
             Stage::Before { until } => (0, until, 0.0, 0, 0),
@@ -27,8 +27,8 @@ impl Corrections {
         words
     }
 
-    /// Restores the state from the numbers that [`save`](Self::save) returned after `evaluations`. Without levels, they
-    /// are built before the next correction. Returns whether the words are valid.
+    /// Restores the state from the words that [`save`](Self::save) returned after `evaluations`. Without levels in the
+    /// engine, the next correction begins by building levels. Returns false for invalid words.
     pub(crate) fn restore(&mut self, words: &[u64], evaluations: usize, has_levels: bool) -> bool {
         let Some(([stage, at, length, attempts, taken, proposed, refused], rest)) =
             words.split_first_chunk()
@@ -64,7 +64,7 @@ impl Corrections {
         if self.lowered.len() > evaluations || !self.lowered.iter().all(|f| f.is_finite()) {
             return false;
         }
-        // No event can have happened more often than there were sweeps.
+        // No event can have occurred more often than the number of sweeps.
         let small = |word: &u64| u32::try_from(*word).ok().filter(|n| *n as usize <= evaluations);
         let (
             Some(attempts),

@@ -1,21 +1,21 @@
-//! Aggregates: groups of unknowns of one level, each a single unknown of the next coarser level.
+//! Aggregates: groups of unknowns of one level, each of which becomes a single unknown of the next coarser level.
 
-/// The aggregate of an unknown that belongs to none.
+/// Marks an unknown that belongs to no aggregate.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Disjoint groups of neighboring unknowns.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Aggregates {
-    /// The group of each unknown, [`NONE`] if it has no neighbors.
+    /// Aggregate of each unknown, [`NONE`] for unknowns without neighbors.
     pub(crate) of: Vec<u32>,
-    /// Number of groups.
+    /// Number of aggregates.
     pub(crate) count: usize,
 }
 
 impl Aggregates {
-    /// Makes a group of each unknown and all its neighbors, unless one of them is in a group already. Unknowns left
-    /// over then join a neighboring group (Vaněk, Mandel & Brezina, Computing 56, 1996). On a triangulation a group has
-    /// eight or nine members.
+    /// Joins each unknown and all its neighbors to a new aggregate, in the order of the unknowns. Unknowns with a
+    /// neighbor in an earlier aggregate are left over. Each unknown left over then joins the aggregate of a neighbor
+    /// (Vaněk, Mandel & Brezina, Computing 56, 1996). On a triangulation, an aggregate has eight or nine members.
     pub(crate) fn new<N: Iterator<Item = u32>>(
         unknowns: usize,
         neighbors: impl Fn(usize) -> N,
@@ -36,7 +36,7 @@ impl Aggregates {
                 count += 1;
             }
         }
-        // An unknown left over has a neighbor in a group of the first pass, or no neighbors.
+        // An unknown left over has no neighbors, or has a neighbor in an aggregate of the first pass.
         let first_pass = of.clone();
         for (k, group) in of.iter_mut().enumerate().filter(|(_, group)| **group == NONE) {
             let near = neighbors(k).map(|n| first_pass[n as usize]).find(|&g| g != NONE);
@@ -45,7 +45,7 @@ impl Aggregates {
         Self { of, count: count as usize }
     }
 
-    /// Lets each unknown without a group join the group of the first of the given neighbors that has one.
+    /// Adds each unknown without an aggregate to the first aggregate among its neighbors.
     pub(crate) fn with_the_rest<N: Iterator<Item = u32>>(
         mut self,
         neighbors: impl Fn(usize) -> N,
@@ -58,8 +58,8 @@ impl Aggregates {
         self
     }
 
-    /// Returns the members of each group as compressed rows: where each group starts, with one past the last, and all
-    /// members.
+    /// Returns the members of all aggregates as compressed rows. The first list has the offset of each aggregate in the
+    /// second list, followed by the length of the second list.
     pub(crate) fn members(&self) -> (Vec<u32>, Vec<u32>) {
         let grouped = || self.of.iter().enumerate().filter(|(_, group)| **group != NONE);
         let mut start = vec![0u32; self.count + 1];
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_left_over_vertex_joins_the_aggregate_of_a_neighbor() {
-        // A path of four, and a vertex that is not in the lists of neighbors of the others.
+        // A path of four unknowns, and an unknown that is no neighbor of the others.
         let neighbors = |k: usize| {
             let (before, after) = (k.checked_sub(1), Some(k + 1).filter(|&n| n < 4));
             before.into_iter().chain(after).filter(move |_| k < 4).map(|n| n as u32)

@@ -4,7 +4,7 @@ use crate::run::multilevel::sparse::Sparse;
 
 /// Returns the inverse of a symmetric positive definite matrix, in row-major order.
 ///
-/// If rounding has made a pivot small or negative, the row and column of its unknown are zero.
+/// If rounding has made a pivot small or negative, the row and the column of its unknown are zero in the inverse.
 pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
     let n = matrix.rows();
     let mut lower = vec![0.0f64; n * n];
@@ -26,8 +26,7 @@ pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
             row_i[j] = if pivot.is_finite() { (row_i[j] - dot) / pivot } else { 0.0 };
         }
     }
-    // The inverse of the factor, in column-major order. The inverse of the matrix is the product of its transpose with
-    // itself.
+    // The inverse L⁻¹ of the factor, in column-major order. The inverse of the matrix is L⁻ᵀ L⁻¹.
     let mut columns = vec![0.0f64; n * n];
     for c in 0..n {
         columns[c * n + c] = 1.0 / lower[c * n + c];

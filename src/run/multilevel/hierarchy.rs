@@ -1,4 +1,4 @@
-//! The coarser levels of a mesh: aggregates, and graph Laplacians on them.
+//! The coarser levels of a mesh: aggregates of vertices, with graph Laplacians on the aggregates.
 
 use crate::layout::Problem;
 use crate::parallel::collect;
@@ -6,79 +6,79 @@ use crate::run::multilevel::aggregate::{Aggregates, NONE};
 use crate::run::multilevel::dense;
 use crate::run::multilevel::sparse::Sparse;
 
-/// The most unknowns of a level that is solved directly.
+/// Largest number of unknowns of a level that is solved directly.
 const DIRECT: usize = 96;
 
 /// Damping factor of the Jacobi step that smooths the prolongation.
 pub(crate) const SMOOTHING: f32 = 0.9;
 
-/// Coefficients of two steps of the Chebyshev iteration for D⁻¹A over [0.45, 1.8], the upper three quarters of its
-/// spectrum, which is assumed to end at 1.8. In order: the factor of D⁻¹r in the first step d, then the factors of d
-/// and of D⁻¹r in the second step.
+/// Coefficients of two steps of the Chebyshev iteration for D⁻¹A over [0.45, 1.8], the upper three quarters of the
+/// spectrum, whose end is assumed at 1.8. The first coefficient is the factor on D⁻¹r in the first step d. The other
+/// two are the factors on d and on D⁻¹r in the second step.
 pub(crate) const CHEBYSHEV: [f32; 3] = {
     let (center, radius) = (0.625 * 1.8, 0.375 * 1.8);
     let (first, second) = (radius / center, 1.0 / (2.0 * center / radius - radius / center));
     [1.0 / center, first * second, 2.0 * second / radius]
 };
 
-/// Two unknowns of a coarse level count as neighbors if the matrix entry between them is at least this share of the
-/// geometric mean of their diagonal entries.
+/// Smallest ratio of a matrix entry to the geometric mean of the diagonal entries, at which two unknowns of a coarse
+/// level count as neighbors.
 const STRONG: f32 = 0.1;
 
 /// A hierarchy of graph Laplacians that approximate the Hessian of the objective. The unknowns of level 0 are the free
-/// vertices. Only its aggregates and weights are stored, as its matrix follows from the one-rings.
+/// vertices. Level 0 stores only aggregates and weights, as its matrix follows from the one-rings.
 pub(crate) struct Hierarchy {
     aggregates: Aggregates,
     member_start: Vec<u32>,
     member: Vec<u32>,
     root: Vec<f32>,
-    /// The roots that the levels were built from and then fitted to, in this order, before `root`.
+    /// Roots of the build and of each fit before `root`, in order.
     earlier: Vec<Vec<f32>>,
     inverse_diagonal: Vec<f32>,
     levels: Vec<Level>,
 }
 
-/// A level coarser than the free vertices.
+/// A level of aggregates, coarser than the free vertices.
 pub(crate) struct Level {
     pub(crate) operator: Sparse,
-    /// The reciprocals of the diagonal entries of the operator.
+    /// Reciprocals of the diagonal entries of the operator.
     pub(crate) inverse_diagonal: Vec<f32>,
     pub(crate) coarser: Coarser,
 }
 
-/// The next coarser level, or how this one is solved.
+/// The next coarser level, or the solution on a level without a coarser one.
 pub(crate) enum Coarser {
-    /// A level with fewer unknowns, and the transfer to it.
+    /// Transfers between this level and a level with fewer unknowns.
     Level { prolongation: Sparse, restriction: Sparse },
-    /// No further level: this one is solved by the inverse of its operator, in row-major order.
+    /// Inverse of the operator in row-major order, which solves the coarsest level.
     Direct(Vec<f32>),
-    /// No further level: no two unknowns are neighbors, so smoothing is enough.
+    /// No coarser level: no two unknowns are neighbors, so smoothing is enough.
     Nothing,
 }
 
 impl Hierarchy {
     /// Builds the levels. `roots` has the square root of the objective's stiffness at each free vertex. The weight of
-    /// an edge is the product of the roots at its ends.
+    /// an edge is the product of the roots at its two ends.
     pub(crate) fn new(problem: &Problem, roots: Vec<f32>) -> Self {
         Self::with_roots(problem, |_| true, || usable(roots))
     }
 
-    /// Builds the levels for untangling. The weights are the reciprocals of the areas that elements should have at each
-    /// vertex. Free vertices that are `held` are not moved by corrections.
+    /// Builds the levels for untangling, with the reciprocals of the target areas at the vertices as weights.
+    /// Corrections move no free vertex that is `held`.
     pub(crate) fn of_sizes(problem: &Problem, areas: &[f64], held: &[bool]) -> Self {
         let root = |area: &f64| (0.5 / area).sqrt() as f32;
         let roots = || areas[..problem.free_count()].iter().map(root).collect();
         Self::with_roots(problem, |v| !held[v], roots)
     }
 
-    /// Builds the levels from the square roots of stiffness that `roots` computes for the free vertices, of which only those
-    /// that `moves` names are unknowns.
+    /// Builds the levels from the square roots of stiffness that `roots` computes for the free vertices. Unknowns are
+    /// only the vertices for which `moves` returns true.
     fn with_roots(
         problem: &Problem,
         moves: impl Fn(usize) -> bool + Sync,
         roots: impl FnOnce() -> Vec<f32> + Send,
     ) -> Self {
-        // Aggregation is serial, so the weights are computed at the same time.
+        // Aggregation is serial, so the roots are computed on another thread at the same time.
         let (aggregates, root) = rayon::join(|| aggregates(problem, &moves), roots);
         let (member_start, member) = aggregates.members();
         let mut hierarchy = Self {
@@ -95,9 +95,9 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Fits the levels to new `roots`. Aggregates stay the same, and couplings between them are scaled by the average
-    /// change of their members. Roots change by nearly the same factors in neighboring aggregates, so this is close to
-    /// the Galerkin operator at a small part of the work.
+    /// Fits the levels to new `roots`. Aggregates stay unchanged, and the couplings between aggregates are scaled by
+    /// the average change of the roots of their members. Roots of neighboring aggregates change by nearly equal
+    /// factors. Fitted levels are therefore close to Galerkin operators, for a small part of the work.
     pub(crate) fn fitted_to(mut self, problem: &Problem, roots: Vec<f32>) -> Self {
         let root = usable(roots);
         let mean = |members: &[u32]| {
@@ -123,13 +123,13 @@ impl Hierarchy {
         self
     }
 
-    /// Returns the data from which the same levels can be made again: the roots that they were built from, and then
-    /// those that they were fitted to, in order.
+    /// Returns the data from which [`of_recipe`](Self::of_recipe) builds equal levels: the roots of the build, and then
+    /// the roots of each fit, in order.
     pub(crate) fn recipe(&self) -> Vec<Vec<f32>> {
         self.earlier.iter().chain([&self.root]).cloned().collect()
     }
 
-    /// Makes the levels of a [`recipe`](Self::recipe). `None` if it is empty or from another mesh.
+    /// Builds the levels of a [`recipe`](Self::recipe). `None` if the recipe is empty or from another mesh.
     pub(crate) fn of_recipe(problem: &Problem, recipe: &[Vec<f32>]) -> Option<Self> {
         let (built_from, fitted_to) = recipe.split_first()?;
         if recipe.iter().any(|roots| roots.len() != problem.free_count()) {
@@ -139,15 +139,15 @@ impl Hierarchy {
         Some(fitted_to.iter().fold(built, |levels, roots| levels.fitted_to(problem, roots.clone())))
     }
 
-    /// Returns the reciprocal of each free vertex's diagonal entry, which follows from the weights.
+    /// Returns the reciprocal of the diagonal entry of each free vertex, the sum of the weights of its edges.
     fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
         let diagonal =
             |v: usize| neighbors(problem, v).map(|k| self.weight(v, k as usize)).sum::<f32>();
         collect(problem.free_count(), |v| 1.0 / diagonal(v))
     }
 
-    /// Returns the Galerkin operator on the aggregates. The prolongation to the vertices is not stored, as it follows
-    /// from the aggregates and the one-rings.
+    /// Returns the Galerkin operator on the aggregates. The prolongation to the vertices is not stored, because
+    /// aggregates and one-rings determine it.
     fn first_coarse_operator(
         &self,
         problem: &Problem,
@@ -161,7 +161,7 @@ impl Hierarchy {
         };
         // The weight of an edge is the product of two roots, so A = R (E - N) R, with R the diagonal matrix of the
         // roots, E diagonal, and N the adjacency matrix. Therefore `prolongation` is R P here, and the matrix in the
-        // product is E - N, with entries -1 off the diagonal.
+        // product is E - N, whose entries off the diagonal are -1.
         let (root, inverse) = (&self.root, &self.inverse_diagonal);
         let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
         let prolongation = Sparse::from_rows(free, |v, sum| {
@@ -189,43 +189,44 @@ impl Hierarchy {
     #[inline]
     pub(crate) fn weight(&self, v: usize, k: usize) -> f32 {
         let near = self.root[v];
-        // Fixed vertices have no root, so the free vertex's root is used twice.
+        // Fixed vertices have no root, so the root of the free vertex counts twice.
         near * self.root.get(k).copied().unwrap_or(near)
     }
 
-    /// The square root of the stiffness at each free vertex. The weight of an edge is the product of the roots at its
-    /// ends.
+    /// Returns the square root of the stiffness at each free vertex. The weight of an edge is the product of the roots
+    /// at its two ends.
     pub(crate) fn roots(&self) -> &[f32] {
         &self.root
     }
 
-    /// The aggregate of each free vertex, [`NONE`] if the vertex has no free neighbor.
+    /// Returns the aggregate of each free vertex, [`NONE`] for a vertex without free neighbors.
     pub(crate) fn aggregate_of(&self) -> &[u32] {
         &self.aggregates.of
     }
 
-    /// Where the members of each aggregate start in [`Self::members`], and one past the last.
+    /// Returns the offset of each aggregate in [`Self::members`], with the end of the last aggregate as a further
+    /// entry.
     pub(crate) fn member_starts(&self) -> &[u32] {
         &self.member_start
     }
 
-    /// The members of all aggregates, aggregate by aggregate.
+    /// Returns the members of all aggregates, aggregate by aggregate.
     pub(crate) fn members(&self) -> &[u32] {
         &self.member
     }
 
-    /// The reciprocal of each free vertex's diagonal entry.
+    /// Returns the reciprocal of the diagonal entry of each free vertex.
     pub(crate) fn inverse_diagonal(&self) -> &[f32] {
         &self.inverse_diagonal
     }
 
-    /// The coarse levels, finest first.
+    /// Returns the coarse levels, finest first.
     pub(crate) fn levels(&self) -> &[Level] {
         &self.levels
     }
 }
 
-/// Makes the coarse levels, given the operator of the finest of them.
+/// Builds the coarse levels, given the operator of the finest coarse level.
 fn levels(mut operator: Sparse) -> Vec<Level> {
     let mut levels = Vec::new();
     loop {
@@ -267,13 +268,14 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
     }
 }
 
-/// Makes the aggregates of the free vertices. With equal weights, the share that [`STRONG`] bounds is the inverse of
-/// the geometric mean of the numbers of neighbors. So a vertex with fifty neighbors does not form one aggregate with
-/// all of them: they would share one correction, and the prolongation to that vertex could not be smoothed.
+/// Forms the aggregates of the free vertices. With equal weights, the ratio that [`STRONG`] bounds is the reciprocal of
+/// the geometric mean of the two degrees. A vertex with fifty neighbors therefore forms no aggregate with all
+/// neighbors. In such an aggregate, all vertices would share one correction, and the prolongation to the central vertex
+/// could not be smoothed.
 fn aggregates(problem: &Problem, moves: &(impl Fn(usize) -> bool + Sync)) -> Aggregates {
     let free = problem.free_count();
     let degree = |v: u32| problem.ring_of(v).len() as f32;
-    // A vertex that does not move has none, and so is in no aggregate.
+    // A vertex that does not move has no free neighbors, and so belongs to no aggregate.
     let free_neighbors = |v: usize| {
         let joins = move |&k: &u32| (k as usize) < free && moves(k as usize) && moves(v);
         neighbors(problem, v).filter(joins)
@@ -285,13 +287,13 @@ fn aggregates(problem: &Problem, moves: &(impl Fn(usize) -> bool + Sync)) -> Agg
     Aggregates::new(free, strong_neighbors).with_the_rest(free_neighbors)
 }
 
-/// All neighbors of a free vertex.
+/// Returns all neighbors of a free vertex, in the order of the one-ring.
 fn neighbors(problem: &Problem, v: usize) -> impl Iterator<Item = u32> + '_ {
     let start = problem.ring_start();
     problem.ring()[start[v] as usize..start[v + 1] as usize].iter().copied()
 }
 
-/// Replaces roots that are not positive and finite by the least of the others, so that every weight is positive and
+/// Replaces roots that are not positive and finite by the smallest usable root, so that every weight is positive and
 /// finite.
 fn usable(mut roots: Vec<f32>) -> Vec<f32> {
     let is_usable = |root: &f32| *root > 0.0 && *root < f32::INFINITY;

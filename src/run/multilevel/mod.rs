@@ -1,11 +1,11 @@
-//! Coarser levels of a mesh, and corrections from them. With corrections, the number of sweeps that a run takes to
-//! converge does not grow with the mesh.
+//! The coarser levels of a mesh, and corrections from the levels. With corrections, runs on meshes of any size converge
+//! in about equally many sweeps.
 //!
-//! Sweeps quickly remove errors between neighbors, but hardly reduce those that extend over the whole mesh. So after
-//! each sweep the gradient of the objective is restricted to a hierarchy of graph Laplacians, which approximate the
+//! Sweeps quickly remove errors between neighbors, but hardly reduce errors that extend over the whole mesh. So after
+//! each sweep, the gradient of the objective is restricted to a hierarchy of graph Laplacians, which approximate the
 //! Hessian of the objective (aggregates of neighbors, prolongation smoothed once: Vaněk, Mandel & Brezina, Computing
-//! 56, 1996). The result is a direction for all free vertices. A line search moves them along it, as far as the true
-//! objective falls and no triangle is inverted.
+//! 56, 1996). The levels return a direction for all free vertices. A line search moves the vertices along the
+//! direction, as far as the true objective falls and no triangle is inverted.
 //!
 //! The weights of the Laplacians depend only on one positive number at each vertex, so the operators are positive
 //! definite even on a bad mesh. No Hessian is ever assembled.

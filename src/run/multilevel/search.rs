@@ -1,18 +1,19 @@
 //! The line search along a correction.
 
-/// The most lengths that are tried along one correction.
+/// Largest number of lengths that are tried along one correction.
 const TRIALS: u32 = 8;
 /// Share of the predicted decrease that a trial must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// The first length tried is good enough if it differs from the minimum of the fitted parabola by at most this share.
+/// Largest relative distance of the first trial from the minimum of the fitted parabola, at which the trial is accepted
+/// at once.
 pub(crate) const CLOSE: f64 = 0.2;
 
-/// The least and the largest length that is tried first along a correction by a smooth metric. The last length taken
-/// may be shorter because of a single nearly flat triangle.
+/// Smallest and largest length of the first trial along a correction by a smooth metric. A single nearly flat triangle
+/// may have made the last accepted length shorter.
 pub(crate) const LEAST_FIRST: f64 = 0.6;
 pub(crate) const MOST_FIRST: f64 = 3.0;
 
-/// A line search that chooses lengths. The caller evaluates the objective at them.
+/// A line search that proposes lengths, at which the caller evaluates the objective.
 pub(crate) struct Search {
     here: f64,
     slope: f64,
@@ -21,18 +22,18 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// Returns the first length to try, given the last one taken and the least that may be tried first.
+    /// Returns the length of the first trial, from the last accepted length and the smallest first length.
     pub(crate) fn first_length(last_taken: f64, least: f64) -> f64 {
         last_taken.clamp(least, MOST_FIRST)
     }
 
-    /// Starts a search from the objective `here` with the derivative `slope`, which is negative.
+    /// Starts a search from the objective `here`, with the negative derivative `slope`.
     pub(crate) fn new(here: f64, slope: f64) -> Self {
         Self { here, slope, trials: 0, best: None }
     }
 
-    /// Takes the objective at a length, or `None` if a triangle is inverted or breaks the shape guard there. Returns
-    /// the length to try next, if any.
+    /// Records the objective at a length, or `None` if a triangle is inverted or breaks the shape guard there. Returns
+    /// the next length to try, and `None` at the end of the search.
     pub(crate) fn tried(&mut self, length: f64, objective: Option<f64>) -> Option<f64> {
         self.trials += 1;
         let next = match objective {
@@ -57,7 +58,7 @@ impl Search {
         (self.trials < TRIALS).then_some(next)
     }
 
-    /// Returns the best length and the objective there; `None` if no length tried lowers the objective enough.
+    /// Returns the best length with its objective. `None` if no trial lowered the objective enough.
     pub(crate) fn best(&self) -> Option<(f64, f64)> {
         self.best
     }
@@ -67,7 +68,7 @@ impl Search {
 mod tests {
     use super::*;
 
-    /// Searches along a function, and returns the length taken and the number of evaluations.
+    /// Searches along a function. Returns the accepted length and the number of evaluations.
     fn search(f: impl Fn(f64) -> Option<f64>, slope: f64, first: f64) -> (Option<f64>, u32) {
         let mut search = Search::new(f(0.0).unwrap(), slope);
         let mut next = Some(first);

@@ -1,4 +1,4 @@
-//! Sparse matrices of the coarse levels.
+//! Sparse matrices of the coarse levels, in compressed rows.
 
 use crate::parallel::map_ranges;
 
@@ -11,19 +11,19 @@ pub(crate) struct Sparse {
 }
 
 impl Sparse {
-    /// Builds a matrix of `rows` rows, in parallel. `fill` adds the entries of a row to the sum it is given.
+    /// Builds a matrix of `rows` rows on all threads. `fill` adds the entries of a row to the given sum.
     pub(crate) fn from_rows(rows: usize, fill: impl Fn(usize, &mut RowSum) + Sync) -> Self {
         Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum))
     }
 
-    /// The Galerkin product Pᵀ A P, given P and its transpose. `row(i, factor, sum)` adds `factor` times row `i` of A
-    /// to `sum`.
+    /// Returns the Galerkin product Pᵀ A P, given P and its transpose. `row(i, factor, sum)` must add `factor` times
+    /// row `i` of A to `sum`.
     pub(crate) fn galerkin(
         prolongation: &Self,
         restriction: &Self,
         row: impl Fn(usize, f32, &mut RowSum) + Sync,
     ) -> Self {
-        // Row by row, so that A P is never stored.
+        // The product is computed row by row, so that A P is never stored.
         Self::from_rows_with(restriction.rows(), RowSum::default, |coarse, of_ap, sum| {
             for (k, value) in restriction.row(coarse) {
                 row(k, value, of_ap);
@@ -37,7 +37,7 @@ impl Sparse {
         })
     }
 
-    /// Does the same as [`Self::from_rows`] with scratch memory, which rows of one task share.
+    /// Builds a matrix like [`Self::from_rows`], with scratch memory that the rows of one task share.
     fn from_rows_with<S>(
         rows: usize,
         scratch: impl Fn() -> S + Sync,
@@ -67,42 +67,43 @@ impl Sparse {
         whole
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub(crate) fn rows(&self) -> usize {
         self.starts().len() - 1
     }
 
-    /// Where each row starts in [`Self::columns`] and [`Self::values`], and one past the last.
+    /// Returns the offset of each row in [`Self::columns`] and [`Self::values`], with the end of the last row as a
+    /// further entry.
     pub(crate) fn starts(&self) -> &[u32] {
         &self.start
     }
 
-    /// The column of each entry.
+    /// Returns the column of each entry, row by row.
     pub(crate) fn columns(&self) -> &[u32] {
         &self.column
     }
 
-    /// The value of each entry.
+    /// Returns the value of each entry, row by row.
     pub(crate) fn values(&self) -> &[f32] {
         &self.value
     }
 
-    /// The entries of a row.
+    /// Returns the columns and values of the entries of a row.
     pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
         let range = self.starts()[row] as usize..self.starts()[row + 1] as usize;
         let columns = self.columns()[range.clone()].iter().map(|&c| c as usize);
         columns.zip(self.values()[range].iter().copied())
     }
 
-    /// Returns the reciprocals of the diagonal entries.
+    /// Returns the reciprocal of the diagonal entry of each row.
     pub(crate) fn diagonal_inverted(&self) -> Vec<f32> {
         let diagonal =
             |i: usize| self.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
         (0..self.rows()).map(|i| 1.0 / diagonal(i)).collect()
     }
 
-    /// Multiplies each entry off the diagonal by the factors of its row and its column. Then sets the diagonal so that
-    /// each row sum is multiplied by the square of the row's factor.
+    /// Multiplies each entry off the diagonal by the factors of its row and its column. Then adapts the diagonal, such
+    /// that each row sum is multiplied by the square of the row's factor.
     pub(crate) fn scale_couplings(&mut self, factors: &[f32]) {
         for row in 0..self.rows() {
             let range = self.start[row] as usize..self.start[row + 1] as usize;
@@ -135,7 +136,7 @@ impl Sparse {
         (0..self.rows()).map(mean).collect()
     }
 
-    /// Returns the transpose of a matrix with `columns` columns. The entries of each of its rows ascend by column.
+    /// Returns the transpose of a matrix with `columns` columns. In each row of the transpose, columns ascend.
     pub(crate) fn transposed(&self, columns: usize) -> Self {
         let mut start = vec![0u32; columns + 1];
         for &column in &self.column {
@@ -162,18 +163,18 @@ impl Sparse {
     }
 }
 
-/// A sum of sparse rows, as a hash table by column. A row has some tens of entries, so the table stays in the
-/// first-level cache for meshes of any size.
+/// A sum of sparse rows, as a hash table with columns as keys. A row has some tens of entries, so the table stays in
+/// the first-level cache for meshes of any size.
 pub(crate) struct RowSum {
-    /// Column and value of each slot. The number of slots is a power of two.
+    /// Column and value of each slot. The length is a power of two.
     slots: Vec<(u32, f32)>,
-    /// The slots in use, in the order in which they were taken.
+    /// Indices of the used slots, in the order of their first use.
     taken: Vec<u32>,
     /// Number of bits by which a 32-bit hash is shifted right to give the index of a slot.
     shift: u32,
 }
 
-/// The column of a slot that is not in use.
+/// Marks an unused slot, in place of its column.
 const FREE: u32 = u32::MAX;
 
 impl Default for RowSum {
@@ -211,7 +212,7 @@ impl RowSum {
         }
     }
 
-    /// The entries so far, in the order in which their columns were first added.
+    /// Returns columns and values of the entries so far, in the order in which columns were first added.
     pub(crate) fn entries(&self) -> impl Iterator<Item = (u32, f32)> + '_ {
         self.taken.iter().map(|&slot| self.slots[slot as usize])
     }
@@ -249,7 +250,7 @@ mod tests {
         dense
     }
 
-    /// A thousand rows, enough for several chunks, with entries added in two parts.
+    /// Returns a matrix of a thousand rows, which fill several chunks. The entries of each row are added in two parts.
     fn sample() -> Sparse {
         Sparse::from_rows(1000, |row, sum| {
             for k in 0..row % 5 {
@@ -264,7 +265,7 @@ mod tests {
         let matrix = sample();
         let values = dense(&matrix, 70);
         assert_eq!((matrix.rows(), matrix.row(10).count()), (1000, 0));
-        // Row 13 has k = 0, 1, 2. The entry for k = 0 is in the column that the second part adds to.
+        // Row 13 has k = 0, 1, 2. The entry for k = 0 is in the column to which the second part adds.
         assert_eq!(matrix.row(13).count(), 3);
         assert_eq!(values[13][13 * 7 % 70], 1.0 + 3.0 * 13.0);
         assert_eq!(values[13][(13 * 7 + 26) % 70], 3.0);
