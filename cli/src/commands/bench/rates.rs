@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 /// Bytes per copy, more than caches hold.
 const BYTES: u64 = 128 << 20;
-/// Number of timed calls after a first one; the fastest call counts.
+/// Number of repetitions after the first timed call. The fastest call counts.
 const REPEATS: u32 = 5;
 /// Copies encoded into one submission to a GPU.
 const SUBMITTED: u32 = 4;
