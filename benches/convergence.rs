@@ -1,5 +1,5 @@
-//! Measures how many sweeps a run takes to come within a share of its limit. Compares the time of the run, with the set-up
-//! of coarse levels, with the time of one plain sweep.
+//! Number of sweeps that a run takes to approach its limit. Compares the duration of the run, including the set-up of
+//! coarse levels, with the duration of one plain sweep.
 //!
 //! ```text
 //! cargo bench --bench convergence -- 57000          # vertices of the plates; without any argument 57,000
@@ -18,9 +18,9 @@ use std::time::Duration;
 
 use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Outcome, Smoother, Stopping};
 
-/// How many runs a median is taken of.
+/// Number of runs, of which the median counts.
 const REPEATS: usize = 5;
-/// How many plain sweeps are timed together.
+/// Number of plain sweeps timed together.
 const PLAIN: u32 = 20;
 
 fn main() {
@@ -59,7 +59,7 @@ fn main() {
     }
 }
 
-/// The numbers of vertices and the mesh files that the command line names: 57,000 vertices if it names none.
+/// Returns the numbers of vertices and the mesh files on the command line; 57,000 vertices without arguments.
 fn arguments() -> (Vec<usize>, Vec<String>) {
     let mut sizes = Vec::new();
     let mut files = Vec::new();
@@ -79,7 +79,7 @@ fn read(files: &[String]) -> Vec<(String, Mesh)> {
     files.iter().map(|file| (file.clone(), support::read_mesh(Path::new(file)))).collect()
 }
 
-/// Meshes on which corrections gain little unless they are accelerated by secant pairs.
+/// Makes meshes on which corrections gain little without acceleration by secant pairs.
 fn hard_meshes() -> Vec<(String, Mesh)> {
     let perturbed = |mesh: &Mesh, strength| support::perturb_random(mesh, strength, 1);
     let meshes = [

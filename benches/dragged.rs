@@ -1,8 +1,9 @@
-//! Counts the frames after a drag until a mesh in an application is near its optimum again, with corrections from coarser
-//! levels and without. Also measures the time of a correction.
+//! Frames after a drag until a mesh in an application is near its optimum again, with and without corrections from
+//! coarser levels. Also measures the duration of a correction.
 //!
-//! `cargo bench --bench dragged -- [VERTICES...]`, 57,000 by default. The mesh is a plate at its optimum. Its larger hole is
-//! dragged in 60 frames, as far as triangles allow. A frame has three sweeps and, if they are corrected, three corrections.
+//! `cargo bench --bench dragged -- [VERTICES...]`, 57,000 by default. The mesh is a plate at its optimum, whose larger
+//! hole is dragged in 60 frames, as far as triangles allow. A frame has three sweeps and, with corrections, three
+//! corrections.
 
 #![allow(clippy::print_stdout)]
 
@@ -18,13 +19,13 @@ use gpu_smooth::{
     wgpu::{self, BufferUsages as Usage},
 };
 
-/// Sweeps in a frame.
+/// Sweeps per frame.
 const SWEEPS: u32 = 3;
-/// How far the hole is dragged, in units of a plate of 3 by 2: one drag for each.
+/// Distances of the drags, in units of a plate of 3 by 2.
 const FAR: [f64; 2] = [0.2, 0.4];
-/// Frames in a drag.
+/// Frames per drag.
 const FRAMES: usize = 60;
-/// The most frames after a drag.
+/// Largest number of frames after a drag.
 const MOST: usize = 200;
 
 fn main() {
@@ -43,7 +44,7 @@ fn main() {
     }
 }
 
-/// The mesh at its optimum, and f there.
+/// Returns the mesh at its optimum, and f of the optimum.
 fn optimum(mesh: &Mesh) -> (Mesh, f64) {
     let options = Options { stopping: Stopping::Tolerance(1e-9), ..Options::default() };
     let run = Smoother::new(mesh).unwrap();
@@ -72,7 +73,7 @@ fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
     let mut values = Readback::<ObjectiveValues>::new(gpu, &numbers, 0, 1).unwrap();
 
     let mut loops = Topology::new(mesh).unwrap().boundary_loops();
-    // The largest hole comes first, as the signed area of a hole is negative.
+    // The signed area of a hole is negative, so sorting puts the largest hole first.
     let area = |vertices: &Vec<u32>| signed_area(&mesh.points, vertices);
     loops.sort_by(|a, b| area(a).total_cmp(&area(b)));
     let hole = loops.swap_remove(0);

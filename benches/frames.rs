@@ -1,9 +1,10 @@
-//! Frames of an application: the time to encode one, and from its submission until the device is done; and the time to make a mesh
-//! ready for them.
+//! Frames of an application: time to encode a frame, time from its submission until the device is done, and time to
+//! prepare a mesh for frames.
 //!
-//! `cargo bench --bench frames -- [VERTICES...]`, 2,000, 20,000 and 200,000 by default. A frame is an import, three sweeps, the
-//! objective and the export, `corrected` the same with three corrections from coarser levels; `valid` adds five sweeps of untangling, which find nothing inverted; `all` adds a mask, a move of the hole, the last valid positions and two readbacks, and ends
-//! its sweeps by itself. Behind each median is the least.
+//! `cargo bench --bench frames -- [VERTICES...]`, 2,000, 20,000 and 200,000 by default. A frame consists of an import,
+//! three sweeps, the objective and the export; `corrected` adds three corrections from coarser levels. `valid` adds
+//! five untangling sweeps, which find no inverted triangle. `all` adds a mask, a move of the hole, the last valid
+//! positions and two readbacks, and its sweeps end by themselves. The minimum follows each median.
 
 #![allow(clippy::print_stdout)]
 
@@ -19,9 +20,9 @@ use gpu_smooth::{
     wgpu::{self, BufferUsages as Usage},
 };
 
-/// Frames that are measured, after as many that are not.
+/// Number of measured frames, after an equal number of unmeasured ones.
 const FRAMES: usize = 50;
-/// How often a mesh is made ready.
+/// Number of preparations of a mesh.
 const MESHES: usize = 10;
 
 fn main() {
@@ -119,7 +120,7 @@ fn main() {
             bound.encode_export(encoder);
             values.encode_readback(encoder);
             positions.encode_readback(encoder);
-            // What has arrived makes room for the next ones; positions are copied.
+            // Results that have arrived are taken, which frees their buffers; positions are copied.
             let _ = (values.latest().unwrap(), positions.latest().unwrap());
         });
         let kinds = [("plain", plain), ("corrected", corrected), ("valid", valid), ("all", all)];
@@ -134,7 +135,7 @@ fn main() {
     }
 }
 
-/// The time to encode a frame, and until the device is done with it: the median and the least of each.
+/// Returns the time to encode a frame, and the time until the device is done: median and minimum of each.
 fn times(gpu: &Gpu, mut encode: impl FnMut(&mut wgpu::CommandEncoder)) -> [[Duration; 2]; 2] {
     let mut taken = [Vec::new(), Vec::new()];
     for _ in 0..2 * FRAMES {

@@ -1,4 +1,4 @@
-//! Measures how long an awaited run blocks the thread that polls it: the longest poll, the sum of all
+//! Durations for which an awaited run blocks its polling thread: the longest poll, the sum of all
 //! polls, and the longest poll of the device between them.
 //!
 //! `cargo bench --bench polls -- [VERTICES...]`, 2,000 and 57,000 by default.

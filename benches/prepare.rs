@@ -1,4 +1,4 @@
-//! Times each phase of preparing a mesh, and of judging and certifying a result.
+//! Durations of the phases of preparing a mesh, and of judging and certifying a result.
 //!
 //! ```text
 //! cargo bench --bench prepare -- 1000000
@@ -24,7 +24,7 @@ fn main() {
     divan::main();
 }
 
-/// Cells along a side: 57 thousand, a million and ten million vertices.
+/// Cells along a side, for 57 thousand, a million and ten million vertices.
 const SIDES: [usize; 3] = [238, 999, 3161];
 
 #[derive(Clone, Copy)]
@@ -103,7 +103,7 @@ fn certificate(bencher: Bencher, case: Case) {
         .bench_local(|| certify(&topology, &before, &mut points).unwrap());
 }
 
-/// All phases before the first sweep.
+/// Measures all phases before the first sweep.
 #[divan::bench(args = cases(), max_time = 2, sample_size = 1, sample_count = 10)]
 fn smoother(bencher: Bencher, case: Case) {
     case.bench(bencher, || Smoother::new(case.mesh()).unwrap());

@@ -1,10 +1,10 @@
-//! Measures vertex visits and objective evaluations per second, by metric, engine and size of the mesh.
+//! Vertex visits and objective evaluations per second, by metric, engine and mesh size.
 //!
 //! ```text
 //! cargo bench --bench sweep -- imr/cpu          # RAYON_NUM_THREADS=1 for one core
 //! ```
 //!
-//! Without an adapter there are no rows for the GPU.
+//! Without an adapter, the GPU has no rows.
 
 mod mesh;
 #[path = "../tests/support/mod.rs"]
@@ -23,7 +23,7 @@ fn main() {
     divan::main();
 }
 
-/// Cells along a side of the lattices: ten thousand, 57 thousand and a million vertices.
+/// Cells along a side of the lattices, for ten thousand, 57 thousand and a million vertices.
 const SIDES: [usize; 3] = [99, 238, 999];
 
 fn problem(size: usize) -> &'static Problem {
@@ -82,7 +82,7 @@ impl Case {
     }
 }
 
-/// Times one over-relaxed sweep and the objective after it, from the sixth sweep on. Counts free vertices.
+/// Measures an over-relaxed sweep including the objective, from the sixth sweep on. Counts free vertices.
 #[divan::bench(args = cases(&[false, true]), max_time = 2, sample_size = 1)]
 fn sweep(bencher: Bencher, case: &Case) {
     let Some(mut engine) = case.engine() else { return };
@@ -92,7 +92,7 @@ fn sweep(bencher: Bencher, case: &Case) {
         .bench_local(|| engine.advance(1).unwrap());
 }
 
-/// Times the objective alone. Counts triangles.
+/// Measures the objective alone. Counts triangles.
 #[divan::bench(args = cases(&[false]), max_time = 0.5, sample_size = 1)]
 fn objective(bencher: Bencher, case: &Case) {
     bencher

@@ -1,7 +1,9 @@
-//! How many tangled meshes are untangled, and how long that takes.
+//! Success rate and duration of untangling, by the way in which meshes are tangled.
 //!
-//! `cargo bench --bench untangle -- [VERTICES...] [WORD...]`, 2,000 and 57,000 by default; only the kinds whose name has one of the
-//! words, if there are any. Ten seeds of each kind. Seconds are of the clock; those of the processor are of all threads, a mean over the seeds, and depend less on what else the machine does (Linux only).
+//! `cargo bench --bench untangle -- [VERTICES...] [WORD...]`, 2,000 and 57,000 vertices by default. With words, only
+//! kinds of meshes are measured whose name contains one of them. Each kind has ten seeds. Seconds are elapsed time.
+//! Processor seconds, summed over threads and averaged over seeds, depend less on other work of the machine (Linux
+//! only).
 
 #![allow(clippy::print_stdout)]
 
@@ -42,7 +44,7 @@ fn main() {
             });
         }
         moved_boundaries(vertices);
-        // As many rings as make elements equilateral.
+        // The number of rings for which elements are equilateral.
         let around = (vertices as f64 * 5.2).sqrt() as usize;
         for degrees in [30.0, 90.0, 180.0] {
             let mesh = tangle::turned_hole(around, degrees / 360.0);
@@ -51,7 +53,7 @@ fn main() {
     }
 }
 
-/// Meshes of which the boundary or lines inside were moved, and layers of thin triangles.
+/// Untangles meshes with moved boundaries or inner lines, and layers of thin triangles.
 fn moved_boundaries(vertices: usize) {
     let of = |kind: &str, make: &dyn Fn(u64) -> Mesh| row(kind, (1..=SEEDS).map(make));
     let columns = (vertices as f64).sqrt() as usize;
@@ -76,7 +78,7 @@ fn moved_boundaries(vertices: usize) {
     });
 }
 
-/// Untangles meshes of one kind and prints a row on all of them.
+/// Untangles several meshes of one kind, and prints a row of results.
 fn row(kind: &str, meshes: impl Iterator<Item = Mesh>) {
     let is_word = |arg: &String| !arg.starts_with("--") && arg.parse::<usize>().is_err();
     let words: Vec<String> = std::env::args().skip(1).filter(is_word).collect();
@@ -114,10 +116,10 @@ fn row(kind: &str, meshes: impl Iterator<Item = Mesh>) {
     );
 }
 
-/// The seconds that this process has spent on all processors, in hundredths.
+/// Returns the processor time of this process in seconds, with a resolution of 0.01 s.
 fn processor_seconds() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // Fields 14 and 15; the second one is a name in parentheses.
+    // Fields 14 and 15; field 2 is a name in parentheses.
     let fields: Vec<&str> = stat.rsplit(')').next()?.split_whitespace().collect();
     let ticks: f64 = fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
     Some(ticks / 100.0)

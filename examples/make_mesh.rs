@@ -1,10 +1,11 @@
-//! Makes a mesh of the domain that an outline encloses, and perturbs or distorts it as an input for a smoother:
+//! Generates a mesh of the domain enclosed by an outline, and perturbs or distorts the mesh as an input for
+//! smoothing:
 //!
 //! ```text
 //! cargo run --release --example make_mesh -- OUTLINE OUT_STEM [--vertices N] [--perturb S | --distort A] [--seed K]
 //! ```
 //!
-//! Writes OUT_STEM.node and OUT_STEM.ele. `meshes/README.md` names the command for the mesh there.
+//! Writes OUT_STEM.node and OUT_STEM.ele. `meshes/README.md` contains the command for the mesh in that folder.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "../tests/support/mod.rs"]

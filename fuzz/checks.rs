@@ -1,5 +1,4 @@
-//! Checks of what must hold for any mesh. The fuzzer's targets and `tests/fuzz.rs` share them. Each panics if
-//! something does not hold.
+//! Checks that must hold for any mesh, shared by the fuzzer's targets and `tests/fuzz.rs`. A violated check panics.
 
 use std::ops::ControlFlow;
 
@@ -12,7 +11,7 @@ use gpu_smooth::{
     topology, untangle,
 };
 
-/// Takes numbers from bytes: zeros after the last one.
+/// A source of numbers from bytes. After the last byte, all numbers are 0.
 struct Bytes<'b>(std::slice::Iter<'b, u8>);
 
 impl Bytes<'_> {
@@ -25,8 +24,8 @@ impl Bytes<'_> {
     }
 }
 
-/// Makes options and a small mesh from any bytes, and smooths it. The mesh may have holes, be tangled, tiny, huge or
-/// stretched.
+/// Makes options and a small mesh from arbitrary bytes, and smooths the mesh. The mesh may have holes, and be
+/// tangled, tiny, huge or stretched.
 pub(crate) fn any_mesh(bytes: &[u8], backend: &Backend) -> Became {
     let mut bytes = Bytes(bytes.iter());
     let options = options(&mut bytes);
@@ -38,7 +37,8 @@ pub(crate) fn any_mesh(bytes: &[u8], backend: &Backend) -> Became {
     became
 }
 
-/// Runs with targets, with vertices that slide, and with what only whole runs can do, as the bytes that are left say.
+/// Continues with features of whole runs, selected by the remaining bytes: targets, sliding, bounds and improvement
+/// of the worst triangles.
 fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &Backend) {
     let (what, which) = (bytes.byte(), bytes.below(4));
     if what == 0 {
@@ -81,13 +81,13 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
     let topology = smoother.topology();
     let bad = topology::infeasible(&outcome.points, topology.triangles()).unwrap();
     assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
-    // Without a line to slide along, this lists fixed vertices that have moved.
+    // Without lines to slide along, `astray` lists fixed vertices that have moved.
     let slide = slide.unwrap_or_else(|| {
         let held = (0..mesh.points.len() as u32).collect();
         Slide { held, ..Slide::default() }
     });
     let astray = slide.astray(topology, &mesh.points, &outcome.points, options.stored);
-    // Where edges are no longer than some roundings of coordinates, these alone take vertices past one another.
+    // Where edges are as short as some roundings of coordinates, rounding alone can move vertices past one another.
     let is_told = options.stored == Precision::Double || !slide.held.is_empty();
     assert!(astray.is_empty() || !is_told, "vertices {astray:?} have left their lines");
     let f = |points: &[[f64; 2]]| smoother.f(options.scheme.base(), points).unwrap();
@@ -97,7 +97,7 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
     assert!(run().unwrap().points == outcome.points, "other points the second time");
 }
 
-/// The result for a mesh.
+/// The kind of result for a mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Became {
     Refused,
@@ -106,7 +106,7 @@ pub(crate) enum Became {
     StillTangled,
 }
 
-/// Rounds to so many significant digits, as text of a fixed width does.
+/// Makes a function that rounds to a number of significant digits, as text of a fixed width does.
 macro_rules! digits {
     ($digits:literal) => {
         Rounding {
@@ -176,7 +176,7 @@ fn mesh(bytes: &mut Bytes<'_>, stored: Precision) -> Mesh {
                 _ => [[a, b, c + 1], [a, c + 1, c]],
             };
             for (half, mut triangle) in halves.into_iter().enumerate() {
-                // Leaves out the triangle, or reverses its winding.
+                // Omits the triangle, or reverses its winding.
                 if what >> (2 + half) & 7 == 7 {
                     continue;
                 }
@@ -187,7 +187,7 @@ fn mesh(bytes: &mut Bytes<'_>, stored: Precision) -> Mesh {
             }
         }
     }
-    // Sometimes fixed vertices, some of them named twice, and a triangle that does not fit in the plane.
+    // Sometimes adds fixed vertices, some of them twice, and a triangle that does not fit into the plane.
     for _ in 0..bytes.below(6) {
         mesh.fixed.push(bytes.below(mesh.points.len()) as u32);
     }
@@ -232,7 +232,8 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
     Became::Smoothed
 }
 
-/// Untangles a mesh with inverted triangles: it must not get worse, and what is reported as untangled must be valid.
+/// Untangles a mesh with inverted triangles. The number of bad triangles must not increase, and a mesh reported as
+/// untangled must be valid.
 fn untangled(mesh: &Mesh, options: &Options) -> Became {
     let mut go_on = |_: &gpu_smooth::untangle::Untangling| ControlFlow::Continue(());
     let Ok(untangled) = untangle(mesh, options.stored, &mut go_on) else { return Became::Refused };
@@ -240,7 +241,7 @@ fn untangled(mesh: &Mesh, options: &Options) -> Became {
     let mended = Mesh { points: untangled.points, ..mesh.clone() };
     match Smoother::new(&mended) {
         Ok(smoother) => {
-            // Those that are left are so flat that double precision cannot judge them.
+            // The remaining triangles are so flat that double precision cannot judge them.
             assert!(untangled.left.len() <= smoother.beyond_precision().len());
             for (vertex, free) in smoother.topology().free().iter().enumerate() {
                 let bits = |mesh: &Mesh| mesh.points[vertex].map(f64::to_bits);

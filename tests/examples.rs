@@ -1,4 +1,4 @@
-//! The examples run and show what they are meant to show.
+//! The examples run, and show the results that their comments promise.
 
 #[allow(dead_code)]
 #[path = "../examples/embed/main.rs"]
@@ -17,7 +17,7 @@ use std::path::Path;
 use gpu_smooth::Metric;
 use moving_boundary::support;
 
-/// How bright a pixel is to the eye, from 0 to 255.
+/// Returns the perceived brightness of a pixel, from 0 to 255.
 fn luminance([red, green, blue, _]: [u8; 4]) -> f64 {
     0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue)
 }
@@ -36,7 +36,7 @@ fn embed_draws_a_better_mesh_within_the_same_boundary() {
     assert!((f64::from(before.quality.worst_imr) / worst - 1.0).abs() < 1e-3, "{worst}");
     assert!(after.quality.worst_imr < 5.0);
 
-    // Pixels outside of the plate and in its holes stay white.
+    // Pixels outside of the plate and in its holes remain white.
     let is_white = |&&pixel: &&[u8; 4]| pixel == [255; 4];
     let white = before.pixels.iter().filter(is_white).count();
     let pairs = || before.pixels.iter().zip(&after.pixels);
@@ -44,7 +44,7 @@ fn embed_draws_a_better_mesh_within_the_same_boundary() {
     assert!(white > 100_000, "only {white} pixels show no mesh");
     assert!(switched < 50, "{switched} pixels of the background changed");
 
-    // Inside, the colors of good triangles are bright, and those of bad triangles dark.
+    // Inside, good triangles have bright colors, bad triangles dark ones.
     let inside: Vec<_> =
         pairs().filter(|(a, b)| !is_white(a) && !is_white(b)).map(|(a, b)| [*a, *b]).collect();
     let mean = |which: usize| {
@@ -67,7 +67,7 @@ fn an_application_outside_drags_pins_recovers_meshes_anew_and_survives_a_lost_de
     assert_eq!(names.len(), 10, "{names:?}");
     for (name, told) in acts {
         let is_torn = name.contains("torn inside out");
-        // The torn mesh is looked at once before it is swept: one of its frames has no sweeps.
+        // The torn mesh is evaluated once before sweeps, so one of its frames has no sweeps.
         let swept = told.frames - u32::from(is_torn);
         assert!(told.frames > 0 && told.sweeps >= swept, "{name}: {told:?}");
         assert_eq!(told.inverted > 0, is_torn, "{name}: {told:?}");

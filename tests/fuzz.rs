@@ -1,5 +1,5 @@
-//! A short version of the fuzzing in `fuzz/`, on any toolchain and with the same inputs each time. The environment variable
-//! `FUZZ_ROUNDS` is a factor that makes it longer. Inputs that once failed are literal tests here.
+//! A short version of the fuzzing in `fuzz/`, on any toolchain and with fixed inputs. The environment variable
+//! `FUZZ_ROUNDS` multiplies the number of rounds. Inputs of former failures are tests of their own.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
@@ -13,7 +13,7 @@ use checks::Became;
 use gpu_smooth::Backend;
 use support::SplitMix64;
 
-/// The number of rounds: `usual`, which takes about a second, times `FUZZ_ROUNDS`.
+/// Returns the number of rounds: `usual`, which take approximately a second, times `FUZZ_ROUNDS`.
 fn rounds(usual: usize) -> usize {
     let factor = env::var("FUZZ_ROUNDS").ok().and_then(|text| text.parse().ok());
     usual * factor.unwrap_or(1)
@@ -29,7 +29,7 @@ fn meshes_of_any_shape() {
     let mut random = SplitMix64::new(13);
     let became = |bytes: &[u8]| checks::any_mesh(bytes, &Backend::Cpu);
     let all: Vec<Became> = (0..rounds(400)).map(|_| became(&any_bytes(&mut random, 260))).collect();
-    // Each kind of result is more than a twentieth of all.
+    // Each kind of result must make up more than a twentieth of all.
     for kind in [Became::Refused, Became::Smoothed, Became::Untangled, Became::StillTangled] {
         let count = all.iter().filter(|became| **became == kind).count();
         assert!(20 * count > all.len(), "{count} of {}", all.len());
@@ -46,7 +46,7 @@ fn meshes_of_any_shape_on_a_gpu() {
     }
 }
 
-/// Writes the inputs that the fuzzer starts from, if the environment variable FUZZ_CORPUS names a folder.
+/// Writes the initial inputs of the fuzzer, if the environment variable FUZZ_CORPUS names a folder.
 #[test]
 fn the_corpus_can_be_written() {
     let Some(folder) = env::var_os("FUZZ_CORPUS") else { return };

@@ -1,4 +1,4 @@
-//! Tests of the meshes that other tests use, and of the checks on them (`tests/support`).
+//! Tests of the mesh generators and checks in `tests/support`.
 
 mod support;
 
@@ -16,7 +16,7 @@ fn filled(outline: &str, vertices: usize) -> Mesh {
     support::triangulate(&Outline::parse(outline).unwrap(), vertices).unwrap()
 }
 
-/// Vertices less edges plus triangles: 1 for a disk, one less for each hole.
+/// Returns vertices minus edges plus triangles: 1 for a disk, one less for each hole.
 fn euler(mesh: &Mesh) -> i64 {
     let counts = [mesh.points.len(), support::edge_uses(mesh).len(), mesh.triangles.len()];
     let [vertices, edges, triangles] = counts.map(|n| n as i64);
@@ -30,7 +30,7 @@ fn assert_held_still(before: &Mesh, after: &Mesh) {
     }
 }
 
-/// The FNV-1a hash of a mesh: of its coordinates, triangles and fixed vertices.
+/// Returns the FNV-1a hash of a mesh's coordinates, triangles and fixed vertices.
 fn hash(mesh: &Mesh) -> u64 {
     let floats = mesh.points.iter().flatten().map(|x| x.to_bits());
     let indices = mesh.triangles.iter().flatten().chain(&mesh.fixed).map(|&v| u64::from(v));
@@ -42,7 +42,7 @@ fn hash(mesh: &Mesh) -> u64 {
 
 #[test]
 fn random_numbers_are_those_of_splitmix64() {
-    // The first numbers of the reference implementation from the seed 1234567.
+    // The first numbers of the reference implementation with the seed 1234567.
     let mut rng = SplitMix64::new(1_234_567);
     let first = [0, 1, 2].map(|_| rng.next_u64());
     assert_eq!(first, [6457827717110365317, 3203168211198807973, 9817491932198370423]);
@@ -80,7 +80,7 @@ fn graded_elements_keep_their_shape_as_they_shrink() {
         assert_eq!(euler(&mesh), 0);
         let innermost = mesh.points.last().unwrap();
         assert!(innermost[0].hypot(innermost[1]) <= 1e-7);
-        // Also where few bits of the coordinates are left to resolve the smallest elements.
+        // Also with few bits left in coordinates to resolve the smallest elements.
         let rough = support::perturb_random(&mesh, 1.0, 5);
         assert!(support::is_ccw(&support::transformed(&rough, 1.0, [0.3, 0.7])));
     }
@@ -101,7 +101,8 @@ fn triangulated_plate_meets_its_bounds() {
     }
 }
 
-/// The domains of `examples/park_shontz_2011`: name, holes, and vertices of the paper's mesh.
+/// The domains of `examples/park_shontz_2011`: name, number of holes, and number of vertices in the
+/// paper's mesh.
 const DOMAINS: [(&str, i64, usize); 6] = [
     ("airplane", 0, 72205),
     ("duck", 1, 62372),
@@ -148,7 +149,7 @@ fn lines_and_lone_vertices_are_fixed() {
     assert!(support::is_valid(&mesh));
     assert_eq!(euler(&mesh), 0, "one hole");
     let fixed: Vec<_> = mesh.fixed.iter().map(|&v| mesh.points[v as usize]).collect();
-    // A line's end on the boundary counts as a boundary vertex.
+    // The end of a line on the boundary counts as a boundary vertex.
     assert!(
         !fixed.contains(&[0.0, 0.0]) && fixed.contains(&[0.3, 0.5]) && fixed.contains(&[0.4, 0.2])
     );
@@ -216,7 +217,7 @@ fn the_checks_of_the_tests_can_fail() {
         change(&mut mesh);
         mesh
     };
-    // Vertex 5 is inside.
+    // Vertex 5 is an inner vertex.
     assert!(!support::boundary(&good)[5] && support::boundary(&good)[4]);
     let folded = with(|mesh| mesh.points[5] = [3.0, 3.0]);
     assert!(!support::is_valid(&folded) && !support::is_ccw(&folded));
@@ -242,7 +243,7 @@ fn outlines_have_arcs_curves_and_corners() {
     assert!(ring.contains(&[1.0, 2.2]) && ring.contains(&[0.5, 1.8]));
     assert!(support::is_valid(&support::triangulate(&outline, 800).unwrap()));
 
-    // A closed smooth curve through points of the unit circle hardly leaves the circle.
+    // A closed smooth curve through points of the unit circle stays close to the circle.
     let curve = "loop\ncurve 8\n1 0\n.7071 .7071\n0 1\n-.7071 .7071\n-1 0\n-.7071 -.7071\n0 -1\n.7071 -.7071";
     let outline = Outline::parse(curve).unwrap();
     assert_eq!(outline.loops[0].len(), 64);
@@ -321,7 +322,7 @@ fn written_meshes_look_as_their_formats_say() {
     assert_eq!(std::fs::read_to_string(folder.path().join("mesh.1.ele")).unwrap(), ele);
 }
 
-/// Numbers measured on these meshes are compared over the years: the meshes must not change.
+/// Measurements on these meshes are compared over years, so the meshes must not change.
 #[test]
 fn meshes_keep_their_bytes() {
     let lattice = support::lattice(20, 20);
@@ -341,7 +342,7 @@ fn meshes_keep_their_bytes() {
     }
 }
 
-/// If this fails after an update of spade, see `meshes/README.md`.
+/// If this test fails after an update of spade, see `meshes/README.md`.
 #[test]
 fn committed_meshes_are_what_their_commands_make() {
     for name in DOMAINS.map(|(name, ..)| name).into_iter().chain(["plate"]) {

@@ -1,4 +1,4 @@
-//! Interpolated data of vertices, compared with a search through all triangles and with linear functions.
+//! Interpolated vertex data, compared with a search through all triangles and with linear functions.
 
 #[path = "support/mod.rs"]
 mod support;
@@ -10,7 +10,8 @@ fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The value at a place, linear in the first triangle that contains it up to rounding; `None` outside of the mesh.
+/// Returns the linear interpolation in the first triangle that contains `place` up to rounding; `None` outside of
+/// the mesh.
 fn by_search(mesh: &Mesh, values: &[f64], place: [f64; 2]) -> Option<f64> {
     mesh.triangles.iter().find_map(|corners| {
         let [a, b, c] = corners.map(|v| mesh.points[v as usize]);
@@ -21,7 +22,7 @@ fn by_search(mesh: &Mesh, values: &[f64], place: [f64; 2]) -> Option<f64> {
     })
 }
 
-/// A lattice with a slot: a straight line between two places inside may leave the mesh.
+/// Makes a lattice with a slot, so that a straight line between two inner points may leave the mesh.
 fn slotted(nx: usize, ny: usize) -> Mesh {
     let mut mesh = lattice(nx, ny);
     let points = &mesh.points;
@@ -81,7 +82,7 @@ fn interpolated_values_are_linear_in_the_triangle_around_the_point() {
     }
 }
 
-/// The point of the boundary that is nearest to a place.
+/// Returns the boundary point nearest to `place`.
 fn nearest(mesh: &Mesh, topology: &Topology<'_>, place: [f64; 2]) -> [f64; 2] {
     let on_edge = |edge: &[u32; 2]| {
         let [a, b] = edge.map(|vertex| mesh.points[vertex as usize]);
@@ -95,7 +96,7 @@ fn nearest(mesh: &Mesh, topology: &Topology<'_>, place: [f64; 2]) -> [f64; 2] {
     edges.iter().map(on_edge).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap()
 }
 
-/// A place outside of the mesh gets the value of the nearest point of the mesh.
+/// Positions outside of the mesh receive the value of the mesh's nearest point.
 #[test]
 fn a_point_outside_the_mesh_takes_the_value_of_the_nearest_point() {
     let mesh = lattice(8, 8);

@@ -1,4 +1,4 @@
-//! Tests of the parts of the example `live` without a window, and of the whole example in a window where there is a display.
+//! Tests of the example `live`: its parts without a window, and the whole example on a virtual display.
 #![allow(clippy::print_stderr)]
 
 #[allow(dead_code)]
@@ -24,7 +24,7 @@ fn plate() -> Mesh {
     support::read_mesh(&root().join("meshes/plate.node"))
 }
 
-/// The application, driven by a test in place of a user.
+/// The application with a test in the role of the user.
 struct Hand {
     app: App,
     target: wgpu::TextureView,
@@ -53,7 +53,8 @@ impl Hand {
         }
     }
 
-    /// Does frames until a condition holds. Their number depends on the machine: a frame has time for fewer sweeps on a busy one.
+    /// Executes frames until a condition holds. The number of frames depends on the machine, because frames of a busy
+    /// machine have fewer sweeps.
     fn frames_until(&mut self, holds: impl Fn(&Self) -> bool) {
         for _ in 0..400 {
             self.frames(1);
@@ -151,7 +152,7 @@ fn a_mesh_turned_inside_out_by_a_free_hand_recovers() {
     let mut hand = Hand::new();
     hand.frames(30);
     hand.app.key('f').unwrap();
-    // While paused nothing is turned back: drag a vertex far away, and one hole across another.
+    // During a pause, inverted triangles remain. Drags a vertex far away, and one hole across another.
     hand.app.key(' ').unwrap();
     for (from, to) in [([1.8, 1.3], [2.6, 1.7]), ([2.5, 0.6], [1.7, 0.9])] {
         hand.press(from);
@@ -186,7 +187,7 @@ fn keys_choose_the_scheme() {
     assert_eq!(after("a"), "area");
 }
 
-/// The pixels of a picture, four bytes each.
+/// Returns the pixels of a picture, four bytes each.
 fn pixels(path: &Path, size: [u32; 2]) -> Vec<u8> {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
@@ -204,7 +205,7 @@ fn check_pictures(directory: &Path, size: [u32; 2]) {
         assert!(colors.len() > 100, "a picture of {} colors", colors.len());
     }
     assert!(pictures.windows(2).all(|pair| pair[0] != pair[1]));
-    // The color of inverted triangles.
+    // Magenta marks inverted triangles.
     let magenta = |picture: &[u8]| {
         picture.chunks_exact(4).filter(|p| p[0] > 240 && p[1] < 20 && p[2] > 240).count()
     };
@@ -228,8 +229,8 @@ fn the_tour_runs_without_a_window() {
     check_pictures(directory.path(), [400, 440]);
 }
 
-/// Needs the binary of the example, which `cargo test` builds beside this one, and `xvfb-run`, which
-/// `tests/run` installs. On Linux only, as other systems would open a real window.
+/// Requires the binary of the example, which `cargo test` builds beside this one, and `xvfb-run`, which `tests/run`
+/// installs. Linux only, because other systems would open a real window.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_tour_runs_in_a_window() {

@@ -21,8 +21,8 @@ fn value(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
     Measured::new(&mesh.points, &topology).unwrap().value(measure, 0)
 }
 
-/// The value of one triangle whose winding counts as given. The topology is that of another, counterclockwise triangle: a
-/// topology of an inverted triangle alone would turn it over.
+/// Returns the value of a triangle whose winding is preserved. The topology belongs to another, counterclockwise
+/// triangle: a topology of a single inverted triangle would reverse the winding.
 fn value_as_wound(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
     let upright = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let mesh = Mesh { points: upright, triangles: vec![[0, 1, 2]], fixed: vec![] };
@@ -36,8 +36,8 @@ fn assert_close(found: f64, expected: f64, what: &str) {
     assert!(close, "{what}: {found} instead of {expected}");
 }
 
-/// Computes measures from the lengths of the edges: angles by the law of cosines, the area by Heron's formula, radii from
-/// both, and the condition from the singular values of the map from an equilateral triangle.
+/// Computes measures from edge lengths: angles by the law of cosines, the area by Heron's formula, radii from both, and
+/// the condition from the singular values of the map from an equilateral triangle.
 fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
     let distance = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
     let (a, b, c) = (distance(q, r), distance(r, p), distance(p, q));
@@ -52,7 +52,7 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
     let (inradius, circumradius) = (area / half, a * b * c / (4.0 * area));
     let longest = a.max(b).max(c);
     let third = std::f64::consts::FRAC_PI_3;
-    // The columns of A W⁻¹; W has the columns (1, 0) and (1/2, √3/2).
+    // The columns of A W⁻¹, where W has the columns (1, 0) and (1/2, √3/2).
     let (e, f) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
     let second = [0, 1].map(|i| (2.0 * f[i] - e[i]) / 3f64.sqrt());
     let (trace, determinant) = (
@@ -68,13 +68,13 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
         Measure::EdgeRatio => longest / a.min(b).min(c),
         Measure::AspectRatio => longest / (2.0 * 3f64.sqrt() * inradius),
         Measure::RadiusRatio => circumradius / (2.0 * inradius),
-        // The two longest edges enclose the smallest angle; its sine is the least.
+        // The two longest edges enclose the smallest angle, whose sine is the smallest.
         Measure::ScaledJacobian => least.sin() / third.sin(),
         Measure::Condition => condition,
         Measure::Shape => 1.0 / condition,
         Measure::Skewness => ((most - third) / (2.0 * third)).max((third - least) / third),
         Measure::SizeRatio => 1.0,
-        // The mesh is this triangle alone, so its area is the mean area.
+        // The mesh consists of one triangle, so the triangle's area is the mean area.
         Measure::Metric(metric) => oracles::quality(metric, [a, b, c], area, area),
     }
 }
@@ -86,7 +86,7 @@ fn measures_agree_with_formulas_of_other_origin() {
     for _ in 0..2000 {
         let points = [(); 3].map(|()| [(); 2].map(|()| rng.unit()));
         let smallest = oracle(Measure::MinAngle, points);
-        // The formulas of `oracle` lose digits on triangles that are nearly flat.
+        // The formulas of `oracle` lose digits on nearly flat triangles.
         if smallest < 0.5 {
             continue;
         }
@@ -112,7 +112,7 @@ fn known_triangles_have_known_values() {
     let equilateral = [[0.0, 0.0], [1.0, 0.0], [0.5, root(3.0) / 2.0]];
     for &measure in Measure::ALL {
         let ideal = measure.definition().ideal;
-        // At the ideal, metrics of size are roots of sums of squares that vanish but for rounding.
+        // At the ideal, metrics of size are roots of sums of squares that vanish up to rounding.
         let is_of_size = |metric: gpu_smooth::Metric| {
             !metric.properties().scale_invariant && metric.properties().barrier
         };
@@ -164,7 +164,7 @@ fn measures_do_not_depend_on_size_place_and_rotation() {
         let expected = value(measure, base);
         let turned = base.map(|[x, y]| [cos * x - sin * y, sin * x + cos * y]);
         assert_close(value(measure, turned), expected, measure.name());
-        // The value does not depend on which corner is first.
+        // The value does not depend on the choice of the first corner.
         assert_close(value(measure, [base[1], base[2], base[0]]), expected, measure.name());
         assert_close(value(measure, [base[0], base[2], base[1]]), expected, measure.name());
         for scale in [1e-90, 1e90] {
@@ -174,7 +174,7 @@ fn measures_do_not_depend_on_size_place_and_rotation() {
         let far = base.map(|[x, y]| [x + 2f64.powi(40), y - 2f64.powi(40)]);
         assert_close(value(measure, far), expected, measure.name());
     }
-    // Also at scales that `Topology` refuses, and at which squares overflow or vanish.
+    // Scales that `Topology` refuses, at which squares overflow or vanish.
     let scale_invariant = |m: &&Measure| !matches!(m, Measure::Metric(_));
     for &measure in
         Measure::ALL.iter().filter(scale_invariant).filter(|m| **m != Measure::SizeRatio)
@@ -227,7 +227,8 @@ fn inverted_and_flat_triangles_are_as_in_verdict() {
     assert!(value_as_wound(Condition, kept) > 1e15 && value_as_wound(Condition, kept).is_finite());
 }
 
-/// A mesh, and positions with random shapes, an inverted triangle and a flat one far from it. Its topology is made before.
+/// Returns a mesh, and positions with random shapes, an inverted triangle and a distant flat one. The topology belongs
+/// to the valid mesh.
 fn tangled() -> (Mesh, Vec<[f64; 2]>) {
     let mesh = support::perturb_random(&support::lattice(90, 70), 0.9, 3);
     let mut points = mesh.points.clone();
@@ -244,7 +245,7 @@ fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// Compares statistics with a sorted list of the values and plain sums.
+/// Compares statistics with a sorted list of the values and with plain sums.
 #[track_caller]
 fn assert_statistics(found: &Statistics, values: &[(usize, f64)]) {
     let measure = found.measure;
@@ -255,7 +256,7 @@ fn assert_statistics(found: &Statistics, values: &[(usize, f64)]) {
         (values.len(), in_order[0], in_order[values.len() - 1])
     );
     for (share, quantile) in QUANTILES.into_iter().zip(found.quantiles) {
-        // The least value that a `share` of all values do not exceed.
+        // The quantile: the smallest value that a fraction `share` of all values does not exceed.
         let expected = (0..in_order.len()).find(|&i| (i + 1) as f64 >= share * n).unwrap();
         let expected = in_order[expected];
         assert_eq!(quantile, f64::from(expected as f32), "{measure} at {share}");
@@ -362,7 +363,7 @@ fn histograms_worst_triangles_and_counts_are_those_of_the_values() {
     assert!(measured.value(Measure::Shape, mesh.triangles.len()).is_nan());
 }
 
-/// Returns the text of a document of the repository, without carriage returns.
+/// Returns the text of a document in the repository, without carriage returns.
 fn document(name: &str) -> String {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     std::fs::read_to_string(path).unwrap().replace("\r\n", "\n")
@@ -375,12 +376,12 @@ fn table<'d>(document: &'d str, head: &str) -> Vec<&'d str> {
     rest.lines().skip(2).take_while(|line| line.starts_with('|')).collect()
 }
 
-/// Returns a number as documents have it, without the digits that only rounding has made.
+/// Formats a number like the documents, without digits that are only rounding errors.
 fn shown(number: f64) -> String {
     if number.is_infinite() { "∞".to_owned() } else { format!("{}", number as f32) }
 }
 
-/// The table of docs/quality.md has one row for each measure, with the text of its definition, and no other row.
+/// The table of docs/quality.md has exactly one row for each measure, with the text of its definition.
 #[test]
 fn the_document_has_the_definitions() {
     let document = document("docs/quality.md");
@@ -407,7 +408,7 @@ fn the_document_has_the_definitions() {
     assert_eq!(found[expected.len()..], [""; 0], "docs/quality.md has rows that no measure has");
 }
 
-/// Returns the names in code quotes of a text, in order.
+/// Returns the code-quoted names in a text, in order.
 fn quoted(text: &str) -> Vec<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }
@@ -418,7 +419,7 @@ fn sorted_names<'n>(names: impl IntoIterator<Item = &'n str>) -> Vec<&'n str> {
     names
 }
 
-/// The names of the metrics that are as wanted, sorted.
+/// Returns the sorted names of the metrics for which `is_wanted` is true.
 fn names_of(is_wanted: impl Fn(&Metric) -> bool) -> Vec<&'static str> {
     let wanted = Metric::ALL.iter().copied().filter(|metric| is_wanted(metric));
     sorted_names(wanted.map(|metric| metric.name()))
@@ -466,7 +467,7 @@ fn the_page_of_targets_has_a_row_for_each_metric_of_sizes_with_a_barrier() {
     assert_eq!(found, names_of(sees_sizes), "{told}");
 }
 
-/// No number of metrics or measures stands in these documents, as it would be forgotten.
+/// Documents must not state the number of metrics, which nobody would update.
 #[test]
 fn documents_do_not_count_metrics() {
     const NUMBERS: [&str; 8] = ["five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
@@ -488,7 +489,7 @@ fn documents_do_not_count_metrics() {
 fn duplicate_and_unused_vertices_are_found() {
     let mut mesh = support::perturb_random(&support::lattice(40, 30), 0.9, 3);
     let count = mesh.points.len() as u32;
-    // Zeros of either sign, a vertex given twice, and two vertices that no triangle uses, one of them at a place of its own.
+    // Zeros of either sign, a duplicate vertex, and two unused vertices, one of them at a separate position.
     mesh.points[0] = [0.0, 0.0];
     mesh.points.extend([[-0.0, 0.0], mesh.points[700], mesh.points[700], [0.5, 99.0]]);
     mesh.points[20] = mesh.points[19];

@@ -1,4 +1,4 @@
-//! Runs Park and Shontz's experiments on few meshes: the report must state what the data files contain.
+//! Repeats Park and Shontz's experiments on few meshes: the report must agree with its data files.
 
 #[allow(dead_code)]
 #[path = "../examples/park_shontz_2011/main.rs"]
@@ -13,7 +13,7 @@ use gpu_smooth::Gpu;
 use park_shontz::study::{Place, Study};
 use park_shontz::{Request, gather, report};
 
-/// Rows of a CSV file by column name.
+/// Returns the rows of a CSV file by column name.
 fn csv(path: &Path) -> Vec<HashMap<String, String>> {
     let text = fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
@@ -25,7 +25,7 @@ fn csv(path: &Path) -> Vec<HashMap<String, String>> {
         .collect()
 }
 
-/// The cells of the Markdown table under a caption, its head first.
+/// Returns the cells of the Markdown table below a caption, beginning with its head.
 fn table(markdown: &str, caption: &str) -> Vec<Vec<String>> {
     let start = markdown.find(caption).unwrap_or_else(|| panic!("no table '{caption}'"));
     let rows = markdown[start..].lines().skip_while(|line| !line.starts_with('|'));
@@ -37,7 +37,7 @@ fn table(markdown: &str, caption: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Sweeps and median seconds to 95 %, from the histories and desired values in the data files.
+/// Sweeps and median seconds to 95 %, computed from histories and desired values in the data files.
 struct Times {
     history: Vec<HashMap<String, String>>,
     desired: Vec<HashMap<String, String>>,
@@ -74,7 +74,7 @@ impl Times {
     }
 }
 
-/// Whether a cell shows a number to the digits it has.
+/// Returns whether a cell shows a number, rounded to the digits of the cell.
 fn shows(cell: &str, number: f64) -> bool {
     let cell = cell.trim_end_matches(" %");
     let digits = cell.split('.').nth(1).map_or(0, str::len);
@@ -121,7 +121,7 @@ fn the_papers_report_says_what_its_data_say() {
     }
     assert_eq!(compared, 8);
 
-    // The first verdict is on two meshes, so the median is their mean.
+    // The first verdict concerns two meshes, so the median is their mean.
     let verdicts = table(&markdown, "Median over the meshes");
     let saved = ["fish", "mechanic"].map(|domain| {
         let [edge, with_imr] =
@@ -132,7 +132,7 @@ fn the_papers_report_says_what_its_data_say() {
     assert!(first[0].starts_with("EDGE+IMR saves"), "{first:?}");
     assert!(shows(first[3].split(" (").next().unwrap(), (saved[0] + saved[1]) / 2.0), "{first:?}");
 
-    // The HTML is one file that loads no other, and has the same numbers.
+    // The HTML is a single file that loads no other, with equal numbers.
     let html = fs::read_to_string(folder.join("report.html")).unwrap();
     assert_eq!(html.matches("<svg").count(), 6);
     assert!(!html.contains("src=") && !html.contains("href="));
@@ -153,7 +153,7 @@ fn a_stopped_study_goes_on_where_it_was() {
     gather(&study, &[Place::Cpu], None, folder).unwrap();
     let whole = fs::read_to_string(&path).unwrap();
 
-    // As if the study had been stopped while it wrote the last run's record.
+    // Simulates a stop of the study during the last record.
     fs::write(&path, &whole[..whole.len() - 20]).unwrap();
     gather(&study, &[Place::Cpu], None, folder).unwrap();
     let again = fs::read_to_string(&path).unwrap();

@@ -1,4 +1,4 @@
-//! Checks the WGSL of every kernel without an adapter: it is core WebGPU, within the limits that browsers promise.
+//! Checks of each kernel's WGSL without an adapter: core WebGPU only, within the limits guaranteed by browsers.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,11 +8,11 @@ use gpu_smooth::gpu::Kernel;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, Block, Module, ShaderStage, Statement};
 
-/// The least `max_compute_invocations_per_workgroup` of WebGPU.
+/// Guaranteed minimum of WebGPU's `max_compute_invocations_per_workgroup`.
 const MOST_INVOCATIONS: u32 = 256;
-/// The least `max_storage_buffers_per_shader_stage` of WebGPU.
+/// Guaranteed minimum of WebGPU's `max_storage_buffers_per_shader_stage`.
 const MOST_STORAGE_BUFFERS: usize = 8;
-/// The least `max_compute_workgroup_storage_size` of WebGPU.
+/// Guaranteed minimum of WebGPU's `max_compute_workgroup_storage_size`.
 const MOST_WORKGROUP_BYTES: u32 = 16384;
 
 fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
@@ -22,7 +22,7 @@ fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
-/// The modules of each kernel: for meshes bound whole, for large ones, and for those with targets.
+/// Returns the modules of each kernel: for meshes bound as a whole, for large meshes, and for meshes with targets.
 fn modules() -> impl Iterator<Item = (Kernel, Module)> {
     let both = |kernel: Kernel| {
         [kernel.wgsl(), kernel.wgsl_for_large_meshes(), kernel.wgsl_for_targets()].map(|wgsl| {
@@ -36,7 +36,7 @@ fn modules() -> impl Iterator<Item = (Kernel, Module)> {
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    // Each module is validated as it is composed.
+    // Composing a module also validates it.
     assert!(modules().count() > 0);
 }
 
@@ -48,7 +48,7 @@ fn validation_refuses_capabilities_beyond_core_webgpu() {
     validated(&bare.replace("1.0", "undeclared")).unwrap_err();
 }
 
-/// Adds the names of the entry points that the files of a folder declare.
+/// Collects the entry points declared by the files of a folder.
 fn add_entry_points(folder: &Path, names: &mut BTreeSet<String>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -107,7 +107,7 @@ fn storage_buffers_and_workgroup_memory_are_within_the_limits() {
     }
 }
 
-/// What matters to a barrier, in program order.
+/// An event in program order that matters for barriers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Event {
     Barrier { in_branch: bool },
@@ -144,8 +144,9 @@ fn events(module: &Module, block: &Block, in_branch: bool, found: &mut Vec<Event
     }
 }
 
-/// The number of barriers, or why a browser would refuse the kernel: a barrier must be met by all invocations, which naga
-/// does not check. This check is stricter than browsers, as it does not look at what branches depend on.
+/// Counts the barriers of a kernel, or returns the reason why a browser would refuse the kernel. All invocations must
+/// reach a barrier, which naga does not check. This check ignores the conditions of branches, so it is stricter than
+/// browsers.
 fn barriers(module: &Module) -> Result<usize, &'static str> {
     let mut found = Vec::new();
     events(module, &module.entry_points[0].function.body, false, &mut found);
@@ -164,7 +165,8 @@ fn barriers(module: &Module) -> Result<usize, &'static str> {
 fn no_invocation_leaves_before_a_barrier() {
     for (kernel, module) in modules() {
         let count = barriers(&module).unwrap_or_else(|fault| panic!("{}: {fault}", kernel.label()));
-        // Only invocations that share results wait for each other. They are one workgroup, as wide as allowed.
+        // Only invocations that share results wait for each other. They form one workgroup of the largest guaranteed
+        // size.
         let shares = kernel.workgroup_size() == MOST_INVOCATIONS;
         assert_eq!(count > 0, shares, "{}", kernel.label());
     }

@@ -1,5 +1,5 @@
-//! Shows how the cost of a sweep grows with the mesh: measures by `gpu-smooth bench`, prints nanoseconds per vertex, and
-//! draws a figure.
+//! Cost of a sweep by mesh size: measures with `gpu-smooth bench`, prints nanoseconds per free vertex, and draws a
+//! figure.
 //!
 //! ```text
 //! cargo bench -p gpu-smooth-cli --bench growth -- docs/performance-growth.svg 10000,100000,1000000,10000000
@@ -19,7 +19,7 @@ const SIZE: (u32, u32) = (720, 400);
 const COLORS: [RGBColor; 4] =
     [RGBColor(0, 90, 181), RGBColor(220, 50, 32), RGBColor(90, 90, 90), RGBColor(230, 159, 0)];
 
-/// Points of a curve: the number of vertices, and the nanoseconds of a sweep per free vertex.
+/// Points of a curve: number of vertices, and nanoseconds per free vertex and sweep.
 type Curve = Vec<(f64, f64)>;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,4 +1,4 @@
-//! Measures the whole program from file to file: its time, its memory, and the quality of the mesh that it writes. Runs
+//! Measurements of the whole program from file to file: time, memory, and the quality of the written mesh. Also runs
 //! mmg2d for comparison if `mmg2d_O3` is on the path.
 //!
 //! ```text
@@ -18,7 +18,7 @@ use std::{fs, thread};
 
 use gpu_smooth::{Mesh, Metric, Quality, Topology};
 
-/// How many runs a median is taken of.
+/// Number of timed runs, of which the median counts.
 const REPEATS: usize = 7;
 
 fn main() {
@@ -56,18 +56,18 @@ fn main() {
 
 struct Measured {
     seconds: f64,
-    /// The most memory that the process used, in MB; known on Linux only.
+    /// Peak resident memory of the process in MB; 0 on systems other than Linux.
     peak: f64,
 }
 
-/// Times a command. `None` if there is no such program, or it fails.
+/// Measures a command; `None` if the program does not exist or fails.
 fn measure(command: &mut Command) -> Option<Measured> {
     let mut times = Vec::new();
     let mut peak = 0f64;
     for repeat in 0..=REPEATS {
         let start = Instant::now();
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()?;
-        // One more run, which is not timed, to watch the memory.
+        // The first run is not timed and serves to observe the memory.
         while repeat == 0 && child.try_wait().unwrap().is_none() {
             peak = peak.max(resident(child.id()).unwrap_or(0.0));
             thread::sleep(Duration::from_millis(1));
@@ -84,7 +84,7 @@ fn measure(command: &mut Command) -> Option<Measured> {
     Some(Measured { seconds: times[REPEATS / 2], peak })
 }
 
-/// The most memory that a process has used so far, in MB.
+/// Returns the peak resident memory of a process so far, in MB; `None` on systems other than Linux.
 fn resident(process: u32) -> Option<f64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -116,7 +116,7 @@ fn medit(mesh: &Mesh) -> String {
     text + "End\n"
 }
 
-/// Reads what mmg2d writes: sections with a count and rows.
+/// Reads the output of mmg2d, whose sections have a count and rows.
 fn read_medit(path: &Path) -> Mesh {
     let text = fs::read_to_string(path).unwrap();
     let section = |name: &str, columns: usize| -> Vec<Vec<f64>> {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use gpu_smooth::{GpuError, MeshError, SmoothError};
 use mesh_io::{FieldError, GroupError, ReadError, WriteError};
 
-/// The cause of an error. The exit code follows from it.
+/// The cause of an error, which determines the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ErrorKind {
     /// The command line is wrong by itself. No mesh was read.
@@ -15,7 +15,7 @@ pub(crate) enum ErrorKind {
     Input,
     /// A file cannot be written.
     Output,
-    /// The work was done, but not with the wanted result, or it failed inside the program.
+    /// The command finished its work without the wanted result, or failed by an error inside the program.
     Run,
     /// A GPU cannot be used, or has failed.
     Device,
@@ -42,13 +42,13 @@ impl ErrorKind {
     }
 }
 
-/// The reason why a command failed. Displays as `message. remedy`, with each detail on a line of its own below.
+/// The error of a failed command. Displays as `message. remedy`, with each detail on an indented line below.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CliError {
     pub(crate) kind: ErrorKind,
-    /// What is wrong, with the file, line or option where it is known.
+    /// The problem, preceded by the file, line or option if known.
     message: String,
-    /// The remedy. Its sentences tell the user how to go on.
+    /// Advice to the user on how to proceed, without a final period.
     remedy: Option<String>,
     /// A list that belongs to the message, such as the first inverted triangles.
     details: Vec<String>,
@@ -79,40 +79,41 @@ impl CliError {
         Self::new(ErrorKind::Device, message)
     }
 
-    /// Adds what the user can do.
+    /// Adds advice to the user on how to proceed.
     pub(crate) fn with_remedy(self, remedy: impl Into<String>) -> Self {
         Self { remedy: Some(remedy.into()), ..self }
     }
 
-    /// Adds lines that are shown below the message.
+    /// Replaces the lines below the message.
     pub(crate) fn with_details(self, details: Vec<String>) -> Self {
         Self { details, ..self }
     }
 
-    /// Adds a line below the others.
+    /// Adds a line below the message and the other details.
     pub(crate) fn with_detail(mut self, detail: String) -> Self {
         self.details.push(detail);
         self
     }
 
-    /// Puts a part and a colon before the message, such as the work that failed.
+    /// Prefixes the message with `part` and a colon; `part` names the failed work.
     pub(crate) fn within(self, part: &str) -> Self {
         Self { message: format!("{part}: {}", self.message), ..self }
     }
 
-    /// Puts words before the message, which goes on after them.
+    /// Prefixes the message with `words` and a blank, so that both form one sentence.
     pub(crate) fn after(self, words: &str) -> Self {
         Self { message: format!("{words} {}", self.message), ..self }
     }
 
-    /// Appends the option that the error is about, in parentheses.
+    /// Appends the option that causes the error, in parentheses, to the remedy, or to the message if there is no
+    /// remedy.
     pub(crate) fn about(mut self, option: &str) -> Self {
         let text = self.remedy.as_mut().unwrap_or(&mut self.message);
         *text = format!("{text} ({option})");
         self
     }
 
-    /// Appends a sentence to the remedy, or to the message if there is no remedy.
+    /// Appends a period and `sentence` to the remedy, or to the message if no remedy is set.
     pub(crate) fn followed_by(mut self, sentence: &str) -> Self {
         let text = self.remedy.as_mut().unwrap_or(&mut self.message);
         *text = format!("{text}. {sentence}");
@@ -196,14 +197,14 @@ impl From<GroupError> for CliError {
     }
 }
 
-/// The program gives lists of a wrong length, not the user.
+/// A field of a wrong length is an internal error, not one of the user's files.
 impl From<FieldError> for CliError {
     fn from(error: FieldError) -> Self {
         Self::run(error.to_string())
     }
 }
 
-/// Without the names of the file. `load::explain` words an error in the terms of a file.
+/// Words the error without names of the file. `load::explain` words errors in the terms of a mesh file.
 impl From<MeshError> for CliError {
     fn from(error: MeshError) -> Self {
         Self::input(error.to_string())

@@ -4,8 +4,8 @@
 //! cargo run --release --example embed -- [MESH] [OUT_DIR]
 //! ```
 //!
-//! Writes before.png and after.png. For the second, the sweeps and the drawing are in one command buffer, and no vertex
-//! passes through the host in between. `picture.rs` is plain wgpu, which an application has anyway.
+//! Writes before.png and after.png. For after.png, one command buffer contains the sweeps and the drawing, and no
+//! vertex passes through the host. `picture.rs` is plain wgpu, which an application has anyway.
 #![allow(clippy::print_stdout)]
 
 mod picture;
@@ -24,8 +24,7 @@ use wgpu::util::DeviceExt;
 
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// What the application stores of each vertex: x, y, z, and how black edges are drawn there. The smoother reads and writes x
-/// and y only.
+/// Vertex of the application: x, y, z, and the darkness of edges. The smoother reads and writes only x and y.
 pub(crate) type Vertex = [f32; 4];
 
 fn main() -> Result<()> {
@@ -46,7 +45,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// A picture of the mesh, and the quality of the mesh in it.
+/// A picture of the mesh, with the quality of the drawn mesh.
 pub(crate) struct Frame {
     pub(crate) pixels: Vec<[u8; 4]>,
     pub(crate) quality: ObjectiveValues,
@@ -61,12 +60,12 @@ impl Frame {
     }
 }
 
-/// Draws the mesh as it is, and in another frame after smoothing it.
+/// Draws the mesh in one frame without sweeps, and in a second frame after `sweeps` sweeps.
 pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let (device, queue) = open_device(mesh)?;
 
-    // The application's own resources: a vertex buffer, and a picture that is drawn from it. The smoother needs the buffer's
-    // usage STORAGE.
+    // Resources of the application: a vertex buffer, and a picture that is drawn from the buffer. The smoother requires
+    // the buffer usage STORAGE.
     let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("vertices"),
         contents: bytemuck::cast_slice(&vertices_of(mesh)),
@@ -80,8 +79,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
         mapped_at_creation: false,
     });
 
-    // The smoother's resources, made once, and bound to the vertex buffer and the buffer for objectives. A clone of the device or
-    // the queue is a handle of the same one.
+    // Resources of the smoother, made once and bound to the vertex buffer and the buffer for objectives. Clones of the
+    // device and the queue are handles to shared objects.
     let gpu = Gpu::new(device.clone(), queue.clone())?;
     let device_mesh = DeviceMesh::new(&gpu, mesh)?;
     let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
@@ -92,8 +91,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let mut frame = |sweeps| -> Result<Frame> {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if sweeps > 0 {
-            // The import reads the vertices that the application has moved since the last export. It could be left out here, as none
-            // has moved.
+            // The import reads vertices that the application has moved since the last export. No vertex has moved here,
+            // so the import could be omitted.
             bound.encode_import(&mut encoder);
             smoother.encode_sweeps(&mut encoder, sweeps);
             bound.encode_export(&mut encoder);
@@ -102,7 +101,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
         picture.draw(&mut encoder, &vertices);
         queue.submit([encoder.finish()]);
 
-        // The pixels are read only for the file and the printed numbers. An application with a window needs neither.
+        // The pixels are read only for the file and the printed numbers; an application with a window would not read
+        // them.
         let pixels = picture.read(&device, &queue)?;
         let quality: Vec<ObjectiveValues> = picture::read(&device, &queue, &objectives)?;
         Ok(Frame { pixels, quality: quality[0] })
@@ -110,7 +110,7 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     Ok([frame(0)?, frame(sweeps)?])
 }
 
-/// Opens a device that has the limits of the smoother and of the application.
+/// Opens a device with the limits that smoother and application need.
 fn open_device(mesh: &Mesh) -> Result<(wgpu::Device, wgpu::Queue)> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
@@ -126,6 +126,6 @@ fn open_device(mesh: &Mesh) -> Result<(wgpu::Device, wgpu::Queue)> {
 }
 
 fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
-    // Edges are pale, or small triangles would be drawn all black.
+    // Edges are pale, because black edges would hide small triangles.
     mesh.points.iter().map(|&[x, y]| [x as f32, y as f32, 0.0, 0.45]).collect()
 }

@@ -1,4 +1,5 @@
-// Draws a mesh: `faces` reads its corners from a storage buffer, `edges` gets them as vertices.
+// Draws a mesh: `faces` reads corners from a storage buffer, `edges` receives vertices from the
+// vertex buffer.
 
 struct View {
     scale: vec2<f32>,
@@ -40,7 +41,7 @@ fn faces(@builtin(vertex_index) index: u32) -> Varyings {
     let a = vertices[triangles[first + 1u]].xy - p;
     let b = vertices[triangles[first + 2u]].xy - p;
     let c = b - a;
-    // The mean ratio, which is 1 / IMR: 1 if the triangle is equilateral, 0 if it is flat.
+    // The mean ratio 1 / IMR: 1 for an equilateral triangle, 0 for a flat one.
     let area = 0.5 * abs(a.x * b.y - a.y * b.x);
     let quality = 4.0 * sqrt(3.0) * area / (dot(a, a) + dot(b, b) + dot(c, c));
     return Varyings(on_screen(vertices[triangles[index]].xy), color_of(quality));

@@ -1,4 +1,4 @@
-//! Plain wgpu, which an application has anyway: pipelines that draw its mesh, here into a picture instead of a window.
+//! Plain wgpu, which an application has anyway: pipelines that draw the mesh, here into a picture instead of a window.
 
 use gpu_smooth::{Mesh, wgpu};
 use wgpu::BufferUsages as Usage;
@@ -11,7 +11,7 @@ pub(crate) const HEIGHT: u32 = 640;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 const SAMPLES: u32 = 4;
 
-/// A mesh drawn from a vertex buffer: faces colored by their shape, and edges.
+/// A drawing of a mesh from a vertex buffer: faces colored by shape, and edges.
 pub(crate) struct Picture {
     faces: wgpu::RenderPipeline,
     edges: wgpu::RenderPipeline,
@@ -42,7 +42,7 @@ impl Picture {
             ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             count: None,
         };
-        // Shaders also read the vertex buffer, as the color of a face depends on all its corners.
+        // Shaders also read the vertex buffer as storage, because the color of a face depends on its three corners.
         let read_only = wgpu::BufferBindingType::Storage { read_only: true };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("picture"),
@@ -86,7 +86,7 @@ impl Picture {
         }
     }
 
-    /// Encodes the drawing of the mesh, with the vertices that the buffer has when it is executed.
+    /// Encodes the drawing of the mesh. The drawing uses the buffer's content at the time of execution.
     pub(crate) fn draw(&self, encoder: &mut wgpu::CommandEncoder, vertices: &wgpu::Buffer) {
         let [samples, image] =
             [&self.samples, &self.image].map(|t| t.create_view(&Default::default()));
@@ -123,7 +123,7 @@ impl Picture {
         let mut encoder = device.create_command_encoder(&Default::default());
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
-            // wgpu requires a multiple of 256.
+            // wgpu requires a multiple of 256 bytes.
             bytes_per_row: Some(4 * WIDTH),
             rows_per_image: None,
         };
@@ -137,7 +137,7 @@ impl Picture {
     }
 }
 
-/// The edges of the mesh, each once.
+/// Returns each edge of the mesh once.
 fn edges_of(mesh: &Mesh) -> Vec<[u32; 2]> {
     let of_triangle = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
     let ascending = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
@@ -147,7 +147,8 @@ fn edges_of(mesh: &Mesh) -> Vec<[u32; 2]> {
     edges
 }
 
-/// The map to clip space that shows the whole mesh with a margin: `clip = xy * scale + offset`, as `[scale, offset]`.
+/// Returns the map to clip space that shows the whole mesh with a margin: `clip = xy * scale + offset`, as `[scale,
+/// offset]`.
 fn view_of(mesh: &Mesh) -> [[f32; 2]; 2] {
     let [x, y] = [0, 1].map(|axis| {
         let values = || mesh.points.iter().map(|point| point[axis]);
@@ -160,7 +161,7 @@ fn view_of(mesh: &Mesh) -> [[f32; 2]; 2] {
     [scale, offset].map(|pair| pair.map(|x| x as f32))
 }
 
-/// The pipeline of the vertex entry point `name` in mesh.wgsl.
+/// Returns the pipeline for the vertex entry point `name` of mesh.wgsl.
 fn pipeline(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,

@@ -1,5 +1,5 @@
-//! The application: what the pointer and the keys do, and what a frame does. It draws into any texture, with a window or
-//! without.
+//! The application: reactions to the pointer and the keys, and the content of a frame. Draws into any texture, with or
+//! without a window.
 
 use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Scheme, wgpu};
 use std::path::Path;
@@ -13,12 +13,12 @@ use super::render::Renderer;
 use super::smoothing::Smoothing;
 use super::view::View;
 
-/// How near a vertex must be to the pointer to be grabbed, in pixels.
+/// Largest distance in pixels between the pointer and a grabbed vertex.
 const RADIUS: f64 = 40.0;
-/// The choices for the time that sweeps may take in a frame, in microseconds.
+/// Selectable device times for sweeps in a frame, in microseconds.
 const BUDGETS: [u64; 6] = [250, 500, 1000, 2000, 4000, 8000];
 
-/// Opens a device that can smooth the mesh, and draw to the surface if there is one.
+/// Opens a device with the limits for smoothing the mesh. `surface` is the surface to draw on; `None` without a window.
 pub(crate) fn open(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,
@@ -35,9 +35,9 @@ pub(crate) fn open(
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
     let available = adapter.limits();
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        // Timestamps, if the device has them, for the budget of time.
+        // With timestamps, if available, the budget adapts the number of sweeps.
         required_features: adapter.features() & Gpu::optional_features(),
-        // The limits that the smoother needs, and textures as large as a window may become.
+        // Limits that the smoother needs, and textures large enough for any window.
         required_limits: Gpu::required_limits(
             wgpu::Limits::downlevel_defaults().using_resolution(available.clone()),
             size,
@@ -60,18 +60,18 @@ pub(crate) struct App {
     metric: Metric,
     alternates: bool,
     paused: bool,
-    /// Whether a drag goes on where triangles invert.
+    /// Whether dragged vertices follow the pointer even if triangles invert.
     free_hand: bool,
-    /// An index into [`BUDGETS`].
+    /// Index of the current choice in [`BUDGETS`].
     budget: usize,
-    /// The number of sweeps in the last frame.
+    /// Number of sweeps encoded in the last frame.
     sweeps: u32,
     meter: Meter,
 }
 
 impl App {
-    /// Makes an application that smooths the mesh on this device, and draws it in this format. Call [`resize`](Self::resize)
-    /// before the first frame.
+    /// Makes an application that smooths the mesh on a device, and draws in a texture format. Call
+    /// [`resize`](Self::resize) before the first frame.
     pub(crate) fn new(
         device: wgpu::Device,
         queue: wgpu::Queue,
@@ -101,7 +101,7 @@ impl App {
         })
     }
 
-    /// Sets the size of the window in pixels. A pixel of the panel takes `enlargement` pixels.
+    /// Sets the size of the window in pixels. Each pixel of the panel covers `enlargement` by `enlargement` pixels.
     pub(crate) fn resize(&mut self, size: [u32; 2], enlargement: u32) {
         self.size = size;
         let panel_height = enlargement * self.panel.size()[1];
@@ -113,7 +113,7 @@ impl App {
         self.view
     }
 
-    /// Grabs what is nearest to the pointer, whose place is in pixels.
+    /// Grabs the vertex or hole nearest to the pointer. The position of the pointer is in pixels.
     pub(crate) fn press(&mut self, pointer: [f64; 2]) -> Result<()> {
         self.smoothing.receive()?;
         let Smoothing { topology, points, .. } = &self.smoothing;
@@ -170,7 +170,7 @@ impl App {
         self.smoothing.set_budget(BUDGETS[budget])
     }
 
-    /// Computes and draws a frame: one command buffer.
+    /// Computes and draws a frame in a single command buffer.
     pub(crate) fn frame(&mut self, target: &wgpu::TextureView) -> Result<()> {
         self.smoothing.receive()?;
         self.update_panel();
@@ -187,7 +187,7 @@ impl App {
         Ok(())
     }
 
-    /// Writes a picture of the last frame, with its own numbers in the panel.
+    /// Writes a picture of the last frame, whose results the panel then shows.
     pub(crate) fn capture(&mut self, path: &Path) -> Result<()> {
         self.smoothing.wait()?;
         self.update_panel();
@@ -234,7 +234,7 @@ impl App {
     }
 }
 
-/// Counts sweeps and frames per second, and updates both twice a second.
+/// Rates of sweeps and frames per second, updated twice a second.
 struct Meter {
     since: Instant,
     counts: [u32; 2],

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::Result;
 use super::render::extent;
 
-/// Draws into a texture of this format and size, and writes what it then holds.
+/// Draws into a new texture of the given format and size, and writes the texture as a PNG file.
 pub(crate) fn capture(
     (device, queue): (&wgpu::Device, &wgpu::Queue),
     format: wgpu::TextureFormat,
@@ -61,7 +61,7 @@ pub(crate) fn capture(
     Ok(())
 }
 
-/// A texture to draw into and to copy from.
+/// Returns the descriptor of a texture for drawing and copying.
 pub(crate) fn texture(
     format: wgpu::TextureFormat,
     size: [u32; 2],

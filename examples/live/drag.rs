@@ -1,14 +1,14 @@
-//! What the user can grab, and where it goes.
+//! Vertices and holes that the user drags.
 
 use gpu_smooth::{Topology, topology::signed_area};
 
-/// The farthest that a frame moves what is held, in units of the edges around it, so that the sweeps can follow.
+/// Largest move of a held vertex in a frame, in units of the surrounding edge length. The limit lets sweeps keep up.
 const REACH: f64 = 0.3;
 
 /// The holes of a mesh.
 pub(crate) struct Holes {
     loops: Vec<Vec<u32>>,
-    /// For each vertex: `None` if it is inside, `Some(None)` on the outer boundary, else the index of its hole.
+    /// For each vertex: `None` if interior, `Some(None)` on the outer boundary, otherwise the index of its hole.
     of: Vec<Option<Option<usize>>>,
 }
 
@@ -17,7 +17,7 @@ impl Holes {
         let mut of = vec![None; points.len()];
         let mut loops = Vec::new();
         for vertices in topology.boundary_loops() {
-            // The outer boundary is counterclockwise, a hole clockwise.
+            // The outer boundary is a counterclockwise loop, each hole a clockwise one.
             let hole = (signed_area(points, &vertices) < 0.0).then_some(loops.len());
             vertices.iter().for_each(|&v| of[v as usize] = Some(hole));
             if hole.is_some() {
@@ -28,21 +28,23 @@ impl Holes {
     }
 }
 
-/// What the pointer holds: one interior vertex, or all vertices of a hole's boundary.
+/// The vertices held by the pointer: one interior vertex, or all vertices of a hole's boundary.
 pub(crate) struct Drag {
     vertices: Vec<u32>,
-    /// The places of the vertices when they were grabbed.
+    /// Positions of the vertices at the start of the drag.
     start: Vec<[f64; 2]>,
-    /// The vertex under the pointer. `from` is its place when it was grabbed; `goal`, at first the same, is where it should go.
+    /// The vertex under the pointer. `from` is the position of this vertex at the start of the drag; `goal` is the
+    /// pointer's position.
     grip: u32,
     from: [f64; 2],
     goal: [f64; 2],
-    /// The mean length of the edges around them.
+    /// Mean edge length around the vertices.
     edge: f64,
 }
 
 impl Drag {
-    /// Grabs the nearest vertex within `radius`, or the hole whose boundary it is on.
+    /// Grabs the nearest vertex within `radius`, or the whole hole if that vertex is on a hole. `None` if nothing can
+    /// be grabbed.
     pub(crate) fn grab(
         topology: &Topology<'_>,
         holes: &Holes,
@@ -60,7 +62,7 @@ impl Drag {
         let vertices = match holes.of[grip as usize] {
             None => vec![grip],
             Some(Some(hole)) => holes.loops[hole].clone(),
-            // The outer boundary cannot be grabbed.
+            // The outer boundary is fixed.
             Some(None) => return None,
         };
         let start = vertices.iter().map(|&v| points[v as usize]).collect();
@@ -77,19 +79,19 @@ impl Drag {
         self.goal = at;
     }
 
-    /// The places of the vertices in the next frame: at the goal `at_once`, or only a little nearer to it, so that the sweeps can
-    /// follow.
+    /// Returns the positions of the vertices for the next frame. With `at_once`, vertices move all the way to the goal,
+    /// otherwise at most [`REACH`] edge lengths.
     pub(crate) fn goals(&self, points: &[[f64; 2]], at_once: bool) -> Vec<[f64; 2]> {
         let now = points[self.grip as usize];
         let way = distance(now, self.goal);
         let part = if at_once || way == 0.0 { 1.0 } else { (REACH * self.edge / way).min(1.0) };
-        // All move by the same vector as the vertex under the pointer, so that what is held keeps its shape.
+        // All vertices move by the vector of the vertex under the pointer, which preserves the shape of a hole.
         let delta = [0, 1].map(|i| now[i] + part * (self.goal[i] - now[i]) - self.from[i]);
         self.start.iter().map(|p| [p[0] + delta[0], p[1] + delta[1]]).collect()
     }
 }
 
-/// The mean length of the edges of the triangles around some vertices.
+/// Returns the mean edge length of the triangles around some vertices.
 fn edge_length(topology: &Topology<'_>, points: &[[f64; 2]], vertices: &[u32]) -> f64 {
     let around = || vertices.iter().flat_map(|&v| topology.star(v));
     let perimeter = |&t: &u32| {

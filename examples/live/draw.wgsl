@@ -5,9 +5,9 @@ struct View {
     offset: vec2<f32>,
     // The size of a pixel in clip space.
     pixel: vec2<f32>,
-    // How many pixels of the window a pixel of the panel takes.
+    // Pixels of the window per pixel of the panel.
     enlargement: f32,
-    // Colors by 1 / inverse mean ratio, at equal steps from 0 to 1, in sRGB. The last one is for inverted triangles.
+    // Colors in sRGB by 1 / inverse mean ratio, in equal steps from 0 to 1. The last color marks inverted triangles.
     stops: array<vec4<f32>, 7>,
 }
 
@@ -63,7 +63,7 @@ fn edge_fragment() -> @location(0) vec4<f32> {
     return vec4(0.01, 0.02, 0.04, 0.6);
 }
 
-// The corners of two triangles that form a unit square.
+// Returns the corners of two triangles that form a unit square.
 fn square(index: u32) -> vec2<f32> {
     let corner = array(0u, 1u, 2u, 2u, 1u, 3u)[index];
     return vec2(f32(corner & 1u), f32(corner >> 1u));
@@ -86,7 +86,7 @@ fn mark_fragment() -> @location(0) vec4<f32> {
 
 @vertex
 fn panel_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // The panel is as wide as the window.
+    // The panel spans the width of the window.
     let height = f32(textureDimensions(panel).y) * view.enlargement * view.pixel.y;
     let at = square(index) * vec2(2.0, height);
     return vec4(at.x - 1.0, 1.0 - at.y, 0.0, 1.0);

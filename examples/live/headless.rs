@@ -1,4 +1,4 @@
-//! The application without a window: a script in place of a user, and a texture to draw into.
+//! The application without a window: a script replaces the user, and a texture replaces the window.
 
 use gpu_smooth::{Mesh, wgpu};
 
@@ -7,7 +7,7 @@ use super::{Request, Result, capture};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Makes the application, and the texture that it draws into.
+/// Creates the application and the texture into which frames are drawn.
 pub(crate) fn start(mesh: Mesh, size: [u32; 2]) -> Result<(App, wgpu::TextureView)> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let (_, device, queue) = open(&instance, None, &mesh)?;

@@ -4,11 +4,11 @@
 //! cargo run --release --example live -- [MESH] [--script FILE] [--out DIR] [--headless] [--size WxH]
 //! ```
 //!
-//! Every frame is one command buffer: as many sweeps as there is time for, then the drawing, both on the application's own
-//! vertex buffer (see `smoothing.rs`). On the device, a drag stops before a triangle inverts. With a free hand (key F) it
-//! goes on, and the next frames turn the inverted triangles back.
+//! Every frame is one command buffer: sweeps for the budgeted time, then the drawing, both on the application's own
+//! vertex buffer (see `smoothing.rs`). On the device, a drag stops before a triangle inverts. With a free hand (key F),
+//! triangles may invert, and the following frames turn them back.
 //!
-//! With a script (see `script.rs` for its format) no user is needed, and with `--headless` no window either.
+//! A script replaces the user (see `script.rs` for the format), and `--headless` replaces the window.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 pub(crate) mod app;
@@ -41,7 +41,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What the command line asks for.
+/// The request of the command line.
 pub(crate) struct Request {
     pub(crate) mesh: gpu_smooth::Mesh,
     pub(crate) size: [u32; 2],

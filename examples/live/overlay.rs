@@ -1,4 +1,4 @@
-//! The panel: what the smoother is doing, and the keys.
+//! The panel, which shows the state of the smoother and the keys.
 
 use embedded_graphics::mono_font::ascii::{FONT_9X18, FONT_9X18_BOLD};
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
@@ -7,7 +7,7 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::text::{Baseline, Text};
 use std::convert::Infallible;
 
-/// Colors by 1 / inverse mean ratio, at equal steps from 0 to 1. The last one is for inverted triangles.
+/// Colors by 1 / inverse mean ratio, in equal steps from 0 to 1. The last color marks inverted triangles.
 pub(crate) const STOPS: [[u8; 3]; 7] = [
     [165, 0, 38],
     [244, 109, 67],
@@ -20,20 +20,20 @@ pub(crate) const STOPS: [[u8; 3]; 7] = [
 
 const LINE: u32 = 20;
 const PAD: u32 = 12;
-/// The width of a column in pixels. There are two columns.
+/// Width of each of the two columns, in pixels.
 const COLUMN: u32 = 440;
-/// The width of a column's labels in pixels.
+/// Width of the labels in a column, in pixels.
 const LABELS: u32 = 100;
-/// The number of lines in a column.
+/// Number of lines in a column.
 const LINES: u32 = 7;
 const PAPER: [u8; 4] = [24, 28, 36, 255];
 const TEXT: Rgb888 = Rgb888::new(235, 238, 242);
 const LABEL: Rgb888 = Rgb888::new(150, 190, 235);
 
-/// A label and its text.
+/// A label with its text.
 pub(crate) type Line = (&'static str, String);
 
-/// A small picture, drawn on the CPU when its text changes.
+/// An image of text, drawn on the CPU after changes of the text.
 pub(crate) struct Panel {
     size: [u32; 2],
     pixels: Vec<u8>,
@@ -54,7 +54,8 @@ impl Panel {
         &self.pixels
     }
 
-    /// Shows two columns of lines, with the color scale below the second. Returns whether anything changed.
+    /// Shows two columns of lines, with the color scale below the second column. Returns whether the image
+    /// changed.
     pub(crate) fn show(&mut self, columns: [Vec<Line>; 2]) -> bool {
         if self.shown.as_ref() == Some(&columns) {
             return false;
@@ -78,7 +79,7 @@ impl Panel {
         let Ok(_) = Text::with_baseline(text, at, style, Baseline::Top).draw(self);
     }
 
-    /// Draws a bar of the colors, with the inverse mean ratios that they stand for.
+    /// Draws the color scale, labeled with inverse mean ratios.
     fn draw_colors(&mut self, [left, top]: [u32; 2]) {
         const WIDTH: u32 = COLUMN - LABELS - 2 * PAD;
         self.write([left, top], "color", &FONT_9X18_BOLD, LABEL);
@@ -97,7 +98,7 @@ impl Panel {
     }
 }
 
-/// The color of a triangle by 1 / inverse mean ratio, as in draw.wgsl.
+/// Returns the color of a triangle by 1 / inverse mean ratio, as in draw.wgsl.
 fn color(goodness: f64) -> [u8; 3] {
     let at = goodness * 5.0;
     let stop = (at as usize).min(4);

@@ -1,4 +1,4 @@
-//! Draws triangles by quality, edges, what the user holds, and the panel.
+//! Drawing of triangles by quality, of edges, held vertices and the panel.
 
 use gpu_smooth::{
     Topology,
@@ -10,11 +10,11 @@ use super::view::View;
 
 const BACKGROUND: wgpu::Color = wgpu::Color { r: 0.89, g: 0.89, b: 0.87, a: 1.0 };
 
-/// The pipelines, and the buffers that they read besides the vertices.
+/// Render pipelines, and their buffers other than the vertex buffer.
 pub(crate) struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// The format of the texture that is drawn into.
+    /// Format of the target texture.
     pub(crate) format: wgpu::TextureFormat,
     /// The pipelines of triangles, edges, marks and the panel.
     pipelines: [(wgpu::RenderPipeline, wgpu::BindGroup); 4],
@@ -93,7 +93,7 @@ impl Renderer {
         }
     }
 
-    /// Sets the view of the mesh, and how many pixels a pixel of the panel takes.
+    /// Sets the view of the mesh, and the enlargement of the panel's pixels.
     pub(crate) fn show(&self, view: View, enlargement: u32) {
         let [scale, offset, pixel] = view.uniform();
         let stops = overlay::STOPS.map(|[r, g, b]| [r, g, b, 255].map(|x| f32::from(x) / 255.0));
@@ -102,7 +102,7 @@ impl Renderer {
         self.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
     }
 
-    /// Marks these vertices as held.
+    /// Marks `vertices` as held.
     pub(crate) fn mark(&mut self, vertices: &[u32]) {
         if !vertices.is_empty() {
             self.marked.0 = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -164,7 +164,7 @@ impl Renderer {
     }
 }
 
-/// `View` in draw.wgsl.
+/// The uniform `View` of draw.wgsl.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Uniform {
@@ -176,7 +176,7 @@ struct Uniform {
     stops: [[f32; 4]; 7],
 }
 
-/// The edges of the mesh, each once.
+/// Returns each edge of the mesh once.
 fn edges(topology: &Topology<'_>) -> Vec<[u32; 2]> {
     let of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[v, w]| [v.min(w), v.max(w)]);
     let mut edges: Vec<_> = topology.triangles().iter().flat_map(of).collect();

@@ -28,13 +28,13 @@ enum Command {
     Check,
 }
 
-/// A script, and how far it has been executed.
+/// A script and the state of its execution.
 pub(crate) struct Script {
     commands: Vec<Command>,
     next: usize,
-    /// The number of frames spent on the next command.
+    /// Number of frames spent on the next command.
     spent: u32,
-    /// The place of the pointer before that command, in the mesh's plane.
+    /// Position of the pointer before the next command, in the mesh's plane.
     pointer: [f64; 2],
     out: PathBuf,
     start: Instant,
@@ -42,7 +42,7 @@ pub(crate) struct Script {
 }
 
 impl Script {
-    /// Reads a script. Its screenshots go to the folder `out`.
+    /// Parses a script. Screenshots are written to the folder `out`.
     pub(crate) fn parse(text: &str, out: PathBuf) -> std::result::Result<Self, String> {
         let mut commands = Vec::new();
         for (number, line) in (1..).zip(text.lines()) {
@@ -58,7 +58,7 @@ impl Script {
         Ok(Self { commands, next: 0, spent: 0, pointer, out, start, frames: 0 })
     }
 
-    /// Executes what comes before the next frame. Returns whether there is to be a next frame.
+    /// Executes the commands before the next frame. Returns false after the last command.
     pub(crate) fn advance(&mut self, app: &mut App) -> Result<bool> {
         if self.frames == 0 {
             self.start = Instant::now();

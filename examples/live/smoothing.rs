@@ -1,4 +1,4 @@
-//! The mesh on the device: everything in this application that uses gpu-smooth.
+//! The mesh on the device. Only this module of the application uses gpu-smooth.
 
 use gpu_smooth::{
     Gpu, Mesh, Metric, Options, Scheme, Stopping, Topology,
@@ -12,28 +12,29 @@ use gpu_smooth::{
 
 use super::Result;
 
-/// Bytes of a vertex: x and y, both f32.
+/// Bytes of a vertex: x and y in f32.
 const STRIDE: u64 = 8;
-/// The offset of the share of a move in the buffer of numbers, in bytes. Objectives come before it.
+/// Byte offset of a move's completed fraction in the buffer of numbers. Objectives precede the fraction.
 const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
-/// The largest inverse mean ratio that a drag gives a triangle; one that is worse already may stay as bad.
+/// Largest inverse mean ratio that a drag may cause. A triangle that is worse before the drag may stay as bad.
 const WORST: f64 = 8.0;
-/// The number of untangling sweeps in each frame. They do nothing while nothing is inverted.
+/// Number of untangling sweeps in each frame. Meshes without inverted triangles are left unchanged.
 const UNTANGLING: u32 = 5;
-/// The most sweeps in a frame; `WITHOUT_CLOCK` is their number on a device without timestamps.
+/// Largest number of sweeps in a frame. `WITHOUT_CLOCK` is the fixed number on devices without timestamps.
 const MOST: u32 = 16;
 const WITHOUT_CLOCK: u32 = 4;
 
-/// A mesh that is smoothed in the buffer it is drawn from. The host sees earlier frames as they arrive, and never waits.
+/// A mesh that is smoothed in the vertex buffer of the drawing. The host receives results some frames later, without
+/// waiting.
 pub(crate) struct Smoothing {
     pub(crate) gpu: Gpu,
     pub(crate) mesh: Mesh,
     pub(crate) topology: Topology<'static>,
-    /// The vertices that are drawn.
+    /// The vertex buffer of the drawing.
     pub(crate) vertices: wgpu::Buffer,
-    /// The positions of the last frame that has arrived.
+    /// Positions after the latest frame read back.
     pub(crate) points: Vec<[f64; 2]>,
-    /// The objectives of the last frame that has arrived.
+    /// Objectives after the latest frame read back.
     pub(crate) objectives: ObjectiveValues,
     device_mesh: DeviceMesh,
     bound: BoundVertices,
@@ -43,7 +44,7 @@ pub(crate) struct Smoothing {
     scheme: Scheme,
     budget: Budget,
     has_clock: bool,
-    /// The move of what the user holds, if it is to stop before a triangle inverts.
+    /// The bound move of the held vertices. `None` if no vertex is held, or if triangles may invert.
     held: Option<BoundMove>,
     targets: wgpu::Buffer,
     numbers: wgpu::Buffer,
@@ -59,13 +60,13 @@ impl Smoothing {
         let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
         let sweeps = Sweeps::until_converged(&device_mesh, &options(&scheme))?;
         let untangling = UntanglingSweeps::new(&device_mesh)?;
-        // Compiles the kernels of every scheme that a key may choose, so that no frame waits for a compiler.
+        // Compiling the kernels of all selectable schemes here prevents a frame from waiting for the compiler.
         Metric::ALL.iter().try_for_each(|&metric| gpu.prepare(&options(&metric.into())))?;
         let device = gpu.device();
         let vertices = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("vertices"),
             contents: bytemuck::cast_slice(&floats(&mesh.points)),
-            // The smoother needs STORAGE, drawing needs VERTEX and STORAGE.
+            // The smoother requires STORAGE, the drawing VERTEX and STORAGE.
             usage: Usage::VERTEX | Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
         });
         let buffer = |label, size, usage| {
@@ -107,7 +108,7 @@ impl Smoothing {
         &self.scheme
     }
 
-    /// Continues with another scheme, from the present vertices.
+    /// Continues with another scheme, starting from the present vertices.
     pub(crate) fn set_scheme(&mut self, scheme: Scheme) -> Result<()> {
         self.sweeps = Sweeps::until_converged(&self.device_mesh, &options(&scheme))?;
         self.objective = self.sweeps.bind_objective(&self.numbers, 0)?;
@@ -115,15 +116,15 @@ impl Smoothing {
         Ok(())
     }
 
-    /// Sets the time for sweeps in each frame. A device without timestamps does the same number of sweeps in each frame.
+    /// Sets the device time for sweeps in each frame. Without timestamps, the number of sweeps per frame is constant.
     pub(crate) fn set_budget(&mut self, micros: u64) -> Result<()> {
         let budget = Budget::micros(micros).at_most(MOST);
         self.budget = if self.has_clock { budget.timed_by(&self.gpu)? } else { budget };
         Ok(())
     }
 
-    /// Pins the vertices that the user has grabbed, and no others. With `clamp` the device moves them, as far as the triangles
-    /// allow.
+    /// Pins exactly the vertices in `held`. With `clamp`, the device moves them, and stops before a triangle exceeds
+    /// [`WORST`].
     pub(crate) fn hold(&mut self, held: &[u32], clamp: bool) -> Result<()> {
         self.device_mesh.set_pinned(held)?;
         let targets = VertexBuffer::new(&self.targets, STRIDE);
@@ -132,21 +133,22 @@ impl Smoothing {
         Ok(())
     }
 
-    /// Sets where the held vertices go in the next frame.
+    /// Sets the positions of the held vertices for the next frame.
     pub(crate) fn aim(&mut self, held: &[u32], goals: &[[f64; 2]]) {
         let (queue, goals) = (self.gpu.queue(), floats(goals));
         if self.held.is_some() {
             queue.write_buffer(&self.targets, 0, bytemuck::cast_slice(&goals));
             return;
         }
-        // Writes into the vertex buffer. All other vertices still have the floats of the last export, so the import ignores them.
+        // Writes to the vertex buffer. Other vertices still have the floats of the last export, so the import ignores
+        // them.
         for (&v, goal) in held.iter().zip(&goals) {
             queue.write_buffer(&self.vertices, u64::from(v) * STRIDE, bytemuck::bytes_of(goal));
         }
         self.moved = true;
     }
 
-    /// Moves all vertices back to their places in the mesh file.
+    /// Moves all vertices back to their positions in the mesh file.
     pub(crate) fn reset(&mut self) {
         let floats = floats(&self.mesh.points);
         self.gpu.queue().write_buffer(&self.vertices, 0, bytemuck::cast_slice(&floats));
@@ -154,8 +156,8 @@ impl Smoothing {
         self.sweeps.restart();
     }
 
-    /// Encodes what a frame does before it draws: moves what the user holds, turns inverted triangles back, sweeps while there is
-    /// time, and exports the vertices to be drawn. Returns the number of sweeps.
+    /// Encodes the work of a frame before its drawing: moves held vertices, untangles, sweeps within the budget, and
+    /// exports the vertices. Returns the number of sweeps.
     pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, paused: bool) -> u32 {
         if std::mem::take(&mut self.moved) {
             self.bound.encode_import(encoder);
@@ -182,7 +184,7 @@ impl Smoothing {
         sweeps
     }
 
-    /// Takes the results of earlier frames that have arrived.
+    /// Takes results of earlier frames that have been read back.
     pub(crate) fn receive(&mut self) -> Result<()> {
         self.gpu.device().poll(wgpu::PollType::Poll)?;
         if let Some(points) = self.seen_points.latest()? {
@@ -195,13 +197,13 @@ impl Smoothing {
         Ok(())
     }
 
-    /// Waits for the last frame, where there is no window whose frames to wait for.
+    /// Waits for the results of the last frame. An application without a window has no display that paces its frames.
     pub(crate) fn wait(&mut self) -> Result<()> {
         self.gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
         self.receive()
     }
 
-    /// Counts the triangles that are inverted or flat, by exact arithmetic on the device's positions.
+    /// Counts inverted and flat triangles by exact predicates on the device's positions.
     pub(crate) fn count_infeasible(&self) -> Result<usize> {
         let points = self.device_mesh.read_points()?;
         Ok(topology::infeasible(&points, self.topology.triangles())?.len())

@@ -1,13 +1,14 @@
-//! Maps the mesh's plane to the pixels of the window, and back.
+//! Map between the mesh's plane and the pixels of the window.
 
-/// The margin around the mesh, in pixels.
+/// Margin around the mesh, in pixels.
 const MARGIN: f64 = 24.0;
 
-/// Where the mesh is shown: as large as fits below the panel, with equal scales in x and y.
+/// Position of the mesh in the window: as large as the area below the panel allows, with equal
+/// scales in x and y.
 #[derive(Clone, Copy)]
 pub(crate) struct View {
     size: [f64; 2],
-    /// The point of the plane that is shown at `middle`, which is in pixels from the top left.
+    /// The point of the plane shown at `middle`, which is in pixels from the upper left corner.
     center: [f64; 2],
     middle: [f64; 2],
     pixels_per_unit: f64,
@@ -20,7 +21,7 @@ impl View {
             [low, points.iter().map(|p| p[x]).fold(f64::NEG_INFINITY, f64::max)]
         });
         let size = size.map(f64::from);
-        // If the window is not much higher than the panel, the mesh is shown behind the panel.
+        // In a window not much higher than the panel, the mesh is shown behind the panel.
         let above = Some(f64::from(panel_height)).filter(|&h| h < size[1] / 2.0).unwrap_or(0.0);
         let room = [size[0], size[1] - above].map(|side| (side - 2.0 * MARGIN).max(1.0));
         Self {
@@ -41,7 +42,8 @@ impl View {
         [self.center[0] + x, self.center[1] - y]
     }
 
-    /// Scale and offset from the plane to clip space, and the size of a pixel in clip space.
+    /// Returns scale and offset from the plane to clip space, and the size of a pixel in clip
+    /// space.
     pub(crate) fn uniform(self) -> [[f32; 2]; 3] {
         let pixel = self.size.map(|side| 2.0 / side);
         let scale = pixel.map(|p| p * self.pixels_per_unit);

@@ -13,7 +13,7 @@ use winit::window::{Window, WindowId};
 use super::app::{App, open};
 use super::{Request, Result};
 
-/// If a frame could not be drawn, the next one is requested after this time.
+/// Delay before the next request for a frame, after a frame could not be drawn.
 const RETRY: Duration = Duration::from_millis(100);
 
 pub(crate) fn run(request: Request) -> Result<()> {
@@ -26,13 +26,13 @@ pub(crate) fn run(request: Request) -> Result<()> {
 
 /// The handler of winit's events.
 struct Shell {
-    /// What to show, until there is a window for it.
+    /// The content to show, before the window is created.
     request: Option<Request>,
     stage: Option<Stage>,
     problem: Option<Box<dyn std::error::Error>>,
 }
 
-/// The window, its surface, and the application in it.
+/// The window and its surface, with the application drawn there.
 struct Stage {
     instance: wgpu::Instance,
     window: Arc<Window>,
@@ -52,7 +52,7 @@ impl Stage {
         let attributes = Window::default_attributes()
             .with_title("gpu-smooth live")
             .with_inner_size(PhysicalSize::new(width, height))
-            // As wide as the panel.
+            // The minimum width is that of the panel.
             .with_min_inner_size(LogicalSize::new(904, 480));
         let window = Arc::new(event_loop.create_window(attributes)?);
         let display = Box::new(event_loop.owned_display_handle());
@@ -84,10 +84,10 @@ impl Stage {
         Ok(stage)
     }
 
-    /// Fits surface and application to the window.
+    /// Adapts surface and application to the size of the window.
     fn resize(&mut self) {
         let PhysicalSize { width, height } = self.window.inner_size();
-        // A minimized window has no pixels, and a surface needs some.
+        // A minimized window has no pixels, but a surface must have some.
         if width == 0 || height == 0 {
             return;
         }
@@ -98,11 +98,11 @@ impl Stage {
         self.window.request_redraw();
     }
 
-    /// Draws a frame, if the window can show one. Returns whether the application goes on.
+    /// Draws a frame if the window is visible. Returns whether the application continues.
     fn draw(&mut self, event_loop: &ActiveEventLoop) -> Result<bool> {
         let size = self.window.inner_size();
         if self.occluded || size.width == 0 || size.height == 0 {
-            // An event comes when the window can be seen again.
+            // The window system sends an event when the window becomes visible again.
             return Ok(true);
         }
         let (texture, reconfigure) = match self.surface.get_current_texture() {
@@ -138,7 +138,7 @@ impl Stage {
         Ok(true)
     }
 
-    /// Handles an event. Returns whether the application goes on.
+    /// Handles an event. Returns whether the application continues.
     fn handle(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) -> Result<bool> {
         match event {
             WindowEvent::CloseRequested => return Ok(false),
@@ -148,7 +148,7 @@ impl Stage {
                 self.occluded = occluded;
                 self.window.request_redraw();
             }
-            // The user cannot disturb a script.
+            // During a script, input of the user is ignored.
             _ if self.script.is_some() => {}
             WindowEvent::CursorMoved { position, .. } => {
                 self.pointer = position.into();
@@ -190,7 +190,7 @@ impl ApplicationHandler for Shell {
         let result = stage.handle(event_loop, event);
         if !matches!(result, Ok(true)) {
             self.problem = result.err();
-            // The surface must be dropped before the event loop that made it.
+            // The surface must be dropped before the event loop that created its window.
             self.stage = None;
             event_loop.exit();
         }

@@ -1,10 +1,10 @@
-//! A plate whose hole turns a little in each step of a simulation. A few sweeps in each step keep the mesh good:
+//! A plate whose hole turns in each step of a simulation. Sweeps in each step keep the mesh good:
 //!
 //! ```text
 //! cargo run --release --example moving_boundary -- [VERTICES] [SWEEPS]
 //! ```
 //!
-//! For comparison, the same motion is done without sweeps.
+//! A second mesh, moved equally but without sweeps, serves as comparison.
 #![allow(clippy::print_stdout)]
 
 #[path = "../../tests/support/mod.rs"]
@@ -55,19 +55,19 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The mesh after a step.
+/// Result of a step.
 pub(crate) struct Step {
-    /// How far the hole has turned, in degrees.
+    /// Angle of the hole after the step, in degrees.
     pub(crate) angle: f64,
-    /// The time from the first call of the step until the device was done.
+    /// Time from the step's first call until the device finished.
     pub(crate) took: Duration,
-    /// The quality of the mesh that has sweeps in each step.
+    /// Quality of the mesh smoothed in each step.
     pub(crate) kept: Quality,
-    /// The quality of the mesh that moves without sweeps.
+    /// Quality of the mesh moved without sweeps.
     pub(crate) left: Quality,
 }
 
-/// Turns the hole of a plate by this many degrees in each step.
+/// Simulates `steps` steps, in each of which the hole turns by `degrees` degrees.
 pub(crate) fn simulate(
     vertices: usize,
     sweeps: u32,
@@ -78,7 +78,7 @@ pub(crate) fn simulate(
     let topology = Topology::new(&mesh)?;
     let hole = hole(&topology, &mesh.points);
 
-    // `Gpu::open` makes a device for a program that has none; examples/embed brings its own.
+    // `Gpu::open` creates a device for programs that have none; examples/embed uses a device of its own.
     let gpu = Gpu::open(None)?;
     let (device, queue) = (gpu.device(), gpu.queue());
     let positions: Vec<[f32; 2]> = mesh.points.iter().map(|p| p.map(|x| x as f32)).collect();
@@ -104,14 +104,14 @@ pub(crate) fn simulate(
             queue.write_buffer(&buffer, stride * u64::from(v), bytemuck::cast_slice(&xy));
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        // All other vertices still have the floats of the last export, so the import leaves them their full precision.
+        // Other vertices still have the floats of the last export, so the import keeps their full precision.
         bound.encode_import(&mut encoder);
-        // No `restart`: the hole turns by less than an edge. Over-relaxed sweeps carry the motion farther into the mesh than
-        // plain ones would.
+        // No `restart`: the hole turns by less than an edge length, and over-relaxed sweeps spread the motion farther
+        // into the mesh than plain sweeps.
         smoother.encode_sweeps(&mut encoder, sweeps);
         bound.encode_export(&mut encoder);
         queue.submit([encoder.finish()]);
-        // Here the simulation would compute with the vertex buffer. This example only waits, to measure the time.
+        // A simulation would use the vertex buffer here. This example waits for the device, to measure the time.
         device.poll(wgpu::PollType::wait_indefinitely())?;
         let took = start.elapsed();
 
@@ -126,14 +126,14 @@ pub(crate) fn simulate(
     Ok(log)
 }
 
-/// A plate of 3 by 2 with a round hole.
+/// Makes a plate of 3 by 2 with a round hole.
 fn plate(vertices: usize) -> Result<Mesh> {
     let [x, y] = CENTER;
     let outline = format!("loop\n0 0\n3 0\n3 2\n0 2\ncircle {x} {y} {RADIUS} 48\n");
     Ok(support::triangulate(&support::Outline::parse(&outline)?, vertices)?)
 }
 
-/// The vertices of the hole: the clockwise loop of the boundary.
+/// Returns the vertices of the hole, the clockwise loop of the boundary.
 fn hole(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<u32> {
     let mut loops = topology.boundary_loops().into_iter();
     loops.find(|vertices| signed_area(points, vertices) < 0.0).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Analyzes the records: times and sweeps to a share of the way, and medians over repeated runs.
+//! Analysis of the records: times and sweeps to a fraction of the way to the desired f, and medians over repeated runs.
 
 use gpu_smooth::Scheme;
 
@@ -6,7 +6,7 @@ use super::published;
 use super::store::{DesiredRecord, DistributionRecord, Header, MeshRecord, Record, RunRecord};
 use super::study::{Place, Setting, Size, Start};
 
-/// The records, grouped by kind.
+/// The records of a study, grouped by type.
 pub(crate) struct Data {
     pub(crate) header: Header,
     pub(crate) meshes: Vec<MeshRecord>,
@@ -15,23 +15,23 @@ pub(crate) struct Data {
     pub(crate) distributions: Vec<DistributionRecord>,
 }
 
-/// Which runs are compared: those with these properties.
+/// Properties that select the runs of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct View {
     pub(crate) setting: Setting,
     pub(crate) size: Size,
     pub(crate) start: Start,
     pub(crate) place: Place,
-    /// The share of the way to the desired f that runs must pass.
+    /// The fraction of the way to the desired f that runs must pass.
     pub(crate) fraction: f64,
 }
 
-/// Whether a scheme passed the share of the way on a mesh.
+/// Whether a run passed a given fraction of the way to the desired f.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Reach {
-    /// It passed the share of the way.
+    /// The run passed the fraction.
     Passed { sweeps: u32, seconds: f64 },
-    /// It did not pass it. `best` is the largest share that it went.
+    /// The run did not pass the fraction. `best` is the largest fraction reached.
     Missed { best: f64 },
 }
 
@@ -56,7 +56,7 @@ impl RunRecord {
         (self.history[0].f - f) / (self.history[0].f - self.desired)
     }
 
-    /// Finds the first sweep past a share of the way, by the paper's test (2).
+    /// Finds the first sweep past a fraction of the way, by the paper's test (2).
     pub(crate) fn reach(&self, fraction: f64) -> Reach {
         match (0..).zip(&self.history).find(|(_, sample)| self.share(sample.f) > fraction) {
             Some((sweeps, sample)) => Reach::Passed { sweeps, seconds: sample.seconds },
@@ -67,7 +67,7 @@ impl RunRecord {
         }
     }
 
-    /// The least f of the run.
+    /// Returns the smallest f in the run's history.
     pub(crate) fn best(&self) -> f64 {
         self.history.iter().map(|sample| sample.f).fold(f64::INFINITY, f64::min)
     }
@@ -100,14 +100,14 @@ impl Data {
         Ok(data)
     }
 
-    /// The view of the runs in the paper's tables.
+    /// Returns the view of the runs in the paper's tables.
     pub(crate) fn view(&self, setting: Setting, place: Place, fraction: f64) -> View {
         let size = self.header.study.size;
         View { setting, size, start: Start::Random, place, fraction }
     }
 
-    /// The view in which a setting has runs to a share of the way. The published setting goes past the paper's 95 % on coarse
-    /// meshes only.
+    /// Returns the view in which a setting has runs to a fraction of the way. Runs of the published setting pass the
+    /// paper's 95 % on coarse meshes only.
     pub(crate) fn view_reaching(&self, setting: Setting, place: Place, fraction: f64) -> View {
         let view = self.view(setting, place, fraction);
         let batch = self.header.study.batch(setting, view.size, view.start);
@@ -132,7 +132,8 @@ impl Data {
         })
     }
 
-    /// Whether a scheme passed the share, with the median time of its repeated runs. All of these have the same sweeps.
+    /// Returns the result of a scheme with the median time of its repeated runs, all of which have equal sweeps. `None`
+    /// without runs.
     pub(crate) fn reach(&self, view: View, domain: &str, scheme: &str) -> Option<Reach> {
         let all: Vec<_> =
             self.runs_of(view, domain, scheme).map(|run| run.reach(view.fraction)).collect();
@@ -143,7 +144,7 @@ impl Data {
         })
     }
 
-    /// The first of the repeated runs, with the median times of all. Their states are the same.
+    /// Returns the first of the repeated runs, with the median times of all. Repeated runs have identical states.
     pub(crate) fn typical(&self, view: View, domain: &str, scheme: &str) -> Option<RunRecord> {
         let all: Vec<_> = self.runs_of(view, domain, scheme).collect();
         let mut run = (*all.first()?).clone();
@@ -154,18 +155,19 @@ impl Data {
         Some(run)
     }
 
-    /// The domains with runs in a view, in the paper's order.
+    /// Returns the names of the domains with runs in a view, in the paper's order.
     pub(crate) fn domains(&self, view: View) -> Vec<&'static str> {
         let has = |name: &&str| self.runs_of(view, name, "edge").next().is_some();
         super::domains::DOMAINS.iter().map(|d| d.name).filter(has).collect()
     }
 
-    /// The share of time that a scheme saves against `base`, for each domain; `None` if either missed its goal.
+    /// Returns for each domain the fraction of time that a scheme saves against `base`; `None` if either missed its
+    /// goal.
     pub(crate) fn saved(&self, view: View, scheme: &str, base: &str) -> Vec<Option<f64>> {
         self.ratios(view, scheme, base).into_iter().map(|ratio| ratio.map(|r| 1.0 - r)).collect()
     }
 
-    /// The time of a scheme over that of `base`, for each domain.
+    /// Returns for each domain the time of a scheme divided by that of `base`; `None` if either missed its goal.
     pub(crate) fn ratios(&self, view: View, scheme: &str, base: &str) -> Vec<Option<f64>> {
         let of = |domain: &&str| {
             let seconds = |scheme| self.reach(view, domain, scheme)?.seconds();
@@ -174,7 +176,7 @@ impl Data {
         self.domains(view).iter().map(of).collect()
     }
 
-    /// Seconds per sweep, up to the share of the way.
+    /// Returns the seconds per sweep until the run passes the fraction; `None` for missed goals.
     pub(crate) fn per_sweep(&self, view: View, domain: &str, scheme: &str) -> Option<f64> {
         match self.reach(view, domain, scheme)? {
             Reach::Passed { sweeps, seconds } => Some(seconds / f64::from(sweeps.max(1))),
@@ -182,7 +184,7 @@ impl Data {
         }
     }
 
-    /// Seconds per sweep, over all whole rounds of a scheme, also those past the share of the way.
+    /// Returns the seconds per sweep over all complete rounds of a scheme, including rounds after the goal.
     pub(crate) fn pace(&self, view: View, domain: &str, scheme: &str) -> Option<f64> {
         let period = scheme.split('+').count();
         let of = |run: &RunRecord| {
@@ -198,31 +200,31 @@ impl Data {
     }
 }
 
-/// The scheme's base metric, by name.
+/// Returns the name of the scheme's base metric.
 pub(crate) fn base(scheme: &str) -> &str {
     scheme.split('+').next().unwrap_or(scheme)
 }
 
-/// The name of a scheme as the paper writes it.
+/// Returns the name of a scheme in the paper's notation.
 pub(crate) fn paper_name(scheme: &str) -> String {
     debug_assert!(scheme.parse::<Scheme>().is_ok());
     scheme.to_uppercase()
 }
 
-/// The median. For an even number of values it is the mean of the middle two.
+/// Returns the median, which is the mean of the two middle values for an even count. `None` without values.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let n = values.len();
     (n > 0).then(|| (values[(n - 1) / 2] + values[n / 2]) / 2.0)
 }
 
-/// The least and the largest value.
+/// Returns the smallest and the largest value.
 pub(crate) fn range(values: &[f64]) -> [f64; 2] {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     [low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The least and the largest published saving of the six meshes.
+/// Returns the smallest and the largest published saving of the six meshes.
 pub(crate) fn published_range(scheme: &str, base: &str) -> Option<[f64; 2]> {
     published::saved(scheme, base).map(|saved| range(&saved))
 }

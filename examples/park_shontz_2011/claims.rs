@@ -1,4 +1,4 @@
-//! The paper's claims, the measures for each, and the verdicts. Their rules are all here.
+//! The paper's claims, the measures for each claim, and the rules for verdicts.
 
 use super::analysis::{Data, Reach, View, base, median, paper_name, published_range, range};
 use super::document::Table;
@@ -8,17 +8,17 @@ use super::store::{BINS, DistributionRecord};
 use super::study::{Place, Setting, Size};
 use super::tables::{NONE, percent, setting_name, share};
 
-/// How far the median may be outside of the published range and still reproduce it, as a share of the time.
+/// Largest distance of a median outside of the published range that counts as reproduced, as a fraction of time.
 const TOLERANCE: f64 = 0.05;
 
-/// A claim, and what was measured for it in each view.
+/// A claim of the paper, with a measure for each view.
 pub(crate) struct Claim {
     pub(crate) statement: String,
     pub(crate) published: String,
     pub(crate) measures: Vec<(View, Measure)>,
 }
 
-/// What was measured in a view, and whether it supports the claim.
+/// A measurement in a view, and whether the measurement supports the claim.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Measure {
     pub(crate) text: String,
@@ -26,8 +26,8 @@ pub(crate) struct Measure {
 }
 
 impl Claim {
-    /// Says whether the claim is reproduced always, never, or under which conditions. `size` is the size of the meshes in the
-    /// tables: views of another size are marked.
+    /// Returns whether the claim is reproduced always, never, or under which conditions. `size` is the mesh size of the
+    /// tables; conditions mark views of another size.
     pub(crate) fn verdict(&self, size: Size) -> String {
         let at_paper = |setting| {
             let mut of =
@@ -60,7 +60,7 @@ impl Claim {
     }
 }
 
-/// The views as text, such as "as published (cpu 95.0 %, 99.0 %)".
+/// Describes views in text, such as "as published (cpu 95.0 %, 99.0 %)".
 fn conditions(views: &[View], size: Size) -> String {
     let mut parts: Vec<(String, Vec<String>)> = Vec::new();
     for view in views {
@@ -81,7 +81,7 @@ fn conditions(views: &[View], size: Size) -> String {
     parts.join("; ")
 }
 
-/// All views that have runs.
+/// Returns all views that have runs.
 fn views(data: &Data) -> Vec<View> {
     let mut views = Vec::new();
     for place in data.places() {
@@ -178,8 +178,8 @@ pub(crate) fn claims(data: &Data) -> Vec<Claim> {
     claims
 }
 
-/// Measures the time that `scheme` saves against `against`. The claim holds if the median is in the range, within
-/// [`TOLERANCE`].
+/// Measures the time that `scheme` saves against `against`. The claim holds if all meshes reach the goal and the median
+/// is in the range, within [`TOLERANCE`].
 fn saving(data: &Data, view: View, scheme: &str, against: &str, [low, high]: [f64; 2]) -> Measure {
     let all = data.saved(view, scheme, against);
     let values: Vec<_> = all.iter().flatten().copied().collect();
@@ -217,7 +217,7 @@ fn spread_of(bounds: Option<[f64; 2]>) -> String {
     bounds.map_or(NONE.into(), |[low, high]| format!("{} to {}", percent(low), percent(high)))
 }
 
-/// The median as text, with the range in parentheses.
+/// Formats the median of values, with their range in parentheses.
 fn spread_median(values: &[f64]) -> String {
     let Some(middle) = median(values.to_vec()) else { return NONE.into() };
     let [low, high] = range(values);
@@ -230,7 +230,7 @@ fn times(values: &[f64]) -> String {
     format!("{} × ({low} to {high})", super::tables::three(middle))
 }
 
-/// The table of verdicts, with the most important columns.
+/// Returns the table of verdicts, with a selection of columns.
 pub(crate) fn table(data: &Data, claims: &[Claim]) -> Table {
     let place = data.places().first().copied().unwrap_or(Place::Cpu);
     let mut rows: Vec<_> = claims
@@ -269,7 +269,7 @@ pub(crate) fn table(data: &Data, claims: &[Claim]) -> Table {
     }
 }
 
-/// The table of all measures of all claims.
+/// Returns the table of all measures for all claims.
 pub(crate) fn all(claims: &[Claim]) -> Table {
     let rows = claims.iter().flat_map(|claim| {
         claim.measures.iter().map(|(view, measure)| {
@@ -294,7 +294,7 @@ pub(crate) fn all(claims: &[Claim]) -> Table {
     }
 }
 
-/// The table rows about what Figures 4 and 5 show.
+/// Returns the table rows on the distributions in Figures 4 and 5.
 fn distribution_rows(data: &Data) -> Vec<Vec<String>> {
     let find = |domain: &str, quality: &str, scheme: &str| {
         data.distributions

@@ -1,4 +1,4 @@
-//! A report made of blocks, written as Markdown and as HTML.
+//! A report composed of blocks, in Markdown and HTML.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ pub(crate) enum Block {
     Text(String),
     List(Vec<String>),
     Table(Table),
-    /// A figure: its file in figures/, its SVG and its caption.
+    /// A figure with its file name in figures/, its SVG and its caption.
     Figure {
         file: String,
         svg: String,
@@ -16,12 +16,12 @@ pub(crate) enum Block {
     },
 }
 
-/// Rows under a head. The first column is text, the others are numbers.
+/// A table with a head. The first column is text, the others contain numbers.
 pub(crate) struct Table {
     pub(crate) caption: String,
     pub(crate) head: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
-    /// Whether all columns are text, not only the first.
+    /// Whether all columns contain text.
     pub(crate) prose: bool,
 }
 
@@ -120,7 +120,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Text as HTML, with `code`, **strong** and *emphasis*.
+/// Converts text with `code`, **strong** and *emphasis* to HTML.
 fn inline(text: &str) -> String {
     let mut out = escaped(text);
     for (mark, tag) in [("`", "code"), ("**", "strong"), ("*", "em")] {

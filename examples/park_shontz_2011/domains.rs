@@ -1,17 +1,17 @@
-//! The six domains, which were drawn for this project, and their meshes.
+//! The six domains, whose outlines were drawn for this project, and their meshes.
 
 use gpu_smooth::Mesh;
 
 use super::study::{Size, Start};
 use super::support::{Outline, distort_smooth, perturb_random, triangulate};
 
-/// A domain and what the paper's Table 2 says of its mesh.
+/// A domain, with the data of its mesh in the paper's Table 2.
 pub(crate) struct Domain {
     pub(crate) name: &'static str,
     outline: &'static str,
-    /// The number of vertices in the paper's mesh.
+    /// Number of vertices in the paper's mesh of the domain.
     pub(crate) vertices: usize,
-    /// The number of elements in the paper's mesh.
+    /// Number of elements in the paper's mesh of the domain.
     pub(crate) elements: usize,
 }
 
@@ -36,10 +36,10 @@ domains! {
     "twoholes" 56088 111537
 }
 
-/// The number of vertices of a coarse mesh, as of those in `meshes/`.
+/// Number of vertices in a coarse mesh, equal to that of meshes in `meshes/`.
 const COARSE: usize = 1500;
 
-/// The amplitude of the smooth distortion. At 1 the first triangle would be flat.
+/// Amplitude of the smooth distortion. An amplitude of 1 would flatten the first triangle.
 const AMPLITUDE: f64 = 0.95;
 
 impl Domain {
@@ -47,7 +47,7 @@ impl Domain {
         DOMAINS.iter().find(|d| d.name == name).ok_or_else(|| format!("no domain '{name}'"))
     }
 
-    /// Triangulates the domain. The result always has the same bytes.
+    /// Triangulates the domain. The result is identical in each call.
     pub(crate) fn mesh(&self, size: Size) -> Result<Mesh, String> {
         let vertices = match size {
             Size::Coarse => COARSE,
@@ -57,7 +57,7 @@ impl Domain {
     }
 }
 
-/// Moves the interior from where the triangulation had it, without inverting a triangle.
+/// Displaces the interior vertices of a triangulation without inverting triangles.
 pub(crate) fn started(mesh: &Mesh, start: Start) -> Mesh {
     match start {
         Start::Random => perturb_random(mesh, 1.0, 1),

@@ -1,11 +1,11 @@
-//! Contradictions in the paper, with the arithmetic.
+//! Contradictions in the paper, with the arithmetic that reveals them.
 
 use super::analysis::{paper_name, range};
 use super::domains::DOMAINS;
 use super::published::{SECONDS, SECONDS_PER_SWEEP, SWEEPS, TEXT_EDGE_IMR, row, saved};
 use super::tables::percent;
 
-/// The contradictions, one sentence each.
+/// Returns a paragraph for each contradiction.
 pub(crate) fn doubts() -> Vec<String> {
     let mut list = vec![
         "**Table 1, EDGE** is printed as Lmin/Lmax, but given the range 1 to ∞ with lower values better: \
@@ -53,7 +53,8 @@ fn all_savings() -> Option<[f64; 2]> {
     Some(range(&all))
 }
 
-/// By Table 5, half of the sweeps of A+B are A's. At A's time per sweep, these alone often take longer than all of A+B.
+/// By Table 5, A makes half of the sweeps of A+B. At A's time per sweep, the sweeps by A often exceed the total time of
+/// A+B.
 fn half() -> Option<String> {
     let mut cases = Vec::new();
     let mut count = 0;
@@ -87,7 +88,7 @@ fn half() -> Option<String> {
     ))
 }
 
-/// The cost of an AR sweep, by Table 3 and by Table 4.
+/// The cost of a sweep by AR differs between Tables 3 and 4.
 fn aspect_ratio() -> Option<String> {
     let i = DOMAINS.iter().position(|d| d.name == "airplane")?;
     let (ar, imr) = (row(SECONDS, "edge+ar")?[i], row(SECONDS, "edge+imr")?[i]);
@@ -114,7 +115,7 @@ fn area_and_ar() -> Option<String> {
     ))
 }
 
-/// RMS and AREA are both quadratic, so a sweep should cost about the same.
+/// RMS and AREA are both quadratic, so their sweeps should have similar costs.
 fn two_quadratics() -> Option<String> {
     let i = DOMAINS.iter().position(|d| d.name == "airplane")?;
     let (rms, area) = (row(SECONDS_PER_SWEEP, "rms")?[i], row(SECONDS_PER_SWEEP, "area")?[i]);

@@ -1,4 +1,5 @@
-//! Exports the data for other programs: a CSV file for each kind, and one JSON file with everything.
+//! Export of the data for other programs: a CSV file for each type of record, and one JSON file with
+//! all records.
 
 use std::fmt::Write;
 use std::fs;
@@ -8,7 +9,8 @@ use super::analysis::{Data, Reach};
 use super::store::{BINS, Record};
 use super::{Result, store};
 
-/// The shares of the way in the tables: the paper's, and two stricter ones.
+/// Fractions of the way to the desired f that tables show: the paper's 95 %, and two stricter
+/// fractions.
 pub(crate) const FRACTIONS: [f64; 3] = [0.95, 0.99, 0.999];
 
 pub(crate) fn write(data: &Data, folder: &Path) -> Result<()> {

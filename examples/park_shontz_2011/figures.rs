@@ -1,4 +1,4 @@
-//! Draws the paper's figures from the records.
+//! The paper's figures, drawn from the records.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use super::store::{BINS, RunRecord, Sample};
 use super::study::{Place, Setting, Size};
 use super::tables::setting_name;
 
-/// A figure: its file in figures/, its caption, and its SVG.
+/// A figure with its file name in figures/, its caption and its SVG.
 pub(crate) struct Figure {
     pub(crate) number: u32,
     pub(crate) caption: String,
@@ -21,7 +21,7 @@ pub(crate) struct Figure {
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Colors that can be told apart by the color-blind, and in gray.
+/// Colors distinguishable to color-blind readers and in gray.
 const COLORS: [RGBColor; 3] = [RGBColor(0, 90, 181), RGBColor(220, 50, 32), RGBColor(90, 90, 90)];
 
 /// The meshes whose convergence histories the paper shows.
@@ -74,7 +74,7 @@ pub(crate) fn draw_all(data: &Data) -> Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Draws Figure 1. The plotting library is not used, as it would write each edge as a separate element.
+/// Draws Figure 1 without the plotting library, which would write each edge as a separate element.
 fn meshes() -> Result<String> {
     const PANEL: f64 = 320.0;
     const MARGIN: f64 = 12.0;
@@ -116,7 +116,8 @@ fn meshes() -> Result<String> {
     Ok(svg + "</svg>\n")
 }
 
-/// f by the metric `judge` against time. If the run's base metric is another one, this takes the value noted beside it.
+/// Returns f by the metric `judge` at each time of a run. If the base metric is another one, f comes from the
+/// additional evaluation in the record.
 fn judged(run: &RunRecord, judge: &str) -> Vec<(f64, f64)> {
     let f = |sample: &Sample| match judge {
         _ if base(&run.case.scheme) == judge => Some(sample.f),
@@ -127,7 +128,7 @@ fn judged(run: &RunRecord, judge: &str) -> Vec<(f64, f64)> {
     run.history.iter().filter_map(|sample| Some((sample.seconds, f(sample)?))).collect()
 }
 
-/// Draws Figures 2, 3 or 6: a row of panels for each view, with a panel for each mesh.
+/// Draws Figure 2, 3 or 6, with a row of panels for each view and a panel for each mesh.
 fn convergence(data: &Data, rows: &[View], schemes: &[&str; 3]) -> Result<String> {
     let mut svg = String::new();
     {
@@ -159,7 +160,7 @@ fn panel_of_histories(
     let Some((_, first)) = curves.first() else { return Ok(()) };
     let target = first.history[0].f - view.fraction * (first.history[0].f - first.desired);
     let points: Vec<_> = curves.iter().flat_map(|(_, run)| judged(run, judge)).collect();
-    // The time axis ends a little after the slowest scheme has passed, as in the paper's enlarged plots.
+    // As in the paper's enlarged plots, the time axis ends shortly after the slowest scheme has passed.
     let end = |run: &RunRecord| {
         let passed = run.reach(view.fraction).seconds();
         passed.map_or(run.history.last().map_or(0.0, |s| s.seconds), |seconds| 1.25 * seconds)
@@ -196,7 +197,7 @@ fn panel_of_histories(
             judged(run, judge).into_iter().filter(|(seconds, _)| *seconds <= end).collect();
         chart
             .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)))?
-            // The library assumes that text is narrower than it is in most fonts, so blanks are added.
+            // The library underestimates the width of text in most fonts; blanks compensate.
             .label(paper_name(scheme) + "\u{a0}\u{a0}\u{a0}\u{a0}")
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
         chart.draw_series(points.iter().map(|&at| Circle::new(at, 3, color.filled())))?;
@@ -211,7 +212,7 @@ fn panel_of_histories(
     Ok(())
 }
 
-/// The number with as few digits as needed to tell the labels of an axis apart.
+/// Formats a number with the fewest digits that distinguish the labels of an axis.
 fn short(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),
@@ -227,7 +228,7 @@ fn short(x: f64) -> String {
     }
 }
 
-/// Draws Figure 4 or 5: a histogram for each scheme. The empty scheme stands for the mesh before smoothing.
+/// Draws Figure 4 or 5, with a histogram for each scheme. An empty scheme denotes the mesh before smoothing.
 fn histograms(
     data: &Data,
     domain: &str,
@@ -244,7 +245,7 @@ fn histograms(
     if found.len() < schemes.len() {
         return Ok(None);
     }
-    // Each bar is two bins wide; bars start at 0.4.
+    // Each bar covers two bins. Bars start at 0.4.
     let bars = |counts: &[usize]| -> Vec<(f64, f64)> {
         let total: usize = counts.iter().sum();
         (BINS * 2 / 5..BINS)

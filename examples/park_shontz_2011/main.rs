@@ -1,12 +1,12 @@
-//! Runs Park and Shontz's experiments again: on six kinds of meshes, with their tables and figures beside the published
+//! Repeats the experiments of Park and Shontz on six meshes, with the paper's tables and figures beside the published
 //! numbers, and a verdict on each claim.
 //!
 //! ```text
 //! cargo run --release --example park-shontz-2011 -- [FOLDER] [--quick] [--engine both|cpu|gpu] [--adapter NAME]
 //! ```
 //!
-//! Writes report.html, report.md, figures/ and data/ into FOLDER. After a stop, the same command continues the study where it
-//! was. `--quick` uses coarse meshes. docs/paper.md has the method and the findings.
+//! Writes report.html, report.md, figures/ and data/ into FOLDER. If the study was stopped, the same command continues
+//! it. `--quick` uses coarse meshes. docs/paper.md describes method and findings.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod analysis;
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What the command line asks for.
+/// The request of the command line.
 pub(crate) struct Request {
     folder: PathBuf,
     study: Study,
@@ -119,7 +119,7 @@ impl Request {
     }
 }
 
-/// Does those runs of a study whose records are not yet in the folder.
+/// Executes the runs of a study that have no records in the folder.
 pub(crate) fn gather(
     study: &Study,
     places: &[Place],
@@ -169,7 +169,7 @@ pub(crate) fn gather(
     Ok(())
 }
 
-/// Writes the report from the records in the folder.
+/// Writes the report from the records in a folder.
 pub(crate) fn report(folder: &Path) -> Result<()> {
     let data = Data::new(store::read(folder)?)?;
     export::write(&data, &folder.join("data"))?;
@@ -177,7 +177,7 @@ pub(crate) fn report(folder: &Path) -> Result<()> {
     report::write(&data, &figures, folder)
 }
 
-/// The name of the processor, if the system tells it.
+/// Returns the name of the processor, or the architecture on systems without `/proc/cpuinfo`.
 fn processor() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = info.lines().find(|line| line.starts_with("model name"));

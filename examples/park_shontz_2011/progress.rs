@@ -1,4 +1,4 @@
-//! Reports how far the study is, and estimates the time left.
+//! Progress of the study, with an estimate of the remaining time.
 
 use std::collections::HashMap;
 use std::io::{IsTerminal, Write};
@@ -10,11 +10,11 @@ use super::study::{Batch, Case, Place, Setting, Size, Start};
 /// Properties that determine the cost of a run.
 type Kind = (Setting, Size, Start, Place, String);
 
-/// Counts runs, and adds up their times.
+/// Counter of runs and their durations.
 pub(crate) struct Progress {
-    /// For each kind, the number of runs left, and a guess of the cost of one, in arbitrary units.
+    /// Remaining runs of each kind, and the guessed cost of one run in arbitrary units.
     left: HashMap<Kind, (usize, f64)>,
-    /// For each kind, the number of runs done, and their seconds.
+    /// Completed runs of each kind, and their total seconds.
     done: HashMap<Kind, (usize, f64)>,
     total: usize,
     told: Option<Instant>,
@@ -24,7 +24,7 @@ fn kind(case: &Case) -> Kind {
     (case.setting, case.size, case.start, case.place, case.scheme.clone())
 }
 
-/// Guesses the relative cost of a run, for kinds of which none was done yet.
+/// Guesses the relative cost of a run, for kinds without completed runs.
 fn guess(batch: &Batch) -> f64 {
     let size = match batch.size {
         Size::Coarse => 1.0,
@@ -62,7 +62,7 @@ impl Progress {
         *seconds += run.wall_seconds;
     }
 
-    /// Counts a run that is done, and prints the state of the study now and then.
+    /// Counts a completed run, and prints the state of the study at intervals.
     pub(crate) fn done(&mut self, run: &RunRecord) {
         self.count(run);
         let terminal = std::io::stderr().is_terminal();
@@ -96,7 +96,8 @@ impl Progress {
         }
     }
 
-    /// Estimates the seconds left: by the mean time of runs of the same kind, or for a new kind by its guess.
+    /// Estimates the remaining seconds from the mean duration of each kind of run, or from the guessed cost
+    /// for kinds without completed runs.
     fn seconds_left(&self) -> f64 {
         let mut seen = (0.0, 0.0);
         for (kind, (runs, seconds)) in &self.done {
@@ -114,7 +115,7 @@ impl Progress {
     }
 }
 
-/// A time as minutes and seconds.
+/// Formats a time in minutes and seconds.
 pub(crate) fn clock(seconds: f64) -> String {
     let seconds = seconds.round() as u64;
     match seconds {

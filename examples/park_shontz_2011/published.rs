@@ -1,6 +1,6 @@
-//! The numbers that Park and Shontz (2011) printed. They are the only numbers in the report that do not come from runs.
+//! Numbers published by Park and Shontz (2011). Runs supply all other numbers of the report.
 
-/// The total time to convergence in seconds, from Tables 3 and 4; for the last two schemes from the text of Section 3.
+/// Total times to convergence in seconds, from Tables 3 and 4. The last two schemes are from the text of Section 3.
 pub(crate) const SECONDS: &[(&str, [f64; 6])] = &[
     ("edge", [3399.36, 2292.47, 1911.24, 2867.59, 2986.64, 1799.52]),
     ("edge+imr", [1538.69, 1077.72, 897.54, 1350.37, 1412.19, 840.54]),
@@ -15,7 +15,7 @@ pub(crate) const SECONDS: &[(&str, [f64; 6])] = &[
     ("edge+imr+imr+imr", [789.01, 561.38, 473.49, 708.55, 740.53, 443.34]),
 ];
 
-/// The number of sweeps to convergence, from Table 5.
+/// Numbers of sweeps to convergence, from Table 5.
 pub(crate) const SWEEPS: &[(&str, [u32; 6])] = &[
     ("edge", [19, 21, 16, 13, 27, 26]),
     ("edge+imr", [19, 20, 16, 13, 27, 26]),
@@ -41,15 +41,15 @@ pub(crate) const SECONDS_PER_SWEEP: &[(&str, [f64; 6])] = &[
     ("area+ar", [1.239, 1.009524, 1.023158, 1.471875, 1.147619, 0.947]),
 ];
 
-/// The time that EDGE+IMR saves by the text of Section 3, in percent.
+/// Percentage of time that EDGE+IMR saves, by the text of Section 3.
 pub(crate) const TEXT_EDGE_IMR: [f64; 6] = [54.7, 52.9, 53.0, 52.9, 40.0, 53.3];
 
-/// The numbers of a scheme in a table.
+/// Returns the row of a scheme in a table; `None` if the table lacks the scheme.
 pub(crate) fn row<T: Copy>(table: &[(&str, [T; 6])], scheme: &str) -> Option<[T; 6]> {
     table.iter().find(|(name, _)| *name == scheme).map(|&(_, row)| row)
 }
 
-/// The published share of time that `scheme` saves against `base`, for each domain.
+/// Returns the published fraction of time that `scheme` saves against `base`, for each domain.
 pub(crate) fn saved(scheme: &str, base: &str) -> Option<[f64; 6]> {
     let (after, before) = (row(SECONDS, scheme)?, row(SECONDS, base)?);
     Some(std::array::from_fn(|i| 1.0 - after[i] / before[i]))

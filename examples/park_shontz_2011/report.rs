@@ -1,4 +1,4 @@
-//! Writes the report: what was run, the verdicts, the tables and the figures.
+//! The report: settings of the study, verdicts, tables and figures.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ use super::{claims, doubts};
 
 const TITLE: &str = "Park and Shontz (2011), run again";
 
-/// The schemes of Tables 3 and 5 by base metric; `FREQUENT` are those of the text.
+/// Schemes of Tables 3 and 5 by base metric; `FREQUENT` contains the schemes from the text.
 const EDGE: [&str; 3] = ["edge", "edge+imr", "edge+ar"];
 const RMS: [&str; 3] = ["rms", "rms+imr", "rms+ar"];
 const AREA: [&str; 3] = ["area", "area+imr", "area+ar"];
@@ -135,7 +135,7 @@ fn introduction(data: &Data) -> Vec<Block> {
     blocks
 }
 
-/// Points that the paper leaves open, and what was chosen.
+/// Lists points that the paper leaves open, with the choices made here.
 fn readings(data: &Data) -> Vec<String> {
     let mut list = vec![
         "Objective: f = (1/n) Σ q²; a run has passed a share s of the way once f_initial − f > s (f_initial − \
@@ -186,7 +186,7 @@ fn readings(data: &Data) -> Vec<String> {
     list
 }
 
-/// The blocks for one view: Tables 3, 4 and 5, and the schemes of the text.
+/// Returns the blocks for a view: Tables 3, 4 and 5, and the schemes from the text.
 fn times(data: &Data, view: View) -> Vec<Block> {
     let place = view.place.to_string().to_uppercase();
     let what = format!("{}, {place}, {}", setting_name(view.setting), share(view.fraction));

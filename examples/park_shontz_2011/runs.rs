@@ -1,4 +1,4 @@
-//! Does the runs, sweep by sweep, so that the time of each is known.
+//! Execution of runs sweep by sweep, which gives the time of each sweep.
 
 use std::collections::HashSet;
 use std::time::Instant;
@@ -15,7 +15,7 @@ use super::store::{BINS, DesiredRecord, DistributionRecord, MeshRecord, RunRecor
 use super::study::{Batch, Case, Place, Setting, Size, Start, Study};
 use super::{Result, support};
 
-/// The share of the way at which the distributions of Figures 4 and 5 are taken, as in the paper.
+/// Fraction of the way at which Figures 4 and 5 take their distributions, as in the paper.
 const CONVERGED: f64 = 0.95;
 
 /// A mesh before a run, prepared for the engines.
@@ -32,14 +32,14 @@ impl Prepared {
     }
 }
 
-/// Does runs. Keeps the last mesh, as the next run mostly uses the same.
+/// Executes runs. The last mesh is cached, because successive runs mostly share a mesh.
 pub(crate) struct Runner {
     gpu: Option<Gpu>,
-    /// The size of the meshes in the tables.
+    /// Size of the meshes in the tables.
     size: Size,
     reference_sweeps: u32,
     last: Option<((String, Size, Start), Prepared)>,
-    /// Schemes and settings whose kernels the driver has compiled.
+    /// Schemes and settings whose kernels are compiled.
     warm: HashSet<(String, Setting)>,
 }
 
@@ -49,7 +49,7 @@ impl Runner {
         Self { gpu, size, reference_sweeps, last: None, warm: HashSet::new() }
     }
 
-    /// The record of a mesh as it was triangulated.
+    /// Returns the record of a domain's mesh before any displacement.
     pub(crate) fn mesh(&self, domain: &Domain, size: Size) -> Result<MeshRecord> {
         let mesh = domain.mesh(size)?;
         Ok(MeshRecord {
@@ -62,8 +62,8 @@ impl Runner {
         })
     }
 
-    /// The optimum of a metric. Over-relaxed sweeps start from the mesh as triangulated, and from the mesh perturbed at random;
-    /// this is the better result.
+    /// Searches the optimum of a metric with over-relaxed sweeps from two starts: the triangulated mesh, and the same
+    /// mesh with random displacements. Returns the lower f.
     pub(crate) fn desired(
         &self,
         domain: &Domain,
@@ -93,7 +93,7 @@ impl Runner {
         Ok(DesiredRecord { domain, size, metric, f: best, origin: tried.join("; ") })
     }
 
-    /// Does a run. Its time is that of the sweeps and their evaluations of f only.
+    /// Executes a run. The recorded time covers the sweeps and their evaluations of f.
     pub(crate) fn run(&mut self, batch: &Batch, case: &Case, desired: f64) -> Result<RunRecord> {
         let wall = Instant::now();
         let scheme: Scheme = case.scheme.parse()?;
@@ -170,7 +170,8 @@ impl Runner {
         })
     }
 
-    /// Does a few sweeps, as drivers compile kernels when they are first used. That time is not part of a run.
+    /// Executes a few sweeps before a scheme's first run on the GPU. Drivers compile kernels at first use, which must
+    /// not count as time of a run.
     fn warm_up(&mut self, batch: &Batch, case: &Case, scheme: &Scheme) -> Result<()> {
         if case.place == Place::Gpu && self.warm.insert((case.scheme.clone(), case.setting)) {
             let mesh = Domain::named(&case.domain)?.mesh(Size::Coarse)?;
@@ -181,7 +182,7 @@ impl Runner {
         Ok(())
     }
 
-    /// Adds f by the other metrics to each state of a run, for the figures. Does the run again, without timing it.
+    /// Adds f by other metrics to each state of a run, for the figures. Repeats the run on the CPU without timing.
     fn judge_by_others(
         &self,
         problem: &Problem,
@@ -203,7 +204,7 @@ fn own_omega() -> [f64; Metric::ALL.len()] {
     std::array::from_fn(|i| Metric::ALL[i].properties().omega)
 }
 
-/// A plan of one Newton step a visit, with analytic derivatives and without over-relaxation.
+/// Returns a plan with one Newton step per visit, analytic derivatives and no over-relaxation.
 fn plain(scheme: Scheme) -> Plan {
     Plan {
         scheme,
@@ -221,7 +222,7 @@ fn plain(scheme: Scheme) -> Plan {
     }
 }
 
-/// The plan of a setting.
+/// Returns the plan for a batch's setting.
 fn plan(batch: &Batch, scheme: Scheme) -> Plan {
     let alone = scheme.metrics().iter().all(|&m| m == scheme.base());
     let mut plan = Plan { inner: batch.inner, ..plain(scheme) };
@@ -242,7 +243,7 @@ fn plan(batch: &Batch, scheme: Scheme) -> Plan {
     plan
 }
 
-/// The distributions of the mean ratio and of the edge ratio in a mesh.
+/// Returns the distributions of the mean ratio and the edge ratio in a mesh.
 fn distribution(
     case: &Case,
     mesh: &Mesh,

@@ -1,4 +1,4 @@
-//! Stores the data: one record per line, appended as soon as it is known, so that a stopped study can be continued.
+//! Storage of the data: one record per line, appended immediately, so that a stopped study can be continued.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -8,18 +8,18 @@ use serde::{Deserialize, Serialize};
 
 use super::study::{Case, Size, Start, Study};
 
-/// What the study was run with, and on which machine.
+/// The parameters of a study, with program version and machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Header {
     pub(crate) study: Study,
     pub(crate) version: String,
     pub(crate) cores: usize,
     pub(crate) processor: String,
-    /// The name of the adapter and its driver, if there is a GPU.
+    /// Name and driver of the adapter; `None` without a GPU.
     pub(crate) adapter: Option<String>,
 }
 
-/// The facts of a mesh, as it was triangulated.
+/// Properties of a mesh after triangulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MeshRecord {
     pub(crate) domain: String,
@@ -40,51 +40,51 @@ pub(crate) struct DesiredRecord {
     pub(crate) origin: String,
 }
 
-/// The state after a sweep. The first one of a run is the state before any sweep.
+/// Time and objectives of a run after a sweep. A run's first sample precedes all sweeps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sample {
-    /// Time since the first sweep began.
+    /// Time in seconds since the start of the first sweep.
     pub(crate) seconds: f64,
-    /// The objective by the base metric.
+    /// Objective by the base metric.
     pub(crate) f: f64,
-    /// The objective by EDGE, if a figure needs it.
+    /// Objective by EDGE; `None` if no figure needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) edge: Option<f64>,
-    /// The objective by AREA, if a figure needs it.
+    /// Objective by AREA; `None` if no figure needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) area: Option<f64>,
 }
 
-/// A run and its history.
+/// A run with its history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RunRecord {
     #[serde(flatten)]
     pub(crate) case: Case,
     pub(crate) desired: f64,
     pub(crate) stop: String,
-    /// Seconds of the whole run with its preparation, for the estimate of the time left.
+    /// Duration of the whole run with its preparation, in seconds, for the estimate of the remaining time.
     pub(crate) wall_seconds: f64,
     pub(crate) history: Vec<Sample>,
-    /// The distributions when the run had converged, for Figures 4 and 5.
+    /// Distributions at convergence, for Figures 4 and 5.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) distributions: Vec<DistributionRecord>,
 }
 
-/// How many elements of a mesh have which quality. The best quality is 1.
+/// Histogram of an element quality. Ideal elements have quality 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DistributionRecord {
     pub(crate) domain: String,
     pub(crate) start: Start,
     /// The scheme; empty for the mesh before smoothing.
     pub(crate) scheme: String,
-    /// The quality that is counted: shortest over longest edge, or mean ratio.
+    /// The quality: ratio of the shortest to the longest edge, or mean ratio.
     pub(crate) quality: String,
     pub(crate) mean: f64,
-    /// The number of elements in each of [`BINS`] equal intervals from 0 to 1.
+    /// Number of elements in each of [`BINS`] equal intervals from 0 to 1.
     pub(crate) counts: Vec<usize>,
 }
 
-/// The number of bins in a distribution.
+/// Number of bins in a distribution.
 pub(crate) const BINS: usize = 100;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,7 +96,7 @@ pub(crate) enum Record {
     Run(RunRecord),
 }
 
-/// All records of a study, and the file they are appended to.
+/// All records of a study, and the open file for further records.
 pub(crate) struct Store {
     file: File,
     pub(crate) records: Vec<Record>,
@@ -106,7 +106,7 @@ fn path(folder: &Path) -> PathBuf {
     folder.join("data/records.jsonl")
 }
 
-/// Reads the records of a folder. Ignores a last line that is not complete.
+/// Reads the records in a folder. An incomplete last line is ignored.
 pub(crate) fn read(folder: &Path) -> Result<Vec<Record>, String> {
     let path = path(folder);
     let Ok(text) = fs::read_to_string(&path) else { return Ok(Vec::new()) };
@@ -120,7 +120,7 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<Record>, String> {
 }
 
 impl Store {
-    /// Opens a folder to add records. It must be new, or hold records of the same study.
+    /// Opens a folder for further records. A folder with records of another study is refused.
     pub(crate) fn open(folder: &Path, header: &Header) -> Result<Self, String> {
         let records = read(folder)?;
         match records.first() {
@@ -136,7 +136,7 @@ impl Store {
         }
         let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
         fs::create_dir_all(folder.join("data")).map_err(failed)?;
-        // Writes the file again, without the incomplete line.
+        // Rewrites the file without the incomplete line.
         let mut text = String::new();
         for record in &records {
             text += &line(record)?;

@@ -1,4 +1,4 @@
-//! The runs to do: batches for a full, a quick and a tiny study.
+//! The runs of a study, in batches for a full, a quick and a tiny study.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,17 +30,17 @@ words! {
 }
 
 words! {
-    /// How the interior was moved before the runs.
+    /// Displacement of the interior vertices before the runs.
     Start {
-        /// Each vertex moved at random, strongly.
+        /// Strong random displacements of individual vertices.
         Random = "random"
-        /// All vertices moved by long waves.
+        /// Displacements by long waves.
         Smooth = "smooth"
     }
 }
 
 words! {
-    /// How a metric is minimized.
+    /// Numerical method of the sweeps.
     Setting {
         /// EDGE, RMS and AREA by finite differences, many Newton steps a visit, no over-relaxation.
         Published = "published"
@@ -59,7 +59,7 @@ words! {
     }
 }
 
-/// The paper's schemes and the metrics that it compares them with, ordered by base metric.
+/// The paper's schemes and the metrics compared with them, ordered by base metric.
 pub(crate) const SCHEMES: [&str; 13] = [
     "edge",
     "edge+imr",
@@ -76,7 +76,7 @@ pub(crate) const SCHEMES: [&str; 13] = [
     "ar",
 ];
 
-/// Runs of every scheme on several meshes, with the same settings.
+/// Runs of all schemes on several meshes with common settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Batch {
     pub(crate) setting: Setting,
@@ -84,29 +84,29 @@ pub(crate) struct Batch {
     pub(crate) start: Start,
     pub(crate) domains: Vec<String>,
     pub(crate) schemes: Vec<String>,
-    /// A run ends at this share of the way to the desired f.
+    /// Fraction of the way to the desired f at which a run ends.
     pub(crate) fraction: f64,
-    /// The most Newton steps in a visit.
+    /// Largest number of Newton steps per visit of a vertex.
     pub(crate) inner: u32,
     pub(crate) max_sweeps: u32,
-    /// How many times each run is done on the CPU.
+    /// Repetitions per run on the CPU.
     pub(crate) cpu_repeats: u32,
-    /// How many times each run is done on the GPU.
+    /// Repetitions per run on the GPU.
     pub(crate) gpu_repeats: u32,
 }
 
-/// A whole study.
+/// A study with all of its batches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Study {
     pub(crate) mode: String,
-    /// The size of the meshes that the tables show.
+    /// Size of the meshes in the tables.
     pub(crate) size: Size,
-    /// The number of sweeps from each start, in the search for a desired f.
+    /// Number of sweeps from each start in the search for a desired f.
     pub(crate) reference_sweeps: u32,
     pub(crate) batches: Vec<Batch>,
 }
 
-/// A run: one row of the data.
+/// A run, identified by one row of the data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Case {
     pub(crate) setting: Setting,
@@ -119,8 +119,8 @@ pub(crate) struct Case {
 }
 
 impl Study {
-    /// Every scheme and setting at the paper's sizes. The published setting is slow, so it goes past the paper's 95 % on coarse
-    /// meshes only.
+    /// Returns the study of all schemes and settings at the paper's sizes. The published setting is slow, so its runs
+    /// pass the paper's 95 % on coarse meshes only.
     pub(crate) fn full() -> Self {
         let full = |batch| Batch { size: Size::Full, ..batch };
         Self {
@@ -141,7 +141,7 @@ impl Study {
         }
     }
 
-    /// Every scheme and setting on coarse meshes, in under two minutes.
+    /// Returns the study of all schemes and settings on coarse meshes, which takes less than two minutes.
     pub(crate) fn quick() -> Self {
         Self {
             mode: "quick".into(),
@@ -156,7 +156,7 @@ impl Study {
         }
     }
 
-    /// Few runs of each kind on two meshes, for a test.
+    /// Returns a study with few runs of each kind on two meshes, for a test.
     #[allow(dead_code)]
     pub(crate) fn tiny() -> Self {
         let domains = ["fish", "mechanic"].map(String::from).to_vec();
@@ -172,7 +172,8 @@ impl Study {
         }
     }
 
-    /// Lists every run, with repetitions in the outermost loop: a disturbance of the machine then affects all schemes alike.
+    /// Lists all runs, with repetitions in the outermost loop, so that a disturbance of the machine affects all schemes
+    /// alike.
     pub(crate) fn cases(&self, places: &[Place]) -> Vec<(&Batch, Case)> {
         let mut cases = Vec::new();
         for batch in &self.batches {
@@ -192,7 +193,7 @@ impl Study {
         cases
     }
 
-    /// The batch with this setting, size and start, if there is one.
+    /// Returns the batch with this setting, size and start; `None` if the study has no such batch.
     pub(crate) fn batch(&self, setting: Setting, size: Size, start: Start) -> Option<&Batch> {
         self.batches.iter().find(|b| (b.setting, b.size, b.start) == (setting, size, start))
     }

@@ -1,4 +1,5 @@
-//! The paper's tables, with our numbers beside theirs. Every number comes from the records or from `published`.
+//! The paper's tables beside the measured ones. Measured numbers come from the records, published ones
+//! from `published`.
 
 use super::analysis::{Data, Reach, View, base, paper_name};
 use super::document::Table;
@@ -6,10 +7,10 @@ use super::domains::DOMAINS;
 use super::published;
 use super::study::{Setting, Size};
 
-/// Stands in cells without a number.
+/// Text of cells without a number.
 pub(crate) const NONE: &str = "–";
 
-/// The number with three significant figures: repeated runs hardly agree to more.
+/// Formats a number with three significant digits, because repeated runs hardly agree to more.
 pub(crate) fn three(x: f64) -> String {
     let digits = (2 - x.abs().max(1e-9).log10().floor() as i32).clamp(0, 8);
     format!("{x:.*}", digits as usize)
@@ -19,7 +20,7 @@ pub(crate) fn percent(x: f64) -> String {
     format!("{:.1} %", 100.0 * x)
 }
 
-/// A share of the way as text, such as 95 % or 99.9 %.
+/// Formats a fraction of the way in percent, such as 95 % or 99.9 %.
 pub(crate) fn share(fraction: f64) -> String {
     percent(fraction).replace(".0 ", " ")
 }
@@ -41,7 +42,7 @@ fn published_row<T: Copy>(table: &[(&str, [T; 6])], domain: &str, scheme: &str) 
     published::row(table, scheme).map(|row| row[i])
 }
 
-/// Table 2: the sizes of the meshes.
+/// Returns Table 2, the sizes of the meshes.
 pub(crate) fn sizes(data: &Data, size: Size) -> Table {
     let rows = data.meshes.iter().filter(|mesh| mesh.size == size).filter_map(|mesh| {
         let paper = DOMAINS.iter().find(|d| d.name == mesh.domain)?;
@@ -51,7 +52,7 @@ pub(crate) fn sizes(data: &Data, size: Size) -> Table {
             mesh.vertices.to_string(),
             paper.elements.to_string(),
             mesh.elements.to_string(),
-            // With H holes, the boundary has 2 V - 2 + 2 H - E vertices. The paper does not give H.
+            // With H holes, the boundary has 2 V - 2 + 2 H - E vertices. The paper does not state H.
             (2 * paper.vertices - 2 - paper.elements).to_string(),
             mesh.boundary.to_string(),
             format!("{:.2}°", mesh.min_angle),
@@ -77,7 +78,7 @@ pub(crate) fn sizes(data: &Data, size: Size) -> Table {
     }
 }
 
-/// Table 3 or 4: the time to convergence, and the share of it that is saved against the base metric alone.
+/// Returns Table 3 or 4: times to convergence, and the fraction saved against the base metric alone.
 pub(crate) fn seconds(data: &Data, view: View, caption: &str, schemes: &[&str]) -> Table {
     let mut head = vec!["mesh".to_owned()];
     for scheme in schemes {
@@ -108,7 +109,7 @@ pub(crate) fn seconds(data: &Data, view: View, caption: &str, schemes: &[&str]) 
     Table { caption: caption.into(), head, rows: rows.collect(), prose: false }
 }
 
-/// Table 5: the number of sweeps, and the time per sweep.
+/// Returns Table 5: numbers of sweeps, and times per sweep.
 pub(crate) fn sweeps(data: &Data, view: View, caption: &str, schemes: &[&str]) -> Table {
     let mut head = vec!["mesh".to_owned()];
     for scheme in schemes {
@@ -135,7 +136,7 @@ pub(crate) fn sweeps(data: &Data, view: View, caption: &str, schemes: &[&str]) -
     Table { caption: caption.into(), head, rows: rows.collect(), prose: false }
 }
 
-/// Sweeps and seconds of every scheme at several shares of the way, as medians over the meshes.
+/// Returns sweeps and seconds of all schemes at several fractions of the way, as medians over the meshes.
 pub(crate) fn stricter(data: &Data, views: &[View], caption: &str, schemes: &[&str]) -> Table {
     let mut head = vec!["scheme".to_owned()];
     for view in views {
@@ -168,7 +169,7 @@ pub(crate) fn stricter(data: &Data, views: &[View], caption: &str, schemes: &[&s
     Table { caption: caption.into(), head, rows: rows.collect(), prose: false }
 }
 
-/// The name of a setting in the report.
+/// Returns the name of a setting in the report.
 pub(crate) fn setting_name(setting: Setting) -> &'static str {
     match setting {
         Setting::Published => "as published",

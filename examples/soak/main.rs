@@ -1,6 +1,6 @@
-//! Checks that a long-lived process does not use more and more memory, file descriptors or threads. `soak RUNS FRAMES` does
-//! RUNS runs on the GPU engine, every fourth on a device of its own, and then FRAMES frames of an application that encodes
-//! sweeps itself. It prints ten times what is in use, and fails if that grows.
+//! Checks that a long-lived process does not accumulate memory, file descriptors or threads. `soak RUNS FRAMES`
+//! executes RUNS runs on the GPU engine, every fourth on a device of its own, then FRAMES frames of an application that
+//! encodes sweeps itself. The example prints the resources in use ten times, and fails if they grow.
 #![allow(clippy::print_stdout)]
 
 #[path = "../../tests/support/mod.rs"]
@@ -16,7 +16,8 @@ use gpu_smooth::{
     wgpu,
 };
 
-/// What the process uses: resident memory in kB, file descriptors, threads. Zeros where the system does not tell.
+/// Returns resources of the process: resident memory in kB, file descriptors, threads. Zeros on systems without
+/// `/proc`.
 fn in_use() -> [u64; 3] {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let of = |name: &str| {
@@ -27,7 +28,7 @@ fn in_use() -> [u64; 3] {
     [of("VmRSS:"), files, of("Threads:")]
 }
 
-/// Does something `count` times. Fails if more is in use at the end than after the first tenth.
+/// Calls `once` `count` times. Returns an error if resource usage has grown since the first tenth of the calls.
 fn soak(
     what: &str,
     count: usize,
@@ -47,7 +48,7 @@ fn soak(
         }
     }
     let (Some([memory, files, threads]), now) = (first, in_use()) else { return Ok(()) };
-    // Memory is freed in steps: a tenth and two megabytes more do not count as growth.
+    // Memory is freed in steps, so growth by a tenth and two megabytes is tolerated.
     if now[0] > memory + memory / 10 + 2048 || now[1] > files || now[2] > threads {
         return Err(format!("{what}: more is in use than after the first tenth").into());
     }
@@ -85,7 +86,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         sweeps.encode_sweeps(&mut encoder, 1);
         bound.encode_export(&mut encoder);
         gpu.queue().submit([encoder.finish()]);
-        // Waits as an application does that has a few frames under way.
+        // Waits like an application with a few frames under way.
         if done % 3 == 2 {
             gpu.device().poll(wgpu::PollType::wait_indefinitely())?;
         }

@@ -1,4 +1,4 @@
-//! Smooths a mesh made from any bytes; `fuzz/checks.rs` says what must hold.
+//! Smooths a mesh made from arbitrary bytes, with the checks of `fuzz/checks.rs`.
 #![no_main]
 
 #[path = "../checks.rs"]

@@ -1,4 +1,4 @@
-//! A small application for the tests: its device, its buffers, its encoders.
+//! A small application for tests, with its device, buffers and encoders.
 
 use std::sync::{Arc, LazyLock, Mutex};
 
@@ -15,16 +15,17 @@ use wgpu::BufferUsages as Usage;
 
 use crate::support::{perturb_random, triangulate};
 
-/// The size of the largest mesh of these tests.
+/// Size of the largest mesh in these tests.
 const LARGEST: MeshSize = MeshSize { vertices: 10_000, triangles: 20_000 };
 
-/// An application with a device of its own. Dropping it panics if its error handler was called.
+/// An application with its own device. If an error reached the device's error handler, dropping the application
+/// panics.
 pub(crate) struct App {
     pub(crate) gpu: Gpu,
     uncaptured: Arc<Mutex<Vec<String>>>,
 }
 
-/// The adapter of all devices. wgpu panics where resources of two instances meet.
+/// Returns the adapter of all devices. wgpu panics if resources of two instances are combined.
 pub(crate) fn adapter() -> &'static wgpu::Adapter {
     static ADAPTER: LazyLock<wgpu::Adapter> = LazyLock::new(|| {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -34,14 +35,14 @@ pub(crate) fn adapter() -> &'static wgpu::Adapter {
     &ADAPTER
 }
 
-/// The limits of an application that needs nothing for itself.
+/// Returns the limits for an application that needs none of its own.
 pub(crate) fn least_limits(size: MeshSize) -> wgpu::Limits {
     let own = wgpu::Limits::downlevel_webgl2_defaults();
     Gpu::required_limits(own, size, &adapter().limits()).unwrap()
 }
 
 impl App {
-    /// Makes a device with exactly what the library says it needs, and room for vertices of any stride.
+    /// Makes a device with exactly the library's requirements, and room for vertices of any stride.
     pub(crate) fn new() -> Self {
         Self::with(Gpu::required_features(), Self::limits()).unwrap()
     }
@@ -50,7 +51,7 @@ impl App {
         wgpu::Limits { max_storage_buffer_binding_size: 1 << 20, ..least_limits(LARGEST) }
     }
 
-    /// Makes a device that has timestamps as well.
+    /// Makes a device with timestamps in addition.
     pub(crate) fn with_timestamps() -> Self {
         Self::with(Gpu::optional_features(), Self::limits()).unwrap()
     }
@@ -77,12 +78,13 @@ impl App {
         Ok(Self { gpu: gpu?, uncaptured })
     }
 
-    /// Another `Gpu` of the same device, for the library's blocking calls.
+    /// Makes a second `Gpu` of the device, for blocking calls of the library.
     pub(crate) fn another_gpu(&self) -> Gpu {
         Gpu::new(self.gpu.device().clone(), self.gpu.queue().clone()).unwrap()
     }
 
-    /// Takes the errors that reached the application's handler. These no longer make the drop panic.
+    /// Takes the errors that reached the error handler. After the call, these errors no longer make the drop
+    /// panic.
     pub(crate) fn take_uncaptured(&self) -> Vec<String> {
         std::mem::take(&mut *self.uncaptured.lock().unwrap())
     }
@@ -108,14 +110,14 @@ impl App {
         self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
-    /// Encodes into one command buffer and submits it.
+    /// Submits a command buffer with the commands of `encode`.
     pub(crate) fn submit(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) {
         let mut encoder = self.encoder();
         encode(&mut encoder);
         self.gpu.queue().submit([encoder.finish()]);
     }
 
-    /// The words of a buffer, which needs usage `COPY_SRC`.
+    /// Returns the words of a buffer, which must have usage `COPY_SRC`.
     pub(crate) fn read(&self, buffer: &wgpu::Buffer) -> Vec<u32> {
         let staging = self.buffer(buffer.size(), Usage::COPY_DST | Usage::MAP_READ);
         self.submit(|encoder| {
@@ -127,12 +129,12 @@ impl App {
         bytemuck::pod_collect_to_vec(&view[..])
     }
 
-    /// Positions as the device has them. No sweep or import is done for it.
+    /// Returns the positions on the device, without encoding a sweep or an import.
     pub(crate) fn points(&self, device_mesh: &DeviceMesh) -> Vec<[f64; 2]> {
         device_mesh.read_points().unwrap()
     }
 
-    /// Evaluates the objectives in a command buffer of their own.
+    /// Evaluates the objectives in a separate command buffer.
     pub(crate) fn objective(&self, sweeps: &Sweeps) -> ObjectiveValues {
         let buffer =
             self.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
@@ -151,12 +153,12 @@ impl Drop for App {
     }
 }
 
-/// The value of each word of a [`Vertices`] buffer that is not a coordinate: a NaN that contains the word's index.
+/// Returns the initial value of a word of [`Vertices`] that is no coordinate: a NaN with the word's index.
 pub(crate) fn filler(word: usize) -> u32 {
     0x7fc0_0000 | word as u32
 }
 
-/// A vertex buffer of the application's own layout.
+/// A vertex buffer with a layout of the application.
 pub(crate) struct Vertices {
     pub(crate) buffer: wgpu::Buffer,
     pub(crate) offset: u64,
@@ -164,7 +166,7 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// Makes a buffer full of [`filler`], but for the coordinates of the vertices that a triangle uses.
+    /// Makes a buffer full of [`filler`], except for the coordinates of vertices that triangles use.
     pub(crate) fn new(app: &App, mesh: &Mesh, offset: u64, stride: u64) -> Self {
         let bytes = offset + stride * mesh.points.len() as u64;
         let usage = Usage::VERTEX | Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
@@ -179,17 +181,17 @@ impl Vertices {
         vertices
     }
 
-    /// Makes a buffer with the usual layout: x, y, z.
+    /// Makes a buffer with the layout x, y, z.
     pub(crate) fn usual(app: &App, mesh: &Mesh) -> Self {
         Self::new(app, mesh, 0, 12)
     }
 
-    /// The index of the word that holds the x of a vertex.
+    /// Returns the index of the word with the x of a vertex.
     pub(crate) fn word(&self, vertex: u32) -> usize {
         ((self.offset + u64::from(vertex) * self.stride) / 4) as usize
     }
 
-    /// Writes a vertex into the buffer, as an application moves it.
+    /// Writes the position of a vertex to the buffer, as an application does.
     pub(crate) fn put(&self, app: &App, vertex: u32, [x, y]: [f64; 2]) {
         let xy = [x as f32, y as f32];
         let at = 4 * self.word(vertex) as u64;
@@ -205,24 +207,24 @@ impl Vertices {
     }
 }
 
-/// A plate with a round hole.
+/// Makes a plate with a round hole.
 pub(crate) fn plate(vertices: usize) -> Mesh {
     let text = "loop\n0 0\n3 0\n3 2\n0 2\ncircle 1.2 1 0.5 24\n";
     triangulate(&crate::support::Outline::parse(text).unwrap(), vertices).unwrap()
 }
 
-/// A plate with a round hole and a badly placed interior.
+/// Makes a plate with a round hole and perturbed interior vertices.
 pub(crate) fn bad_plate(vertices: usize) -> Mesh {
     perturb_random(&plate(vertices), 0.8, 7)
 }
 
-/// The vertices that are neither fixed nor on the boundary.
+/// Returns the vertices that are neither on the boundary nor fixed.
 pub(crate) fn interior(mesh: &Mesh) -> Vec<u32> {
     let held = crate::support::check::held(mesh);
     (0..mesh.points.len() as u32).filter(|&v| !held[v as usize]).collect()
 }
 
-/// The device's error inside of a run's error; panics if there is none.
+/// Returns the device error inside a run's error; panics for other errors.
 pub(crate) fn gpu_error(error: SmoothError) -> GpuError {
     match error {
         SmoothError::Gpu(error) => error,
@@ -230,7 +232,7 @@ pub(crate) fn gpu_error(error: SmoothError) -> GpuError {
     }
 }
 
-/// Fails to compile unless these types can move between threads.
+/// Fails to compile unless the types can move between threads.
 const _: () = {
     const fn moves_between_threads<T: Send + Sync>() {}
     moves_between_threads::<Gpu>();

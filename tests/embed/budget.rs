@@ -1,4 +1,4 @@
-//! Budgets: as many sweeps in a frame as there is time for.
+//! Time budgets, which determine the number of sweeps in a frame.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use gpu_smooth::{
 
 use crate::app::{App, bad_plate};
 
-/// Encodes frames within a budget, each done before the next begins. Returns the number of sweeps in each.
+/// Executes frames within a budget, one after another. Returns the number of sweeps in each frame.
 fn frames(app: &App, sweeps: &mut Sweeps, budget: &mut Budget, count: usize) -> Vec<u32> {
     let frame = |_| {
         let mut encoder = app.encoder();
@@ -35,14 +35,14 @@ fn the_device_measures_how_many_sweeps_fit() {
     assert!(each > Duration::from_nanos(100) && each < Duration::from_secs(10), "{each:?}");
     let mut scant = Budget::micros(0).timed_by(&app.gpu).unwrap();
     assert_eq!(frames(&app, &mut sweeps, &mut scant, 4), [1; 4]);
-    // Without measured times a frame has one sweep.
+    // Without measured times, a frame has one sweep.
     let mut untimed = Budget::new(Duration::from_secs(3600));
     assert_eq!(frames(&app, &mut sweeps, &mut untimed, 3), [1; 3]);
     untimed.record(1, Duration::from_millis(1));
     assert_eq!(frames(&app, &mut sweeps, &mut untimed, 1), [2]);
 }
 
-/// Sweeps that have ended do nothing and take no time. If they were measured, the number of sweeps would grow until the
+/// Ended sweeps do nothing and take no time. Measurements of ended sweeps would let the number of sweeps grow until the
 /// mesh changes.
 #[test]
 fn sweeps_that_have_ended_are_not_measured() {

@@ -1,4 +1,4 @@
-//! Vertices that the application moves on the device, as far as the triangles allow.
+//! Moves of vertices on the device, clamped where triangles require it.
 
 use gpu_smooth::{
     GpuError, Mesh, MeshError, Options, SmoothError, Topology,
@@ -10,7 +10,7 @@ use wgpu::BufferUsages as Usage;
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
 use crate::support::transformed;
 
-/// A buffer of targets, and one for the share of the way, which is full of fillers at first.
+/// Buffers of a drag: targets, and numbers with the completed fraction between fillers.
 struct Drag {
     targets: wgpu::Buffer,
     numbers: wgpu::Buffer,
@@ -32,7 +32,7 @@ impl Drag {
         Self { targets, numbers, bound }
     }
 
-    /// Moves toward targets in one frame. Returns the share of the way that was gone.
+    /// Moves toward targets in one frame. Returns the completed fraction of the move.
     fn go(&self, app: &App, to: &[[f64; 2]]) -> f32 {
         let to: Vec<[f32; 2]> = to.iter().map(|p| p.map(|x| x as f32)).collect();
         app.gpu.queue().write_buffer(&self.targets, 0, bytemuck::cast_slice(&to));
@@ -48,13 +48,14 @@ fn rounded(p: [f64; 2]) -> [f64; 2] {
     p.map(|x| f64::from(x as f32))
 }
 
-/// The vertices of the hole of a plate.
+/// Returns the vertices of a plate's hole.
 fn hole(mesh: &Mesh) -> Vec<u32> {
     let topology = Topology::new(mesh).unwrap();
     topology.boundary_loops().into_iter().min_by_key(Vec::len).unwrap()
 }
 
-/// Does the same moves on the host and on the device. The shares must agree to a relative difference of `loss`.
+/// Executes equal moves on the host and on the device. The completed fractions must agree up to a relative
+/// difference of `loss`.
 #[track_caller]
 fn assert_as_on_the_host(
     app: &App,
@@ -124,7 +125,7 @@ fn a_clamped_move_goes_as_far_as_on_the_host() {
             shares.push(assert_as_on_the_host(&app, &mesh, &one, worst, 2e-5));
         }
     }
-    // Some moves go all the way, and some are stopped.
+    // Some moves are completed, and some are stopped.
     assert!(shares.contains(&1.0) && shares.iter().any(|&s| s < 1e-2));
     assert!(shares.iter().all(|&s| s > 0.0), "{shares:?}");
 }
@@ -141,7 +142,7 @@ fn triangles_worse_than_the_bound_do_not_get_worse() {
             shares.push(assert_as_on_the_host(&app, &mesh, &[(v, to)], 1.2, 0.01));
         }
     }
-    // A vertex can go some way toward a better place, and none away from it.
+    // Vertices can move toward better positions, but not toward worse ones.
     assert!(shares.iter().any(|&s| s > 0.05) && shares.iter().any(|&s| s < 1e-5), "{shares:?}");
 }
 
@@ -186,7 +187,7 @@ fn targets_that_are_no_points_and_repeated_vertices_are_taken_as_on_the_host() {
     assert!((after[v as usize][0] - there[0]).abs() < 1e-12, "the last target of v counts");
     assert_eq!(after[w as usize], before[w as usize]);
     assert_eq!(after[unused as usize], [9.0, 9.0]);
-    // A move of no vertices.
+    // A move without vertices.
     assert_eq!(Drag::new(&app, &device_mesh, &[], 8.0).go(&app, &[]), 1.0);
     assert_eq!(app.points(&device_mesh), after);
 }
@@ -219,7 +220,7 @@ fn a_dragged_hole_goes_out_and_home_with_sweeps_between_and_inverts_nothing() {
         let bad = topology::infeasible(&app.points(&device_mesh), &mesh.triangles).unwrap();
         assert!(bad.is_empty(), "{bad:?}");
     }
-    // The edge of the plate stops the hole before it has gone all of the way.
+    // The edge of the plate stops the hole before the move is complete.
     assert!(gone[0] > 0.5 && gone[0] < 1.5 && gone[1].abs() < 1e-6, "{gone:?}");
 }
 

@@ -1,4 +1,4 @@
-//! Encoded sweeps with corrections from coarser levels, whose line search is done on the device.
+//! Encoded sweeps with corrections from coarser levels, whose line search runs on the device.
 
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, OptionError, Options, SmoothError, Smoother, Stopping, Targets,
@@ -15,18 +15,18 @@ fn corrected(metric: Metric) -> Options {
     Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
 }
 
-/// Options for sweeps with the relaxation of corrected ones, but without corrections.
+/// Returns options without corrections, but with the relaxation of corrected sweeps.
 fn alone() -> Options {
     let relaxed = Relaxed { omega: Some(1.3), unrelaxed_sweeps: 0 };
     Options { method: Method::Relaxed(relaxed), ..Options::default() }
 }
 
-/// A mesh displaced by long waves, for which sweeps alone take long.
+/// Makes a mesh displaced by long waves, for which uncorrected sweeps converge slowly.
 fn distorted() -> Mesh {
     distort_smooth(&plate(1200), 0.5)
 }
 
-/// Encodes `count` frames of one sweep each. Returns f after each, and the points in the end.
+/// Executes `count` frames of one sweep each. Returns f after each frame, and the final points.
 fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 2]>) {
     let app = App::new();
     let device_mesh = app.mesh(mesh);
@@ -41,7 +41,7 @@ fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 
     (f, app.points(&device_mesh))
 }
 
-/// The least f that a run on the CPU finds.
+/// Returns the smallest f found by a run on the CPU.
 fn limit(mesh: &Mesh, metric: Metric) -> f64 {
     let options = Options {
         scheme: metric.into(),
@@ -61,7 +61,7 @@ fn corrected_sweeps_are_near_the_limit_after_a_dozen_and_never_raise_f() {
         let limit = limit(&mesh, metric);
         let left = f[14] / limit - 1.0;
         assert!(left < 1e-5, "{metric}: {left} left of {limit}: {f:?}");
-        // f may rise only by the rounding of single precision.
+        // f may rise only by rounding in single precision.
         assert!(f.windows(2).all(|f| f[1] <= f[0] * (1.0 + 2e-7)), "{metric}: {f:?}");
         let end = Mesh { points, ..mesh.clone() };
         assert!(orientations(&end).iter().all(|&sign| sign == 1));
@@ -98,7 +98,7 @@ fn a_tangled_mesh_is_swept_as_without_corrections() {
         });
         assert!(app.objective(&sweeps).inverted > 0);
         ends.push(app.points(&device_mesh));
-        // When the vertex is back, the mesh is corrected again.
+        // After the vertex has returned, the mesh is corrected again.
         vertices.put(&app, v, [x, y]);
         app.submit(|encoder| {
             bound.encode_import(encoder);
@@ -113,7 +113,7 @@ fn a_tangled_mesh_is_swept_as_without_corrections() {
 
 #[test]
 fn corrections_that_gain_nothing_change_no_bit() {
-    // Equilateral triangles, so that neither sweeps nor corrections gain anything.
+    // In a mesh of equilateral triangles, neither sweeps nor corrections gain anything.
     let mesh = lattice(30, 30);
     let (f, points) = frames(&mesh, &corrected(Metric::Imr), 3);
     assert!((f[2] - 1.0).abs() < 1e-6);
@@ -150,7 +150,7 @@ fn vertices_that_are_pinned_or_masked_stay_and_others_are_corrected_around_them(
     }
     let values = app.objective(&sweeps);
     assert!(values.of(Metric::Imr) < after_one && after_one < first && values.inverted == 0);
-    // f is as low as sweeps alone get in the end, with the same vertices held.
+    // f must equal the limit of uncorrected sweeps with equal held vertices.
     let mut alone = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     app.submit(|encoder| alone.encode_sweeps(encoder, 200));
     let end = app.objective(&sweeps).of(Metric::Imr);
@@ -300,7 +300,7 @@ fn encoding_frame_after_frame_allocates_nothing() {
 
 #[test]
 fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
-    // When the mesh is uploaded, elements at one end are a nineteenth as wide as at the other.
+    // At upload, elements at one end are a nineteenth as wide as at the other.
     let mesh = distorted();
     let graded = |&[x, y]: &[f64; 2]| [x * (0.1 + 0.3 * x), y];
     let uploaded = Mesh { points: mesh.points.iter().map(graded).collect(), ..mesh.clone() };

@@ -1,5 +1,5 @@
-//! A Vulkan driver, an OpenGL driver and the CPU engine get the same meshes. `tests/run` installs Mesa's software drivers of
-//! both kinds; these tests fail if one is missing.
+//! Comparison of a Vulkan driver, an OpenGL driver and the CPU engine on equal meshes. `tests/run` installs Mesa's
+//! software drivers of both kinds; without one of them, tests fail.
 
 use std::ops::ControlFlow;
 
@@ -12,7 +12,7 @@ use pollster::block_on;
 use crate::app::bad_plate;
 use crate::support::check;
 
-/// A device of the first adapter of these backends, made with what the library says it needs.
+/// Opens a device of the first adapter of `backends`, with the library's required features and limits.
 fn open(backends: wgpu::Backends) -> Gpu {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
@@ -32,7 +32,7 @@ fn open(backends: wgpu::Backends) -> Gpu {
     gpu
 }
 
-/// The largest distance of a vertex between two results.
+/// Returns the largest distance between positions of a vertex in two results.
 fn apart(a: &Outcome, b: &Outcome) -> f64 {
     let pairs = a.points.iter().zip(&b.points);
     pairs.map(|(a, b)| check::squared_distance(*a, *b).sqrt()).fold(0.0, f64::max)
@@ -70,13 +70,14 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
             let label = format!("{} {method:?} on {name}", options.scheme);
             let (off, apart) = (f(other) / f(&cpu) - 1.0, apart(other, &cpu) / mean_edge);
             assert_eq!(other.sweeps, 8, "{label}");
-            // The largest measured over all metrics: f off by 1.5e-7; 5e-5 edges for `edge`, less for others.
+            // Largest measured differences over all metrics: 1.5e-7 in f; 5e-5 edges for `edge`, less for other
+            // metrics.
             assert!(off.abs() < 1e-6 && apart < 1e-3, "{label}: f off by {off:e}, {apart:e} edges");
         }
     }
 }
 
-/// A policy that lets the run go on on the CPU when the device fails.
+/// A policy that continues a run on the CPU after a failure of the device.
 struct GoesOn;
 
 impl CheckpointPolicy for GoesOn {

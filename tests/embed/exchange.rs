@@ -5,7 +5,7 @@ use gpu_smooth::{Mesh, Options, gpu::Sweeps};
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
 use crate::support::{boundary, f_imr, perturb_random, transformed};
 
-/// A mesh with unused vertices at the front, in the middle and at the end.
+/// Makes a mesh with unused vertices at the front, in the middle and at the end.
 fn with_unused_vertices() -> Mesh {
     let mut mesh = bad_plate(500);
     let places = [0, 300, 502];
@@ -18,7 +18,7 @@ fn with_unused_vertices() -> Mesh {
     mesh
 }
 
-/// The layouts of vertex buffers to try, as `[offset, stride]` in bytes.
+/// Tested layouts of vertex buffers, as `[offset, stride]` in bytes.
 const LAYOUTS: &[[u64; 2]] =
     &[[0, 8], [4, 8], [0, 12], [268, 12], [12, 20], [1020, 20], [260, 256], [0, 1036]];
 
@@ -64,7 +64,7 @@ fn an_import_reads_every_layout_alike() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     for (i, &[offset, stride]) in LAYOUTS.iter().enumerate() {
-        // Each time, all vertices are elsewhere, also those of the boundary.
+        // Each time, all vertices have new positions, including boundary vertices.
         let there = transformed(&mesh, 1.0 + i as f64 / 8.0, [i as f64, -0.5]);
         let vertices = Vertices::new(&app, &there, offset, stride);
         app.submit(|encoder| {
@@ -77,7 +77,7 @@ fn an_import_reads_every_layout_alike() {
                 assert!((x - found).abs() <= 1e-12 * 20.0, "{offset} {stride}: {found} for {x}");
             }
         }
-        // A vertex that no triangle uses stays where the mesh had it.
+        // An unused vertex keeps its position in the mesh.
         assert_eq!(points[300], mesh.points[300]);
     }
 }
@@ -104,7 +104,7 @@ fn an_origin_and_a_scale_are_those_of_the_buffer() {
             assert!((found - expected).abs() < 1e-5, "{found} for {expected}");
         }
     }
-    // An unchanged vertex keeps all digits. A move by 0.01 in the mesh comes back as such.
+    // Unchanged vertices keep all digits. A move by 0.01 in the mesh is exported as a move by 0.01.
     app.submit(|encoder| bound.encode_import(encoder));
     assert_eq!(app.points(&device_mesh), points);
     let v = interior(&mesh)[0];
@@ -118,8 +118,8 @@ fn an_origin_and_a_scale_are_those_of_the_buffer() {
 
 #[test]
 fn vertices_that_the_application_leaves_alone_keep_their_full_precision() {
-    // Far from the origin, the floats of the application's buffer resolve a 30th of an edge. The mesh is perturbed less than
-    // elsewhere, as a buffer is refused if rounding inverts triangles in it.
+    // Far from the origin, the floats of the buffer resolve a 30th of an edge. The mesh is perturbed less than others,
+    // because a buffer is refused if rounding inverts triangles in it.
     let mesh = perturb_random(&plate(700), 0.3, 7);
     let mesh = transformed(&mesh, 4.0, [300_000.0, -200_000.0]);
     let app = App::new();
@@ -142,7 +142,7 @@ fn vertices_that_the_application_leaves_alone_keep_their_full_precision() {
     });
     assert_eq!(alone, exchanged);
 
-    // The mesh as rounded to floats is far worse, so the test would notice lost digits.
+    // Rounded to floats, the mesh is far worse, so the test would detect lost digits.
     let rounded = alone.iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
     let f = |points: Vec<[f64; 2]>| f_imr(&Mesh { points, ..mesh.clone() });
     assert!(f(rounded) > f(alone) + 1e-3);
@@ -189,7 +189,7 @@ fn a_vertex_the_application_moves_is_followed() {
     }
     assert!(f_imr(&taken) > f_imr(&smooth) + 1e-4);
 
-    // The corner stays where it was put, the inner vertex goes back, and the mesh is smooth again around both.
+    // The corner stays at its new position, the inner vertex returns, and the mesh around both becomes smooth.
     let mended = frame(&mut sweeps, 40);
     assert_eq!(mended.points[corner as usize], taken.points[corner as usize]);
     assert_ne!(mended.points[inner as usize], taken.points[inner as usize]);

@@ -1,4 +1,4 @@
-//! Runs as futures: who polls the device, and what happens when a future is dropped.
+//! Runs as futures: polling of the device, and dropped futures.
 
 use std::future::Future;
 use std::ops::ControlFlow;
@@ -14,7 +14,8 @@ use gpu_smooth::{
 
 use crate::app::{App, bad_plate};
 
-/// Polls a future as an application does that polls its device once a frame. Returns the result and the number of frames.
+/// Polls a future like an application that polls its device once per frame. Returns the result and the number of
+/// frames.
 fn drive<F: IntoFuture>(device: &wgpu::Device, future: F) -> (F::Output, u32) {
     let mut future = pin!(future.into_future());
     let mut context = Context::from_waker(Waker::noop());
@@ -34,7 +35,7 @@ fn go_on(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Compares two outcomes, but for their times.
+/// Compares two outcomes except for their times.
 fn assert_same(expected: &Outcome, found: &Outcome) {
     assert_eq!(expected.points, found.points);
     assert_eq!((expected.stop, expected.sweeps), (found.stop, found.sweeps));
@@ -77,7 +78,7 @@ fn a_run_polled_by_the_application_is_the_blocking_run() {
     }
 }
 
-/// A runtime with several threads takes only futures that are `Send`.
+/// A multithreaded runtime accepts only futures that are `Send`.
 #[test]
 fn futures_can_move_between_threads() {
     const fn is_send<T: Send>(_: &T) {}
@@ -93,7 +94,7 @@ fn futures_can_move_between_threads() {
     is_send(&device_mesh.read_points_async());
 }
 
-/// A runtime asks this of a task that it spawns: `Send` and `'static`.
+/// A runtime requires spawned tasks to be `Send` and `'static`.
 #[test]
 fn a_prepared_mesh_that_owns_all_it_needs_is_run_in_another_thread() {
     fn spawn<T: Send + 'static>(
@@ -237,7 +238,7 @@ fn a_dropped_run_leaves_the_device_usable() {
     let expected = expected.unwrap();
     let endless =
         Options { stopping: Stopping::Tolerance(0.0), max_sweeps: u32::MAX, ..Options::default() };
-    // Dropped before the first poll, at its first wait, and later.
+    // Drops before the first poll, at the first wait, and later.
     for polls in [0, 1, 2, 7] {
         let observe = go_on;
         let mut future =

@@ -1,4 +1,4 @@
-//! Meshes in which the application has inverted triangles between two frames.
+//! Meshes in which the application inverts triangles between two frames.
 
 use gpu_smooth::{
     Mesh, Method, Metric, Options, Quality, Topology,
@@ -9,16 +9,16 @@ use gpu_smooth::{
 use crate::app::{App, Vertices, bad_plate, interior};
 use crate::support::{is_ccw, orientations};
 
-/// Where the application moves a vertex, relative to its two neighbors in one triangle.
+/// Displacement of a vertex by the application, relative to the two neighbors in one triangle.
 #[derive(Clone, Copy, Debug)]
 enum Throw {
-    /// Beyond a neighbor, out of its star.
+    /// Past a neighbor, out of the star.
     Out,
-    /// Onto a neighbor: some triangles become flat, two of them degenerate to an edge.
+    /// Onto a neighbor: some triangles become flat, and two of them degenerate to an edge.
     Onto,
-    /// Onto the middle of an edge of its star: one triangle becomes flat.
+    /// Onto the middle of an edge of the star: one triangle becomes flat.
     Flat,
-    /// So far away that areas are large, but still finite in floats.
+    /// So far that areas are large, but still finite in floats.
     Far,
 }
 
@@ -38,8 +38,8 @@ impl Throw {
     }
 }
 
-/// The plate, and the plate with every 50th of its free vertices moved. Coordinates are exact in floats, so that flat
-/// triangles stay flat.
+/// Returns the plate, and the plate with every 50th free vertex displaced. Coordinates are exact in floats, so that
+/// flat triangles stay flat.
 fn broken(throw: Throw) -> (Mesh, Mesh) {
     let mut sound = bad_plate(900);
     let exact = |x: f64| (x * 65536.0).round() / 65536.0;
@@ -52,7 +52,7 @@ fn broken(throw: Throw) -> (Mesh, Mesh) {
     (sound, broken)
 }
 
-/// The mesh with only the triangles that have no vertex in common with a broken triangle.
+/// Returns the mesh without the triangles that share a vertex with a broken triangle.
 fn clean(mesh: &Mesh) -> Mesh {
     let mut at_broken = vec![false; mesh.points.len()];
     for (triangle, _) in mesh.triangles.iter().zip(orientations(mesh)).filter(|(_, o)| *o != 1) {

@@ -1,4 +1,4 @@
-//! Sweeps that end by themselves, as the device judges when.
+//! Sweeps whose end the device determines.
 
 use gpu_smooth::{
     Backend, Mesh, Method, Options, Smoother, Stop, Stopping,
@@ -9,7 +9,7 @@ use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior, plate};
 
-/// An application that does some sweeps in each frame and reads the objective.
+/// An application that encodes sweeps in each frame and reads the objective.
 struct Frames {
     app: App,
     mesh: Mesh,
@@ -27,7 +27,7 @@ impl Frames {
         Self { app, mesh, device_mesh, sweeps, vertices }
     }
 
-    /// Does a frame: imports, sweeps, exports. Returns the objective after it.
+    /// Executes a frame: import, `count` sweeps, export. Returns the objective afterwards.
     fn frame(&mut self, count: u32) -> ObjectiveValues {
         let bound = self.vertices.bind(&self.device_mesh);
         self.app.submit(|encoder| {
@@ -38,7 +38,7 @@ impl Frames {
         self.app.objective(&self.sweeps)
     }
 
-    /// Does frames until the sweeps have ended.
+    /// Executes frames until the sweeps have ended.
     fn end(&mut self) -> ObjectiveValues {
         let ended = (0..300).map(|_| self.frame(7)).find(|values| values.stop().is_some());
         ended.expect("the sweeps end")
@@ -84,7 +84,7 @@ fn sweeps_end_where_a_run_ends_however_they_are_split() {
                     assert!(same, "vertex {v}: {e:?} {f:?}");
                 }
             }
-            // After the end, sweeps do nothing.
+            // After the end, sweeps change nothing.
             assert_eq!(frames.frame(each), found);
             assert_eq!(frames.points(), settled);
         }
@@ -98,7 +98,7 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
     let v = interior(&frames.mesh)[30];
     let settled = frames.points();
 
-    // The application moves a vertex.
+    // Changes by the application: a moved vertex.
     let [x, y] = settled[v as usize];
     frames.vertices.put(&frames.app, v, [x + 1e-3, y]);
     let values = frames.frame(1);
@@ -106,13 +106,13 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
     assert!(frames.end().has_converged());
     assert_ne!(frames.points(), settled);
 
-    // The application pins a vertex, or lets it go.
+    // A pinned or released vertex.
     frames.device_mesh.pin(&[v]).unwrap();
     assert_eq!(frames.app.objective(&frames.sweeps).stop(), None);
     assert_eq!(frames.frame(2).sweeps, 2);
     assert!(frames.end().has_converged());
 
-    // The application moves a vertex toward a target; later the vertex has reached it.
+    // A vertex moved toward a target, and later a vertex that has reached its target.
     let targets = frames.app.buffer(8, Usage::STORAGE | Usage::COPY_DST);
     let share = frames.app.buffer(4, Usage::STORAGE);
     let place = VertexBuffer::new(&targets, 8);
@@ -124,7 +124,7 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
         frames.app.objective(&frames.sweeps).stop()
     };
     assert_eq!(dragged(), None);
-    // Exports without an import, as that would move the vertex back to its place in the buffer.
+    // Exports without an import, which would return the vertex to its position in the buffer.
     let bound = frames.vertices.bind(&frames.device_mesh);
     frames.app.submit(|encoder| bound.encode_export(encoder));
     assert!(frames.end().has_converged());
@@ -162,7 +162,7 @@ fn two_schemes_on_one_mesh_are_each_judged_and_evaluations_in_between_do_not_cou
     assert_eq!(app.objective(&other).sweeps, 0);
     app.submit(|encoder| other.encode_sweeps(encoder, 2));
     assert_eq!(app.objective(&other).sweeps, 2);
-    // Sweeps of another scheme do not count as changes by the application.
+    // Sweeps of another scheme are no changes by the application.
     assert_eq!(app.objective(&sweeps).stop(), Some(Stop::Converged));
 }
 

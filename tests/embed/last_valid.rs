@@ -1,4 +1,4 @@
-//! Frames in which the application has inverted triangles are undone.
+//! Restoration of frames in which the application has inverted triangles.
 
 use gpu_smooth::{Options, gpu::Sweeps, topology};
 
@@ -22,13 +22,14 @@ fn a_mesh_that_the_application_has_tangled_goes_back_to_where_it_was_valid() {
         });
         app.points(&device_mesh)
     };
-    // Valid frames are not changed.
+    // Valid frames stay unchanged.
     let first = frame();
     assert_ne!(first, mesh.points);
     let good = frame();
     assert_ne!(good, first);
 
-    // Moves a vertex of the boundary and one inside far out of their stars, and another by so little that nothing inverts.
+    // Moves a boundary vertex and an inner vertex far out of their stars, and a third vertex so little that no triangle
+    // inverts.
     let boundary = (0..mesh.points.len() as u32).find(|v| !interior(&mesh).contains(v)).unwrap();
     let [u, v] = [interior(&mesh)[50], interior(&mesh)[200]];
     vertices.put(&app, boundary, [5.0, 5.0]);
@@ -36,7 +37,7 @@ fn a_mesh_that_the_application_has_tangled_goes_back_to_where_it_was_valid() {
     let [x, y] = good[v as usize];
     vertices.put(&app, v, [x + 1e-4, y]);
     assert_eq!(frame(), good);
-    // The vertex buffer has gone back too, so that the next frame goes on as if nothing had happened.
+    // The vertex buffer is restored too, so that the next frame continues from valid positions.
     let words = app.read(&vertices.buffer);
     let [x, y] = good[u as usize].map(|x| (x as f32).to_bits());
     assert_eq!(words[vertices.word(u)..vertices.word(u) + 2], [x, y]);
@@ -63,7 +64,7 @@ fn a_mesh_that_was_never_valid_in_a_frame_goes_back_to_where_it_was_uploaded() {
         sweeps.encode_sweeps(encoder, 1);
         last_valid.encode_restore_last_valid(encoder);
     });
-    // Restoring counts as a change of the mesh, too.
+    // A restoration also counts as a change of the mesh.
     assert_eq!(app.objective(&sweeps).stop(), None);
     app.submit(|encoder| bound.encode_export(encoder));
     let words = app.read(&vertices.buffer);

@@ -1,4 +1,4 @@
-//! Devices with low limits, and meshes that are too large for a device.
+//! Devices with low limits, and meshes too large for a device.
 
 use gpu_smooth::{
     Backend, Gpu, GpuError, Mesh, MeshSize, Options, Smoother,
@@ -78,7 +78,8 @@ fn required_limits_are_raised_as_far_as_a_large_mesh_needs() {
     let limits = Gpu::required_limits(Limits::default(), size, &most).unwrap();
     assert_eq!(limits.max_storage_buffer_binding_size, 1_200_000_000);
     assert_eq!(limits.max_buffer_size, 1_200_000_000);
-    // Below the size of a buffer it is bound in parts. Positions that need two bindings take an eighth one.
+    // If a limit is below the size of a buffer, the buffer is bound in parts. Positions in two bindings
+    // need an eighth binding.
     for (bound, bindings) in [(1_199_999_999, 7), (800_000_000, 7), (799_999_999, 8)] {
         let less = Limits { max_storage_buffer_binding_size: bound, ..most.clone() };
         let own = Limits { max_storage_buffers_per_shader_stage: 0, ..Limits::default() };
@@ -136,7 +137,7 @@ fn a_device_with_exactly_the_limits_of_a_vertex_buffer_binds_it() {
     assert_eq!(VertexBuffer::binding_size(0, 8, 0), 8);
 }
 
-/// A device that binds at most 32 KiB at once.
+/// Makes a device that binds at most 32 KiB at once.
 fn small() -> App {
     let limits = least_limits(SIZE);
     App::with_limits(Limits { max_storage_buffer_binding_size: 32 << 10, ..limits }).unwrap()

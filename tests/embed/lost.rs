@@ -1,4 +1,4 @@
-//! A device that is lost during a run, between frames, or before.
+//! Loss of a device during a run, between frames, or before.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -16,7 +16,7 @@ use gpu_smooth::{
 use crate::app::{App, Vertices, bad_plate, gpu_error};
 use crate::support::{SplitMix64, check, f_imr};
 
-/// Runs `work` on another thread, and fails if it takes more than a minute.
+/// Executes `work` on another thread, and fails after a minute without result.
 fn within_a_minute<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     let (sender, receiver) = mpsc::channel();
     let worker = std::thread::spawn(move || sender.send(work()));
@@ -56,13 +56,13 @@ fn a_run_says_that_the_device_was_lost() {
         let error = smoother.run(&endless()).on(&backend).observe(observe).block().unwrap_err();
         assert_lost(&gpu_error(error));
         assert_eq!(calls.load(Ordering::Relaxed), 2);
-        // A later run on the same device fails alike.
+        // A later run on the device fails with an equal error.
         let error = smoother.run(&endless()).on(&backend).observe(observe).block().unwrap_err();
         assert_lost(&gpu_error(error));
     });
 }
 
-/// A policy that lets the run go on on the CPU when the device fails.
+/// A policy that continues a run on the CPU after a failure of the device.
 struct GoesOn {
     interval: Duration,
     told: Vec<(GpuError, u32)>,
@@ -79,7 +79,7 @@ impl CheckpointPolicy for GoesOn {
     }
 }
 
-/// Smooths on a device that another thread destroys after a while.
+/// Smooths on a device that another thread destroys after the duration `after`.
 fn run_with_a_loss(
     smoother: &Smoother<'_>,
     options: &Options,
@@ -104,7 +104,7 @@ fn run_with_a_loss(
     (outcome, policy)
 }
 
-/// The time of a run on a device that is not lost.
+/// Measures the duration of a run without a loss.
 fn time_of_a_run(smoother: &Smoother<'_>, options: &Options) -> Duration {
     let backend = Backend::Gpu(App::new().another_gpu());
     let mut policy = GoesOn { interval: Duration::ZERO, told: Vec::new() };
@@ -119,8 +119,8 @@ fn time_of_a_run(smoother: &Smoother<'_>, options: &Options) -> Duration {
     start.elapsed()
 }
 
-/// Another thread destroys the device at a random moment. The run must end on the CPU with the same quality. The
-/// environment variable ROUNDS is the number of runs.
+/// Another thread destroys the device at a random moment. The run must continue on the CPU and reach an equal
+/// quality. The environment variable ROUNDS is the number of runs.
 #[test]
 fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
     let rounds = std::env::var("ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
@@ -135,7 +135,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
             let base = scheme.base();
             let options = Options { scheme, ..Options::default() };
             let on_cpu = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
-            // A share of the time that a run takes on this machine: on a fast one the run would else be done before.
+            // A fraction of the duration on this machine, because a fast machine would finish before a fixed time.
             let after = time_of_a_run(&smoother, &options).mul_f64(0.8 * random.unit());
             let (outcome, policy) = run_with_a_loss(&smoother, &options, after);
             let f = |o: &Outcome| Quality::of(&o.points, smoother.topology()).unwrap().f(base);
@@ -159,7 +159,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
     assert!(lost.expect("it hangs, or has failed") > rounds / 4);
 }
 
-/// A run goes on from the positions that were last kept in memory.
+/// After a loss, a run continues from the latest positions in memory.
 #[test]
 fn a_run_goes_on_from_what_was_kept() {
     within_a_minute(|| {
@@ -172,7 +172,7 @@ fn a_run_goes_on_from_what_was_kept() {
             let mut policy = GoesOn { interval, told: Vec::new() };
             let mut lost_at = None;
             let mut observe = |progress: &Progress| {
-                // The state of a sweep is kept after the observer is called, so the loss shows one sweep later.
+                // Positions are stored after the call of the observer, so the loss appears one sweep later.
                 if progress.sweep >= 6 && lost_at.is_none() {
                     lost_at = Some(progress.sweep);
                     app.device().destroy();
@@ -198,7 +198,7 @@ fn a_run_goes_on_from_what_was_kept() {
     });
 }
 
-/// A run with work on the host between its sweeps leaves a lost device once, and does not ask for it again.
+/// A run with host stages between its sweeps leaves a lost device once, and does not use it again.
 #[test]
 fn a_run_with_stages_leaves_a_lost_device_once() {
     within_a_minute(|| {
@@ -240,7 +240,7 @@ fn a_future_completes_when_the_device_is_lost() {
     within_a_minute(|| {
         let mesh = bad_plate(500);
         let smoother = Smoother::new(&mesh).unwrap();
-        // The device is lost before the first poll, or between later ones.
+        // The device is lost before the first poll, or between later polls.
         for waited in [0, 1, 5] {
             let app = App::new();
             let backend = Backend::Gpu(app.gpu.clone());
@@ -257,7 +257,7 @@ fn a_future_completes_when_the_device_is_lost() {
                 if let Poll::Ready(outcome) = future.as_mut().poll(&mut context) {
                     break outcome.unwrap_err();
                 }
-                // Polling a lost device may fail, which is for the application to handle.
+                // Polling a lost device may fail, which the application must handle.
                 let _ = app.device().poll(wgpu::PollType::Poll);
                 polls += 1;
             };
@@ -287,7 +287,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 2));
         app.device().destroy();
         app.submit(|encoder| {
-            // Encoding for a lost device succeeds as if it still worked.
+            // Encoding for a lost device succeeds like encoding for a working one.
             bound.encode_import(encoder);
             mask.encode_mask(encoder);
             drag.encode_move(encoder);
@@ -297,7 +297,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
             bound.encode_export(encoder);
         });
         let (device, queue) = (app.device().clone(), app.gpu.queue().clone());
-        // The queue of a lost device is not taken for that of another one.
+        // The queue of a lost device must not be mistaken for that of another device.
         assert!(!matches!(Gpu::new(device, queue), Err(GpuError::Queue)));
         let _ = device_mesh.pin(&[1]);
         judged.restart();

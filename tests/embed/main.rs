@@ -1,7 +1,7 @@
-//! The library inside an application: on its device, in its encoders, on its vertex buffers.
+//! The library inside an application, with the application's device, encoders and vertex buffers.
 //!
-//! Every test makes a device as an application would, and fails if an error that is the library's own to
-//! handle reaches the application's handler; see [`app::App`].
+//! Each test creates a device in the way of an application. A test fails if the application's error
+//! handler receives an error that the library must handle; see [`app::App`].
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,4 +1,4 @@
-//! Objectives written to a buffer of the application, compared with those of the points read back.
+//! Objectives in a buffer of the application, compared with those of the points read back.
 
 use gpu_smooth::{
     Mesh, Metric, Options, Quality, Topology,
@@ -71,7 +71,7 @@ fn several_evaluations_in_one_command_buffer_are_each_of_their_moment() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
-    // More sweeps than the device's history holds.
+    // More sweeps than the history on the device can hold.
     let count = 300;
     let published = readable(&app, WORDS * count);
     app.submit(|encoder| {
@@ -126,7 +126,7 @@ fn triangles_the_application_inverts_are_counted() {
     let vertices = Vertices::usual(&app, &mesh);
     let mut counts = Vec::new();
     for v in interior(&mesh).into_iter().step_by(60) {
-        // Far out of its star.
+        // A position far out of the star.
         vertices.put(&app, v, [-0.4, 2.5]);
         app.submit(|encoder| {
             vertices.bind(&device_mesh).encode_import(encoder);
@@ -141,7 +141,7 @@ fn triangles_the_application_inverts_are_counted() {
     assert!(counts.is_sorted() && counts[0] >= 1 && *counts.last().unwrap() > 20, "{counts:?}");
 }
 
-/// The inverse mean ratio of a triangle, negative if it is inverted.
+/// Returns the inverse mean ratio of a triangle, negative if inverted.
 fn imr(points: &[[f64; 2]], corners: [u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| points[v as usize]);
     let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
@@ -167,7 +167,7 @@ fn the_worst_triangle_is_named() {
     }
     assert!(named.len() > 2);
 
-    // An inverted triangle counts as worse than any other.
+    // Inverted triangles count as worse than all others.
     let vertices = Vertices::usual(&app, &mesh);
     vertices.put(&app, interior(&mesh)[70], [-0.4, 2.5]);
     app.submit(|encoder| vertices.bind(&device_mesh).encode_import(encoder));
@@ -192,7 +192,7 @@ fn equilateral_triangles_are_named_too() {
 
 #[test]
 fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
-    // At this place, single precision resolves a hundredth of an edge.
+    // At these coordinates, single precision resolves a hundredth of an edge.
     let mesh = transformed(&bad_plate(600), 0.02, [400.0, -300.0]);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
@@ -222,17 +222,18 @@ fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
             let exact = quality(&mesh, &points);
             for &metric in Metric::ALL {
                 let (found, f) = (f64::from(found.of(metric)), exact.f(metric));
-                // Metrics of size depend on the mean area of the mesh as it was uploaded, others on the shape alone.
+                // Metrics of size depend on the mean area at upload, other metrics on the shape alone.
                 let bound = if metric.properties().scale_invariant { 1e-5 } else { 1e-2 };
                 assert!((found / f - 1.0).abs() < bound, "{metric}: {found} for {f}");
             }
             assert!((f64::from(found.worst_imr) / exact.worst_imr - 1.0).abs() < 1e-3);
-            // The positions on the device have more digits than the floats in the buffer.
+            // Positions on the device have more digits than the floats in the buffer.
             let own = app.objective(&sweeps);
             let off = |metric| (found.of(metric) / own.of(metric) - 1.0).abs();
             assert!(off(Metric::Edge) > 3e-5, "{found:?} {own:?}");
         }
-        // A vertex is moved in the buffer only: what is drawn has an inverted triangle, the mesh on the device has none.
+        // A vertex is moved in the buffer only. The drawn mesh then has an inverted triangle, unlike the mesh on the
+        // device.
         let v = interior(&mesh)[50];
         let [x, y] = [0, 1].map(|i| (points[v as usize][i] - origin[i]) * scale);
         vertices.put(&app, v, [x + 2.0 * scale, y]);

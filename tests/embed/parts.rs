@@ -1,5 +1,5 @@
-//! Meshes whose buffers are larger than what a device binds at once. They are bound part by part, and smoothed to the same
-//! bits as when bound whole.
+//! Meshes whose buffers exceed the device's largest binding. Bound in parts, they must be smoothed to the bits of
+//! unlimited bindings.
 
 use std::ops::ControlFlow;
 
@@ -13,10 +13,10 @@ use wgpu::Limits;
 use crate::app::{App, Vertices, adapter, bad_plate, gpu_error, least_limits};
 use crate::support::lattice;
 
-/// How many bytes the small device binds at once.
+/// Largest binding of the small device, in bytes.
 const BOUND: u64 = 89 << 8;
 
-/// A mesh whose positions take two bindings on the small device, and its rings and triangles three each.
+/// Makes a mesh whose positions need two bindings on the small device, and its rings and triangles three each.
 fn mesh() -> Mesh {
     bad_plate(2400)
 }
@@ -25,7 +25,7 @@ fn size(mesh: &Mesh) -> MeshSize {
     MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() }
 }
 
-/// A device that binds each buffer of the mesh whole, and one that binds them in parts.
+/// Opens a device that binds each buffer of the mesh as a whole, and a small device that needs parts.
 fn devices(mesh: &Mesh) -> [App; 2] {
     let most = Limits { max_storage_buffer_binding_size: BOUND, ..adapter().limits() };
     let own = Limits::downlevel_webgl2_defaults();
@@ -41,7 +41,7 @@ fn run(app: &App, mesh: &Mesh, options: &Options) -> Outcome {
     Smoother::new(mesh).unwrap().run(options).on(&backend).observe(observe).block().unwrap()
 }
 
-/// The base objective before the first sweep and after each.
+/// Returns the history of f by `metric`, starting before the first sweep.
 fn f(outcome: &Outcome, metric: Metric) -> Vec<f64> {
     outcome.history.iter().map(|objectives| objectives.of(metric).unwrap()).collect()
 }
@@ -59,7 +59,7 @@ fn a_run_is_the_same_part_by_part() {
     };
     let names = Metric::ALL.iter().map(|metric| metric.name());
     let alone = names.map(sweeps);
-    // The best sweep of these two schemes is not the last.
+    // In these two schemes, the best sweep is not the last.
     let others = ["edge+imr", "imr+area"].map(sweeps);
     for options in alone.chain(others) {
         let [whole, parts] = devices.each_ref().map(|app| run(app, &mesh, &options));
@@ -88,14 +88,14 @@ fn an_application_gets_the_same_results_part_by_part() {
             [4, 8].map(|bytes| app.buffer(bytes * mesh.points.len() as u64, usage));
         app.gpu.queue().write_buffer(&mask, 0, bytemuck::cast_slice(&words));
         let mask = device_mesh.bind_mask(&mask, 0).unwrap();
-        // All vertices that are dragged go toward one place, until a triangle stops them.
+        // All dragged vertices move toward a common point, until triangles stop them.
         let to = vec![[1.0f32, 1.0]; mesh.points.len()];
         app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&to));
         let share = app.buffer(4, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
         let place = VertexBuffer::new(&targets, 8);
         let moved: Vec<u32> = (0..mesh.points.len() as u32).step_by(41).collect();
         let drag = device_mesh.bind_move(&moved, &place, 1e4, (&share, 0)).unwrap();
-        // An import takes over a corner of the plate that has moved.
+        // An import applies the move of a plate's corner.
         vertices.put(&app, 0, [-0.125, -0.25]);
         let last_valid = device_mesh.keep_last_valid().unwrap();
         let all: Vec<u32> = (0..mesh.points.len() as u32).collect();
@@ -113,7 +113,7 @@ fn an_application_gets_the_same_results_part_by_part() {
             bound.encode_export(encoder);
         });
         let before = app.points(&device_mesh);
-        // A vertex is moved out of the plate, and restored.
+        // A vertex is moved out of the plate and restored.
         vertices.put(&app, 300, [9.0, 9.0]);
         app.submit(|encoder| {
             bound.encode_import(encoder);
@@ -121,7 +121,8 @@ fn an_application_gets_the_same_results_part_by_part() {
             bound.encode_export(encoder);
         });
         assert!(app.points(&device_mesh) == before);
-        // The same vertex is moved out again, and untangled. A corner is moved where untangling cannot mend it.
+        // The vertex is moved out again, and the mesh is untangled. A corner is moved to a position that untangling
+        // cannot repair.
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
         vertices.put(&app, 300, [9.0, 9.0]);
         vertices.put(&app, 0, [2.0, 1.5]);
@@ -142,7 +143,7 @@ fn an_application_gets_the_same_results_part_by_part() {
 
 #[test]
 fn a_mesh_that_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
-    // A mesh whose positions would take three bindings.
+    // A mesh whose positions would need three bindings.
     let large = lattice(53, 53);
     let [_, app] = devices(&mesh());
     let error = app.gpu.check_size(size(&large)).unwrap_err();
@@ -151,7 +152,7 @@ fn a_mesh_that_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated(
          but the device's max_storage_buffer_binding_size is {BOUND}"
     );
     assert_eq!(error.to_string(), text);
-    // Counts allocations after a poll, in which the device frees what it no longer needs.
+    // Counts allocations after a poll, in which the device frees unused memory.
     let made = || {
         app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
         app.device().generate_allocator_report().map(|report| report.allocations.len())
@@ -208,7 +209,7 @@ fn corrections_are_the_same_part_by_part() {
 
 #[test]
 fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
-    // The only coarse level has some 80 unknowns: their inverse matrix is more than the device binds.
+    // The only coarse level has some 80 unknowns, whose inverse matrix exceeds a binding of the device.
     let mesh = bad_plate(870);
     let [large, small] = devices(&self::mesh());
     let auto = Options::default();
@@ -234,7 +235,7 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
 
 #[test]
 fn encoded_corrections_are_the_same_part_by_part() {
-    // For `mesh()`, the vectors of the levels would be more than the small device binds, so the mesh is smaller.
+    // For `mesh()`, the vectors of the levels would exceed a binding of the small device, so the mesh is smaller.
     let mesh = bad_plate(1500);
     let points = devices(&mesh).each_ref().map(|app| {
         let device_mesh = app.mesh(&mesh);

@@ -1,4 +1,4 @@
-//! Encoding into a compute pass of the application.
+//! Encoding into compute passes of the application.
 
 use gpu_smooth::{
     Options,
@@ -9,7 +9,7 @@ use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior};
 
-/// A kernel of the application that doubles each word of a buffer.
+/// Makes an application's kernel that doubles each word of a buffer.
 fn doubling(app: &App, buffer: &wgpu::Buffer) -> (wgpu::ComputePipeline, wgpu::BindGroup) {
     let wgsl = "@group(0) @binding(0) var<storage, read_write> words: array<f32>;
         @compute @workgroup_size(64) fn double(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -57,7 +57,8 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
         let mask = app.buffer(4 * mesh.points.len() as u64, Usage::STORAGE);
         let mask = device_mesh.bind_mask(&mask, 0).unwrap();
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
-        // Kernels of the application: one doubles the targets before, the other doubles the exported vertices after.
+        // Kernels of the application: one doubles the targets in advance, the other the exported vertices
+        // afterwards.
         let before = doubling(&app, &targets);
         let after = doubling(&app, &vertices.buffer);
         let own = |pass: &mut wgpu::ComputePass<'_>, (pipeline, bound): &(_, _), groups| {

@@ -1,4 +1,4 @@
-//! Vertices that the application pins, masks and lets go.
+//! Vertices that the application pins, masks and releases.
 
 use gpu_smooth::{
     GpuError, Mesh, MeshError, Options, SmoothError,
@@ -31,7 +31,7 @@ impl Held {
         self.app.points(&self.device_mesh)
     }
 
-    /// Which vertices three sweeps move.
+    /// Returns the vertices that three sweeps move.
     fn moved(&mut self) -> Vec<u32> {
         let before = self.points();
         self.app.submit(|encoder| self.sweeps.encode_sweeps(encoder, 3));
@@ -44,7 +44,7 @@ impl Held {
 fn set_pinned_holds_and_releases() {
     let mut held = Held::new(bad_plate(600));
     let free = interior(&held.mesh);
-    // Every third free vertex, with the first and the last among them.
+    // Every third free vertex, including the first and the last.
     let (third, others): (Vec<u32>, Vec<u32>) = free.iter().partition(|&v| v % 3 == 0);
     let within = |part: &[u32], whole: &[u32]| part.iter().all(|v| whole.contains(v));
 
@@ -90,7 +90,7 @@ fn pins_take_effect_in_command_buffers_submitted_later() {
     assert_eq!(held.points(), before);
 }
 
-/// Unpinning once let fixed vertices of the mesh go.
+/// A former defect: unpinning released fixed vertices of the mesh.
 #[test]
 fn fixed_vertices_of_the_mesh_stay_whatever_is_pinned() {
     let mesh = bad_plate(600);
@@ -117,7 +117,7 @@ fn pins_come_and_go_one_by_one() {
     assert!(held.moved().iter().all(|v| others.contains(v)));
     held.device_mesh.pin(others).unwrap();
     assert_eq!(held.moved(), []);
-    // Each vertex is named twice: the second time it is no longer pinned.
+    // Each vertex is listed twice, and already unpinned at the second time.
     for v in [some[0], some[1], others[7]] {
         held.device_mesh.unpin(&[v, v]).unwrap();
     }
@@ -128,7 +128,7 @@ fn pins_come_and_go_one_by_one() {
     assert!(held.moved().len() > free.len() / 2);
 }
 
-/// A mask buffer with a word for each vertex, after 12 bytes that do not belong to it.
+/// Makes a mask buffer with a word for each vertex, after 12 bytes of other data.
 fn mask(held: &Held, which: impl Fn(u32) -> bool) -> wgpu::Buffer {
     let words: Vec<u32> =
         (0..held.mesh.points.len() as u32).map(|v| 7 * u32::from(which(v))).collect();
@@ -145,7 +145,7 @@ fn a_mask_of_the_application_holds_vertices_beside_pins() {
     let mut held = Held::new(Mesh { fixed: vec![free[3]], ..mesh });
     let buffer = mask(&held, |v| v % 2 == 0);
     let bound = held.device_mesh.bind_mask(&buffer, 12).unwrap();
-    // The mask applies only once it is encoded.
+    // The mask takes effect once it is encoded.
     assert!(held.moved().iter().any(|v| v % 2 == 0));
     held.app.submit(|encoder| bound.encode_mask(encoder));
     let moved = held.moved();

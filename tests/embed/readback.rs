@@ -1,4 +1,4 @@
-//! Buffers that are read in each frame without waiting.
+//! Buffers read in each frame without waiting.
 
 use gpu_smooth::{
     GpuError, Options,
@@ -59,7 +59,7 @@ fn a_device_that_is_behind_gets_no_more_copies_and_nothing_waits() {
         app.gpu.queue().write_buffer(&buffer, 0, &number.to_le_bytes());
         app.submit(|encoder| readback.encode_readback(encoder));
     };
-    // Nobody polls: the first three are under way.
+    // Without polls, the first three readbacks stay under way.
     (0..10).for_each(|_| frame(&mut readback));
     wait(&app);
     let found = readback.latest().unwrap().map(<[u32]>::to_vec);

@@ -1,5 +1,5 @@
-//! What the library refuses, and the messages. What wgpu itself refuses on the way must not reach the application's error
-//! handler, which [`App`] checks when it is dropped.
+//! Refused requests and their messages. Errors that wgpu reports during a refused call must not reach the application's
+//! error handler, which [`App`] checks when dropped.
 
 use gpu_smooth::Goal;
 use gpu_smooth::{
@@ -13,7 +13,7 @@ use wgpu::BufferUsages as Usage;
 use crate::app::{App, Vertices, bad_plate};
 use crate::support::{lattice, orientations, transformed};
 
-/// Checks the message for a vertex buffer that is refused. The mesh is a lattice of 36 vertices.
+/// Checks the message for a refused vertex buffer. The mesh is a lattice of 36 vertices.
 #[track_caller]
 fn assert_place_refused(bytes: u64, usage: Usage, offset: u64, stride: u64, text: &str) {
     let app = App::new();
@@ -34,7 +34,7 @@ fn a_buffer_without_storage_is_refused() {
 
 #[test]
 fn a_buffer_too_small_is_refused() {
-    // Needed: 35 strides, and the x and y of the last vertex.
+    // Required: 35 strides, plus x and y of the last vertex.
     assert_place_refused(
         12 * 35 + 4,
         Usage::STORAGE,
@@ -77,7 +77,7 @@ fn a_stride_that_fits_no_vertex_is_refused() {
     }
 }
 
-/// Elements are smaller than the steps of an f32 where the mesh is, so rounding would invert triangles.
+/// At these coordinates, elements are smaller than the resolution of f32, so rounding would invert triangles.
 #[test]
 fn coordinates_that_single_precision_tangles_are_refused_with_an_origin() {
     let app = App::new();
@@ -103,7 +103,7 @@ fn coordinates_that_single_precision_tangles_are_refused_with_an_origin() {
     }
 }
 
-/// Checks the message for a buffer for objectives that is refused.
+/// Checks the message for a refused buffer for objectives.
 #[track_caller]
 fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
     let app = App::new();
@@ -149,19 +149,19 @@ fn buffers_and_meshes_of_another_device_are_refused() {
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
 }
 
-/// wgpu reports errors of such a queue to the handler of the queue's own device. No error scope of the other device catches
-/// them.
+/// wgpu reports errors of a foreign queue to the handler of that queue's device. Error scopes of the other device do
+/// not catch them.
 #[test]
 fn a_queue_of_another_device_is_refused() {
     let (app, other) = (App::new(), App::new());
     let refused = |app: &App, other: &App| {
-        // Making a device clears a buffer. While the device is busy with that, the queue cannot be told to be another's.
+        // Creating a device clears a buffer. Until the device has finished, a foreign queue cannot be detected.
         app.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
         let error = Gpu::new(app.device().clone(), other.gpu.queue().clone()).err().unwrap();
         assert!(matches!(error, GpuError::Queue), "{error:?}");
     };
     refused(&app, &other);
-    // One of the devices has done work, the other has not.
+    // One device has executed commands, the other none.
     let mesh = bad_plate(300);
     app.points(&app.mesh(&mesh));
     refused(&app, &other);
@@ -271,7 +271,7 @@ fn options_out_of_range_are_refused() {
 #[test]
 fn errors_of_the_application_itself_still_reach_its_handler() {
     let app = App::new();
-    // The library's error scopes must have ended with its calls.
+    // Error scopes of the library must have ended with its calls.
     let _ = app.mesh(&lattice(5, 5));
     let too_large = app.device().limits().max_buffer_size + 4;
     let _ = app.buffer(too_large, Usage::STORAGE);

@@ -1,4 +1,4 @@
-//! Encoded sweeps give the same result as a run, however they are split and interleaved.
+//! Encoded sweeps give the result of a run, however they are divided and interleaved.
 
 use gpu_smooth::{
     Backend, Mesh, Method, Options, Smoother, Stopping,
@@ -15,7 +15,7 @@ fn options(scheme: &str) -> Options {
     Options { scheme: scheme.parse().unwrap(), method, ..Options::default() }
 }
 
-/// Runs `sweeps` sweeps on the GPU. Returns the best points, and the number of the sweep that reached them.
+/// Runs `sweeps` sweeps on the GPU. Returns the best points, and the number of the sweep that produced them.
 fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
@@ -26,15 +26,15 @@ fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     (outcome.points, outcome.best_sweep)
 }
 
-/// The mesh perturbed until a triangle is beyond the shape guard of every metric. Otherwise a run would guard against the
-/// worst triangle of its mesh, which encoded sweeps do not, as an application's mesh may change.
+/// Returns the mesh, perturbed until a triangle exceeds the shape guards of all metrics. Below the guard of a metric, a
+/// run would use the worst triangle of its mesh as the guard, unlike encoded sweeps, whose mesh may change.
 fn flattened(mesh: &Mesh) -> Mesh {
     let mesh = perturb_random(mesh, 1.0, 1);
     assert!(crate::support::worst_imr(&mesh) > 30.0);
     mesh
 }
 
-/// Checks that vertices are the same: bit by bit where they have moved, to the device's 48 bits where not.
+/// Checks that vertices agree: moved ones bit by bit, others to the 48 bits of the device.
 fn assert_same(name: &str, mesh: &Mesh, expected: &[[f64; 2]], found: &[[f64; 2]]) {
     let mut moved = 0;
     for (v, (e, f)) in expected.iter().zip(found).enumerate() {
@@ -76,7 +76,7 @@ fn encoded_sweeps_are_those_of_a_run() {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
         let mut encoded = Sweeps::new(&device_mesh, &options).unwrap();
-        // Three calls in one command buffer, one of them with no sweeps; the rest in other command buffers.
+        // Three calls in one command buffer, one of them without sweeps; the rest in other command buffers.
         app.submit(|encoder| [1, 0, 2].into_iter().for_each(|n| encoded.encode_sweeps(encoder, n)));
         app.submit(|encoder| encoded.encode_sweeps(encoder, 1));
         app.submit(|encoder| encoded.encode_sweeps(encoder, sweeps - 4));
@@ -111,7 +111,7 @@ fn two_meshes_and_two_schemes_in_one_encoder_do_as_alone() {
 fn two_schemes_take_turns_on_one_mesh() {
     let mesh = bad_plate(700);
     let app = App::new();
-    // One submission for everything, and one for each call.
+    // A single submission for all calls, and a submission per call.
     let [together, apart] = [true, false].map(|together| {
         let device_mesh = app.mesh(&mesh);
         let bind = |scheme| Sweeps::new(&device_mesh, &options(scheme)).unwrap();
@@ -138,7 +138,7 @@ fn a_restarted_scheme_starts_with_plain_sweeps_again() {
     let options = options("imr+rms");
     let relaxed = Relaxed { omega: Some(1.6), ..Relaxed::default() };
     let options = Options { method: Method::Relaxed(relaxed), ..options };
-    // Seven sweeps, and then seven more: after a restart, by newly made sweeps, or by going on.
+    // Seven sweeps, then seven more: after a restart, with new sweeps, or continued.
     let [restarted, anew, on] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();

@@ -1,4 +1,4 @@
-//! Targets for a mesh on an application's device.
+//! Targets of a mesh on an application's device.
 
 use gpu_smooth::{
     Backend, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother,
@@ -9,7 +9,7 @@ use gpu_smooth::{
 
 use crate::app::{App, bad_plate};
 
-/// Target sizes that grow threefold across the mesh.
+/// Returns target sizes that triple across the mesh.
 fn growing(mesh: &Mesh) -> Targets {
     let across = |f: fn(f64, f64) -> f64, start| mesh.points.iter().map(|p| p[0]).fold(start, f);
     let (low, high) = (across(f64::min, f64::INFINITY), across(f64::max, f64::NEG_INFINITY));
@@ -48,7 +48,7 @@ fn encoded_sweeps_to_targets_are_those_of_a_run() {
     let expected = smoother.f(Metric::SoftSize, &found).unwrap();
     assert!((f / expected - 1.0).abs() < 1e-5, "{f} {expected}");
 
-    // Without targets the same sweeps lead elsewhere.
+    // Without targets, equal sweeps lead to other positions.
     let plain = DeviceMesh::new(&app.gpu, &mesh).unwrap();
     let mut sweeps = Sweeps::new(&plain, &options).unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 9));
@@ -77,12 +77,12 @@ fn targets_that_do_not_fit_are_refused() {
     );
 }
 
-/// What a smoother has prepared is not prepared again: with targets, and where fixed vertices are laid out in another way.
+/// A smoother's preparation is reused, both with targets and with fixed vertices, which have another layout.
 #[test]
 fn a_mesh_from_a_smoother_is_swept_to_the_same_bits() {
     let app = App::new();
     let mut mesh = bad_plate(800);
-    // A vertex that no triangle uses.
+    // An unused vertex.
     mesh.points.push([0.3, 0.4]);
     let targets = growing(&mesh);
     let inside = Smoother::new(&mesh).unwrap().topology().free().iter().position(|&free| free);

@@ -1,4 +1,4 @@
-//! Times of kernels, as the device measures them.
+//! Times of kernels, measured by the device.
 
 use std::collections::BTreeMap;
 use std::future::Future;
@@ -16,7 +16,7 @@ use gpu_smooth::wgpu;
 
 use crate::app::{App, Vertices, bad_plate};
 
-/// Does a frame of import, sweeps, objective and export with timestamps.
+/// Executes a frame of import, sweeps, objective and export with timestamps.
 fn timed_frame(app: &App, mesh: &Mesh, timestamps: &mut Timestamps, count: u32) -> Vec<Span> {
     let device_mesh = app.mesh(mesh);
     let options = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
@@ -51,7 +51,7 @@ fn every_kernel_is_timed_in_the_order_of_encoding() {
     assert_eq!(found, expected);
 
     assert_eq!(spans[0].start, 0.0);
-    // Not a test of speed: a working device takes some time, but not minutes.
+    // Not a test of speed: a working device needs some time, but not minutes.
     let sum: f64 = spans.iter().map(|span| span.nanoseconds).sum();
     assert!(sum > 1e3 && sum < 60e9, "{sum} ns");
     let mut by_metric = BTreeMap::new();
@@ -69,7 +69,7 @@ fn more_kernels_than_a_query_set_holds_are_timed() {
     let (app, mesh) = (App::with_timestamps(), bad_plate(200));
     let colors = Smoother::new(&mesh).unwrap().colors();
     let mut timestamps = Timestamps::new(&app.gpu).unwrap();
-    // The timestamps can be used again, for fewer and for more kernels.
+    // Timestamps can be reused, for fewer and for more kernels.
     for count in [600, 2, 900] {
         let spans = timed_frame(&app, &mesh, &mut timestamps, count);
         assert_eq!(spans.len(), count as usize * colors + 5);
@@ -92,7 +92,7 @@ fn timing_changes_nothing_else() {
             }
             let mut timed = timestamps.time(encoder);
             sweeps.encode_sweeps(&mut timed, 9);
-            // A call of the application's own in between: `timed` dereferences to the encoder.
+            // A call of the application in between: `timed` dereferences to the encoder.
             timed.push_debug_group("own");
             timed.pop_debug_group();
             if case == 1 {

@@ -1,4 +1,4 @@
-//! A mesh that the application has tangled is untangled on the device, within some frames.
+//! Untangling on the device of a mesh that the application has tangled, within some frames.
 
 use gpu_smooth::{
     Mesh, Options, Targets,
@@ -8,7 +8,7 @@ use gpu_smooth::{
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
 use crate::support::{SplitMix64, orientations};
 
-/// The number of triangles that are inverted or flat, by exact predicates.
+/// Counts the inverted or flat triangles, by exact predicates.
 fn bad(mesh: &Mesh, points: &[[f64; 2]]) -> usize {
     let mesh = Mesh { points: points.to_vec(), ..mesh.clone() };
     orientations(&mesh).into_iter().filter(|&sign| sign != 1).count()
@@ -41,7 +41,7 @@ impl Frames {
         Self { app, mesh, vertices, bound, untangling, sweeps, device_mesh }
     }
 
-    /// Does a frame of `untangling` untangling sweeps and `sweeps` ordinary ones.
+    /// Executes a frame with `untangling` untangling sweeps and `sweeps` ordinary sweeps.
     fn frame(&mut self, untangling: u32, sweeps: u32) -> ObjectiveValues {
         let Self { app, bound, .. } = self;
         app.submit(|encoder| {
@@ -53,13 +53,14 @@ impl Frames {
         app.objective(&self.sweeps)
     }
 
-    /// Does frames, of five untangling sweeps and three others, until nothing is inverted. Returns their number.
+    /// Executes frames with five untangling and three ordinary sweeps, until no triangle is inverted. Returns the
+    /// number of frames.
     fn frames_until_valid(&mut self) -> usize {
         let valid = (1..100).find(|_| self.frame(5, 3).inverted == 0);
         valid.unwrap_or_else(|| panic!("{} stay inverted", bad(&self.mesh, &self.points())))
     }
 
-    /// The mesh with its vertices as they are on the device.
+    /// Returns the mesh with its current positions on the device.
     fn as_it_is(&self) -> Mesh {
         Mesh { points: self.points(), ..self.mesh.clone() }
     }
@@ -73,8 +74,8 @@ impl Frames {
     }
 }
 
-/// A point beyond the edge opposite to `v` in one of its triangles. It is `share` of the way from `v` to the middle of the
-/// edge farther than this.
+/// Returns a point beyond the edge opposite to `v` in one of its triangles. The distance to the middle of the edge is
+/// the fraction `share` of the distance from `v` to the middle.
 fn beyond(mesh: &Mesh, v: u32, share: f64) -> [f64; 2] {
     let [mut a, mut b, mut c] = *mesh.triangles.iter().find(|t| t.contains(&v)).unwrap();
     while a != v {
@@ -145,7 +146,7 @@ fn untangled_in_every_frame_of_a_drag_a_mesh_is_valid_again_when_it_can_be() {
         }
         inverted.push(frames.frame(5, 3).inverted);
     }
-    // When it is farthest away, the hole is partly outside of the plate.
+    // At its largest displacement, the hole is partly outside of the plate.
     assert!(inverted[19] > 10 && inverted[..5] == [0; 5], "{inverted:?}");
     assert!(inverted[36..] == [0; 4], "{inverted:?}");
     let words = frames.app.read(&frames.vertices.buffer);
@@ -196,7 +197,7 @@ fn a_valid_mesh_keeps_every_bit_and_only_vertices_near_inverted_triangles_move()
     let before = frames.points();
     assert_eq!(frames.frame(20, 0).inverted, 0);
     assert_eq!(frames.points(), before);
-    // Untangling a valid mesh changes nothing: sweeps that have ended stay ended.
+    // Untangling leaves a valid mesh unchanged, so sweeps that have ended do not restart.
     let options = Options { max_sweeps: 1, ..Options::default() };
     let mut judged = Sweeps::until_converged(&frames.device_mesh, &options).unwrap();
     frames.app.submit(|encoder| judged.encode_sweeps(encoder, 1));
@@ -214,7 +215,7 @@ fn a_valid_mesh_keeps_every_bit_and_only_vertices_near_inverted_triangles_move()
     let moved = |v: u32| now[v as usize] != good.points[v as usize];
     let count = interior(&good).into_iter().filter(|&v| moved(v)).count();
     assert!(moved(v) && count < 60, "{count} vertices moved");
-    // Once valid, the mesh is left alone. The next tangle wakes only vertices near it.
+    // A valid mesh is left unchanged. A later tangle wakes only vertices nearby.
     frames.frame(5, 0);
     assert_eq!(frames.points(), now);
     let other = *interior(&good).last().unwrap();
@@ -231,7 +232,7 @@ fn held_vertices_stay_and_tangles_beyond_repair_move_nothing() {
     let mut frames = Frames::new(plate(600));
     let good = frames.as_it_is();
     let v = interior(&good)[100];
-    // The neighbors of a pinned vertex move away to make its triangles valid.
+    // The neighbors of a pinned vertex move away until its triangles are valid.
     frames.device_mesh.pin(&[v]).unwrap();
     frames.put(v, beyond(&good, v, 0.2));
     frames.frame(0, 0);
@@ -239,7 +240,7 @@ fn held_vertices_stay_and_tangles_beyond_repair_move_nothing() {
     frames.frames_until_valid();
     assert_eq!(frames.points()[v as usize], held);
 
-    // If the neighbors are pinned too, nothing can be mended and nothing moves.
+    // If the neighbors are pinned too, no triangle can be repaired and no vertex moves.
     let all: Vec<u32> = (0..good.points.len() as u32).collect();
     let ring: Vec<u32> =
         good.triangles.iter().filter(|t| t.contains(&v)).flatten().copied().collect();

@@ -1,6 +1,6 @@
-//! Simulates a compiler that takes floats for real numbers. It reads functions of a kernel as naga parses them, brings every
-//! sum to its simplest form, and evaluates that in any order. It cannot look into what passes through `opaque`, an exclusive
-//! or with a zero whose value it does not know.
+//! Simulation of a compiler that treats floats as real numbers. The compiler reads functions of a kernel as parsed by
+//! naga, simplifies each sum, and evaluates sums in any order. `opaque`, an exclusive or with an unknown zero, prevents
+//! simplification.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,31 +12,31 @@ use naga::{
 
 use crate::support::SplitMix64;
 
-/// A sum of products: the coefficient of each product, which is a list of atoms by number.
+/// A sum of products. Each product is a list of atoms, by index, with a coefficient.
 type Sum = BTreeMap<Vec<usize>, f64>;
 
-/// A factor that the simulated compiler cannot take apart.
+/// A factor that the simulated compiler cannot simplify.
 #[derive(Clone, Debug, PartialEq)]
 enum Atom {
-    /// An argument, or a number in a buffer.
+    /// A function argument, or a buffer element.
     Input(String),
-    /// A rounded sum behind `opaque`.
+    /// A rounded sum passed through `opaque`.
     Opaque(Sum),
 }
 
 #[derive(Clone, Debug)]
 enum Value {
     Floats(Vec<Sum>),
-    /// The bits of floats. `hidden` means after the exclusive or with the zero that is known at run time only.
+    /// Bits of floats. `hidden` is true after the exclusive or with the zero known only at run time.
     Bits {
         floats: Vec<Sum>,
         hidden: bool,
     },
-    /// An integer or a place in memory, as text.
+    /// An integer or a memory location, as text.
     Word(String),
 }
 
-/// The simplest form of what a function of a kernel returns.
+/// The simplified results of a kernel's function.
 pub(crate) struct Program {
     results: Vec<Sum>,
     atoms: Vec<Atom>,
@@ -65,7 +65,7 @@ impl Program {
         Self { results, atoms: reader.atoms }
     }
 
-    /// Evaluates the results, in another random order at each call.
+    /// Evaluates the results, in a new random order at each call.
     pub(crate) fn evaluate(&self, input: &dyn Fn(&str) -> f32, rng: &mut SplitMix64) -> Vec<f32> {
         let mut known = HashMap::new();
         self.results.iter().map(|sum| self.sum(sum, input, rng, &mut known)).collect()
@@ -83,7 +83,7 @@ impl Program {
             .map(|(atoms, &coefficient)| {
                 let factors = atoms.iter().map(|&atom| self.atom(atom, input, rng, known));
                 let product = factors.fold(coefficient, |product, x| product * f64::from(x));
-                // The product may be rounded by itself, or fused with the addition.
+                // The product may be rounded separately, or fused with the addition.
                 if rng.below(2) == 0 { f64::from(product as f32) } else { product }
             })
             .collect();
@@ -114,7 +114,7 @@ impl Program {
     }
 }
 
-/// Reads a function: follows calls, and accepts expressions without branches.
+/// Parser of a function, which follows calls and accepts expressions without branches.
 struct Reader<'m> {
     module: &'m Module,
     info: &'m ModuleInfo,

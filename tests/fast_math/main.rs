@@ -1,5 +1,5 @@
-//! Pairs of floats must keep their digits under a compiler that takes floats for real numbers, as Metal's does by
-//! default: it reorders sums, cancels terms and fuses products with additions.
+//! Pairs of floats must keep their digits under compilers that treat floats as real numbers, like Metal's by default:
+//! such compilers reorder sums, cancel terms and fuse products with additions.
 
 #[allow(dead_code, unreachable_pub)]
 #[path = "../support/rng.rs"]
@@ -11,13 +11,14 @@ use compiler::Program;
 use gpu_smooth::{Metric, gpu::Kernel, options::Derivatives};
 use support::SplitMix64;
 
-/// Values by the names of a function's arguments.
+/// Values of a function's arguments, by name.
 type Inputs = Vec<(&'static str, f32)>;
 
-/// Computes the error of results, in units of what rounding may lose. Takes the arguments by name, and the results.
+/// A function that computes the error of results in units of the allowed rounding error. The parameters are a lookup of
+/// arguments by name, and the results.
 type ErrorOf = fn(&dyn Fn(&str) -> f64, &[f64]) -> f64;
 
-/// A function of a kernel, random inputs for it, and the error of its results.
+/// A test case: a kernel's function, random inputs, and the error of its results.
 struct Case {
     function: &'static str,
     kernel: Kernel,
@@ -25,9 +26,9 @@ struct Case {
     error: ErrorOf,
 }
 
-/// Half a unit in the last place of a float near one, with room for several roundings.
+/// Half a unit in the last place of a float close to 1, with a margin for several roundings.
 const FLOAT: f64 = 1.0 / (1u64 << 21) as f64;
-/// Half a unit in the last place of a pair of floats near one, with room for several roundings.
+/// Half a unit in the last place of a pair of floats close to 1, with a margin for several roundings.
 const PAIR: f64 = 1.0 / (1u64 << 44) as f64;
 
 fn split(x: f64) -> [f32; 2] {
@@ -35,7 +36,7 @@ fn split(x: f64) -> [f32; 2] {
     [high, (x - f64::from(high)) as f32]
 }
 
-/// A number of either sign and up to this size, with random digits.
+/// Returns a number with random sign and digits, and a magnitude from `size` / 2 to 2 `size`.
 fn number(rng: &mut SplitMix64, size: f64) -> f64 {
     let sign = if rng.below(2) == 0 { 1.0 } else { -1.0 };
     sign * size * rng.range(0.5, 2.0)
@@ -51,14 +52,14 @@ fn two_pairs(rng: &mut SplitMix64) -> Inputs {
     vec![("a.x", a), ("a.y", a_low), ("b.x", b), ("b.y", b_low)]
 }
 
-/// Two pairs whose difference is a millionth of their size, or as large as they are.
+/// Returns two pairs whose difference is a millionth, a thousandth, or all of their size.
 fn near_pairs(rng: &mut SplitMix64) -> ([f32; 2], [f32; 2]) {
     let a = number(rng, 1.0);
     let apart = [1e-6, 1e-3, 1.0][rng.below(3)];
     (split(a), split(a + number(rng, apart)))
 }
 
-/// Values for two positions, whose arguments have these names.
+/// Returns random values for the arguments of two positions, named by `tail` and `head`.
 fn positions(rng: &mut SplitMix64, [tail, head]: [[&'static str; 4]; 2]) -> Inputs {
     let ([ax, ax_low], [bx, bx_low]) = near_pairs(rng);
     let ([ay, ay_low], [by, by_low]) = near_pairs(rng);
@@ -66,7 +67,7 @@ fn positions(rng: &mut SplitMix64, [tail, head]: [[&'static str; 4]; 2]) -> Inpu
     tail.chain(head.into_iter().zip([bx, by, bx_low, by_low])).collect()
 }
 
-/// The difference in units of `lost`; infinite for NaN.
+/// Returns the difference in units of `lost`; infinite for NaN.
 fn error(found: f64, exact: f64, lost: f64) -> f64 {
     let error = (found - exact).abs() / lost;
     if error.is_nan() { f64::INFINITY } else { error }
@@ -188,7 +189,7 @@ fn cases() -> Vec<Case> {
             },
         },
         Case {
-            // A mesh far from the origin: the normalized position is small compared with the center.
+            // A mesh far from the origin, whose normalized position is small relative to the center.
             function: "imported",
             kernel: Kernel::Import,
             inputs: |rng| {
@@ -242,7 +243,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// The largest error of a function, over random inputs and orders of evaluation.
+/// Returns the largest error of a function, over random inputs and orders of evaluation.
 fn worst(case: &Case, wgsl: &str) -> f64 {
     let program = Program::new(wgsl, case.function);
     let mut rng = SplitMix64::new(51);
@@ -250,7 +251,8 @@ fn worst(case: &Case, wgsl: &str) -> f64 {
     for _ in 0..2000 {
         let inputs = (case.inputs)(&mut rng);
         let input = |name: &str| {
-            // Sums in the history are found by the argument in their index (`earlier` or `later`) and the part, `.x` or `.y`.
+            // Sums of the history are identified by the argument in their index (`earlier` or `later`) and the part,
+            // `.x` or `.y`.
             let of_history = ["earlier", "later"]
                 .into_iter()
                 .find(|argument| name.starts_with("control.") && name.contains(argument))
@@ -274,9 +276,9 @@ fn no_order_of_evaluation_loses_digits() {
     }
 }
 
-/// Guards to take out of the source, and the functions that then lose digits.
+/// Guards to remove from the source, and the functions that lose digits without the guard.
 const UNGUARDED: [(&str, &str, &[&str]); 7] = [
-    // As shaders/pairs.wgsl and shaders/patch.wgsl once were, without this guard.
+    // The former state of shaders/pairs.wgsl and shaders/patch.wgsl, without this guard.
     (
         "opaque(a - aa) + opaque(b - bb)",
         "(a - aa) + (b - bb)",

@@ -1,12 +1,12 @@
-//! Golden results: hashes of every bit that the engines return, recorded in `cpu.txt` and `lavapipe.txt` beside this file.
+//! Golden results: hashes of all bits that the engines return, recorded in `cpu.txt` and `lavapipe.txt` in this folder.
 //!
-//! A change of the code that is not meant to change results leaves both files as they are. A change that is meant to
-//! replaces the lines in a commit of its own, which says why. `GPU_SMOOTH_GOLDEN=write cargo test --test golden` writes
-//! both files.
+//! Changes of the code that should not change results must leave both files unchanged. A change that should change
+//! results replaces the lines in a separate commit that gives the reason. `GPU_SMOOTH_GOLDEN=write cargo test --test
+//! golden` writes both files.
 //!
-//! `cpu.txt` holds on every x86-64 Linux, whatever the processor and the number of threads. `lavapipe.txt` names the driver
-//! that it was recorded with in its first line: other versions of Mesa compile the kernels to other instructions, so
-//! their results are not compared.
+//! `cpu.txt` is valid on any x86-64 Linux, for all processors and numbers of threads. The first line of `lavapipe.txt`
+//! names the recorded driver: other versions of Mesa compile kernels to other instructions, so their results are not
+//! compared.
 
 #![allow(clippy::print_stderr)]
 
@@ -23,7 +23,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use support::Outline;
 
-/// FNV-1a, 64 bits.
+/// The 64-bit hash FNV-1a.
 struct Hash(u64);
 
 impl Hash {
@@ -39,7 +39,7 @@ impl Hash {
     }
 }
 
-/// Parses a mesh of `meshes/`.
+/// Parses a mesh file of `meshes/`.
 fn shipped(name: &str) -> Mesh {
     let path = |ending: &str| {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes").join(name).with_extension(ending)
@@ -62,14 +62,14 @@ fn shipped(name: &str) -> Mesh {
     }
 }
 
-/// A plate with two holes.
+/// Makes a plate with two holes.
 fn plate(vertices: usize) -> Mesh {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate.outline");
     let outline = Outline::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
     support::triangulate(&outline, vertices).unwrap()
 }
 
-/// Meshes that differ in what is hard about them.
+/// Returns meshes with different kinds of difficulty.
 fn meshes() -> Vec<(&'static str, Mesh)> {
     let mut lines = support::perturb_random(&support::lattice(12, 8), 0.3, 4);
     // Vertices of the fourth column are fixed.
@@ -88,7 +88,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
 
 type Change = fn(&mut Case<'_>);
 
-/// A run before its options are used.
+/// A run under construction, whose options and targets changes may modify.
 struct Case<'m> {
     mesh: &'m Mesh,
     options: Options,
@@ -97,7 +97,7 @@ struct Case<'m> {
     field: Option<TargetField>,
 }
 
-/// Lengths of edges that a quarter of the mesh should be halved to, by the place of a vertex.
+/// Returns target sizes that grow linearly from 0.5 on the left to 1.5 on the right.
 fn sizes(mesh: &Mesh) -> Vec<f64> {
     let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
     for [x, _] in &mesh.points {
@@ -138,7 +138,7 @@ fn slide(case: &mut Case<'_>) {
     case.slide = Some(Slide { lines, corner_angle: 50.0, ..Slide::default() });
 }
 
-/// Changes of the options, each of which is run alone and in pairs with some others.
+/// Changes of options, each of which is run alone and in pairs with other changes.
 const CHANGES: &[(&str, Change)] = &[
     ("slide", slide),
     ("max-move", |case| case.options.max_move = Some(0.2)),
@@ -158,7 +158,7 @@ const CHANGES: &[(&str, Change)] = &[
     ("single", |case| case.options.stored = Precision::Single),
 ];
 
-/// Runs by each metric, by alternating schemes, by each method, with each change, and with pairs of changes.
+/// Returns runs for each metric, alternating scheme, method, change, and several pairs of changes.
 fn cases() -> Vec<(String, Vec<Change>, Options)> {
     let mut cases = Vec::new();
     let options = |scheme: &str| Options {
@@ -202,8 +202,8 @@ fn cases() -> Vec<(String, Vec<Change>, Options)> {
     cases
 }
 
-/// Returns the metrics whose values are hashed in the line of a scheme: the nine metrics of the first recorded files, and the metrics of
-/// the scheme. A new metric thus changes no line of other schemes.
+/// Returns the metrics whose values a scheme's line contains: the nine metrics of the first recorded files, and those
+/// of the scheme. A new metric thus leaves the lines of other schemes unchanged.
 fn hashed(scheme: &[Metric]) -> Vec<Metric> {
     const FIRST: usize = 9;
     let (first, later) = Metric::ALL.split_at(FIRST);
@@ -211,7 +211,7 @@ fn hashed(scheme: &[Metric]) -> Vec<Metric> {
     first.iter().chain(own).copied().collect()
 }
 
-/// Runs a case, and returns its line of a file of results.
+/// Runs a case, and returns its line for the file of results.
 fn run(label: &str, mesh: &Mesh, changes: &[Change], options: &Options, on: &Backend) -> String {
     let mut case = Case { mesh, options: options.clone(), slide: None, targets: None, field: None };
     changes.iter().for_each(|change| change(&mut case));
@@ -228,7 +228,7 @@ fn run(label: &str, mesh: &Mesh, changes: &[Change], options: &Options, on: &Bac
         smoother.run(&options).on(on).block()
     };
     match made() {
-        // The words of a refusal are not results.
+        // Messages of refusals are not part of the results.
         Err(_) => format!("{label} refused"),
         Ok(outcome) => {
             let metrics = hashed(options.scheme.metrics());
@@ -275,7 +275,7 @@ fn compare(file: &str, found: &str) {
         std::fs::write(&path, found).unwrap();
     }
     let expected = std::fs::read_to_string(&path).unwrap();
-    // A case may stand before others: only its own line is missing then.
+    // A new case may precede others, so that only its own line is missing.
     let [recorded, own] = [&expected, found].map(|text| text.lines().collect::<BTreeSet<_>>());
     let gone = recorded.difference(&own).map(|line| format!("- {line}"));
     let new = own.difference(&recorded).map(|line| format!("+ {line}"));
@@ -289,7 +289,7 @@ fn recorded(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(file)
 }
 
-/// All results of the CPU engine on so many threads.
+/// Returns all results of the CPU engine, computed on `threads` threads.
 fn on_cpu(threads: usize) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
@@ -312,13 +312,13 @@ fn results_on_one_thread_have_the_recorded_bits() {
 
 #[test]
 fn results_on_two_threads_have_the_recorded_bits() {
-    // The other test writes the file.
+    // Another test writes the file.
     if std::env::var_os("GPU_SMOOTH_GOLDEN").is_none() {
         compare("cpu.txt", &on_cpu(2));
     }
 }
 
-/// Without pairs of changes, and on small meshes alone, as lavapipe compiles each kernel for a second.
+/// Small meshes without pairs of changes, because lavapipe needs a second to compile each kernel.
 #[cfg(feature = "gpu")]
 #[test]
 fn results_on_lavapipe_have_the_recorded_bits() {

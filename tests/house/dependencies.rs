@@ -1,10 +1,9 @@
-//! The files of a crate, and which of its files each file uses.
+//! Dependencies between the source files of a crate.
 //!
-//! Files are parsed by syn. An import, a path in code, and a path in the tokens of a macro are uses. Declarations of modules and
-//! re-exports (`pub use`, `pub(crate) use`) are not: a use of a re-exported name is a use of the file that defines the name.
-//! If the methods of a type are in several files, a call of `self.method()` or `Self::method()` is a use of the file with the
-//! method.
-//! Code under `#[cfg(test)]` is left out.
+//! Files are parsed by syn. Uses are imports, paths in code, and paths in the tokens of a macro. Declarations of
+//! modules and re-exports (`pub use`, `pub(crate) use`) are no uses: a use of a re-exported name counts as a use of the
+//! file that defines the name. If the methods of a type are spread over several files, a call of `self.method()` or
+//! `Self::method()` is a use of the file with the method. Code under `#[cfg(test)]` is ignored.
 
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,13 +12,13 @@ use std::path::Path;
 use syn::visit::{self, Visit};
 use syn::{Attribute, Item, ItemMod, ItemUse, UseTree, Visibility};
 
-/// The files that each file uses, by paths such as `run/drive` or `run/mod`.
+/// Files used by each file, by paths such as `run/drive` or `run/mod`.
 pub(crate) type Uses = BTreeMap<String, BTreeSet<String>>;
 
-/// The names of nested modules from the root of the crate on.
+/// Names of nested modules, starting at the root of the crate.
 type ModulePath = Vec<String>;
 
-/// Returns the uses of all files below a folder with the sources of a crate.
+/// Returns the uses of all files in a crate's source folder.
 pub(crate) fn of_crate(source: &Path) -> Uses {
     let mut texts = BTreeMap::new();
     collect(source, source, &mut texts);
@@ -39,7 +38,7 @@ fn collect(folder: &Path, source: &Path, texts: &mut BTreeMap<String, String>) {
     }
 }
 
-/// Returns the uses of files with these contents.
+/// Returns the uses of files with the given contents.
 pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
     let mut parsed = BTreeMap::new();
     for (name, text) in texts {
@@ -67,7 +66,7 @@ pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
             (module, imports.flatten().collect())
         })
         .collect();
-    // Returns the module of the file that defines the name at the end of a path.
+    // Returns the module of the file that defines the last name of a path.
     let defined_in = |path: &[String]| -> Option<ModulePath> {
         let mut path = path.to_vec();
         for _ in 0..10 {
@@ -127,7 +126,7 @@ pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
     uses
 }
 
-/// Returns the path that the type of an `impl` stands for.
+/// Returns the absolute path of the type in an `impl`.
 fn owner_of(
     item: &syn::ItemImpl,
     module: &[String],
@@ -139,7 +138,7 @@ fn owner_of(
     absolute(&parts, module).or_else(imported).or(Some([module, &parts].concat()))
 }
 
-/// Returns the module that defines the type of a path, with the name of the type.
+/// Returns the module that defines the type of a path, followed by the type's name.
 fn definition(
     path: &[String],
     defined_in: &impl Fn(&[String]) -> Option<ModulePath>,
@@ -167,7 +166,7 @@ fn is_for_tests(attributes: &[Attribute]) -> bool {
     })
 }
 
-/// Makes a path absolute. `None` if it leads out of the crate.
+/// Makes a path absolute; `None` for paths out of the crate.
 fn absolute(path: &[String], module: &[String]) -> Option<ModulePath> {
     let ups = path.iter().take_while(|part| *part == "super").count();
     match path.first()?.as_str() {
@@ -178,7 +177,7 @@ fn absolute(path: &[String], module: &[String]) -> Option<ModulePath> {
     }
 }
 
-/// Lists the names that an import brings in, with the paths that they stand for.
+/// Returns the names that an import declares, with their full paths.
 fn leaves(item: &ItemUse, module: &[String]) -> Vec<(String, ModulePath)> {
     fn walk(tree: &UseTree, before: &[String], found: &mut Vec<(String, ModulePath)>) {
         let with = |name: &syn::Ident| child(before, &name.to_string());
@@ -195,20 +194,20 @@ fn leaves(item: &ItemUse, module: &[String]) -> Vec<(String, ModulePath)> {
     }
     let mut found = Vec::new();
     walk(&item.tree, &[], &mut found);
-    // A facade names its children without `self`.
+    // A facade refers to its children without `self`.
     let inside = |path: Vec<String>| absolute(&path, module).or(Some([module, &path].concat()));
     found.into_iter().filter_map(|(name, path)| Some((name, inside(path)?))).collect()
 }
 
-/// Collects the paths into the crate that a file names.
+/// Collector of the paths into the crate that occur in a file.
 struct Paths {
     module: ModulePath,
-    /// Paths that names at the start of other paths stand for: imports and child modules.
+    /// Full paths of names that can begin other paths: imports and child modules.
     names: BTreeMap<String, ModulePath>,
     found: Vec<ModulePath>,
-    /// The path of the type whose `impl` is visited.
+    /// Path of the type whose `impl` is visited.
     owner: Option<ModulePath>,
-    /// The methods that types call on themselves.
+    /// Methods that types call on themselves.
     called: Vec<(ModulePath, String)>,
 }
 
@@ -320,7 +319,7 @@ impl<'a> Visit<'a> for Paths {
     }
 }
 
-/// Finds files or folders that use each other in a circle: each strongly connected component of more than one, sorted.
+/// Returns circular uses of files or folders: each strongly connected component of more than one, sorted.
 pub(crate) fn circles(uses: &Uses) -> Vec<Vec<String>> {
     let reached = |from: &str| -> BTreeSet<&str> {
         let (mut open, mut done) = (vec![from], BTreeSet::new());
@@ -347,7 +346,7 @@ pub(crate) fn circles(uses: &Uses) -> Vec<Vec<String>> {
     found.into_iter().collect()
 }
 
-/// Merges the files of each folder that is `depth` folders deep. Files above stay by themselves.
+/// Merges the files of each folder at depth `depth`. Files at lower depths stay separate.
 pub(crate) fn by_folder(uses: &Uses, depth: usize) -> Uses {
     let folder = |file: &str| {
         let parts: Vec<&str> = file.split('/').collect();

@@ -1,4 +1,4 @@
-//! Rules of this project that a compiler does not check.
+//! Rules of this project that the compiler does not check.
 
 mod dependencies;
 
@@ -23,7 +23,7 @@ fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The folders with the sources of each crate.
+/// Source folders of the crates.
 const CRATES: [&str; 3] = ["src", "mesh-io/src", "cli/src"];
 
 fn uses_of(source: &str) -> Uses {
@@ -53,8 +53,8 @@ fn folders_do_not_use_each_other_in_a_circle() {
     }
 }
 
-/// Reads the floors of a crate from ARCHITECTURE.md: in a block that begins with the crate's folder, a line has the folders and
-/// files of one floor, the lowest floor first.
+/// Reads the floors of a crate from ARCHITECTURE.md. In a block that begins with the crate's folder, each line contains
+/// the folders and files of a floor, the lowest floor first.
 fn floors(source: &str) -> Vec<Vec<String>> {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let block = text.split(&format!("```text\n{source}\n")).nth(1);
@@ -63,7 +63,7 @@ fn floors(source: &str) -> Vec<Vec<String>> {
     lines.map(|line| line.split_whitespace().map(str::to_owned).collect()).collect()
 }
 
-/// Returns each use that does not go from a floor to a lower floor.
+/// Returns the uses that do not point from a floor to a lower floor.
 fn uses_against_the_order(folders: &Uses, floors: &[Vec<String>]) -> Vec<String> {
     let floor = |name: &str| floors.iter().position(|floor| floor.iter().any(|own| own == name));
     let mut against = Vec::new();
@@ -134,11 +134,11 @@ fn every_kind_of_use_and_of_circle_is_found() {
     assert_eq!(against, ["a is on no floor", "d uses a"]);
 }
 
-/// Functions that take a tuple apart in their signature, each with the tuple that is one thing: a number with its offset
-/// in a file.
+/// Functions with a tuple pattern in their signature. Each tuple is a unit, such as a number paired with its file
+/// offset.
 const TAKES_A_TUPLE_APART: [&str; 1] = ["mesh-io/src/visit/z_values.rs: push"];
 
-/// A tuple of unrelated values hides from a caller what each value means: a struct names them.
+/// A tuple of unrelated values hides the meaning of each value from callers; a struct names them.
 #[test]
 fn no_function_takes_a_tuple_apart_in_its_signature() {
     struct Functions(Vec<String>);
@@ -187,7 +187,7 @@ fn no_function_takes_a_tuple_apart_in_its_signature() {
     assert_eq!(found, TAKES_A_TUPLE_APART);
 }
 
-/// The files with a search for the step of a vertex, each with its rule.
+/// Files with a line search for the step of a vertex, each with its rule.
 const SEARCHES: [(&str, &str); 6] = [
     ("cpu/newton.rs", "SWEEP"),
     ("gpu/kernels/source.rs", "SWEEP"),
@@ -197,7 +197,7 @@ const SEARCHES: [(&str, &str); 6] = [
     ("worst/region.rs", "WORST"),
 ];
 
-/// The rules of all searches are to stand side by side in `src/patch/search_rule.rs`.
+/// All search rules must be defined side by side in `src/patch/search_rule.rs`.
 #[test]
 fn every_search_for_the_step_of_a_vertex_takes_the_constants_of_its_rule() {
     let source = root().join("src");
@@ -257,7 +257,7 @@ fn only_the_command_asks_the_clock_of_the_standard_library() {
     for source in ["src", "mesh-io/src"] {
         let mut files = Vec::new();
         rust_files(&root().join(source), &mut files);
-        // The age of a file is asked for files alone, which browsers do not have.
+        // The age of a file is read only for files, which browsers do not have.
         files.retain(|file| !file.ends_with("disk/stamp.rs"));
         for file in files {
             let text = fs::read_to_string(&file).unwrap();

@@ -1,4 +1,5 @@
-//! Compares dual numbers with central differences of the value, and the CPU engine's derivatives with dual numbers.
+//! Comparison of dual numbers with central differences of the value, and of the CPU engine's derivatives with dual
+//! numbers.
 
 use crate::oracles::is_linear_in_size;
 use crate::support::SplitMix64;
@@ -21,8 +22,8 @@ fn central(metric: Metric, t: &Corner<f64>, sharpness: u32, h: f64) -> Dual {
     }
 }
 
-/// The mean difference of gradient and Hessian between central differences and the library's derivatives, changed by
-/// `derived`. Units are q² over the height; `width` of the differences is relative to the height.
+/// Returns the mean differences of gradient and Hessian between central differences and the library's derivatives,
+/// which `derived` may change. Units are q² over the height; `width` is relative to the height.
 fn error(metric: Metric, sharpness: u32, width: f64, derived: impl Fn(Dual) -> Dual) -> [f64; 2] {
     let mut rng = SplitMix64::new(11);
     let mut sums = [0.0; 2];
@@ -40,9 +41,10 @@ fn error(metric: Metric, sharpness: u32, width: f64, derived: impl Fn(Dual) -> D
     sums.map(|sum| sum / f64::from(count))
 }
 
-/// The order in which the errors of gradient and Hessian fall with the width of the differences. It is 2 for right derivatives.
+/// Returns the orders in which the errors of gradient and Hessian fall with the width of differences. Both orders are 2
+/// for correct derivatives.
 fn orders(metric: Metric, sharpness: u32, derived: impl Fn(Dual) -> Dual) -> [f64; 2] {
-    // Narrow enough for the sharpest bend of the p-norm, wide enough against rounding.
+    // Narrow enough for the sharpest bend of the p-norm, and wide enough to exceed rounding.
     let width = 0.05 / 2f64.powi(sharpness as i32);
     let wide = error(metric, sharpness, width, &derived);
     let narrow = error(metric, sharpness, width / 2.0, &derived);
@@ -64,7 +66,7 @@ fn central_differences_converge_to_the_derivatives_in_second_order() {
 #[test]
 fn central_differences_of_a_quadratic_are_its_derivatives() {
     for &metric in Metric::ALL.iter().filter(|metric| metric.properties().quadratic) {
-        // The third derivatives vanish: at any width, only rounding is left.
+        // The third derivatives vanish, so at any width, only rounding errors remain.
         let [gradient, hessian] = error(metric, 0, 0.3, |exact| exact);
         assert!(gradient < 1e-13 && hessian < 1e-12, "{metric}: {gradient:e} {hessian:e}");
     }
@@ -86,7 +88,7 @@ fn a_derivative_wrong_by_a_percent_has_no_order() {
     }
 }
 
-/// The largest difference between two sets of derivatives of one triangle, relative to the largest entry.
+/// Returns the largest difference between two sets of derivatives of a triangle, relative to the largest entry.
 fn distance(found: &Dual, exact: &Dual) -> f64 {
     let far = |x: &[f64], y: &[f64]| {
         let size = y.iter().fold(0f64, |most, y| most.max(y.abs()));
@@ -96,7 +98,8 @@ fn distance(found: &Dual, exact: &Dual) -> f64 {
     value.max(far(&found.gradient, &exact.gradient)).max(far(&found.hessian, &exact.hessian))
 }
 
-/// Calls `check` with the derivatives of the CPU engine, those of dual numbers, and the rounding to allow for the triangle.
+/// Calls `check` with the derivatives of the CPU engine, those of dual numbers, and the allowed rounding error of the
+/// triangle.
 fn compare(metric: Metric, mut check: impl FnMut(Dual, Dual, f64)) {
     let mut rng = SplitMix64::new(17);
     for i in 0..2000 {
@@ -104,7 +107,7 @@ fn compare(metric: Metric, mut check: impl FnMut(Dual, Dual, f64)) {
         let t = if i % 2 == 0 { random(&mut rng, 50.0) } else { thin(&mut rng, ratio, i % 4 == 1) };
         let t = scaled(&t, 10f64.powf(rng.range(-3.0, 3.0)));
         let sharpness = if !metric.is_smooth() { i % 11 } else { 0 };
-        // Of large triangles some metrics are nearly linear in the area, so that second derivatives cancel.
+        // For large triangles, some metrics are nearly linear in the area, so second derivatives cancel.
         let tau = t.doubled_area() / (2.0 * t.mean_area);
         let size = if is_linear_in_size(metric) { tau.max(1.0) } else { 1.0 };
         let rounding = 64.0 * f64::EPSILON * imr(&t) * 2f64.powi(sharpness as i32) * size;

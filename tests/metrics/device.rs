@@ -1,10 +1,10 @@
-//! Appends a test's entry point to WGSL of the library, and runs it on the adapter that the library takes.
+//! Execution of test entry points, appended to WGSL of the library, on the library's default adapter.
 
 use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 
-/// WGSL to append to a module of the library. An entry point reads a row of numbers in each invocation and writes another,
-/// by bindings beside those of a run. `body` has its row in `x` and leaves its results in `y`.
+/// Returns WGSL to append to a module of the library. In each invocation, the entry point reads a row of numbers and
+/// writes another, through bindings beside those of a run. `body` reads its row from `x` and writes its results to `y`.
 pub(crate) fn probe(inputs: usize, outputs: usize, body: &str) -> String {
     format!(
         "
@@ -30,7 +30,7 @@ pub(crate) struct Device {
 }
 
 impl Device {
-    /// Panics without an adapter: these tests must not seem to have passed where they cannot run.
+    /// Opens the adapter. Panics without an adapter, because tests must not appear to pass without running.
     pub(crate) fn open() -> Self {
         let chosen = gpu_smooth::gpu::adapters();
         let chosen = chosen.first().expect("these tests need a wgpu adapter, be it a software one");
@@ -81,7 +81,7 @@ impl Device {
                 mapped_at_creation: false,
             })
         };
-        // Params: all zero, as pair arithmetic needs a zero at run time.
+        // The parameters are all zero, because pair arithmetic needs a zero known only at run time.
         let params = filled(&[0; 256], Usage::UNIFORM);
         let input = filled(bytemuck::cast_slice(rows), Usage::STORAGE);
         let output = empty(Usage::STORAGE | Usage::COPY_SRC);

@@ -1,4 +1,4 @@
-//! Finite differences as an engine takes them: less exact than analytic derivatives, but good enough to smooth with.
+//! Finite differences of the engines: less exact than analytic derivatives, but sufficient for smoothing.
 
 use crate::support;
 use gpu_smooth::{
@@ -45,15 +45,15 @@ fn a_sweep_by_differences_is_a_little_off() {
             off += a.distance(*b);
         }
         assert!(off > 0.0, "{metric}: not by differences");
-        // The step of a forward difference is 1 % of a height, and its error a few times that. It is larger for EDGE, whose
-        // p-norm has exponent 16 and bends more.
+        // A forward difference has a step of 1 % of a height, and an error a few times larger. EDGE has larger errors,
+        // because its p-norm of exponent 16 bends more.
         let bound = if metric.is_smooth() { 0.05 } else { 0.25 };
         assert!(off < bound * moved, "{metric}: {}", off / moved);
     }
 }
 
-/// Returns f by `metric` before the run and the least f of an over-relaxed run. [`Method::Paper`] has differences with plain
-/// steps only, so the plan is made by hand.
+/// Returns f by `metric` before the run, and the smallest f of an over-relaxed run. [`Method::Paper`] combines
+/// differences with plain steps only, so the plan is built directly.
 fn over_relaxed(
     mesh: &Mesh,
     metric: Metric,
@@ -61,7 +61,7 @@ fn over_relaxed(
     gpu: Option<&Gpu>,
 ) -> [f64; 2] {
     let (topology, problem) = prepare(mesh).unwrap();
-    // Without corrections, as runs by differences have none: EDGE would end at another minimum.
+    // Without corrections, like runs by differences; with corrections, EDGE would end at another minimum.
     let options = Options { scheme: metric.into(), method: Method::RELAXED, ..Options::default() };
     let plan = Plan {
         derivatives: [derivatives; Metric::ALL.len()],
@@ -86,9 +86,10 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
         let [start, exact] = over_relaxed(&mesh, metric, Derivatives::Analytic, None);
         for device in [None, Some(&gpu)] {
             let [_, near] = over_relaxed(&mesh, metric, Derivatives::FiniteDifference, device);
-            // The minimum is missed by half a width of the differences. For smooth metrics f then differs in second order,
-            // for EDGE, which has a kink there, in first order. The ideal of AREA is 0 and is reached nearly, so f is compared
-            // with the total gain. The shape guard stops runs of AREA where their path led them, so either run may end lower.
+            // The minimum is missed by half the width of differences. f then differs in second order for smooth
+            // metrics, and in first order for EDGE, which has a kink at the minimum. The ideal of AREA is 0 and nearly
+            // reached, so f is compared with the total gain. The shape guard stops runs of AREA at positions that
+            // depend on the path, so either run may end lower.
             let is_reached = metric.ideal_squared() == 0.0 && !metric.has_barrier();
             let (missed, bound) = match (is_reached, metric.is_smooth()) {
                 (true, _) => (((near - exact) / (start - exact)).abs(), 2e-2),
@@ -100,7 +101,8 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
     }
 }
 
-/// Plain steps by differences end farther from the optimum than over-relaxed steps: by up to 3e-3 of f (tmop-80).
+/// With plain steps by differences, runs end farther from the optimum than with over-relaxed steps: by up to 3e-3 of f
+/// (tmop-80).
 #[test]
 fn the_paper_method_by_differences_ends_near_the_optimum_on_both_engines() {
     let mesh = plate();
@@ -137,7 +139,7 @@ fn the_best_state_is_returned_though_differences_may_raise_f() {
         let best = history.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(history.last() > Some(&(best * (1.0 + 1e-6))), "the last is not the best");
         let f = Quality::of(&outcome.points, smoother.topology()).unwrap().f(Metric::Rms);
-        // On a device the history has the digits of single precision.
+        // On a device, the history has the digits of single precision.
         assert!((f / best - 1.0).abs() < 2e-7, "{f} returned, {best} seen");
         assert_eq!(history[outcome.best_sweep as usize], best);
     }

@@ -1,4 +1,4 @@
-//! The metrics: the properties stated in their files, their derivatives, and their WGSL.
+//! Tests of the metrics: documented properties, derivatives, and WGSL.
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,13 +1,13 @@
-//! The independent oracle of each metric: all that the tests need of a metric beside its two files and its row. A metric that is
-//! missing here does not compile.
+//! The independent oracle of each metric: all data that tests need beyond the metric's two files and its row. A metric
+//! without an oracle does not compile.
 
 use crate::triangles::lengths;
 use gpu_smooth::{Metric, metric::Corner};
 
-/// log2 of the exponent of EDGE's p-norm.
+/// Binary logarithm of the exponent of EDGE's p-norm.
 pub(crate) const SHARPNESS: u32 = 4;
 
-/// Returns q by the plainest formula in the lengths and the area of a triangle, and in the mean area of the mesh.
+/// Returns q by the simplest formula in the lengths and the area of a triangle, and in the mean area of the mesh.
 pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, mean_area: f64) -> f64 {
     let squares = a * a + b * b + c * c;
     // For T = A W⁻¹, with W the equilateral triangle of mean area: |T|² and τ = det T.
@@ -31,7 +31,7 @@ pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, mean_area:
     }
 }
 
-/// Whether q² of a large triangle is nearly linear in the area, so that second derivatives cancel.
+/// Returns whether q² of a large triangle is nearly linear in the area, so that second derivatives cancel.
 pub(crate) fn is_linear_in_size(metric: Metric) -> bool {
     match metric {
         Metric::SoftSize | Metric::Tmop94 => true,
@@ -48,8 +48,8 @@ pub(crate) fn is_linear_in_size(metric: Metric) -> bool {
     }
 }
 
-/// Returns two mistakes in the WGSL of a metric's derivatives, in the gradient or in the Hessian: a text that the file has once,
-/// and the text that replaces it. A test must notice each.
+/// Returns two mistakes for the WGSL of a metric's derivatives, in the gradient or in the Hessian: a text that occurs
+/// once in the file, and its replacement. A test must detect each mistake.
 pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
     match metric {
         Metric::Edge => {
@@ -89,8 +89,8 @@ pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
     }
 }
 
-/// The sizes of the terms of value, gradient and Hessian of q², and the factors by which each enlarges an error in the last
-/// place of an edge.
+/// Sizes of the terms in value, gradient and Hessian of q², and the factors by which the terms amplify an error in the
+/// last place of an edge.
 pub(crate) struct Scales {
     pub(crate) sizes: [f64; 3],
     pub(crate) conditions: [f64; 3],
@@ -104,7 +104,8 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
     match metric {
         Metric::Edge => {
             let (k, shortest) = (f64::from(1u32 << SHARPNESS), a.min(b));
-            // The third edge is the difference of the two that move with the vertex. The power k enlarges the error of the shares.
+            // The third edge is the difference of the two edges that move with the vertex. The power k amplifies the
+            // error of the shares.
             let canceled = 1.0 + a.max(b) / c;
             Scales {
                 sizes: [q * q, q * q / shortest, k * q * q / (shortest * shortest)],
@@ -133,7 +134,7 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
         Metric::ShapeSize => {
             let mean = 2.0 * t.mean_area;
             let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
-            // Derivatives by the squared norm and by the determinant; then second derivatives.
+            // Derivatives by the squared norm and by the determinant, followed by second derivatives.
             let (by_norm, by_det) =
                 (1.0 + 1.0 / (tau * tau), 1.0 + (1.0 + norm / tau) / (tau * tau));
             let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
@@ -148,7 +149,8 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
         Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
             let mean = 2.0 * t.mean_area;
             let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
-            // Derivatives by the squared norm and by the determinant, of both parts of the metric; then second derivatives.
+            // Derivatives by the squared norm and by the determinant, for both parts of the metric, followed by second
+            // derivatives.
             let (by_norm, by_det) = (1.0 / tau, norm / (tau * tau) + tau + 1.0 / tau.powi(3));
             let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
             let second = norm / tau.powi(3) + 1.0 + 3.0 / tau.powi(4);

@@ -1,4 +1,4 @@
-//! Pairs of floats, which hold positions and sums: how many of their 48 bits are right on the adapter.
+//! Pairs of floats, which store positions and sums: accuracy on the adapter, of at most 48 bits.
 
 use crate::device::{Device, probe};
 use crate::support::SplitMix64;
@@ -13,7 +13,7 @@ fn join([high, low]: [f32; 2]) -> f64 {
     f64::from(high) + f64::from(low)
 }
 
-/// A random number of about this size and either sign.
+/// Returns a random number of either sign with magnitude near `size`.
 fn number(rng: &mut SplitMix64, size: f64) -> f64 {
     rng.range(-2.0, 2.0) * size * 2f64.powf(rng.range(-4.0, 4.0))
 }
@@ -21,7 +21,7 @@ fn number(rng: &mut SplitMix64, size: f64) -> f64 {
 #[test]
 fn two_sum_loses_nothing() {
     let mut rng = SplitMix64::new(21);
-    // Sizes differ by at most 2^20, so that the exact sum of two floats fits a double.
+    // Sizes differ by at most 2^20, so that a double holds the exact sum of two floats.
     let rows: Vec<[f32; 2]> = (0..2000)
         .map(|i| [number(&mut rng, 1.0), number(&mut rng, 2f64.powi(i % 21 - 10))])
         .map(|pair| pair.map(|x| x as f32))
@@ -46,7 +46,7 @@ fn sums_of_pairs_keep_44_bits() {
         Device::open().run(&(Kernel::KeepBest.wgsl() + &probe(4, 2, body)), &rows);
     for (terms, sum) in rows.into_iter().zip(sums) {
         let [a, b] = terms.map(join);
-        // Relative to the larger term, as the sum may cancel.
+        // Relative to the larger term, because the sum may cancel.
         let bound = a.abs().max(b.abs()) * 2f64.powi(-44);
         assert!((join(sum) - (a + b)).abs() <= bound, "{a} + {b}: {sum:?}");
     }
@@ -62,13 +62,13 @@ fn a_long_sum_of_pairs_keeps_40_bits() {
     let sums: Vec<[f32; 2]> =
         Device::open().run(&(Kernel::KeepBest.wgsl() + &probe(2, 2, body)), &rows);
     for (term, sum) in rows.into_iter().zip(sums) {
-        // A thousand roundings of 2^-48 each; in the worst case nearly all go the same way.
+        // A thousand roundings of 2^-48 each; in the worst case, nearly all have the same direction.
         let exact = 1000.0 * join(term);
         assert!((join(sum) - exact).abs() <= exact * 2f64.powi(-40), "{term:?}: {sum:?}");
     }
 }
 
-/// A short edge far from the origin, and a move of its head.
+/// A short edge far from the origin, and a move of the edge's head.
 struct Far {
     tail: [f64; 2],
     head: [f64; 2],
@@ -78,7 +78,7 @@ struct Far {
 fn far_edges() -> Vec<Far> {
     let mut rng = SplitMix64::new(24);
     let of = |i: i32| {
-        // Up to a million edges from the origin: so far reaches a mesh of 10^12 triangles.
+        // Up to a million edges from the origin, the extent of a mesh with 10^12 triangles.
         let (size, edge) = (10f64.powi(i % 7), rng.range(0.1, 1.0));
         let tail = [0; 2].map(|_| number(&mut rng, size));
         let mut offset = |length: f64| [0; 2].map(|_| length * rng.range(-1.0, 1.0));
@@ -89,7 +89,7 @@ fn far_edges() -> Vec<Far> {
     (0..2000).map(of).collect()
 }
 
-/// The position as the engine stores it: high parts in xy, low parts in zw.
+/// Returns the position as stored by the engine: high parts in xy, low parts in zw.
 fn position([x, y]: [f64; 2]) -> [f32; 4] {
     let ([x, x_low], [y, y_low]) = (split(x), split(y));
     [x, y, x_low, y_low]
@@ -116,7 +116,7 @@ fn edges_keep_their_digits_far_from_the_origin_and_after_moves() {
     for (far, [bx, by, ax, ay, mx, my, mx_low, my_low]) in edges.iter().zip(results) {
         for (axis, before, after, moved) in [(0, bx, ax, [mx, mx_low]), (1, by, ay, [my, my_low])] {
             let (tail, head, step) = (far.tail[axis], far.head[axis], f64::from(far.step[axis]));
-            // The edge is right to single precision, besides what the pairs at both ends cannot hold.
+            // The edge is accurate to single precision, apart from the resolution of the pairs at both ends.
             let lost = (tail.abs() + head.abs()) * 2f64.powi(-48);
             let bound = |edge: f64| edge.abs() * 2f64.powi(-22) + lost;
             let exact = head - tail;
@@ -126,7 +126,7 @@ fn edges_keep_their_digits_far_from_the_origin_and_after_moves() {
             let there = tail + step;
             let error = (join(moved) - there).abs();
             assert!(error <= (tail.abs() + step.abs()) * 2f64.powi(-46), "{tail} moved: {error:e}");
-            // Normalized: the low part is below half a unit of the high part, so nothing is lost over many moves.
+            // Normalized: the low part is below half a unit of the high part, so many moves lose nothing.
             assert_eq!(moved[0] + moved[1], moved[0]);
             let exact = head - there;
             let error = (f64::from(after) - exact).abs();

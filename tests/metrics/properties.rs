@@ -1,4 +1,4 @@
-//! Each metric has the properties that its file states.
+//! Properties of each metric, as stated in the metric's file.
 
 use crate::oracles;
 use crate::support::SplitMix64;
@@ -8,7 +8,8 @@ use gpu_smooth::{Metric, metric::Corner};
 const COUNT: usize = 500;
 const WORST: f64 = 50.0;
 
-/// The rounding to allow for a triangle: that of a few operations, enlarged as the area of a bad shape cancels.
+/// Returns the allowed rounding error for a triangle: a few operations, amplified by cancellation of the area
+/// in bad shapes.
 fn rounding(t: &Corner<f64>) -> f64 {
     16.0 * f64::EPSILON * (1.0 + imr(t))
 }
@@ -24,7 +25,7 @@ fn close(a: f64, b: f64, bound: f64) -> bool {
     (a - b).abs() <= bound * a.abs().max(b.abs()).max(1.0)
 }
 
-/// The area from the lengths alone, by Kahan's form of Heron's formula, which does not cancel.
+/// Returns the area from the lengths alone, by Kahan's form of Heron's formula, which does not cancel.
 fn heron(t: &Corner<f64>) -> f64 {
     let mut l = lengths(t);
     l.sort_unstable_by(f64::total_cmp);
@@ -63,7 +64,7 @@ fn quality_is_that_of_the_formula_in_lengths_and_area() {
     all_random(|metric, t| {
         let wanted = oracles::quality(metric, lengths(t), heron(t), t.mean_area);
         let got = metric.quality(t);
-        // The error of Heron's area: the rounding of the lengths, enlarged by the shape.
+        // The error of Heron's area: rounding of the lengths, amplified by the shape.
         assert!(close(got, wanted, 4.0 * rounding(t)), "{metric}: {got} for {wanted}, {t:?}");
     });
 }
@@ -78,12 +79,12 @@ fn excess_is_the_square_of_quality_less_that_of_the_ideal() {
 
 #[test]
 fn excess_keeps_its_digits_near_the_ideal() {
-    // A vertex moved by s changes q² - 1 by about s², which is lost if q² is rounded first.
+    // A vertex moved by s changes q² - 1 by approximately s², which early rounding of q² would lose.
     for metric in [Metric::Imr, Metric::Ar] {
         let moved = displaced(&equilateral(), [3e-7, 2e-7]);
         let by_imr = Metric::Imr.excess(&moved);
         assert!((1e-14..1e-12).contains(&by_imr), "{by_imr:e}");
-        // AR computes q first, so it may add the rounding of q.
+        // AR computes q first, so the rounding of q is allowed in addition.
         assert!((metric.excess(&moved) - by_imr).abs() < 2e-15, "{metric}");
     }
 }
@@ -107,7 +108,7 @@ fn metrics_depend_on_size_as_the_table_says() {
             let larger = scaled(t, factor);
             let alike = close(metric.quality(&larger), q, rounding(t));
             assert_eq!(alike, metric.properties().scale_invariant, "{metric} times {factor}");
-            // A change of the unit of length changes nothing, as the mean area is in the same unit.
+            // A change of the unit of length changes nothing, because the mean area has that unit.
             let same = Corner { mean_area: t.mean_area * factor * factor, ..larger };
             assert!(close(metric.quality(&same), q, rounding(t)), "{metric} in units of {factor}");
         }
@@ -120,7 +121,7 @@ fn a_barrier_grows_without_bound_and_the_others_do_not() {
         let flat = |height: f64| corner([[0.5, height], [0.0, 0.0], [1.0, 0.0]], 0.4);
         let quality = |height: f64| metric.quality(&flat(height));
         if metric.properties().barrier {
-            // q grows at least as the root of 1 / height, as q² grows at least as 1 / height.
+            // q grows at least like the root of 1 / height, because q² grows at least like 1 / height.
             assert!(quality(1e-6) > 500.0 && quality(1e-9) > 30.0 * quality(1e-6), "{metric}");
             for height in [0.0, -1e-3, -1.0] {
                 assert_eq!(quality(height), f64::INFINITY, "{metric} at {height}");
@@ -128,7 +129,7 @@ fn a_barrier_grows_without_bound_and_the_others_do_not() {
         } else {
             assert!(quality(0.0) < 3.0 && close(quality(1e-9), quality(0.0), 1e-8), "{metric}");
         }
-        // Without a barrier or a shape guard, nothing would keep triangles from inverting.
+        // Without a barrier or a shape guard, triangles could invert.
         let properties = metric.properties();
         assert!(properties.barrier || properties.shape_guard.is_finite(), "{metric}");
     }
@@ -164,7 +165,7 @@ fn imr_and_ar_are_the_same_number() {
         let [di, da] = [Metric::Imr, Metric::Ar].map(|metric| metric.derivatives(&t, 4));
         let scale = di.hessian.iter().fold(0f64, |m, x| m.max(x.abs()));
         for (x, y) in di.hessian.into_iter().zip(da.hessian) {
-            // The Hessian takes two derivatives more than the value, each with the same cancellation.
+            // The Hessian has two more derivatives than the value, each with equal cancellation.
             assert!((x - y).abs() <= 8.0 * rounding(&t) * scale, "{x} {y} of {scale}");
         }
     }
@@ -177,7 +178,7 @@ fn the_p_norm_of_edge_is_exact_at_equilateral_and_comes_up_from_below() {
     for i in 0..COUNT {
         let mut t = random(&mut rng, WORST);
         if i % 3 == 0 {
-            // Isosceles, with the two equal edges the longest or the shortest.
+            // Isosceles, with the two equal edges either the longest or the shortest.
             let apex = [0.5, rng.range(0.1, 2.0)];
             t = corner([[0.0, 0.0], [1.0, 0.0], apex], 0.4);
         }

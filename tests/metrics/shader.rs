@@ -1,5 +1,5 @@
-//! Compares each metric's WGSL, its value and hand-written derivatives, with the dual numbers of the CPU engine on the same
-//! single-precision input.
+//! Comparison of each metric's WGSL, both value and hand-written derivatives, with the dual numbers of the CPU engine
+//! on equal single-precision input.
 
 use crate::device::{Device, probe};
 use crate::oracles::{SHARPNESS, Scales, mistakes, scales};
@@ -7,13 +7,13 @@ use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::{Metric, gpu::Kernel, internal::Dual, metric::Corner, options::Derivatives};
 
-/// Half a unit in the last place of a float near one.
+/// Half a unit in the last place of a float close to 1.
 const ULP: f64 = 1.0 / 16_777_216.0;
 
-/// The input of an invocation: the triangle, its mean area, and the width of differences.
+/// Input of an invocation: the triangle, its mean area, and the width of differences.
 type Row = [f32; 6];
 
-/// The output of an invocation, in this order.
+/// Output of an invocation, in the order of the fields.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Found {
@@ -42,7 +42,7 @@ fn wgsl(metric: Metric, derivatives: Derivatives) -> String {
     Kernel::Sweep(metric, derivatives).wgsl() + &probe(6, 12, &body)
 }
 
-/// Ordinary, tiny, huge, nearly flat and needle-like triangles, and those with equal edges.
+/// Returns ordinary, tiny, huge, nearly flat and needle-like triangles, and triangles with equal edges.
 fn rows() -> Vec<Row> {
     let mut rng = SplitMix64::new(31);
     let mut all = Vec::new();
@@ -69,7 +69,7 @@ fn rows() -> Vec<Row> {
         [ax, ay, bx, by, mean_area, width as f32]
     };
     let mut rows: Vec<Row> = all.into_iter().enumerate().map(of).collect();
-    // Rounding may have made the flattest triangles flatter still.
+    // Rounding may have flattened the flattest triangles further.
     rows.retain(|row| {
         let t = triangle(row);
         t.doubled_area() > 0.0 && imr(&t) < 1.2e4
@@ -78,7 +78,7 @@ fn rows() -> Vec<Row> {
     rows
 }
 
-/// The triangle that the device sees.
+/// Returns the triangle as rounded for the device.
 fn triangle(row: &Row) -> Corner<f64> {
     let [ax, ay, bx, by, mean_area, _] = row.map(f64::from);
     Corner { a: [ax, ay], b: [bx, by], mean_area }
@@ -93,7 +93,7 @@ fn found_parts(found: &Found) -> [Vec<f64>; 3] {
     [vec![d[0]], d[1..3].to_vec(), d[3..].to_vec()]
 }
 
-/// Largest errors of value, gradient and Hessian, in units of [`ULP`] times their scales and condition.
+/// Returns the largest errors of value, gradient and Hessian, in units of [`ULP`] times their scales and condition.
 fn errors(metric: Metric, rows: &[Row], found: &[Found]) -> [f64; 3] {
     let mut worst = [0f64; 3];
     for (row, found) in rows.iter().zip(found) {
@@ -109,16 +109,16 @@ fn errors(metric: Metric, rows: &[Row], found: &[Found]) -> [f64; 3] {
     worst
 }
 
-/// The absolute difference; infinite for NaN.
+/// Returns the absolute difference; infinite for NaN.
 fn error(got: f64, want: f64) -> f64 {
     Some((got - want).abs()).filter(|error| error.is_finite()).unwrap_or(f64::INFINITY)
 }
 
-/// Bounds the errors in units of their scales: about ten operations round, and a GPU may get divisions and square roots
-/// wrong by a few units. A software adapter stays below 6.
+/// Bound on errors in units of their scales. Approximately ten operations round, and the divisions and square roots of
+/// a GPU may have errors of a few units. Software adapters stay below 6.
 const BOUND: f64 = 16.0;
 
-/// Bounds the errors of finite differences, where only the rounding of two values counts. A software adapter stays below 2.
+/// Bound on errors of finite differences, which only the rounding of two values causes. Software adapters stay below 2.
 const DIFFERENCE_BOUND: f64 = 8.0;
 
 #[test]
@@ -156,7 +156,7 @@ fn a_wrong_derivative_is_detected() {
     }
 }
 
-/// Gradient and Hessian by forward differences, as both engines take them.
+/// Returns gradient and Hessian by forward differences, in the form used by both engines.
 fn forward(metric: Metric, t: &Corner<f64>, h: f64) -> Dual {
     let value = |x: f64, y: f64| metric.model(&displaced(t, [x * h, y * h]), SHARPNESS);
     let gradient = |x: f64, y: f64| {
@@ -169,13 +169,13 @@ fn forward(metric: Metric, t: &Corner<f64>, h: f64) -> Dual {
     Dual { value: value(0.0, 0.0), gradient: here, hessian }
 }
 
-/// Largest errors of finite differences, in units of the error that rounding of the values causes.
+/// Returns the largest errors of finite differences, in units of the error caused by rounding of the values.
 fn difference_errors(metric: Metric, rows: &[Row], found: &[Found]) -> [f64; 3] {
     let mut worst = [0f64; 3];
     for (row, found) in rows.iter().zip(found) {
         let (t, h) = (triangle(row), f64::from(row[5]));
         let Scales { sizes, conditions } = scales(metric, &t);
-        // A moved edge is rounded too: by its own length, relative to the shortest edge that counts.
+        // A moved edge is rounded too, by its length relative to the shortest relevant edge.
         let [a, b, c] = lengths(&t);
         let displaced = (a + b) * sizes[1] / sizes[0] + (a + b) / c;
         let noise = sizes[0] * (conditions[0] + displaced) * ULP;
@@ -221,7 +221,7 @@ fn differences_of_the_wrong_values_are_detected() {
     }
 }
 
-/// The direction -|H|⁻¹g, computed in the eigenvectors of H, and the slope along it.
+/// Returns the direction -|H|⁻¹g, computed in the eigenvectors of H, and the slope along that direction.
 fn newton(gradient: Vec2, [xx, xy, yy]: [f64; 3], floor: f64) -> (Vec2, f64) {
     let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
     let (sin, cos) = angle.sin_cos();
@@ -249,7 +249,7 @@ fn the_newton_direction_is_that_of_absolute_eigenvalues() {
             if length([gx, gy]) < 1e-30 {
                 continue;
             }
-            // The smaller eigenvalue is known to the rounding of the larger one, and is at least the floor.
+            // The smaller eigenvalue is known up to the rounding of the larger one, and is at least the floor.
             let bound = 8.0 * ULP / floor;
             let got = found.direction.map(f64::from);
             let off = length(sub(got, direction)) / length(direction);

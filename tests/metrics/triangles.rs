@@ -1,4 +1,4 @@
-//! Triangles to try the metrics on.
+//! Triangles for tests of the metrics.
 
 use crate::support::SplitMix64;
 use gpu_smooth::metric::Corner;
@@ -13,17 +13,17 @@ pub(crate) fn length(u: Vec2) -> f64 {
     u[0].hypot(u[1])
 }
 
-/// A triangle seen from its first vertex, in a mesh with this mean area.
+/// Makes a triangle seen from its first vertex, in a mesh with the given mean area.
 pub(crate) fn corner([p, q, r]: [Vec2; 3], mean_area: f64) -> Corner<f64> {
     Corner { a: sub(q, p), b: sub(r, p), mean_area }
 }
 
-/// The same triangle with its vertex moved.
+/// Returns the triangle with its vertex moved by `d`.
 pub(crate) fn displaced(t: &Corner<f64>, d: Vec2) -> Corner<f64> {
     Corner { a: sub(t.a, d), b: sub(t.b, d), ..*t }
 }
 
-/// The same triangle seen from its next vertex.
+/// Returns the triangle as seen from its next vertex.
 pub(crate) fn next_corner(t: &Corner<f64>) -> Corner<f64> {
     Corner { a: sub(t.b, t.a), b: [-t.a[0], -t.a[1]], ..*t }
 }
@@ -42,24 +42,24 @@ pub(crate) fn lengths(t: &Corner<f64>) -> [f64; 3] {
     [length(t.a), length(t.b), length(sub(t.b, t.a))]
 }
 
-/// The height over the edge opposite to the vertex.
+/// Returns the height of the vertex over the opposite edge.
 pub(crate) fn height(t: &Corner<f64>) -> f64 {
     t.doubled_area() / length(sub(t.b, t.a))
 }
 
-/// The inverse mean ratio by its plainest formula.
+/// Returns the inverse mean ratio by the simplest formula.
 pub(crate) fn imr(t: &Corner<f64>) -> f64 {
     let squares: f64 = lengths(t).iter().map(|l| l * l).sum();
     squares / (2.0 * 3f64.sqrt() * t.doubled_area())
 }
 
-/// An equilateral triangle of area 1, in a mesh of mean area 1.
+/// Makes an equilateral triangle of area 1, in a mesh of mean area 1.
 pub(crate) fn equilateral() -> Corner<f64> {
     let edge = (4.0 / 3f64.sqrt()).sqrt();
     corner([[0.0, 0.0], [edge, 0.0], [0.5 * edge, 3f64.sqrt() / 2.0 * edge]], 1.0)
 }
 
-/// A triangle of any shape with an inverse mean ratio of at most `worst`, at any angle, with edges near one.
+/// Makes a random triangle with an inverse mean ratio of at most `worst`, at any angle, with edges near one.
 pub(crate) fn random(rng: &mut SplitMix64, worst: f64) -> Corner<f64> {
     loop {
         let vertex = [0; 3].map(|_| [0; 2].map(|_| rng.range(-1.0, 1.0)));
@@ -70,8 +70,8 @@ pub(crate) fn random(rng: &mut SplitMix64, worst: f64) -> Corner<f64> {
     }
 }
 
-/// A triangle with an inverse mean ratio near `ratio`, seen from any vertex. With `needle` it has a short edge, otherwise
-/// three long ones.
+/// Makes a triangle with an inverse mean ratio near `ratio`, seen from a random vertex. A `needle` has one short edge,
+/// other triangles have three long edges.
 pub(crate) fn thin(rng: &mut SplitMix64, ratio: f64, needle: bool) -> Corner<f64> {
     let thickness = 1.0 / ratio;
     let tip = if needle { [0.3 * thickness, thickness] } else { [rng.range(0.2, 0.8), thickness] };

@@ -1,18 +1,18 @@
-//! Compares the energy of untangling in WGSL with that of the CPU on the same single-precision input.
+//! Comparison of the untangling energy in WGSL with that of the CPU, on equal single-precision input.
 
 use crate::device::{Device, probe};
 use crate::support::SplitMix64;
 use gpu_smooth::{gpu::Kernel, internal::untangling_energy};
 
-/// The input of an invocation: two edges, and ε in units of the doubled area.
+/// Input of an invocation: two edges, and ε in units of the doubled area.
 type Row = [f32; 5];
-/// The output of an invocation: value, gradient and Hessian, and the value computed alone.
+/// Output of an invocation: value, gradient and Hessian, and the value computed separately.
 type Found = [f32; 7];
 
-/// Half a unit in the last place of a float near one.
+/// Half a unit in the last place of a float close to 1.
 const ULP: f64 = 1.0 / 16_777_216.0;
 
-/// The bound of tests/metrics/shader.rs. A software adapter stays below 6.
+/// The bound of tests/metrics/shader.rs. Software adapters stay below 6.
 const BOUND: f64 = 16.0;
 
 fn wgsl() -> String {
@@ -22,7 +22,8 @@ fn wgsl() -> String {
     Kernel::Untangle.wgsl() + &probe(5, 7, body)
 }
 
-/// Triangles of either orientation, from good to flat, tiny to huge. ε goes from next to nothing to more than their areas.
+/// Returns triangles of either orientation, from good to flat and from tiny to huge. ε ranges from nearly 0 to more
+/// than their areas.
 fn rows() -> Vec<Row> {
     let mut rng = SplitMix64::new(47);
     let mut rows = Vec::new();
@@ -31,7 +32,7 @@ fn rows() -> Vec<Row> {
         let mut edge = || [rng.range(-1.0, 1.0) * size, rng.range(-1.0, 1.0) * size];
         let (a, mut b) = (edge(), edge());
         if i % 4 == 0 {
-            // Nearly flat: b is a multiple of a, and a little beside it.
+            // Nearly flat: b is a multiple of a with a small perpendicular offset.
             let (share, beside) = (rng.range(-1.0, 2.0), rng.range(-1e-4, 1e-4));
             b = [share * a[0] - beside * a[1], share * a[1] + beside * a[0]];
         }
@@ -42,7 +43,8 @@ fn rows() -> Vec<Row> {
     rows
 }
 
-/// Largest errors of value, gradient and Hessian, in units of the error that the last place of an edge causes.
+/// Returns the largest errors of value, gradient and Hessian, in units of the error caused by the last place of an
+/// edge.
 fn errors(rows: &[Row], found: &[Found]) -> [f64; 3] {
     let mut worst = [0f64; 3];
     for (row, found) in rows.iter().zip(found) {

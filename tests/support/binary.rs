@@ -1,21 +1,21 @@
-//! Writes binary files in either byte order: numbers, and meshes as gmsh's `.msh`.
+//! Writer of binary files in either byte order: numbers, and gmsh's `.msh`.
 
 use super::{Mesh, Precision};
 
-/// A file under construction.
+/// The bytes of a binary file under construction.
 pub struct Binary {
     pub bytes: Vec<u8>,
-    /// Whether the highest byte of a number comes first.
+    /// Whether numbers are big-endian.
     pub big: bool,
 }
 
 impl Binary {
-    /// Starts a file of any format.
+    /// Starts an empty file.
     pub fn empty(big: bool) -> Binary {
         Binary { bytes: Vec::new(), big }
     }
 
-    /// Starts a file of a version of gmsh's format, with the section that states it.
+    /// Starts a `.msh` file of the given version with its section `$MeshFormat`.
     pub fn new(version: &str, big: bool) -> Binary {
         let mut file = Binary::empty(big);
         file.text(&format!("$MeshFormat\n{version} 1 8\n"));
@@ -47,7 +47,7 @@ impl Binary {
         numbers.iter().for_each(|x| self.put(x.to_le_bytes()));
     }
 
-    /// Adds numbers rounded to a precision, in as many bytes as that takes.
+    /// Appends numbers rounded to a precision, 4 or 8 bytes each.
     pub fn reals(&mut self, precision: Precision, numbers: &[f64]) {
         match precision {
             Precision::Single => numbers.iter().for_each(|x| self.put((*x as f32).to_le_bytes())),
@@ -56,7 +56,8 @@ impl Binary {
     }
 }
 
-/// Version 2.2, with a header before each element, as gmsh writes it, or one before them all.
+/// Writes gmsh 2.2 in binary, with a header before each element, as gmsh does, or with a single
+/// header.
 pub fn write_msh22_binary(mesh: &Mesh, big: bool, header_each: bool) -> Vec<u8> {
     let mut file = Binary::new("2.2", big);
     let n = mesh.triangles.len() as i32;
@@ -80,7 +81,7 @@ pub fn write_msh22_binary(mesh: &Mesh, big: bool, header_each: bool) -> Vec<u8> 
     file.bytes
 }
 
-/// Version 4.1, one block each of nodes and elements.
+/// Writes gmsh 4.1 in binary, with one block of nodes and one of elements.
 pub fn write_msh41_binary(mesh: &Mesh, big: bool) -> Vec<u8> {
     let mut file = Binary::new("4.1", big);
     let (n, m) = (mesh.points.len() as u64, mesh.triangles.len() as u64);

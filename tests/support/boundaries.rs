@@ -1,5 +1,5 @@
-//! Meshes of which the boundary or lines inside were taken elsewhere, and the vertices inside were not. All of them have a
-//! valid mesh.
+//! Meshes tangled by moves of the boundary or of inner lines, without the vertices inside. All of them can be
+//! untangled.
 
 use super::Mesh;
 use super::check::held;
@@ -8,7 +8,7 @@ use super::outline::Outline;
 use super::rng::SplitMix64;
 use super::trig::on_circle;
 
-/// A mesh with the vertices that stay, those of the boundary and the fixed ones, moved.
+/// Returns the mesh with `to` applied to the vertices on the boundary and the fixed vertices.
 pub fn dragged(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
     let mut dragged = mesh.clone();
     for (point, held) in dragged.points.iter_mut().zip(held(mesh)) {
@@ -23,7 +23,7 @@ fn is_near([x, y]: [f64; 2], [cx, cy]: [f64; 2], radius: f64) -> bool {
     (x - cx).hypot(y - cy) < radius
 }
 
-/// All that stays within a radius of the origin turned by a share of a full turn.
+/// Returns the mesh with all held vertices within a radius of the origin rotated by `turn` full turns.
 pub fn turned_inside(mesh: &Mesh, radius: f64, turn: f64) -> Mesh {
     let [cos, sin] = on_circle(turn);
     dragged(mesh, |[x, y]| match is_near([x, y], [0.0, 0.0], radius) {
@@ -32,18 +32,18 @@ pub fn turned_inside(mesh: &Mesh, radius: f64, turn: f64) -> Mesh {
     })
 }
 
-/// Where the holes of [`two_holes`] are, and how large.
+/// Centers of the holes of [`two_holes`]; `RADIUS` is the radius of both.
 const HOLES: [[f64; 2]; 2] = [[1.5, 1.5], [4.0, 1.5]];
 const RADIUS: f64 = 0.4;
 
-/// A plate with two round holes of the same size.
+/// Makes a plate with two equal round holes.
 pub fn two_holes(vertices: usize) -> Mesh {
     let holes = HOLES.map(|[x, y]| format!("circle {x} {y} {RADIUS} 36\n")).concat();
     let outline = Outline::parse(&format!("loop\n0 0\n6 0\n6 3\n0 3\n{holes}")).unwrap();
     triangulate(&outline, vertices).unwrap()
 }
 
-/// The first of [`two_holes`] dragged past the second to somewhere behind it.
+/// Drags the first hole of [`two_holes`] past the second to a random position behind it.
 pub fn past(mesh: &Mesh, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let [cos, sin] = on_circle(rng.range(-0.15, 0.15));
@@ -55,7 +55,7 @@ pub fn past(mesh: &Mesh, seed: u64) -> Mesh {
     })
 }
 
-/// The [`two_holes`] in each other's place, nearly, and one of them turned.
+/// Nearly exchanges the holes of [`two_holes`], and rotates one of them.
 pub fn swapped(mesh: &Mesh, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let up = rng.range(-0.5, 0.5);
@@ -73,7 +73,7 @@ pub fn swapped(mesh: &Mesh, seed: u64) -> Mesh {
     })
 }
 
-/// The side y = 0 of a lattice pushed through it by half to nine tenths of its height, in a bump.
+/// Pushes the side y = 0 of a lattice through it as a bump, by half to nine tenths of the height.
 pub fn bumped(mesh: &Mesh, columns: usize, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let columns = columns as f64;
@@ -83,11 +83,11 @@ pub fn bumped(mesh: &Mesh, columns: usize, seed: u64) -> Mesh {
     dragged(mesh, |[x, y]| if y == 0.0 { [x, height * share(x)] } else { [x, y] })
 }
 
-/// The boundary of a mesh in the first quadrant bent along an arc of so much of a turn.
+/// Bends the boundary of a mesh in the first quadrant along an arc of `turn` full turns.
 pub fn bent(mesh: &Mesh, turn: f64) -> Mesh {
     let most = |i: usize| mesh.points.iter().map(|p| p[i]).fold(0.0, f64::max);
     let (width, height) = (most(0), most(1));
-    // The arc of the middle is as long as the mesh was, and its inner side is left some length.
+    // The arc through the middle keeps the length of the mesh, and the inner side keeps a positive length.
     let radius = width / (turn * std::f64::consts::TAU);
     let thickness = radius.min(height);
     dragged(mesh, |[x, y]| {
@@ -97,7 +97,8 @@ pub fn bent(mesh: &Mesh, turn: f64) -> Mesh {
     })
 }
 
-/// Rings of triangles around a hole of radius one half, in layers that are a hundredth as thick as edges are long at the hole.
+/// Makes rings of triangles around a hole of radius one half. At the hole, layers are a hundredth as thick as edges are
+/// long.
 pub fn layers(around: usize) -> Mesh {
     let mut mesh = Mesh::default();
     let edge = std::f64::consts::PI / around as f64;
@@ -127,8 +128,8 @@ pub fn layers(around: usize) -> Mesh {
     mesh
 }
 
-/// A rectangle of three regions: a disk about the origin, and what is on either side of a line. Vertices between regions are
-/// fixed.
+/// Makes a rectangle of three regions: a disk around the origin, and the two sides of a line. Vertices between regions
+/// are fixed.
 pub fn regions(vertices: usize) -> Mesh {
     let mut text = String::from("loop\n-3 -2\n3 -2\n3 2\n-3 2\nline\n");
     for i in 0..=40 {

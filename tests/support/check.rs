@@ -8,7 +8,8 @@ fn coord([x, y]: [f64; 2]) -> Coord<f64> {
     Coord { x, y }
 }
 
-/// Twice the signed area: positive if counterclockwise. The sign is exact, barring underflow.
+/// Returns twice the signed area, positive for counterclockwise triangles. The sign is exact, except for
+/// underflow.
 pub fn orient([a, b, c]: [[f64; 2]; 3]) -> f64 {
     orient2d(coord(a), coord(b), coord(c))
 }
@@ -17,7 +18,7 @@ pub fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [[f64; 2]; 3] {
     triangle.map(|v| mesh.points[v as usize])
 }
 
-/// Sign of the area of each triangle as it is wound: 1, -1, or 0 if it is flat.
+/// Returns the sign of each triangle's area in its winding: 1, -1, or 0 for flat triangles.
 pub fn orientations(mesh: &Mesh) -> Vec<i8> {
     let sign = |&t| match orient(corners(mesh, t)) {
         area if area > 0.0 => 1,
@@ -27,18 +28,18 @@ pub fn orientations(mesh: &Mesh) -> Vec<i8> {
     mesh.triangles.iter().map(sign).collect()
 }
 
-/// Whether every triangle is wound counterclockwise and none is flat.
+/// Returns whether all triangles are counterclockwise and none is flat.
 pub fn is_ccw(mesh: &Mesh) -> bool {
     orientations(mesh).iter().all(|&sign| sign == 1)
 }
 
-/// Whether no triangle is flat in `after` nor turned over against `before`.
+/// Returns whether each triangle of `after` has the orientation of `before`, and none is flat.
 pub fn same_orientations(before: &Mesh, after: &Mesh) -> bool {
     let signs = orientations(after);
     !signs.contains(&0) && signs == orientations(before)
 }
 
-/// How many triangles each edge has, by its vertices in ascending order.
+/// Counts the triangles at each edge, which is given by its vertices in ascending order.
 pub fn edge_uses(mesh: &Mesh) -> BTreeMap<[u32; 2], u32> {
     let mut uses = BTreeMap::new();
     for edge in mesh.triangles.iter().flat_map(|&t| edges(t)) {
@@ -55,9 +56,9 @@ fn ascending([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Which vertices end an edge that has one triangle.
+/// Returns for each vertex whether it belongs to an edge of a single triangle.
 pub fn boundary(mesh: &Mesh) -> Vec<bool> {
-    // Sorted, as a map of the edges of a million triangles is slow.
+    // Edges are sorted, because a map of the edges of a million triangles would be slow.
     let mut all: Vec<_> = mesh.triangles.iter().flat_map(|&t| edges(t)).map(ascending).collect();
     all.sort_unstable();
     let mut on = vec![false; mesh.points.len()];
@@ -67,7 +68,8 @@ pub fn boundary(mesh: &Mesh) -> Vec<bool> {
     on
 }
 
-/// Which vertices stay: those of the boundary, the fixed ones and those of no triangle.
+/// Returns for each vertex whether it must stay: boundary vertices, fixed vertices, and vertices without
+/// triangles.
 pub fn held(mesh: &Mesh) -> Vec<bool> {
     let mut held = boundary(mesh);
     mesh.fixed.iter().for_each(|&v| held[v as usize] = true);
@@ -76,13 +78,13 @@ pub fn held(mesh: &Mesh) -> Vec<bool> {
     held.iter().zip(used).map(|(&held, used)| held || !used).collect()
 }
 
-/// How many vertices may move.
+/// Counts the vertices that may move.
 pub fn mover_count(mesh: &Mesh) -> usize {
     held(mesh).iter().filter(|&&held| !held).count()
 }
 
-/// Whether the mesh lies in the plane without a fold, however its triangles are wound: all positions
-/// finite, no triangle flat, no two triangles on the same side of an edge.
+/// Returns whether the mesh lies flat in the plane without a fold, in any windings: all positions are
+/// finite, no triangle is flat, and no two triangles lie on the same side of an edge.
 pub fn is_valid(mesh: &Mesh) -> bool {
     let count = mesh.points.len();
     let mut named = mesh.triangles.iter().flatten().chain(&mesh.fixed);
@@ -101,7 +103,7 @@ pub fn is_valid(mesh: &Mesh) -> bool {
     directed.windows(2).all(|pair| pair[0] != pair[1])
 }
 
-/// Sum of the areas of the triangles, each taken positive.
+/// Returns the sum of the unsigned areas of all triangles.
 pub fn area(mesh: &Mesh) -> f64 {
     mesh.triangles.iter().map(|&t| orient(corners(mesh, t)).abs() / 2.0).sum()
 }
@@ -115,7 +117,8 @@ fn squared_lengths([a, b, c]: [[f64; 2]; 3]) -> [f64; 3] {
     [[a, b], [b, c], [c, a]].map(|[p, q]| squared_distance(p, q))
 }
 
-/// Inverse mean ratio of a triangle wound counterclockwise: 1 if equilateral, infinite if flat or inverted.
+/// Returns the inverse mean ratio of a counterclockwise triangle: 1 if equilateral, infinite if flat or
+/// inverted.
 pub fn imr(triangle: [[f64; 2]; 3]) -> f64 {
     let double_area = orient(triangle);
     if double_area > 0.0 {
@@ -132,17 +135,17 @@ fn imrs(mesh: &Mesh) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Mean over the triangles, in either winding, of the square of the inverse mean ratio.
+/// Returns the mean of the squared inverse mean ratio over all triangles, in either winding.
 pub fn f_imr(mesh: &Mesh) -> f64 {
     imrs(mesh).map(|q| q * q).sum::<f64>() / mesh.triangles.len() as f64
 }
 
-/// Largest inverse mean ratio, in either winding.
+/// Returns the largest inverse mean ratio of all triangles, in either winding.
 pub fn worst_imr(mesh: &Mesh) -> f64 {
     imrs(mesh).fold(0.0, f64::max)
 }
 
-/// Smallest angle of any triangle, in degrees.
+/// Returns the smallest angle of all triangles, in degrees.
 pub fn min_angle(mesh: &Mesh) -> f64 {
     let smallest = mesh.triangles.iter().map(|&t| {
         let corners = corners(mesh, t);

@@ -1,4 +1,4 @@
-//! Makes meshes worse without inverting a triangle.
+//! Deterioration of meshes without inverted triangles.
 
 use super::Mesh;
 use super::check::{held, imr, is_ccw, orient, squared_distance};
@@ -8,18 +8,18 @@ use super::trig::sin_turns;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// No move of [`perturb_random`] makes a triangle's inverse mean ratio larger than this. The chance that a triangle gets
-/// flatter than some bound falls only as one over the bound. Without a limit, the flattest triangle, and f_imr with it,
-/// would depend on luck and on the number of vertices.
+/// Largest inverse mean ratio caused by a move of [`perturb_random`]. The probability of a triangle flatter than some
+/// bound falls only as the inverse of the bound. Without a limit, the flattest triangle and f_imr would depend on luck
+/// and on the number of vertices.
 const WORST: f64 = 1000.0;
 
-/// How far toward its random place strength 1 takes a vertex, as a share of the way. A share of 1 would leave a flat
+/// Fraction of the way to the random target that a vertex moves at strength 1. A fraction of 1 would leave a flat
 /// triangle at nearly every vertex.
 const FARTHEST: f64 = 0.7;
 
-/// Moves each vertex that may move, one after the other, toward a random place of its star. If that inverts a triangle, it
-/// goes half of the way, a quarter, and so on. Strength 0.5 brings f_imr to about 1.3. Strength 1 brings it to well over
-/// 100, nearly all of it from the few triangles that end up nearly flat. Needs a mesh wound counterclockwise.
+/// Moves each free vertex in turn toward a random point of its star. If a move inverts a triangle, half of the move is
+/// tried, then a quarter, and so on. Strength 0.5 raises f_imr to approximately 1.3. Strength 1 raises it to well over
+/// 100, mostly by a few nearly flat triangles. The mesh must be wound counterclockwise.
 pub fn perturb_random(mesh: &Mesh, strength: f64, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let (held, stars) = (held(mesh), Stars::new(mesh));
@@ -50,7 +50,7 @@ pub fn perturb_random(mesh: &Mesh, strength: f64, seed: u64) -> Mesh {
     moved
 }
 
-/// The triangles at each vertex.
+/// Triangles by vertex.
 struct Stars {
     start: Vec<usize>,
     triangles: Vec<u32>,
@@ -79,8 +79,8 @@ impl Stars {
     }
 }
 
-/// Moves the interior by a few long waves that fade toward all vertices that are held. At an `amplitude` of 1 the first
-/// triangle would become flat. Needs a mesh wound counterclockwise.
+/// Displaces interior vertices by a few long waves that fade toward held vertices. An `amplitude` of 1 would flatten
+/// the first triangle. The mesh must be wound counterclockwise.
 pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
     let [[left, width], [bottom, height]] = [0, 1].map(|x| {
         let low = mesh.points.iter().map(|p| p[x]).fold(f64::INFINITY, f64::min);
@@ -91,7 +91,7 @@ pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
     let farthest = distance.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
     let waves = mesh.points.iter().zip(distance).map(|(&[x, y], distance)| {
         let (u, v) = ((x - left) / width, (y - bottom) / height);
-        // The weight is zero with zero slope at held vertices, and one with zero slope in the middle.
+        // The weight is 0 with slope 0 at held vertices, and 1 with slope 0 in the middle.
         let near = distance / farthest;
         let weight = near * near * (3.0 - 2.0 * near);
         let across = sin_turns(1.3 * v + 0.1) + 0.6 * sin_turns(2.1 * u + 0.9 * v);
@@ -110,7 +110,7 @@ pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
         for (point, wave) in moved.points.iter_mut().zip(&waves) {
             *point = [point[0] + step * wave[0], point[1] + step * wave[1]];
         }
-        // Rounding may have flattened a triangle when the amplitude is close to 1.
+        // At amplitudes close to 1, rounding may have flattened a triangle.
         if moved.triangles.iter().all(|t| orient(t.map(|v| moved.points[v as usize])) > 0.0) {
             return moved;
         }
@@ -118,12 +118,12 @@ pub fn distort_smooth(mesh: &Mesh, amplitude: f64) -> Mesh {
     }
 }
 
-/// How far the corners go along the waves until the triangle is flat, as a factor of the waves.
+/// Returns the smallest factor of the waves at which the triangle becomes flat; infinite if there is none.
 fn flattens_at([p, q, r]: [[f64; 2]; 3], [a, b, c]: [[f64; 2]; 3]) -> f64 {
     let minus = |u: [f64; 2], v: [f64; 2]| [u[0] - v[0], u[1] - v[1]];
     let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
     let (e, f, de, df) = (minus(q, p), minus(r, p), minus(b, a), minus(c, a));
-    // Twice the area is `area + slope t + bend t^2`. Finds its smallest positive root.
+    // Twice the area is `area + slope t + bend t^2`; the smallest positive root is sought.
     let (area, slope, bend) = (cross(e, f), cross(e, df) + cross(de, f), cross(de, df));
     let discriminant = slope * slope - 4.0 * bend * area;
     if discriminant < 0.0 {
@@ -134,13 +134,13 @@ fn flattens_at([p, q, r]: [[f64; 2]; 3], [a, b, c]: [[f64; 2]; 3]) -> f64 {
     [half / bend, area / half].into_iter().filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min)
 }
 
-/// The approximate distance of each vertex to the nearest held one. Of the held vertices, it considers only those that
-/// are nearest to its neighbors.
+/// Returns the approximate distance from each vertex to the nearest held vertex. Only the held vertices nearest to a
+/// vertex's neighbors are considered.
 fn distance_to_held(mesh: &Mesh) -> Vec<f64> {
     let stars = Stars::new(mesh);
     let held = held(mesh);
     let mut squared = vec![f64::INFINITY; mesh.points.len()];
-    // Ordered by distance: positive floats order like their bits.
+    // The queue is ordered by distance: the bits of positive floats are ordered like the floats.
     let mut queue: BinaryHeap<_> =
         (0..squared.len()).filter(|&v| held[v]).map(|v| Reverse((0u64, v, v))).collect();
     while let Some(Reverse((bits, v, source))) = queue.pop() {
@@ -158,18 +158,18 @@ fn distance_to_held(mesh: &Mesh) -> Vec<f64> {
     squared.into_iter().map(f64::sqrt).collect()
 }
 
-/// A lattice with a vertex so near to an edge opposite that the triangle of the two is counter-clockwise by exact predicates,
-/// while its area is not positive as computed in double precision.
+/// Makes a lattice in which a vertex lies extremely near to an opposite edge. By exact predicates the triangle of both
+/// is counterclockwise, but its area computed in double precision is not positive.
 pub fn beyond_double_precision() -> Mesh {
     let mut mesh = lattice(8, 8);
-    // The free vertex in row 4, column 4, and the edge between its two neighbors on the right.
+    // The free vertex in row 4, column 4, and the edge between two of its neighbors to the right.
     let [v, p, q] = [4 * 9 + 4, 4 * 9 + 5, 5 * 9 + 4];
     let middle = [0, 1].map(|i| (mesh.points[p][i] + mesh.points[q][i]) / 2.0);
     for point in &mut mesh.points {
         let [x, y] = [point[0] - middle[0], point[1] - middle[1]];
         *point = [0.96 * x - 0.28 * y, 0.28 * x + 0.96 * y];
     }
-    // Near the origin coordinates are finer than differences to the ends of the edge.
+    // Near the origin, coordinates have a finer resolution than differences to the ends of the edge.
     for k in 1..100 {
         mesh.points[v] = [0, 1].map(|i| mesh.points[p][i] * 1e-3 * f64::from(k));
         while !is_ccw(&mesh) {

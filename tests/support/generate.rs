@@ -1,4 +1,4 @@
-//! Makes meshes: lattices, graded rings, hubs, layers, and triangulations of an outline.
+//! Generators of meshes: lattices, graded rings, hubs, layers, and triangulations of an outline.
 
 use super::Mesh;
 use super::check::{area, boundary, is_ccw, is_valid, min_angle};
@@ -10,11 +10,11 @@ use spade::{
 
 type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
-/// Refinement keeps angles above this, except where the outline itself has smaller ones.
+/// Smallest angle after refinement, in degrees, except at sharper corners of the outline.
 pub const ANGLE_LIMIT: f64 = 29.0;
 
-/// `columns` times `rows` pairs of equilateral triangles of unit edge: every triangle is ideal up to rounding. The left
-/// and right sides zigzag, so that the lattice is a rectangle and does not lean over.
+/// Makes a lattice of `columns` times `rows` pairs of equilateral triangles with unit edges. The left and right sides
+/// zigzag, so that the lattice is upright. All triangles are ideal up to rounding.
 pub fn lattice(columns: usize, rows: usize) -> Mesh {
     let height = 3f64.sqrt() / 2.0;
     let mut mesh = Mesh::default();
@@ -37,13 +37,13 @@ pub fn lattice(columns: usize, rows: usize) -> Mesh {
     mesh
 }
 
-/// Rings of `around` vertices each between the unit circle and a hole of radius `ratio` about the
-/// origin. The elements shrink with the radius, so that they keep their shape: nearly equilateral.
+/// Makes rings of `around` vertices between the unit circle and a hole of radius `ratio` around the origin. Elements
+/// shrink with the radius and stay nearly equilateral.
 pub fn graded(around: usize, ratio: f64) -> Mesh {
     assert!(around >= 8 && ratio > 0.0, "a ring needs 8 vertices and a hole");
     let turns = 1.0 / around as f64;
-    // Halfway between two factors: with one, the triangles that stand on a ring are equilateral, with the other those
-    // that hang from it.
+    // Halfway between two factors: one makes triangles with an edge on the inner ring equilateral, the other those with
+    // an edge on the outer ring.
     let [cos, sin] = on_circle(turns / 2.0);
     let height = 3f64.sqrt() * sin;
     let shrink = ((cos - height) / (cos + height)).sqrt();
@@ -73,8 +73,8 @@ pub fn graded(around: usize, ratio: f64) -> Mesh {
     }
 }
 
-/// A vertex with `around` neighbors, in the middle of rings with `around` vertices each. The outermost ring is `1 / ratio`
-/// times as large as the innermost. Outside of the innermost ring, triangles are nearly equilateral.
+/// Makes a vertex with `around` neighbors, in the center of rings of `around` vertices each. The outermost ring is `1 /
+/// ratio` times as large as the innermost. Outside of the innermost ring, triangles are nearly equilateral.
 pub fn hub(around: usize, ratio: f64) -> Mesh {
     let mut mesh = graded(around, ratio);
     let center = mesh.points.len() as u32;
@@ -85,15 +85,15 @@ pub fn hub(around: usize, ratio: f64) -> Mesh {
     mesh
 }
 
-/// A vertex with `around` neighbors, in the middle of `rings` rings at equal distances, with `around` vertices each.
-/// Triangles nearer to the middle are more stretched.
+/// Makes a vertex with `around` neighbors, in the center of `rings` equidistant rings of `around` vertices each.
+/// Triangles closer to the center are more stretched.
 pub fn hub_evenly(around: usize, rings: usize) -> Mesh {
-    // A ratio at which `hub` makes at least that many rings.
+    // A ratio for which `hub` makes at least `rings` rings.
     let mut mesh = hub(around, (-6.0 * rings as f64 / around as f64).exp());
     let all = (mesh.points.len() - 1) / around;
     assert!(all >= rings, "{all} rings instead of {rings}");
     let last = (rings * around) as u32;
-    // Replaces the triangles inside the last ring that is kept by a fan.
+    // Replaces the triangles inside the innermost kept ring by a fan.
     mesh.triangles.retain(|t| t.iter().all(|&v| v < last));
     mesh.points.truncate(last as usize);
     for (i, point) in mesh.points.iter_mut().enumerate() {
@@ -108,7 +108,7 @@ pub fn hub_evenly(around: usize, rings: usize) -> Mesh {
     mesh
 }
 
-/// The mesh of [`layered`] with wavy rows: one wave over the width, `height` edges high.
+/// Makes the mesh of [`layered`] with wavy rows: one wave over the width, with a height of `height` edges.
 pub fn wavy_layer(columns: usize, ratio: f64, height: f64) -> Mesh {
     let mut mesh = layered(columns, ratio);
     for point in &mut mesh.points {
@@ -117,7 +117,8 @@ pub fn wavy_layer(columns: usize, ratio: f64, height: f64) -> Mesh {
     mesh
 }
 
-/// A square lattice whose rows are pressed together toward the middle: triangles there are stretched by about `ratio`.
+/// Makes a square lattice whose rows are compressed toward the middle, where triangles are stretched by approximately
+/// `ratio`.
 pub fn layered(columns: usize, ratio: f64) -> Mesh {
     let rows = columns / 2 * 2;
     let mut mesh = lattice(columns, rows);
@@ -130,24 +131,24 @@ pub fn layered(columns: usize, ratio: f64) -> Mesh {
     mesh
 }
 
-/// Triangulates the inside of the outline. No angle is below [`ANGLE_LIMIT`], but at sharper corners of the outline. The
-/// size of the triangles is chosen such that there are `vertices` vertices to within 1 %. The corners of the outline come
-/// first, in its order. The result depends only on the version of spade, not on the machine.
+/// Triangulates the inside of an outline. Angles are at least [`ANGLE_LIMIT`], except at sharper corners of the
+/// outline. The triangle size is chosen so that the number of vertices is within 1 % of `vertices`. Vertices begin with
+/// the corners of the outline, in order. The result depends only on the version of spade, not on the machine.
 pub fn triangulate(outline: &Outline, vertices: usize) -> Result<Mesh, String> {
     let mesh = triangulate_within(outline, vertices, false)?;
     if min_angle(&mesh) > ANGLE_LIMIT - 1e-6 {
         return Ok(mesh);
     }
-    // spade splits no edge that makes a sharp angle with the convex hull, and leaves bad triangles there.
+    // spade does not split edges at a sharp angle with the convex hull, and leaves bad triangles there.
     let boxed = triangulate_within(outline, vertices, true)?;
     Ok(if min_angle(&boxed) > min_angle(&mesh) { boxed } else { mesh })
 }
 
-/// Triangulates the outline in about `vertices` vertices. `boxed` puts it in a box, which keeps the convex hull far from
-/// it.
+/// Triangulates an outline with approximately `vertices` vertices. With `boxed`, a surrounding box keeps the convex
+/// hull away from the outline.
 fn triangulate_within(outline: &Outline, vertices: usize, boxed: bool) -> Result<Mesh, String> {
     let (domain, target) = (outline.area(), vertices as f64);
-    // Starts with the size of a typical mesh; then searches between sizes that gave too many and too few vertices.
+    // The search starts at the size of a typical mesh, then bisects between sizes with too many and too few vertices.
     let (mut size, mut low, mut high) = (domain / (1.2 * target), 0.0, f64::INFINITY);
     let mut closest: Option<(f64, Mesh)> = None;
     for _ in 0..24 {
@@ -182,7 +183,7 @@ fn triangulate_within(outline: &Outline, vertices: usize, boxed: bool) -> Result
     }
 }
 
-/// Refines to triangles of at most the area `size`; `None` if that takes more than `limit` vertices.
+/// Refines the outline to triangles with areas of at most `size`; `None` if more than `limit` vertices are necessary.
 fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Option<Mesh>, String> {
     let mut cdt = Cdt::new();
     let closed = outline.loops.iter().map(|ring| (ring, true));
@@ -199,8 +200,8 @@ fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Opt
     }
     let lone =
         outline.vertices.iter().map(|&p| insert(&mut cdt, p)).collect::<Result<Vec<_>, _>>()?;
-    // spade takes every constraint edge for a border between inside and outside. If there are lines inside, it must refine
-    // everything; then a box around the outline keeps it from making sharp angles with the convex hull.
+    // spade regards each constraint edge as a border between inside and outside. For outlines with inner lines, spade
+    // must therefore refine everything; a surrounding box then prevents sharp angles with the convex hull.
     let borders_only = outline.lines.is_empty();
     if !borders_only || boxed {
         for p in surrounding_box(outline) {
@@ -232,7 +233,7 @@ fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Opt
         .flat_map(|edge| edge.vertices().map(|v| v.fix()));
     let fixed = lone.into_iter().chain(on_lines).map(|v| v.index() as u32).collect();
     let mesh = compacted(Mesh { points, triangles, fixed });
-    // The triangles fill what the loops enclose, so no loop was lost.
+    // The triangles fill the area enclosed by the loops, so no loop was lost.
     let fills = (area(&mesh) / outline.area() - 1.0).abs() < 1e-9;
     if is_ccw(&mesh) && is_valid(&mesh) && fills {
         Ok(Some(mesh))
@@ -256,7 +257,7 @@ fn surrounding_box(outline: &Outline) -> [[f64; 2]; 4] {
     [[left, bottom], [right, bottom], [right, top], [left, top]]
 }
 
-/// The mesh without vertices that no triangle uses. Vertices on the boundary are left out of `fixed`.
+/// Returns the mesh without unused vertices, and without boundary vertices in `fixed`.
 fn compacted(mesh: Mesh) -> Mesh {
     const UNUSED: u32 = u32::MAX;
     let mut new_index = vec![UNUSED; mesh.points.len()];

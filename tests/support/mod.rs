@@ -1,6 +1,7 @@
-//! Seeded meshes, and checks of meshes that are independent of the library.
+//! Generators of meshes with fixed seeds, and checks of meshes that are independent of the library.
 //!
-//! Each user of this module (a test, an example, a bench) is a crate of its own that needs only part of it.
+//! Each test, example or benchmark that includes this module is a crate of its own, and uses a part of the
+//! module.
 #![allow(dead_code, unreachable_pub, unused_imports)]
 
 pub mod binary;
@@ -17,7 +18,7 @@ pub mod tangle;
 pub mod trig;
 pub mod write;
 
-/// The mesh of the library that is tested.
+/// The mesh type of the library under test.
 pub use gpu_smooth::Mesh;
 pub use mesh_io::Precision;
 

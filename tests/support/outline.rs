@@ -18,19 +18,19 @@ use super::trig::on_circle;
 
 type Point = [f64; 2];
 
-/// A domain: the part of the plane that an odd number of loops encloses.
+/// A domain: all points enclosed by an odd number of loops.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// Closed polygons in either winding. The last point joins the first, which is not repeated.
+    /// Closed polygons in either winding. An implicit segment joins the last point to the first.
     pub loops: Vec<Vec<Point>>,
-    /// Open lines inside the domain, kept as edges.
+    /// Open lines inside the domain, whose segments become edges.
     pub lines: Vec<Vec<Point>>,
-    /// Lone vertices inside the domain.
+    /// Isolated vertices inside the domain.
     pub vertices: Vec<Point>,
 }
 
 impl Outline {
-    /// Reads the text format. The error says which row is wrong and why.
+    /// Parses the text format. The error names the first invalid line and the problem.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut outline = Self::default();
         let mut open: Option<Path> = None;
@@ -83,10 +83,10 @@ impl Outline {
         Ok(())
     }
 
-    /// Area of the domain, if no two loops cross.
+    /// Returns the area of the domain, provided that no loops cross.
     pub fn area(&self) -> f64 {
         let areas = self.loops.iter().enumerate().map(|(i, ring)| {
-            // A loop inside an odd number of others is subtracted.
+            // A loop inside an odd number of other loops is a hole, so its area is subtracted.
             let others = self.loops.iter().enumerate().filter(|(j, _)| *j != i);
             let depth = others.filter(|(_, other)| encloses(other, ring[0])).count();
             let area = edges(ring).map(|[p, q]| p[0] * q[1] - p[1] * q[0]).sum::<f64>().abs() / 2.0;
@@ -95,7 +95,7 @@ impl Outline {
         areas.sum()
     }
 
-    /// Whether the point is in the domain. For a point on a loop the answer may be either.
+    /// Returns whether a point lies in the domain. For points on a loop, the result is arbitrary.
     pub fn contains(&self, point: Point) -> bool {
         self.loops.iter().filter(|ring| encloses(ring, point)).count() % 2 == 1
     }
@@ -105,7 +105,7 @@ fn edges(ring: &[Point]) -> impl Iterator<Item = [Point; 2]> + '_ {
     ring.iter().zip(ring.iter().cycle().skip(1)).map(|(&p, &q)| [p, q])
 }
 
-/// Whether a ray to the right of the point crosses the ring an odd number of times.
+/// Returns whether a horizontal ray to the right of the point crosses the ring an odd number of times.
 fn encloses(ring: &[Point], [x, y]: Point) -> bool {
     let crosses = |[p, q]: &[Point; 2]| {
         (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
@@ -126,13 +126,13 @@ fn chords(n: f64) -> Result<usize, String> {
     }
 }
 
-/// A loop or line that is being read. Each piece, from one point to the next, belongs to a section: either straight, or a
-/// curve that is smooth within its section.
+/// A loop or line during parsing. Each piece, from a point to the next, belongs to a section. A section is either
+/// straight, or a smooth curve.
 struct Path {
     closed: bool,
     points: Vec<Point>,
     section_of: Vec<usize>,
-    /// How many chords a piece of each section has.
+    /// Number of chords per piece, for each section.
     chords: Vec<usize>,
 }
 
@@ -171,7 +171,7 @@ impl Path {
         Ok(())
     }
 
-    /// The points of the polygon: those given, and those sampled between them on curves.
+    /// Returns the points of the polygon: given points, and sampled points of curves.
     fn sampled(&self) -> Vec<Point> {
         let n = self.points.len();
         let pieces = if self.closed { n } else { n - 1 };
@@ -181,7 +181,7 @@ impl Path {
             let (p, q) = (self.points[i], self.points[next]);
             let mirrored =
                 |about: Point, point: Point| [2.0 * about[0] - point[0], 2.0 * about[1] - point[1]];
-            // At the end of a section, the curve goes on as if mirrored there.
+            // Beyond the end of a section, a mirrored point continues the curve.
             let smooth_with = |piece: usize| piece < pieces && self.section_of[piece] == section;
             let last = (i + n - 1) % n;
             let before = if smooth_with(last) { self.points[last] } else { mirrored(p, q) };
@@ -200,7 +200,7 @@ impl Path {
     }
 }
 
-/// The point at `t` on the Catmull-Rom curve from the second to the third of four points.
+/// Returns the point at `t` in 0...1 on the Catmull-Rom curve from the second to the third of four points.
 fn catmull_rom([a, b, c, d]: [Point; 4], t: f64) -> Point {
     [0, 1].map(|x| {
         let (first, second) = (c[x] - a[x], 2.0 * a[x] - 5.0 * b[x] + 4.0 * c[x] - d[x]);

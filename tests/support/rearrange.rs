@@ -1,9 +1,10 @@
-//! The same mesh in another order, winding or position: smoothing must not depend on these.
+//! Changes of order, winding or position, on which the result of smoothing must not depend.
 
 use super::Mesh;
 use super::rng::SplitMix64;
 
-/// Reverses the winding of about half of the triangles, and starts each at a random corner.
+/// Reverses the windings of approximately half of the triangles, and rotates the corners of each at
+/// random.
 pub fn shuffled_windings(mesh: &Mesh, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let mut shuffled = mesh.clone();
@@ -16,7 +17,8 @@ pub fn shuffled_windings(mesh: &Mesh, seed: u64) -> Mesh {
     shuffled
 }
 
-/// Vertices and triangles in random order, and the new index of each old vertex.
+/// Returns the mesh with vertices and triangles in random order, and the new index of each old
+/// vertex.
 pub fn renumbered(mesh: &Mesh, seed: u64) -> (Mesh, Vec<u32>) {
     let mut rng = SplitMix64::new(seed);
     let mut new_index: Vec<u32> = (0..mesh.points.len() as u32).collect();
@@ -32,7 +34,7 @@ pub fn renumbered(mesh: &Mesh, seed: u64) -> (Mesh, Vec<u32>) {
     (Mesh { points, triangles, fixed }, new_index)
 }
 
-/// The mesh scaled about the origin, then shifted.
+/// Returns the mesh scaled relative to the origin, then translated.
 pub fn transformed(mesh: &Mesh, scale: f64, [dx, dy]: [f64; 2]) -> Mesh {
     let points = mesh.points.iter().map(|[x, y]| [x * scale + dx, y * scale + dy]).collect();
     Mesh { points, ..mesh.clone() }

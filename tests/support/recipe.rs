@@ -1,4 +1,4 @@
-//! The command line of `examples/make_mesh.rs`, here so that a test can run the command that a mesh names as its origin.
+//! The command line of `examples/make_mesh.rs`, separate so that a test can execute the command that produced a mesh.
 
 use super::Mesh;
 use super::{Outline, distort_smooth, perturb_random, tangle, triangle_text, triangulate};
@@ -11,7 +11,7 @@ const USAGE: &str = "usage: make_mesh OUTLINE OUT_STEM [options]
   --tangle KIND tangle the interior: scatter, noise, collapse, fold or turn; see docs/untangling.md
   --seed K      of the random moves (default 1)";
 
-/// What the command line asks for.
+/// The request of the command line.
 #[derive(Debug)]
 pub struct Recipe {
     /// The command as typed, for the comment in the files.
@@ -25,10 +25,10 @@ pub struct Recipe {
     seed: u64,
 }
 
-/// A way to tangle a mesh, given a seed.
+/// A function that tangles a mesh with a given seed.
 type Tangle = fn(&Mesh, u64) -> Mesh;
 
-/// The ways to tangle a mesh, by their names on the command line.
+/// Functions that tangle meshes, by their names on the command line.
 const TANGLES: [(&str, Tangle); 5] = [
     ("scatter", tangle::scattered),
     ("noise", |mesh, seed| tangle::noisy(mesh, 3.0, seed)),
@@ -84,7 +84,7 @@ impl Recipe {
         Ok(recipe)
     }
 
-    /// The mesh, as the texts of its `.node` and `.ele` file.
+    /// Returns the mesh as the texts of a `.node` and an `.ele` file.
     pub fn texts(&self) -> Result<[String; 2], String> {
         Ok(triangle_text(&self.mesh()?, &self.command))
     }

@@ -1,14 +1,14 @@
-//! A mesh of several regions in every format.
+//! Writers of a mesh with several regions in each format.
 
 use super::Mesh;
 use super::{Binary, write_msh22, write_msh41};
 use std::fmt::Write;
 
-/// The files of one mesh, as name and bytes. The file by which the mesh is opened comes first.
+/// Names and bytes of the files of a mesh. The main file comes first.
 pub type Files = Vec<(&'static str, Vec<u8>)>;
 
-/// Writes the mesh in every format, with triangle `t` in the region of the two numbers `regions[t]`. In gmsh 2.2 these are
-/// a physical group and an entity, in an `.ele` two attributes. In gmsh 4.1 the entity has one number, `10 a + b`.
+/// Writes the mesh in each format, with triangle `t` in the region of the two numbers `regions[t]`. In gmsh 2.2, they
+/// are a physical group and an entity, in an `.ele` two attributes. In gmsh 4.1, the entity is the number `10 a + b`.
 pub fn write_regions(mesh: &Mesh, regions: &[[i32; 2]]) -> Vec<Files> {
     assert_eq!(regions.len(), mesh.triangles.len());
     let mut formats = vec![
@@ -23,7 +23,7 @@ pub fn write_regions(mesh: &Mesh, regions: &[[i32; 2]]) -> Vec<Files> {
     formats
 }
 
-/// Each triangle with its number, its region and the numbers of its vertices, counted from one.
+/// Returns each triangle's number, vertex numbers and region. Numbers count from 1.
 fn rows<'a>(
     mesh: &'a Mesh,
     regions: &'a [[i32; 2]],
@@ -32,7 +32,7 @@ fn rows<'a>(
     rows.map(|((number, t), &region)| (number, t.map(|v| v + 1), region))
 }
 
-/// Runs of consecutive triangles of one region: their range, and the number of the region.
+/// Returns the ranges of consecutive triangles with equal regions, each with its entity number `10 a + b`.
 fn blocks(regions: &[[i32; 2]]) -> Vec<(std::ops::Range<usize>, i32)> {
     let mut start = 0;
     let of = |same: &[[i32; 2]]| {
@@ -55,7 +55,7 @@ fn ele(mesh: &Mesh, regions: &[[i32; 2]]) -> String {
     text
 }
 
-/// The text before the section of elements.
+/// Returns the text before the section of elements.
 fn before_elements(text: &str) -> &str {
     &text[..text.find("$Elements").unwrap()]
 }

@@ -1,6 +1,7 @@
-//! Random numbers that never change: a crate's generator may change with its version, and the meshes with it.
+//! Random numbers that never change. A crate's generator may change between versions, and generated meshes
+//! with it.
 
-/// The SplitMix64 generator of Steele, Lea and Flood.
+/// The generator SplitMix64 of Steele, Lea and Flood.
 #[derive(Clone, Debug)]
 pub struct SplitMix64(u64);
 
@@ -17,22 +18,22 @@ impl SplitMix64 {
         z ^ (z >> 31)
     }
 
-    /// A number in [0, 1), every multiple of 2^-53 equally likely.
+    /// Returns a number in [0, 1). All multiples of 2^-53 are equally likely.
     pub fn unit(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number in [low, high).
+    /// Returns a number in [low, high).
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// An integer in 0..n. The bias of at most n / 2^64 does not matter here.
+    /// Returns an integer in 0..n. The bias, at most n / 2^64, is negligible.
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.next_u64()) * n as u128) >> 64) as usize
     }
 
-    /// Puts a slice in random order, by the method of Fisher and Yates.
+    /// Shuffles a slice by the method of Fisher and Yates.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i + 1));

@@ -1,4 +1,4 @@
-//! Tangles meshes in the ways of the literature on untangling. Boundary and fixed vertices stay.
+//! Tangled meshes as in the literature on untangling. Boundary and fixed vertices stay.
 
 use super::Mesh;
 use super::check::{area, held};
@@ -6,7 +6,7 @@ use super::generate::graded;
 use super::rng::SplitMix64;
 use super::trig::on_circle;
 
-/// The mesh with the map `to` applied to all vertices that may move.
+/// Returns the mesh with `to` applied to all free vertices.
 pub fn moved(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
     let mut moved = mesh.clone();
     for (point, held) in moved.points.iter_mut().zip(held(mesh)) {
@@ -17,27 +17,27 @@ pub fn moved(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
     moved
 }
 
-/// The corners of the bounding box.
+/// Returns the corners of the bounding box.
 fn bounds(mesh: &Mesh) -> [[f64; 2]; 2] {
     [f64::min as fn(f64, f64) -> f64, f64::max]
         .map(|pick| [0, 1].map(|i| mesh.points.iter().map(|p| p[i]).reduce(pick).unwrap_or(0.0)))
 }
 
-/// Puts all vertices that may move at random places of the bounding box.
+/// Moves all free vertices to random points of the bounding box.
 pub fn scattered(mesh: &Mesh, seed: u64) -> Mesh {
     let [low, high] = bounds(mesh);
     let mut rng = SplitMix64::new(seed);
     moved(mesh, |_| [0, 1].map(|i| rng.range(low[i], high[i])))
 }
 
-/// Moves all vertices that may move at random, by up to `edges` edge lengths along each axis.
+/// Moves all free vertices randomly by up to `edges` edge lengths along each axis.
 pub fn noisy(mesh: &Mesh, edges: f64, seed: u64) -> Mesh {
     let far = edges * (area(mesh) / mesh.triangles.len() as f64 * 4.0 / 3f64.sqrt()).sqrt();
     let mut rng = SplitMix64::new(seed);
     moved(mesh, |p| p.map(|x| x + rng.range(-far, far)))
 }
 
-/// Puts all vertices that may move at one random place of the bounding box.
+/// Moves all free vertices to a common random point of the bounding box.
 pub fn collapsed(mesh: &Mesh, seed: u64) -> Mesh {
     let [low, high] = bounds(mesh);
     let mut rng = SplitMix64::new(seed);
@@ -45,7 +45,7 @@ pub fn collapsed(mesh: &Mesh, seed: u64) -> Mesh {
     moved(mesh, |_| place)
 }
 
-/// Takes a random half of the mesh, a strip across it, and mirrors the vertices that may move there at its middle line.
+/// Mirrors the free vertices of a random strip, half as wide as the mesh, at the strip's middle line.
 pub fn folded(mesh: &Mesh, seed: u64) -> Mesh {
     let [low, high] = bounds(mesh);
     let width = high[0] - low[0];
@@ -54,7 +54,7 @@ pub fn folded(mesh: &Mesh, seed: u64) -> Mesh {
     moved(mesh, |[x, y]| [if strip.contains(&x) { 2.0 * left + width / 2.0 - x } else { x }, y])
 }
 
-/// Turns all vertices that may move about the center of the bounding box, by `turn` full turns.
+/// Rotates all free vertices around the center of the bounding box by `turn` full turns.
 pub fn turned(mesh: &Mesh, turn: f64) -> Mesh {
     let [low, high] = bounds(mesh);
     let center = [0, 1].map(|i| (low[i] + high[i]) / 2.0);
@@ -65,7 +65,7 @@ pub fn turned(mesh: &Mesh, turn: f64) -> Mesh {
     })
 }
 
-/// Rings between the unit circle and a hole, with the vertices of the hole turned by `turn` full turns.
+/// Makes rings between the unit circle and a hole, with the hole's vertices rotated by `turn` full turns.
 pub fn turned_hole(around: usize, turn: f64) -> Mesh {
     let mut mesh = graded(around, 0.3);
     let first = mesh.points.len() - around;

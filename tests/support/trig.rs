@@ -1,11 +1,12 @@
-//! Sine and cosine that are the same everywhere: those of platforms differ in the last bit, and the meshes with them.
+//! Sine and cosine with identical bits on all platforms. Platform functions differ in the last bit, which would
+//! change generated meshes.
 
 use std::f64::consts::TAU;
 
-/// The point of the unit circle at a number of turns: `[cos, sin]` of `turns * 2 pi`.
+/// Returns the point of the unit circle at an angle of `turns` full turns: `[cos, sin]` of `turns * 2 pi`.
 pub fn on_circle(turns: f64) -> [f64; 2] {
     let quarters = (turns * 4.0).round();
-    // At most pi / 4 in size, where the series below are exact up to rounding.
+    // At most pi / 4 in magnitude, where the series below are exact up to rounding.
     let x = (turns - quarters / 4.0) * TAU;
     let x2 = x * x;
     let (mut sin, mut cos) = (1.0, 1.0);
@@ -23,7 +24,7 @@ pub fn on_circle(turns: f64) -> [f64; 2] {
     }
 }
 
-/// `sin(turns * 2 pi)`.
+/// Returns `sin(turns * 2 pi)`.
 pub fn sin_turns(turns: f64) -> f64 {
     on_circle(turns)[1]
 }

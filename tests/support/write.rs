@@ -1,4 +1,4 @@
-//! Meshes as text. Numbers have the fewest digits that read back to the same bits.
+//! Writers of meshes as text. Numbers have the fewest digits that preserve their bits.
 
 use super::Mesh;
 use super::check::boundary;
@@ -6,8 +6,8 @@ use std::fmt::Write;
 use std::path::Path;
 use std::{fs, io};
 
-/// The text of Triangle's `.node` and `.ele`, numbered from one, under a comment line. The marker of a vertex is 1 on the
-/// boundary, 2 for other fixed vertices and 0 for those that may move.
+/// Returns the texts of a `.node` and an `.ele`, numbered from 1, with a comment on the first line. Vertex markers are
+/// 1 on the boundary, 2 for other fixed vertices, and 0 for free vertices.
 pub fn triangle_text(mesh: &Mesh, comment: &str) -> [String; 2] {
     let mut marker: Vec<_> = boundary(mesh).into_iter().map(u8::from).collect();
     for &v in &mesh.fixed {
@@ -28,7 +28,7 @@ pub fn triangle_text(mesh: &Mesh, comment: &str) -> [String; 2] {
 /// Writes `stem.node` and `stem.ele`.
 pub fn write_triangle(mesh: &Mesh, stem: &Path, comment: &str) -> io::Result<()> {
     let [node, ele] = triangle_text(mesh, comment);
-    // `with_extension` would cut off the end of a stem such as `mesh.1`.
+    // `with_extension` would truncate stems such as `mesh.1`.
     let named = |suffix| {
         let mut path = stem.as_os_str().to_owned();
         path.push(suffix);
@@ -38,7 +38,7 @@ pub fn write_triangle(mesh: &Mesh, stem: &Path, comment: &str) -> io::Result<()>
     fs::write(named(".ele"), ele)
 }
 
-/// The mesh as gmsh 2.2 text. The format cannot mark fixed vertices.
+/// Returns the mesh in gmsh 2.2 text. The format cannot mark fixed vertices.
 pub fn write_msh22(mesh: &Mesh) -> String {
     let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", mesh.points.len());
     for (i, [x, y]) in mesh.points.iter().enumerate() {
@@ -51,7 +51,7 @@ pub fn write_msh22(mesh: &Mesh) -> String {
     text + "$EndElements\n"
 }
 
-/// The mesh as gmsh 4.1 text, with one block of nodes and one of elements. Fixed vertices are not marked.
+/// Returns the mesh in gmsh 4.1 text, with one block of nodes and one of elements. Fixed vertices are not marked.
 pub fn write_msh41(mesh: &Mesh) -> String {
     let (nodes, elements) = (mesh.points.len(), mesh.triangles.len());
     let mut text = format!(

@@ -1,4 +1,4 @@
-//! Both engines do the same sweeps, however these are grouped.
+//! Both engines execute equal sweeps, in any grouping.
 
 use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
 use gpu_smooth::{
@@ -7,7 +7,8 @@ use gpu_smooth::{
     options::{Derivatives, PNormExponent},
 };
 
-/// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU, as a share of the distance it moved.
+/// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU, relative to the distance it
+/// moved.
 struct OneSweep {
     f: [f64; 2],
     moved_apart: f64,
@@ -24,7 +25,7 @@ fn one_sweep(problem: &Problem, plans: [Plan; 2]) -> OneSweep {
     }
     let moves = problem.positions().iter().zip(&positions[0]).zip(&positions[1]);
     let apart = moves.map(|((was, cpu), gpu)| {
-        // Edges are about 1.5 long. Moves below a thousandth count as a thousandth.
+        // Edges are approximately 1.5 long. Moves below a thousandth count as a thousandth.
         cpu.distance(*gpu) / was.distance(*cpu).max(1e-3)
     });
     OneSweep { f, moved_apart: apart.fold(0.0, f64::max) }
@@ -41,8 +42,8 @@ fn one_sweep_is_the_same_on_both_engines() {
         for plain_sweeps in [0, 4] {
             let plan = Plan { plain_sweeps, ..plan(metric.into(), 1) };
             let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan.clone(), plan]);
-            // In single precision a step is right to 1e-6 of its length; bad shapes and the p-norm of EDGE enlarge the error.
-            // f is a mean, in which most of it cancels.
+            // In single precision, a step is accurate to 1e-6 of its length; bad shapes and the p-norm of EDGE amplify
+            // the error. f is a mean, in which most of the error cancels.
             assert!((gpu / cpu - 1.0).abs() < 1e-6, "{metric}: {gpu} for {cpu}");
             assert!(moved_apart < 1e-3, "{metric}: {moved_apart:e}");
         }
@@ -63,7 +64,7 @@ fn a_penalty_keeps_edge_off_the_shape_guard_on_both_engines_alike() {
             one_sweep(&problem, [plan.clone(), plan])
         };
         let OneSweep { f: [cpu, gpu], moved_apart } = both(true);
-        // As without it, and it does something.
+        // The agreement is as good as without the penalty, and the penalty has an effect.
         assert!((gpu / cpu - 1.0).abs() < 1e-6, "{k}: {gpu} for {cpu}");
         assert!(moved_apart < 2e-2, "{k}: {moved_apart:e}");
         let without = both(false).f[0];
@@ -85,7 +86,7 @@ fn every_sweep_of_a_run_is_the_same_on_both_engines() {
         });
         assert_eq!((cpu.len(), gpu.len()), (13, 13));
         for (sweep, (cpu, gpu)) in cpu.iter().zip(gpu).enumerate() {
-            // One sweep agrees to 1e-7 of f. A wrong metric, relaxation or exponent would be off by 1e-4.
+            // One sweep agrees to 1e-7 of f. A wrong metric, relaxation or exponent would cause a difference of 1e-4.
             let scheme = &plan.scheme;
             assert!((gpu / cpu - 1.0).abs() < 1e-5, "{scheme}, sweep {sweep}: {gpu} for {cpu}");
         }
@@ -152,7 +153,7 @@ fn runs_are_identical_whatever_the_batch() {
             let stop = StopRule { target: None, tolerance: 1e-4, max_sweeps: 90 };
             let plan = Plan { stop, ..plan(scheme(name_of_scheme), 0) };
             let mut runs = Vec::new();
-            // The batch size 50 is tried twice: the result must repeat.
+            // The batch size 50 is tried twice, because results must be reproducible.
             for batch in [1, 3, 50, 300, 50] {
                 let mut engine = engine(backend, &problem, plan.clone());
                 let mut log = Vec::new();
@@ -198,7 +199,7 @@ fn a_target_ends_a_run_at_the_first_sweep_below_it() {
     }
 }
 
-/// The stop rule is written twice: in Rust, and in `shaders/finish.wgsl` for batches that end on the device.
+/// The stop rule exists twice: in Rust, and in `shaders/finish.wgsl` for batches that end on the device.
 #[test]
 fn the_device_ends_a_run_where_the_rule_in_rust_does() {
     let problem = problem(perturbed());

@@ -1,4 +1,4 @@
-//! Runs with `keep_altitude`, which keeps the least altitude of a mesh.
+//! Runs with `keep_altitude`, which preserves the smallest altitude of a mesh.
 
 use crate::{backends, history, name, plate, run, support};
 use gpu_smooth::{
@@ -6,8 +6,8 @@ use gpu_smooth::{
     measure::Change, options::Feature, precision::Precision, topology,
 };
 
-/// A square of fields, each cut along the same diagonal. Rows get lower toward one side, and smoothing presses triangles
-/// against that side.
+/// Makes a square of cells that are all cut along one diagonal. Rows become lower toward one side, against which
+/// smoothing presses triangles.
 fn fields(count: u32) -> Mesh {
     let across = count + 1;
     let points = (0..across * across)
@@ -37,7 +37,7 @@ fn the_least_altitude_does_not_fall_if_it_is_to_be_kept() {
         let [before, after] = altitudes(&kept.points);
         assert!(after >= before, "{label}: {before} {after}");
         assert_eq!(kept.stop, Stop::Converged, "{label}");
-        // The low rows have the least altitudes of all, so keeping these costs much of the gain, but not all.
+        // The low rows have the smallest altitudes, so preserving them costs much of the gain, but not all.
         let f = history(&kept, Metric::Imr);
         assert!(f.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-6)), "{label}: {f:?}");
         let least = *history(&free, Metric::Imr).last().unwrap();
@@ -68,7 +68,7 @@ fn options_that_do_not_go_with_kept_altitudes_are_refused() {
     refused(&smoother, Options::default());
 }
 
-/// Vertices of the boundary may move along it as well.
+/// Boundary vertices may slide as well.
 #[test]
 fn the_least_altitude_is_kept_where_vertices_slide() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);

@@ -1,4 +1,4 @@
-//! Colors: vertices of one color can move at the same time.
+//! Colors: vertices of equal color can move at the same time.
 
 use crate::{distorted, perturbed, support};
 use gpu_smooth::{
@@ -33,7 +33,8 @@ fn neighbors_never_share_a_color_and_six_colors_do() {
             let [a, b] = edge.map(|v| coloring.colors()[v as usize]);
             assert!(a != b || a == UNCOLORED, "mesh {i}: {edge:?} both have color {a}");
         }
-        // In a planar graph some vertex always has five or fewer neighbors left, so six colors suffice.
+        // A planar graph always has a vertex with at most five remaining neighbors, so six colors
+        // suffice.
         assert!(coloring.count() <= 6, "mesh {i}: {} colors", coloring.count());
         assert!(coloring.is_proper(&topology));
     }
@@ -53,7 +54,8 @@ fn every_free_vertex_is_swept_once_and_reads_its_whole_ring() {
         assert_eq!(next as usize, problem.free_count());
         assert_eq!(problem.free_count(), support::mover_count(mesh));
 
-        // Counts the triangles at free vertices, from the one-rings and from the list of triangles.
+        // Counts the triangles at free vertices, both from the one-rings and from the list of
+        // triangles.
         let mut from_rings = Vec::new();
         for (v, bounds) in problem.ring_start().windows(2).enumerate() {
             let ring = &problem.ring()[bounds[0] as usize..bounds[1] as usize];

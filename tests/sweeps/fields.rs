@@ -1,4 +1,4 @@
-//! Targets that belong to places: fields on a mesh of their own, on both engines.
+//! Targets that belong to places: fields on a background mesh, on both engines.
 
 use crate::support;
 use crate::{backends, history, name, run};
@@ -7,14 +7,14 @@ use gpu_smooth::{
     Stop, Stopping, TargetField, Targets, options::Feature, targets::Surface,
 };
 
-/// A square of two triangles, with target sizes that are four times larger on the right than on the left.
+/// Makes a square of two triangles, with target sizes four times larger on the right than on the left.
 fn background(width: f64, height: f64) -> (Mesh, Targets) {
     let points = vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
     let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], fixed: vec![] };
     (mesh, Targets::sizes(&[1.0, 4.0, 4.0, 1.0]).unwrap())
 }
 
-/// An even mesh with its interior perturbed and its lower left corner at the origin, and its size.
+/// Makes an even mesh with a perturbed interior and its lower left corner at the origin. Also returns its size.
 fn even() -> (Mesh, [f64; 2]) {
     let mut mesh = support::lattice(24, 20);
     let low = mesh.points.iter().fold([f64::INFINITY; 2], |[a, b], [x, y]| [a.min(*x), b.min(*y)]);
@@ -42,14 +42,14 @@ fn sizes_are_those_wanted_where_vertices_have_moved_to() {
         assert_eq!(outcome.stop, Stop::Converged, "{label}");
         let of_places = smoother.f(Metric::ShapeSize, &outcome.points).unwrap();
         assert!(of_places < 0.98 * of_vertices, "{label}: {of_places} {of_vertices}");
-        // f is by the targets at the final places: a smoother with these targets gets the same f.
+        // f uses the targets at the final positions, so a smoother with these targets evaluates an equal f.
         let f = *history(&outcome, Metric::ShapeSize).last().unwrap();
         assert!((smoother.f(Metric::ShapeSize, &outcome.points).unwrap() / f - 1.0).abs() < 1e-6);
         let moved = Mesh { points: outcome.points.clone(), ..mesh.clone() };
         let mut again = Smoother::new(&moved).unwrap();
         again.set_target_field(field.clone()).unwrap();
         assert!((again.f(Metric::ShapeSize, &moved.points).unwrap() / f - 1.0).abs() < 1e-6);
-        // Targets and vertices have settled: another run gains almost nothing.
+        // Targets and vertices have converged: a further run gains almost nothing.
         let further = run(&again, &options, backend);
         let least = *history(&further, Metric::ShapeSize).last().unwrap();
         assert!((least / f - 1.0).abs() < 1e-4, "{label}: {f} {least}");
@@ -77,7 +77,7 @@ fn options_that_do_not_go_with_a_target_field_are_refused() {
     assert!(TargetField::new(&mesh, &targets).is_err());
     let field = TargetField::new(&square, &targets).unwrap();
     let mut smoother = Smoother::new(&mesh).unwrap();
-    // Half of the mesh is outside of the field, by up to half of the mesh's width.
+    // Half of the mesh lies outside of the field, at distances up to half of the mesh's width.
     let outside = smoother.set_target_field(field).unwrap();
     assert!(outside.count > mesh.points.len() / 3, "{outside:?}");
     assert!((outside.most / width - 0.5).abs() < 0.05, "{outside:?}");
@@ -96,7 +96,7 @@ fn options_that_do_not_go_with_a_target_field_are_refused() {
     refused(&smoother, &Options::default());
 }
 
-/// A strip from 170 to 190 degrees east, with longitudes continued beyond 180, and sizes that grow to the east.
+/// A strip from 170 to 190 degrees east, with longitudes continued beyond 180, and sizes that grow eastward.
 #[test]
 fn places_around_the_globe_are_found_whichever_way_longitudes_are_written() {
     let mut points = Vec::new();
@@ -126,7 +126,7 @@ fn places_around_the_globe_are_found_whichever_way_longitudes_are_written() {
         assert_eq!(outside.count, 0, "{turns}");
         assert_eq!(found, wanted, "{turns}");
     }
-    // Outside, the nearer end of the strip counts: the one at 190 degrees east, or the one at 170.
+    // Outside, the nearer end of the strip determines the size: at 190 or at 170 degrees east.
     let ends = [[-169.0, 1.0], [169.0, 1.0], [-100.0, 1.0], [100.0, 1.0]];
     let (found, outside) = field.at(&ends).unwrap();
     let ends = [[190.0, 1.0], [170.0, 1.0], [190.0, 1.0], [170.0, 1.0]];

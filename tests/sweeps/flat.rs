@@ -1,4 +1,4 @@
-//! Triangles so flat that single precision cannot tell them from inverted ones.
+//! Triangles so flat that single precision cannot distinguish them from inverted ones.
 
 use std::future::Future;
 use std::pin::pin;
@@ -9,12 +9,12 @@ use std::task::{Context, Poll, Wake, Waker};
 use crate::{backends, history, name, run, scheme, support, with_points};
 use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Quality, Smoother, Stop};
 
-/// A lattice in which some vertices are at this distance from an opposite edge.
+/// Makes a lattice with several vertices at distance `height` from an opposite edge.
 fn flattened(height: f64) -> Mesh {
     let mut mesh = support::lattice(24, 20);
     let held = support::check::held(&mesh);
     for v in (0..mesh.points.len()).filter(|v| !held[*v] && v % 37 == 5) {
-        // Moves the vertex nearly to the middle of the edge between its two neighbors on the right.
+        // Moves the vertex close to the middle of the edge between its two neighbors on the right.
         mesh.points[v][0] += 0.75 - height;
         mesh.points[v][1] += 3f64.sqrt() / 4.0;
     }
@@ -27,7 +27,8 @@ fn flat_triangles_are_opened_in_double_precision() {
         let mesh = flattened(height);
         assert!(support::is_ccw(&mesh) && support::worst_imr(&mesh) > 0.1 / height);
         let smoother = Smoother::new(&mesh).unwrap();
-        // Near its optimum of 1, EDGE on a device has only the digits of single precision. Sweeps alone do not get that far.
+        // Near its optimum of 1, EDGE on a device has only the digits of single precision. Uncorrected sweeps do not
+        // converge that far.
         for (scheme, method) in [
             (Metric::Imr.into(), Method::Auto),
             (Metric::Rms.into(), Method::Auto),
@@ -68,7 +69,7 @@ fn a_run_that_ends_before_flat_triangles_are_open_is_done_on_the_cpu() {
     }
 }
 
-/// A lattice of which some vertices lie as near to an edge opposite as coordinates in double precision can be.
+/// Makes a lattice with several vertices as close to an opposite edge as double precision permits.
 fn pressed_flat() -> Mesh {
     let mut mesh = flattened(0.0);
     for point in &mut mesh.points {
@@ -77,7 +78,7 @@ fn pressed_flat() -> Mesh {
     for v in 0..mesh.points.len() {
         let star = mesh.triangles.iter().filter(|t| t.contains(&(v as u32)));
         let mut around = Mesh { triangles: star.copied().collect(), ..mesh.clone() };
-        // To the left, as few units in the last place as it takes.
+        // Moves the vertex to the left by as few units in the last place as necessary.
         while !support::is_ccw(&around) && v % 37 == 5 {
             around.points[v][0] = around.points[v][0].next_down();
         }
@@ -86,8 +87,8 @@ fn pressed_flat() -> Mesh {
     mesh
 }
 
-/// Newton's steps out of such a triangle are shorter than positions are rounded to. It once stayed as it was, and as f was that of
-/// this triangle alone, the whole mesh came back unsmoothed and was called converged.
+/// Newton's steps out of an extremely flat triangle are shorter than the rounding of positions. A former defect: the
+/// triangle stayed, dominated f, and the whole mesh was returned unsmoothed as converged.
 #[test]
 fn a_triangle_as_flat_as_coordinates_allow_is_opened() {
     let mesh = pressed_flat();
@@ -109,7 +110,7 @@ fn a_triangle_as_flat_as_coordinates_allow_is_opened() {
     }
 }
 
-/// Counts how often a future asks to be polled again.
+/// Counts the wake-ups that a future requests.
 #[derive(Default)]
 struct Wakes(AtomicUsize);
 
@@ -121,11 +122,11 @@ impl Wake for Wakes {
 
 #[test]
 fn an_awaited_run_yields_between_the_sweeps_on_the_cpu() {
-    // All of these sweeps were once done inside one poll.
+    // A former defect: a single poll executed all of these sweeps.
     let mesh = flattened(1e-12);
     let smoother = Smoother::new(&mesh).unwrap();
     let options = Options::default();
-    // A device of its own, which no other test polls.
+    // A separate device, which no other test polls.
     let gpu = Gpu::open(None).unwrap();
     let opening = run(&smoother, &options, &backends()[1]).opening_sweeps as usize;
     assert!(opening > 1, "{opening} sweeps");

@@ -1,11 +1,11 @@
-//! Finds optima by other means: global methods on all free vertices at once, without code of the library.
+//! Independent computation of optima: global methods on all free vertices at once, without code of the library.
 
 use crate::support::check;
 use gpu_smooth::Mesh;
 
-/// The free vertices' coordinates, x and y in turn.
+/// The coordinates of the free vertices as unknowns, alternately x and y.
 struct Unknowns {
-    /// The index of each vertex in the vector of unknowns, if it is free.
+    /// Index of each vertex's x in the vector of unknowns; `None` for vertices that are not free.
     place: Vec<Option<usize>>,
     count: usize,
 }
@@ -48,12 +48,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// y + t x.
+/// Returns y + t x.
 fn plus(y: &[f64], t: f64, x: &[f64]) -> Vec<f64> {
     y.iter().zip(x).map(|(y, x)| y + t * x).collect()
 }
 
-/// f by RMS: the mean of the squared RMS edge length over that of the equilateral triangle of mean area.
+/// Returns f by RMS: the mean squared RMS edge length, relative to that of the equilateral triangle of mean area.
 pub(crate) fn f_rms(mesh: &Mesh) -> f64 {
     let count = mesh.triangles.len() as f64;
     let ideal = 4.0 * (check::area(mesh) / count) / 3f64.sqrt();
@@ -64,11 +64,12 @@ pub(crate) fn f_rms(mesh: &Mesh) -> f64 {
     squares.sum::<f64>() / (3.0 * ideal * count)
 }
 
-/// The mesh of least f by RMS: each free vertex is at the mean of its neighbors. Solved by conjugate gradients.
+/// Returns the mesh with the smallest f by RMS, in which each free vertex is the mean of its neighbors. Solves the
+/// equations by conjugate gradients.
 pub(crate) fn rms_optimum(mesh: &Mesh) -> Mesh {
     let unknowns = Unknowns::of(mesh);
     let edges: Vec<[u32; 2]> = check::edge_uses(mesh).into_keys().collect();
-    // The gradient of half the sum of squared lengths by the free coordinates `x`.
+    // The gradient of half the sum of squared lengths with respect to the free coordinates `x`.
     let gradient = |x: &[f64]| {
         let at = unknowns.put(mesh, x);
         let mut g = vec![0.0; unknowns.count];
@@ -98,7 +99,7 @@ pub(crate) fn rms_optimum(mesh: &Mesh) -> Mesh {
     unknowns.put(mesh, &x)
 }
 
-/// f by IMR and its gradient; infinite if a triangle is not positive.
+/// Returns f by IMR and its gradient; f is infinite if a triangle is not positive.
 fn imr_and_gradient(mesh: &Mesh, unknowns: &Unknowns) -> (f64, Vec<f64>) {
     let count = mesh.triangles.len() as f64;
     let mut f = 0.0;
@@ -127,8 +128,8 @@ fn imr_and_gradient(mesh: &Mesh, unknowns: &Unknowns) -> (f64, Vec<f64>) {
     (f, g)
 }
 
-/// The mesh that descent from `mesh` leads to, of least f by IMR, and that f. Uses L-BFGS on all free vertices, until the
-/// largest entry of the gradient could not change f by 1e-12 over an edge.
+/// Returns the smallest f by IMR on a descent from `mesh`, and the mesh there. L-BFGS on all free vertices stops when
+/// the largest entry of the gradient could not change f by 1e-12 over an edge.
 pub(crate) fn imr_optimum(mesh: &Mesh) -> (f64, Mesh) {
     const MEMORY: usize = 30;
     let unknowns = Unknowns::of(mesh);
@@ -163,7 +164,7 @@ pub(crate) fn imr_optimum(mesh: &Mesh) -> (f64, Mesh) {
         let (mut to, mut there) = (plus(&x, -step, &d), (f64::INFINITY, Vec::new()));
         for _ in 0..40 {
             there = evaluate(&to);
-            // Near the end f falls by less than its rounding; then the gradient decides.
+            // Near the end, f falls by less than its rounding, so the gradient decides.
             if there.0 <= f + 1e-4 * step * slope + 1e-14 * f {
                 break;
             }

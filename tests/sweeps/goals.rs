@@ -1,4 +1,4 @@
-//! Goals: the paper's test of convergence, with all its schemes.
+//! Goals: the paper's test of convergence, with all of its schemes.
 
 use crate::{SCHEMES, backends, history, name, perturbed, run, scheme};
 use gpu_smooth::{
@@ -6,7 +6,8 @@ use gpu_smooth::{
 };
 use std::sync::OnceLock;
 
-/// The optimum of a metric on the perturbed plate, nearly: as over-relaxed sweeps on the CPU find it.
+/// Returns the approximate optimum of a metric on the perturbed plate, found by over-relaxed sweeps
+/// on the CPU.
 fn desired(metric: Metric) -> f64 {
     static FOUND: OnceLock<Vec<(Metric, f64)>> = OnceLock::new();
     let found = FOUND.get_or_init(|| {
@@ -42,17 +43,17 @@ fn both_engines_reach_goals_at_the_same_sweep() {
             let label = format!("{name_of_scheme} to {fraction}");
             assert_eq!((cpu.stop, cpu.sweeps), (gpu.stop, gpu.sweeps), "{label}");
             assert_eq!(cpu.best_sweep, gpu.best_sweep, "{label}");
-            // Near slivers, the last digits of a comparison decide whether EDGE takes a step.
+            // Near slivers, the last digits of a comparison decide whether EDGE accepts a step.
             let bound = if base == Metric::Edge { 1e-4 } else { 1e-6 };
             assert!((f_gpu / f_cpu - 1.0).abs() < bound, "{label}: {f_gpu} for {f_cpu}");
         }
     }
 }
 
-/// What the runs that look for the optimum gain is rounding there.
+/// On an optimal mesh, the runs that search the optimum gain only rounding errors.
 #[test]
 fn the_optimum_is_reached_from_the_start_on_an_optimal_mesh() {
-    // The one free vertex is in the center of its neighbors.
+    // The only free vertex is in the center of its neighbors.
     let points = (0..9).map(|i| [f64::from(i % 3) / 2.0, f64::from(i / 3) / 2.0]).collect();
     let cells = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
     let halves = cells.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
@@ -87,11 +88,11 @@ fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
             assert!(matches!(outcome.stop, Stop::Stalled | Stop::MaxSweeps), "{label}");
             let history = history(&outcome, base);
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
-            // In a scheme of one metric the last state is the best, but for the rounding of a device.
+            // In a scheme of one metric, the last state is the best, apart from rounding on a device.
             let returned = history[outcome.best_sweep as usize];
             assert!(returned <= best * (1.0 + 1e-9), "{label}: {returned} for {best}");
             let f = Quality::of(&outcome.points, smoother.topology()).unwrap().f(base);
-            // The device sums terms that it evaluates in single precision.
+            // The device sums terms that are evaluated in single precision.
             let digits = if matches!(backend, Backend::Cpu) { 1e-12 } else { 2e-7 };
             let rounding = digits * (best - base.ideal_squared());
             assert!((f - best).abs() <= rounding + 1e-14, "{label}: {f} returned, {best} seen");

@@ -4,7 +4,8 @@ use crate::support::{self, check};
 use crate::{backends, history, name, run, with_points};
 use gpu_smooth::{Guard, Metric, Options, Smoother, Stop};
 
-/// A mesh graded to a point and slightly perturbed: even sizes could be had at the cost of bad shapes.
+/// On a mesh graded to a point and slightly perturbed, metrics of size would trade bad shapes for even
+/// sizes.
 #[test]
 fn the_worst_element_does_not_get_worse_by_any_metric() {
     let mesh = support::perturb_random(&support::graded(12, 0.1), 0.2, 4);
@@ -36,6 +37,6 @@ fn the_worst_element_does_not_get_worse_by_any_metric() {
             }
         }
     }
-    // Without the guard, the worst element gets worse.
+    // Without the guard, the worst element becomes worse.
     assert!(risen >= 2, "{risen}");
 }

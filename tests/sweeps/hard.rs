@@ -1,4 +1,4 @@
-//! Valid meshes at the limits of double precision. Each is a case that once failed.
+//! Valid meshes at the limits of double precision, all from former failures.
 
 use crate::{backends, history, name, plate, run, support, with_points};
 use gpu_smooth::{
@@ -6,13 +6,13 @@ use gpu_smooth::{
 };
 use std::f64::consts::TAU;
 
-/// A triangle of three vertices around a free one.
+/// Makes a triangle of three vertices around a free vertex.
 fn star_of_three(points: [[f64; 2]; 4]) -> Mesh {
     let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]];
     Mesh { points: points.to_vec(), triangles, fixed: vec![] }
 }
 
-/// A fan of `around` triangles on the unit circle, which winds `turns` times. The vertex in its middle is off the center.
+/// Makes a fan of `around` triangles on the unit circle, which winds `turns` times around an off-center vertex.
 fn fan(around: u32, turns: u32) -> Mesh {
     let on_circle = |k: u32| {
         let (y, x) = (TAU * f64::from(k * turns) / f64::from(around)).sin_cos();
@@ -23,8 +23,8 @@ fn fan(around: u32, turns: u32) -> Mesh {
     Mesh { points, triangles, fixed: vec![] }
 }
 
-/// A square that is halved `times` times toward its corner `at`. Each halving leaves three quadrilaterals, with a vertex
-/// inside them. All coordinates are exact if `at` is a multiple of the smallest size.
+/// Makes a square that is halved `times` times toward its corner `at`. Each halving leaves three quadrilaterals, each
+/// with an inner vertex. All coordinates are exact if `at` is a multiple of the smallest size.
 fn halved(times: i32, at: [f64; 2]) -> Mesh {
     let mut mesh = Mesh::default();
     let mut corner = |size: f64, x: f64, y: f64| {
@@ -34,7 +34,7 @@ fn halved(times: i32, at: [f64; 2]) -> Mesh {
     let shells: Vec<[u32; 4]> = (0..=times)
         .map(|k| {
             let size = (-f64::from(k)).exp2();
-            // The vertex inside is moved off the middle, so that there is something to gain.
+            // The inner vertex is off-center, so that smoothing gains something.
             [
                 corner(size, 1.0, 0.0),
                 corner(size, 1.0, 1.0),
@@ -47,7 +47,7 @@ fn halved(times: i32, at: [f64; 2]) -> Mesh {
     for pair in shells.windows(2) {
         let ([a, b, c, _], [d, e, f, _]) = (pair[0], pair[1]);
         let inside = pair[0][3];
-        // The six corners between two squares, around the vertex inside.
+        // The six corners between two squares, around the inner vertex.
         for [from, to] in [[a, b], [b, c], [c, f], [f, e], [e, d], [d, a]] {
             mesh.triangles.push([from, to, inside]);
         }
@@ -60,9 +60,9 @@ fn halved(times: i32, at: [f64; 2]) -> Mesh {
 #[test]
 fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
     let stars = [
-        // The sum of the rounded areas is not positive. This once made the scale NaN, and all points with it.
+        // The sum of the rounded areas is not positive. A former defect: the scale and all points became NaN.
         [[0.3, 0.030000000000000006], [-1.0, -0.1], [-0.9, -0.09000000000000001], [-0.2, -0.02]],
-        // The sum of the rounded areas has the wrong sign. All triangles were once called inverted.
+        // The sum of the rounded areas has the wrong sign. A former defect: all triangles were reported as inverted.
         [
             [0.4, 0.4000000000000001],
             [-0.8, -0.8000000000000002],
@@ -85,8 +85,8 @@ fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
                         let after = with_points(&mesh, &outcome.points);
                         assert!(support::is_ccw(&after), "{label}");
                     }
-                    // Metrics with a barrier cannot judge an area that is rounded to zero or below, nor can the shape
-                    // guard of EDGE.
+                    // Neither metrics with a barrier nor the shape guard of EDGE can judge an area that is rounded to
+                    // zero or below.
                     Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => {
                         let judges = metric.properties().barrier || metric == Metric::Edge;
                         assert!(judges, "{label}");
@@ -116,7 +116,7 @@ fn a_mesh_whose_objective_is_not_a_number_is_refused_with_its_worst_triangle() {
 
 #[test]
 fn a_mesh_graded_to_a_point_keeps_the_digits_of_its_smallest_elements() {
-    // At the origin, 60 halvings are exact. Elsewhere coordinates have 52 bits; after 38 halvings some are left.
+    // At the origin, 60 halvings are exact. Elsewhere coordinates have 52 bits, of which 38 halvings leave some.
     for (times, at) in [(60, [0.0, 0.0]), (38, [0.75, 0.25]), (44, [-1.0, 3.0])] {
         let mesh = halved(times, at);
         assert!(support::is_ccw(&mesh), "{times} halvings toward {at:?}");
@@ -126,11 +126,11 @@ fn a_mesh_graded_to_a_point_keeps_the_digits_of_its_smallest_elements() {
             let outcome = run(&smoother, &Options::default(), backend);
             let label = format!("{times} halvings toward {at:?} on the {}", name(backend));
             let f = history(&outcome, Metric::Imr);
-            // On a device f is summed from terms in single precision.
+            // On a device, f is a sum of terms in single precision.
             assert!((f[0] / before - 1.0).abs() < 1e-7, "{label}: {} for {before}", f[0]);
             let after = Quality::of(&outcome.points, smoother.topology()).unwrap().f(Metric::Imr);
             let least = f.iter().copied().fold(f64::INFINITY, f64::min);
-            // Positions are rounded to 2^-52 of 1. Where that matters, the smallest edges are 2^-44 at most.
+            // Positions are rounded to 2^-52 of 1. In the affected cases, the smallest edges are at most 2^-44 long.
             assert!((after / least - 1.0).abs() < 1e-4, "{label}: {after} for {least}");
             assert!(after < 0.95 * before, "{label}: {after} from {before}");
             assert_eq!(outcome.stop, Stop::Converged, "{label}, {} sweeps", outcome.sweeps);
@@ -140,7 +140,8 @@ fn a_mesh_graded_to_a_point_keeps_the_digits_of_its_smallest_elements() {
 
 #[test]
 fn a_run_with_one_free_vertex_ends_soon_and_both_engines_say_so_in_one_word() {
-    // On a device the last digits of f vary from sweep to sweep. Runs with corrections once went on to the last sweep.
+    // On a device, the last digits of f vary between sweeps. A former defect: runs with corrections continued to the
+    // last sweep.
     let mesh = fan(12, 1);
     let smoother = Smoother::new(&mesh).unwrap();
     for metric in
@@ -166,14 +167,14 @@ fn a_star_that_winds_twice_is_refused() {
 
 #[test]
 fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
-    // Products of its coordinates underflow.
+    // Products of the triangle's coordinates underflow.
     let s = 1e-165;
     let points = vec![[0.0, 0.0], [3.0 * s, 0.0], [0.0, 3.0 * s], [s, s], [1.0, 0.0]];
     let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 4, 2]];
     let mesh = Mesh { points, triangles, fixed: vec![] };
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
-        // Beside a triangle of size 1, its quality cannot be computed.
+        // Next to a triangle of size 1, the quality of the tiny triangle cannot be computed.
         let run = smoother.run(&Options::default()).on(backend).block();
         let Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) = run else {
             panic!("{:?} on the {}", run.map(|outcome| outcome.stop), name(backend))
@@ -183,8 +184,8 @@ fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
 
 #[test]
 fn a_run_ended_by_the_shape_guard_is_not_called_converged() {
-    // Areas differ a millionfold, and evening them out flattens triangles up to the guard. f then does not decay
-    // geometrically. What was left to gain was once estimated at a thousandth of the truth.
+    // Areas differ by a factor of a million, and evening them out flattens triangles up to the guard. f then does not
+    // decay geometrically. A former defect: the estimated remaining gain was a thousandth of the actual one.
     let mut mesh = support::perturb_random(&plate(700), 0.2, 3);
     mesh.points.iter_mut().for_each(|p| {
         let r = p[0].hypot(p[1]).max(1e-3);
@@ -198,16 +199,16 @@ fn a_run_ended_by_the_shape_guard_is_not_called_converged() {
         assert_eq!(outcome.stop, Stop::HeldBack, "{label}");
         assert!(outcome.held_back > 0, "{label}");
     }
-    // They are counted, too, where sweeps run out before.
+    // Held vertices are also counted if the run ends at its last sweep.
     let few = Options { max_sweeps: 30, ..options };
     let outcome = run(&smoother, &few, &backends()[0]);
     assert_eq!(outcome.stop, Stop::MaxSweeps);
     assert!(outcome.held_back > 0);
-    // The bound of its move holds a vertex too, and the guard does not count the vertex then.
+    // A vertex held by the bound of its move does not count as held by the guard.
     let bounded = Options { scheme: Metric::Rms.into(), max_move: Some(1e-4), ..few };
     let outcome = run(&smoother, &bounded, &backends()[0]);
     assert_eq!(outcome.held_back, 0, "{:?}", outcome.stop);
-    // A metric with a barrier has no guard.
+    // Metrics with a barrier have no guard.
     let outcome = run(&smoother, &Options::default(), &backends()[0]);
     assert_eq!((outcome.stop, outcome.held_back), (Stop::Converged, 0));
 }

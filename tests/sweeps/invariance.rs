@@ -1,4 +1,4 @@
-//! Results must not depend on place, unit, windings, numbering, or how small the smallest triangle is.
+//! Independence of results from position, unit, windings, numbering, and the size of the smallest triangle.
 
 use crate::support::{self, transformed};
 use crate::{backends, history, name, perturbed, plate, run};
@@ -19,20 +19,20 @@ fn thirty_sweeps(metric: Metric, method: Method) -> Options {
     }
 }
 
-/// How far two results may differ: the distance of a vertex in units of a typical edge, and f.
+/// Largest differences between two results: the distance of a vertex in typical edge lengths, and f.
 struct Bounds {
     distance: f64,
     f: f64,
 }
 
-/// Bounds for runs with corrections, which are in single precision on both engines.
+/// Bounds for runs with corrections, which both engines compute in single precision.
 const CORRECTED: Bounds = Bounds { distance: 1e-7, f: 1e-10 };
-/// Bounds for rounding in double precision. EDGE and AREA amplify it a hundred times over thirty sweeps.
+/// Bounds for rounding in double precision. EDGE and AREA amplify rounding a hundredfold over thirty sweeps.
 const CPU: Bounds = Bounds { distance: 1e-11, f: 1e-12 };
 /// Bounds for rounding in single precision.
 const GPU: Bounds = Bounds { distance: 2e-4, f: 2e-6 };
 
-/// Checks that smoothing the scaled and shifted mesh `there` is smoothing `here`, scaled and shifted.
+/// Checks that the result for `there` is the scaled and shifted result for `here`.
 fn check(here: &Mesh, there: &Mesh, scale: f64, shift: [f64; 2], bounds: [Bounds; 2]) {
     let edge = (support::area(there) / there.triangles.len() as f64).sqrt() * 1.5;
     let (a, b) = (Smoother::new(here).unwrap(), Smoother::new(there).unwrap());
@@ -71,7 +71,7 @@ fn the_unit_does_not_matter() {
 fn the_place_does_not_matter() {
     let mesh = mild();
     for (scale, shift) in [(1.0, [5e5, 4e6]), (1e-3, [-3.0, 7.0])] {
-        // Far from the origin the input itself is rounded, by 1e-8 of an edge at most.
+        // Far from the origin, the input itself is rounded, by at most 1e-8 of an edge.
         let rounded = Bounds { distance: 2e-5, f: 1e-7 };
         check(&mesh, &transformed(&mesh, scale, shift), scale, shift, [rounded, GPU]);
     }
@@ -108,12 +108,13 @@ fn numbering_does_not_matter_to_the_optimum() {
             let (a, b) = (Smoother::new(mesh).unwrap(), Smoother::new(&other).unwrap());
             let (a, b) = (run(&a, &options, backend), run(&b, &options, backend));
             let [fa, fb] = [&a, &b].map(|o| *history(o, metric).last().unwrap());
-            // Each result is within 1.5e-8 of the optimum by its own estimate; single precision adds 5e-8.
+            // By their own estimates, both results are within 1.5e-8 of the optimum; single precision adds 5e-8.
             assert!((fb / fa - 1.0).abs() < 1e-7, "{metric} on the {}: {fa} {fb}", name(backend));
             let far = a.points.iter().zip(&new_index).map(|(&p, &new)| {
                 support::check::squared_distance(p, b.points[new as usize]).sqrt()
             });
-            // f is flat at its minimum, so vertices differ by the square root of that, over an edge of 0.06.
+            // f is flat at its minimum, so vertices differ by the square root of the difference in f, over an edge of
+            // 0.06.
             let far = far.fold(0.0, f64::max);
             assert!(far < 2e-4, "{metric} on the {}: {far:e}", name(backend));
         }
@@ -125,7 +126,7 @@ fn triangles_a_ten_millionth_of_the_domain_are_smoothed_like_any() {
     let mesh = support::perturb_random(&support::graded(24, 1e-7), 0.8, 9);
     let smoother = Smoother::new(&mesh).unwrap();
     for &metric in Metric::ALL {
-        // EDGE has many minima, and with corrections rounding decides in which of them a run ends.
+        // EDGE has many minima, and with corrections, rounding decides in which minimum a run ends.
         let method = if metric.is_smooth() { Method::Auto } else { Method::RELAXED };
         let options = Options { method, max_sweeps: 400, ..Options::default() };
         let options = Options { scheme: metric.into(), ..options };
@@ -136,8 +137,8 @@ fn triangles_a_ten_millionth_of_the_domain_are_smoothed_like_any() {
             assert_eq!(outcome.returned, 0, "{metric} left this to the certificate");
             *history(&outcome, metric).last().unwrap()
         });
-        // AREA hardly depends on the small triangles, so where they end is chance. SHAPE-SIZE and the like depend on them
-        // alone, by 1e10 each, and cannot reach even sizes: no run converges.
+        // AREA hardly depends on the small triangles, so their final shapes are arbitrary. SHAPE-SIZE and similar
+        // metrics depend on the small triangles alone, by 1e10 each, and cannot reach even sizes, so no run converges.
         let properties = metric.properties();
         let is_of_size = properties.barrier && !properties.scale_invariant;
         if metric != Metric::Area && !is_of_size {

@@ -1,4 +1,4 @@
-//! `max_move`, a bound on how far vertices move, on both engines.
+//! `max_move`, a bound on the distances that vertices move, on both engines.
 
 use std::collections::BTreeSet;
 
@@ -39,7 +39,7 @@ fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {
     assert!((least / free - 1.0).abs() < 1e-5, "{least} {free}");
 }
 
-/// Without a sweep to do, a bounded run ends on both engines. A device does not end a run that the host judges.
+/// A bounded run without sweeps ends on both engines, although a device does not end runs that the host judges.
 #[test]
 fn a_bounded_run_of_no_sweeps_ends() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -55,7 +55,7 @@ fn a_bounded_run_of_no_sweeps_ends() {
     }
 }
 
-/// At the end no single vertex can lower the objective much without leaving its bound.
+/// At the end, no single vertex can lower the objective much within its bound.
 #[test]
 fn the_end_of_a_bounded_run_is_an_optimum() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -98,7 +98,7 @@ fn targets_are_seen_by_a_bounded_run_as_well() {
     assert!((end / f[f.len() - 1] - 1.0).abs() < 1e-9 && end < 0.9 * f[0], "{end} {f:?}");
 }
 
-/// The mean length of the edges at a vertex, each counted once.
+/// Returns the mean length of the edges at a vertex, counting each edge once.
 fn mean_edge(mesh: &Mesh, v: u32) -> f64 {
     let at = |t: &&[u32; 3]| t.contains(&v);
     let ends: BTreeSet<&u32> =
@@ -131,7 +131,7 @@ fn vertices_that_slide_have_a_bound_as_well() {
         let label = format!("{most} on the {}", name(backend));
         assert_eq!(outcome.stop, Stop::Converged, "{label}");
         assert!(most < 0.2 || f < 0.99 * still, "{label}: {f} {still}");
-        // The distance that a vertex moved, as a share of its bound.
+        // The distance that a vertex moved, relative to its bound.
         let share = |v: u32| {
             let ([x, y], [a, b]) = (mesh.points[v as usize], outcome.points[v as usize]);
             (x - a).hypot(y - b) / (most * mean_edge(&mesh, v))
@@ -143,7 +143,7 @@ fn vertices_that_slide_have_a_bound_as_well() {
         assert!(at_bound > 5, "{label}: {at_bound}");
         assert!(outcome.slid.unwrap().moved > at_bound, "{label}");
     }
-    // A bound that no vertex reaches does not change the end.
+    // A bound that no vertex reaches does not change the result.
     let (_, far) = ends(&smoother, 50.0, &Backend::Cpu);
     let free = history(&run(&smoother, &Options::default(), &Backend::Cpu), Metric::Imr);
     assert!((far / free[free.len() - 1] - 1.0).abs() < 1e-5, "{far} {free:?}");

@@ -1,4 +1,4 @@
-//! Sweeps and runs on both engines: where they end, what they must not depend on, and what they must never do.
+//! Sweeps and runs on both engines: convergence, invariance and safety.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -36,7 +36,7 @@ use gpu_smooth::{
 };
 use std::sync::OnceLock;
 
-/// The schemes of the paper.
+/// The alternating schemes of the paper.
 const SCHEMES: [&str; 8] = [
     "edge+imr",
     "area+imr",
@@ -52,13 +52,13 @@ fn scheme(name: &str) -> Scheme {
     name.parse().unwrap()
 }
 
-/// Every metric alone and the schemes of the paper.
+/// Returns all metrics as schemes, and the schemes of the paper.
 fn all_schemes() -> Vec<Scheme> {
     let alone = Metric::ALL.iter().map(|&metric| metric.into());
     alone.chain(SCHEMES.map(scheme)).collect()
 }
 
-/// The CPU and the GPU. Panics without an adapter, as the tests would then say nothing about the GPU.
+/// Returns the CPU and the GPU backend. Panics without an adapter, because tests would then not cover the GPU.
 fn backends() -> &'static [Backend; 2] {
     static BACKENDS: OnceLock<[Backend; 2]> = OnceLock::new();
     BACKENDS.get_or_init(|| {
@@ -79,13 +79,14 @@ fn plate(vertices: usize) -> Mesh {
     support::triangulate(&outline, vertices).unwrap()
 }
 
-/// A plate of two thousand vertices, with a few triangles that are nearly flat.
+/// Returns a plate of two thousand vertices with a few nearly flat triangles.
 fn perturbed() -> &'static Mesh {
     static MESH: OnceLock<Mesh> = OnceLock::new();
     MESH.get_or_init(|| support::perturb_random(&plate(2000), 1.0, 1))
 }
 
-/// A plate of two thousand vertices, displaced by long waves: a local method takes the most sweeps for these.
+/// Returns a plate of two thousand vertices displaced by long waves, which cost a local method the most
+/// sweeps.
 fn distorted() -> &'static Mesh {
     static MESH: OnceLock<Mesh> = OnceLock::new();
     MESH.get_or_init(|| support::distort_smooth(&plate(2000), 0.9))
@@ -99,7 +100,7 @@ fn with_points(mesh: &Mesh, points: &[[f64; 2]]) -> Mesh {
     Mesh { points: points.to_vec(), ..mesh.clone() }
 }
 
-/// The objective by `metric` before the first sweep and after each.
+/// Returns the history of f by `metric`, starting before the first sweep.
 fn history(outcome: &Outcome, metric: Metric) -> Vec<f64> {
     outcome.history.iter().map(|objectives| objectives.of(metric).unwrap()).collect()
 }
@@ -109,7 +110,7 @@ fn problem(mesh: &Mesh) -> Problem {
     Problem::new(mesh, &topology, &Coloring::new(&topology))
 }
 
-/// A plan of `sweeps` sweeps without a stop before.
+/// Returns a plan of `sweeps` sweeps without another stop rule.
 fn plan(scheme: Scheme, sweeps: u32) -> Plan {
     Plan {
         scheme,

@@ -12,7 +12,7 @@ fn multilevel(metric: Metric) -> Options {
     Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
 }
 
-/// Options for sweeps alone.
+/// Returns options for uncorrected sweeps.
 fn sweeps(metric: Metric) -> Options {
     Options { method: Method::RELAXED, ..multilevel(metric) }
 }
@@ -23,7 +23,7 @@ fn last(outcome: &Outcome, metric: Metric) -> f64 {
 
 #[test]
 fn a_dozen_sweeps_suffice_whatever_the_size_of_the_mesh() {
-    // Sweeps alone take 40 to more than 300, growing with the size.
+    // Uncorrected sweeps number from 40 to more than 300, growing with the mesh size.
     for vertices in [500, 2000, 8000] {
         let plate = plate(vertices);
         let meshes =
@@ -49,14 +49,15 @@ fn a_dozen_sweeps_suffice_whatever_the_size_of_the_mesh() {
     }
 }
 
-/// Hard meshes, each with the most sweeps that it may take. Without secant pairs they took 50 to more than 400.
+/// Returns hard meshes, each with the largest allowed number of sweeps. Without secant pairs, they took 50 to more than
+/// 400 sweeps.
 fn hard_meshes() -> [(&'static str, Mesh, u32); 5] {
     let perturbed = |mesh: &Mesh, strength| support::perturb_random(mesh, strength, 1);
     [
         ("graded", perturbed(&support::graded(30, 1e-6), 1.0), 40),
         ("a vertex of 50", perturbed(&support::hub(50, 1e-2), 1.0), 40),
-        // On the next two, triangles open far beyond the stiffness that levels were built from. Levels that were not fitted
-        // again made these take 121 and 57 sweeps.
+        // On the next two meshes, triangles open far beyond the stiffness from which levels were built. With levels
+        // that were not fitted again, runs took 121 and 57 sweeps.
         ("a layer", perturbed(&support::layered(40, 30.0), 0.3), 25),
         ("a layer of 1:100", perturbed(&support::wavy_layer(60, 100.0, 2.0), 0.3), 55),
         ("rings in equal distances", perturbed(&support::hub_evenly(50, 40), 1.0), 55),
@@ -138,7 +139,7 @@ fn both_engines_take_the_same_steps() {
 
 #[test]
 fn runs_repeat_bit_for_bit_on_any_number_of_threads() {
-    // On the second mesh, corrections are accelerated by secant pairs.
+    // On the second mesh, secant pairs accelerate corrections.
     let [_, (_, hard, _), ..] = hard_meshes();
     for mesh in [perturbed(), &hard] {
         let smoother = Smoother::new(mesh).unwrap();
@@ -157,7 +158,7 @@ fn runs_repeat_bit_for_bit_on_any_number_of_threads() {
 
 #[test]
 fn tiny_and_scattered_meshes_converge() {
-    // A mesh with one free vertex has no coarser level, and separate pieces with one free vertex each share none.
+    // A mesh with one free vertex has no coarser level. Separate pieces with one free vertex each share no level.
     let fan = Mesh {
         points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.3, 0.2]],
         triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
@@ -227,8 +228,8 @@ fn corrections_are_the_default_where_they_are_possible() {
     }
 }
 
-/// Corrections lower the first metric of a scheme. Sweeps alone end higher, at a compromise of both metrics, after 50 sweeps
-/// or more.
+/// Corrections lower the base metric of a scheme. Uncorrected sweeps end higher after 50 or more sweeps, at a
+/// compromise of both metrics.
 #[test]
 fn metrics_that_alternate_end_at_the_optimum_of_the_base() {
     let mesh = support::perturb_random(&plate(500), 1.0, 1);
@@ -245,7 +246,7 @@ fn metrics_that_alternate_end_at_the_optimum_of_the_base() {
             assert!(outcome.sweeps <= 16, "{label}: {} sweeps", outcome.sweeps);
             let left = last(&outcome, base) / limit - 1.0;
             assert!(left.abs() < 2e-6, "{label}: {left:e} left");
-            // The returned state is that after the last correction.
+            // The returned state is the one after the last correction.
             let returned = with_points(&mesh, &outcome.points);
             let measure = Options { max_sweeps: 0, ..multilevel(base) };
             let returned = Smoother::new(&returned).unwrap();

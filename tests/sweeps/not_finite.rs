@@ -1,4 +1,4 @@
-//! Numbers that are not finite: each shows in f, wherever it is.
+//! Coordinates that are not finite appear in f, at any vertex.
 
 use gpu_smooth::{
     Backend, Metric,
@@ -7,7 +7,7 @@ use gpu_smooth::{
 
 use super::{backends, name, plan, plate, problem};
 
-/// Evaluates f of positions with one coordinate that is NaN or infinite, by each metric on each engine.
+/// Evaluates f by each metric on each engine, at positions with a single NaN or infinite coordinate.
 #[test]
 fn a_position_that_is_no_number_shows_in_f() {
     let mesh = plate(300);

@@ -1,4 +1,4 @@
-//! Where runs end: at optima that are known beforehand or found by other means.
+//! Final states of runs: known optima, or optima found by independent methods.
 
 use crate::support;
 use crate::{backends, distorted, global, history, name, perturbed, run, with_points};
@@ -54,7 +54,7 @@ fn imr_ends_at_the_optimum_of_a_global_method() {
             let f = support::f_imr(&after);
             assert!(f / best - 1.0 < 1e-6, "on the {}: {:e}", name(backend), f / best - 1.0);
         }
-        // A global descent from where the run ended finds nothing lower.
+        // A global descent from the final state finds no lower f.
         let outcome = run(&smoother, &Options::default(), &backends()[1]);
         let (further, _) = global::imr_optimum(&with_points(mesh, &outcome.points));
         assert!((further / best - 1.0).abs() < 1e-9, "{further} {best}");
@@ -75,7 +75,7 @@ fn edge_ends_at_the_best_known() {
     let f = |outcome: &gpu_smooth::Outcome| {
         history(outcome, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min)
     };
-    // The best of some hundreds of sweeps alone. Thousands more would gain another 3e-5.
+    // The best of several hundred uncorrected sweeps. Thousands more would gain another 3e-5.
     let alone = |sharpness| edge(Method::RELAXED, Some(sharpness));
     let continued = Options { max_sweeps: 700, ..alone(PNormExponent::CONTINUED) };
     let best = [&smoother, &after_imr].map(|s| f(&run(s, &continued, &backends()[0])));
@@ -84,10 +84,10 @@ fn edge_ends_at_the_best_known() {
         let place = name(backend);
         let corrected = run(&smoother, &edge(Method::Auto, None), backend);
         let end = f(&corrected);
-        // The last exponent is sixteen times that of sweeps alone.
+        // The last exponent is sixteen times that of uncorrected sweeps.
         assert!(end / best - 1.0 < -1.5e-4, "{end} for {best} on the {place}");
         assert!(corrected.corrections > 30 && corrected.sweeps < 160, "{}", corrected.sweeps);
-        // What is returned is the best state, of whichever sweep.
+        // The returned state is the best of all sweeps.
         let returned = Quality::of(&corrected.points, smoother.topology()).unwrap().f(Metric::Edge);
         assert!((returned / end - 1.0).abs() < 1e-6, "{returned} for {end} on the {place}");
         let fixed = f(&run(&smoother, &alone(PNormExponent::FIXED), backend));
@@ -95,8 +95,8 @@ fn edge_ends_at_the_best_known() {
     }
 }
 
-/// The meshes of `meshes/`, and the least f by EDGE that is known of each: of twelve runs on the CPU, from four first exponents and by
-/// three paces of doubling, up to the exponent 32768 and 600 sweeps.
+/// The meshes of `meshes/`, each with the smallest known f by EDGE. The values come from twelve runs per mesh on the
+/// CPU, with four initial exponents and three rates of doubling, up to the exponent 32768 and 600 sweeps.
 const BEST_BY_EDGE: [(&str, f64); 7] = [
     ("airplane", 1.497562),
     ("duck", 1.478602),
@@ -133,10 +133,10 @@ fn edge_ends_within_1e_4_of_the_best_known_after_some_eighty_sweeps() {
             let (outcome, above) = ends(1e-6);
             assert!(above < 1e-4 && above > -5e-5, "{on}: {above:e}");
             assert!(outcome.sweeps <= 140, "{on}: {}", outcome.sweeps);
-            // What the last exponent leaves is told.
+            // `remaining` includes the effect of the last exponent.
             let told = outcome.remaining.unwrap();
             assert!(told > 1.9e-5 && told < 1e-4, "{on}: {told:e}");
-            // A coarser tolerance ends sooner, by a smaller exponent.
+            // With a coarser tolerance, runs end sooner, at a smaller exponent.
             let (outcome, above) = ends(1e-3);
             assert!(above < 1e-3 && above > 1e-4, "{on}: {above:e}");
             assert!(outcome.sweeps <= 50, "{on}: {}", outcome.sweeps);

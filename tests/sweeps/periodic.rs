@@ -17,8 +17,8 @@ fn at(row: u32, column: u32) -> u32 {
     row * (COLUMNS + 1) + column
 }
 
-/// A lattice of fields of two triangles each, mapped by `to` from the unit square. Its vertices are perturbed. Those of the
-/// first and the last column are moved along these alike, and so are those of the first and the last row.
+/// Makes a perturbed lattice of cells with two triangles each, mapped from the unit square by `to`. Vertices of the
+/// first and last columns are perturbed equally along the columns, and likewise those of the first and last rows.
 fn lattice(to: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     let mut random = SplitMix64::new(11);
     let mut places = vec![[0.0; 2]; at(ROWS, COLUMNS) as usize + 1];
@@ -53,7 +53,8 @@ fn ends() -> Vec<[u32; 2]> {
     (0..=COLUMNS).map(|column| [at(0, column), at(ROWS, column)]).collect()
 }
 
-/// Maps the unit square to a part of a ring with bent sides. A ninth of a turn takes one side to the other.
+/// Maps the unit square to a sector of a ring with bent sides. A rotation by a ninth of a turn maps one side to the
+/// other.
 fn sector([u, v]: [f64; 2]) -> [f64; 2] {
     let bend = 0.008 * trig::on_circle(0.8 * v)[1];
     trig::on_circle(u / 9.0 + bend).map(|x| (1.0 + 0.6 * v) * x)
@@ -75,7 +76,7 @@ fn periodic(pairs: Vec<[u32; 2]>) -> Slide {
     Slide { periodic, ..Slide::default() }
 }
 
-/// The largest distance between the second of a pair and the place where the motion takes the first.
+/// Returns the largest distance between the second vertex of a pair and the image of the first vertex under the motion.
 fn apart(points: &[[f64; 2]], pairs: &[[u32; 2]], [x, y]: Motion) -> f64 {
     let off = |&[a, b]: &[u32; 2]| {
         let [from, to] = [a, b].map(|v| points[v as usize]);
@@ -114,13 +115,13 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
         let astray =
             |points: &[[f64; 2]]| slide.astray(&topology, &mesh.points, points, Precision::Double);
         assert!(astray(&outcome.points).is_empty(), "{label}");
-        // One vertex of a pair has moved on alone; then one has moved back alone.
+        // First, one vertex of a pair has moved on alone; then one has moved back alone.
         let mut spoiled = outcome.points.clone();
         spoiled[at(2, 0) as usize][1] += 1e-4;
         assert_eq!(astray(&spoiled), [at(2, 0), at(2, COLUMNS)], "{label}");
         spoiled[at(2, 0) as usize] = mesh.points[at(2, 0) as usize];
         assert_eq!(astray(&spoiled), [at(2, COLUMNS)], "{label}");
-        // If one vertex of a pair is sent back, its partner goes back with it.
+        // If one vertex of a pair is reset, its partner is reset too.
         let mut points = outcome.points.clone();
         points[at(2, 0) as usize] = mesh.points[at(2, 0) as usize];
         smoother.certify(&mut points).unwrap();
@@ -128,7 +129,7 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
     }
 }
 
-/// At a minimum over both sides, the sum of f over both patches is least: if the pair moves along the sides, f rises.
+/// At the minimum, moving a pair along its sides must raise the sum of f over both patches.
 #[test]
 fn a_pair_rests_where_both_patches_together_are_best() {
     let mesh = lattice(|[u, v]| [2.0 * u, v]);
@@ -151,7 +152,7 @@ fn partners_of_a_rotation_slide_together_along_curved_sides() {
     let mesh = lattice(sector);
     let topology = Topology::new(&mesh).unwrap();
     let inner = ROWS as usize - 1;
-    // Pairs may be given by the motion between them, or as two sides.
+    // Pairs may be given by their motion, or as two sides.
     let mut by_motion = Slide::default();
     assert_eq!(by_motion.pair_by(&topology, &mesh.points, turn()), inner + 2);
     let mut by_sides = Slide::default();
@@ -173,7 +174,7 @@ fn partners_of_a_rotation_slide_together_along_curved_sides() {
         );
         results.push(smoother.f(Metric::Imr, &outcome.points).unwrap());
     }
-    // Which side leads makes no difference but for rounding.
+    // The choice of the leading side changes only rounding.
     assert!(results.iter().all(|f| (f / results[0] - 1.0).abs() < 1e-6), "{results:?}");
 }
 
@@ -232,10 +233,10 @@ fn pairs_that_are_not_alike_stay_and_impossible_pairs_are_errors() {
     let mut mesh = lattice(|[u, v]| [2.0 * u, v]);
     mesh.points[at(3, COLUMNS) as usize][1] += 0.01;
     let (smoother, count) = sliding(&mesh, &periodic(sides()));
-    // The moved pair stays, and so do its neighbors, as the curves through it differ.
+    // The displaced pair stays, and so do its neighbors, because the curves through the pair differ.
     assert_eq!(count, 2 * (inner[0] - 3 + inner[1]));
     assert_eq!(smoother.pairs(), [inner[0] - 3, 1]);
-    // A chain of vertices in which each is paired with the next, and a vertex paired with itself.
+    // A chain in which each vertex is paired with the next, and a vertex paired with itself.
     let row: Vec<[u32; 2]> = (1..COLUMNS - 1).map(|c| [at(0, c), at(0, c + 1)]).collect();
     let own = vec![[at(2, 0); 2]];
     for (pairs, still) in [(row, inner[1]), (own, 1)] {
@@ -258,8 +259,8 @@ fn pairs_that_are_not_alike_stay_and_impossible_pairs_are_errors() {
     assert_eq!(slide, Slide::default());
 }
 
-/// A strip that is two fields wide up to the third row, and one field wide above. There a triangle has both vertices of a
-/// pair, so the effect of moving both is not the sum of moving each.
+/// Makes a strip, two cells wide up to the third row and one cell wide above. In the upper part, a triangle contains
+/// both vertices of a pair, so the effect of a joint move is not the sum of two single moves.
 #[test]
 fn partners_of_one_triangle_stay() {
     let row =

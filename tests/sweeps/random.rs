@@ -1,11 +1,11 @@
-//! Random planar meshes of many kinds and random options, on both engines: what must hold for each of them.
+//! Random planar meshes and options on both engines, with checks that must hold for all of them.
 //!
 //! - `GPU_SMOOTH_RANDOM_MESHES=N` takes N meshes instead of a few.
 //! - `GPU_SMOOTH_RANDOM_SEED=K` takes the meshes from seed K on.
 //! - `GPU_SMOOTH_RANDOM_VERTICES=V` lets each part of a mesh have up to V vertices.
 //!
-//! A failure names the seed of its mesh. No library shrinks a mesh that fails (as proptest would): a mesh with one triangle,
-//! point or map less mostly does not fail, and most meshes are small anyway.
+//! A failure prints the seed of its mesh. Failing meshes are not shrunk (as by proptest): with one triangle, point or
+//! map less, most failures disappear, and most meshes are small anyway.
 
 use crate::support::SplitMix64;
 use crate::{all_schemes, backends, history, name, support, with_points};
@@ -18,18 +18,18 @@ use gpu_smooth::{
 use mesh_io::MeshFile;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-/// A random number from 10^low to 10^high, uniform in its logarithm.
+/// Returns a random number from 10^low to 10^high, uniform in the logarithm.
 fn decades(rng: &mut SplitMix64, low: f64, high: f64) -> f64 {
     10f64.powf(rng.range(low, high))
 }
 
-/// The most vertices of a part of a mesh.
+/// Returns the largest number of vertices in a part of a mesh.
 fn most_vertices() -> usize {
     setting("GPU_SMOOTH_RANDOM_VERTICES", 65) as usize
 }
 
-/// A Delaunay mesh of random points in a square, in a disk, or in clusters. It has one vertex or more; few are as likely as
-/// many.
+/// Makes a Delaunay mesh of random points in a square, a disk or clusters. The number of vertices is at least one,
+/// uniform in the logarithm.
 fn scattered(rng: &mut SplitMix64) -> Mesh {
     let most = most_vertices() as f64;
     let count = decades(rng, 0.0, most.log10()).ceil() as usize;
@@ -54,7 +54,7 @@ fn scattered(rng: &mut SplitMix64) -> Mesh {
     }
 }
 
-/// A mesh of triangles between one vertex and up to a hundred around it, in one ring or several.
+/// Makes a mesh of triangles between a vertex and up to a hundred vertices around it, in one or several rings.
 fn hub(rng: &mut SplitMix64) -> Mesh {
     let around = 3 + rng.below(100) as u32;
     let rings = 1 + rng.below(3) as u32;
@@ -82,7 +82,7 @@ fn hub(rng: &mut SplitMix64) -> Mesh {
     mesh
 }
 
-/// A mesh of one of the kinds, not yet distorted.
+/// Makes a mesh of a random kind, without distortion.
 fn plain(rng: &mut SplitMix64) -> Mesh {
     match rng.below(5) {
         0 | 1 => scattered(rng),
@@ -96,7 +96,7 @@ fn plain(rng: &mut SplitMix64) -> Mesh {
     }
 }
 
-/// Joins two meshes as two components, the second to the right of the first.
+/// Joins two meshes as components of one mesh, the second on the right of the first.
 fn beside(mut left: Mesh, right: &Mesh) -> Mesh {
     let end = |mesh: &Mesh, sign: f64| {
         mesh.points.iter().fold(f64::NEG_INFINITY, |end, point| end.max(sign * point[0]))
@@ -107,13 +107,13 @@ fn beside(mut left: Mesh, right: &Mesh) -> Mesh {
     left
 }
 
-/// Applies a map to all points; leaves the mesh as it is if that inverts a triangle.
+/// Applies a map to all points, unless the map inverts a triangle.
 fn mapped(mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     let after = with_points(&mesh, &mesh.points.iter().map(|&p| map(p)).collect::<Vec<_>>());
     if support::is_ccw(&after) { after } else { mesh }
 }
 
-/// A random planar mesh, with all triangles counterclockwise.
+/// Makes a random planar mesh of counterclockwise triangles.
 fn random_mesh(rng: &mut SplitMix64) -> Mesh {
     let mut mesh = plain(rng);
     if rng.below(5) == 0 {
@@ -125,7 +125,7 @@ fn random_mesh(rng: &mut SplitMix64) -> Mesh {
     if rng.below(2) == 0 {
         mesh = support::perturb_random(&mesh, rng.range(0.2, 1.0), rng.next_u64());
     }
-    // Makes slivers: moves a vertex almost onto the opposite edge.
+    // Makes slivers by moving a vertex almost onto the opposite edge.
     if rng.below(3) == 0 {
         let held = support::check::held(&mesh);
         let [t, corner] = [rng.below(mesh.triangles.len()), rng.below(3)];
@@ -217,8 +217,8 @@ fn random_options(rng: &mut SplitMix64) -> Options {
     options
 }
 
-/// The length of the shortest edge, over the rounding of the largest coordinate in single precision. Options may ask for
-/// results in that precision.
+/// Returns the length of the shortest edge, divided by the rounding of the largest coordinate in single precision, in
+/// which options may request results.
 fn digits(mesh: &Mesh) -> f64 {
     let size = mesh.points.as_flattened().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
     let edges = mesh.triangles.iter().flat_map(|&t| support::check::edges(t));
@@ -228,7 +228,7 @@ fn digits(mesh: &Mesh) -> f64 {
     edges.map(squared).fold(f64::INFINITY, f64::min).sqrt() / (size * f64::from(f32::EPSILON))
 }
 
-/// Checks what must hold for every outcome. `near` is the relative error that f may have on this engine.
+/// Checks the properties of every outcome. `near` is the allowed relative error of f on the engine.
 fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outcome, near: f64) {
     let base = options.scheme.base();
     let after = with_points(mesh, &outcome.points);
@@ -262,7 +262,7 @@ fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outc
     }
 }
 
-/// Checks that a result is the same once it was written to a file of the mesh and read again.
+/// Checks that a result is preserved when written to a mesh file and read again.
 fn check_file(mesh: &Mesh, outcome: &Outcome) {
     let folder = tempfile::tempdir().unwrap();
     let [input, output] = ["in.node", "out.node"].map(|name| folder.path().join(name));
@@ -285,7 +285,7 @@ fn setting(name: &str, default: u64) -> u64 {
     }
 }
 
-/// Smooths the meshes of these seeds on each engine, and checks the outcomes. Returns the number of runs.
+/// Smooths the meshes of `seeds` on each engine, and checks the outcomes. Returns the number of runs.
 fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
     let mut smoothed = 0;
     for seed in seeds {
@@ -304,7 +304,8 @@ fn smooth_all(seeds: std::ops::Range<u64>) -> u64 {
             Err(error) => panic!("seed {seed}: {error}"),
         };
         for backend in backends() {
-            // On a device, positions are rounded to 1e-4 of the height of a triangle at worst, and areas of flat triangles too.
+            // On a device, positions are rounded to at most 1e-4 of a triangle's altitude, and so are areas of flat
+            // triangles.
             let flat = 1e-6 * Quality::of(&mesh.points, smoother.topology()).unwrap().worst_imr;
             let near = if matches!(backend, Backend::Cpu) { 1e-9 } else { 1e-3 + flat };
             let label = format!("seed {seed} on the {}, {options:?}", name(backend));
@@ -340,7 +341,7 @@ fn every_mesh_comes_back_finite_feasible_and_no_worse() {
     assert!(smoothed > count, "only {smoothed} runs of {count} meshes");
 }
 
-/// f by AREA, which was 0 but for rounding, once rose from 1.3e-30 to 1.7e-30.
+/// A former defect: f by AREA, which was 0 up to rounding, rose from 1.3e-30 to 1.7e-30.
 #[test]
 fn a_change_of_f_by_rounding_alone_is_no_gain() {
     assert!(smooth_all(10211..10212) > 0);

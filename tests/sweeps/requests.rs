@@ -1,4 +1,4 @@
-//! Options that a caller may set, and the errors for those that make no sense.
+//! Valid settings of options, and the errors for invalid ones.
 
 use crate::{backends, history, perturbed, plate, run, scheme, support, with_points};
 use gpu_smooth::{
@@ -35,8 +35,8 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
             assert_eq!(history.last(), Some(&f));
             let best = history.iter().copied().fold(f64::INFINITY, f64::min);
             let after = with_points(mesh, &outcome.points);
-            // A device evaluates f in single precision. After the first sweeps there are still flat triangles, whose areas have
-            // fewer digits. The number of sweeps done by then depends on the machine.
+            // A device evaluates f in single precision. After the first sweeps, flat triangles remain, whose areas have
+            // fewer digits. The number of completed sweeps depends on the machine.
             let near = match (backend, outcome.sweeps) {
                 (Backend::Cpu, _) => 1e-9,
                 (Backend::Gpu(_), 0..4) => 2e-6,
@@ -54,7 +54,7 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
 
 #[test]
 fn a_run_canceled_while_the_optimum_is_sought_returns_the_start() {
-    // The best f until then was once taken for the optimum, and the run was "reached".
+    // A former defect: the best f so far was taken for the optimum, and the run ended as reached.
     let mesh = perturbed();
     let smoother = Smoother::new(mesh).unwrap();
     let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: None });
@@ -90,11 +90,11 @@ fn options_out_of_range_are_named() {
         ("omega", Options { method: omega(2.0), ..default() }),
         ("omega", Options { method: omega(f64::NAN), ..default() }),
         ("newton steps", Options { method: steps(0), ..default() }),
-        // So long a sweep could not be canceled in time.
+        // A sweep with more Newton steps could not be canceled in time.
         ("newton steps", Options { method: steps(Paper::MAX_NEWTON_STEPS + 1), ..default() }),
         ("edge norm", Options { edge_norm: sharpness(14, 4), ..default() }),
         ("edge norm", Options { edge_norm: sharpness(1, 14), ..default() }),
-        // On a device no sweep of such a run was encoded, and it was "converged".
+        // A former defect: no sweep of the run was encoded on a device, and the run ended as converged.
         (
             "edge norm",
             Options { edge_norm: Some(PNormExponent { first: 5, every: 0, last: 2 }), ..default() },
@@ -116,7 +116,7 @@ fn options_out_of_range_are_named() {
             }
         }
     }
-    // The ends of the ranges are allowed.
+    // The ends of the ranges are valid.
     let edge = Options {
         method: omega(1.99),
         edge_norm: sharpness(0, 10),
@@ -155,7 +155,7 @@ fn every_metric_is_tracked_on_request() {
     for sweep in 0..=6 {
         for &metric in Metric::ALL {
             let [cpu, gpu] = outcomes.each_ref().map(|o| o.history[sweep].of(metric).unwrap());
-            // In single precision, triangles a thousand times longer than high have such errors.
+            // In single precision, triangles a thousand times longer than high cause errors of this size.
             assert!((gpu / cpu - 1.0).abs() < 1e-4, "{metric}, sweep {sweep}: {gpu} for {cpu}");
         }
     }
@@ -172,7 +172,7 @@ fn an_unknown_adapter_is_an_error_that_lists_those_there_are() {
     assert!(matches!(error, GpuError::NoAdapter { .. }));
     let text = error.to_string();
     assert!(text.contains("'no such adapter'") && text.contains(there.as_str()), "{text}");
-    // A part of the name is enough, in capital or small letters.
+    // A part of the name suffices, in upper or lower case.
     let part = there[..there.len() / 2].to_uppercase();
     assert!(Gpu::open(Some(&part)).is_ok(), "{part}");
 }

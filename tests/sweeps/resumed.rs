@@ -1,4 +1,4 @@
-//! Runs that are left between two sweeps and continued later.
+//! Runs that are canceled between two sweeps and continued later.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use gpu_smooth::{
 
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
 
-/// A policy that takes every checkpoint it can.
+/// A policy that collects all checkpoints.
 #[derive(Default)]
 struct All(Vec<Checkpoint>);
 
@@ -31,7 +31,7 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
         outcome.points.iter().map(|point| point.map(f64::to_bits)).collect()
     };
     assert!(bits(a) == bits(b), "{what}: other positions");
-    // Compared as text, as values that were not evaluated are NaN.
+    // Compared as text, because values that were not evaluated are NaN.
     assert_eq!(format!("{:?}", a.history), format!("{:?}", b.history), "{what}");
     let told = |o: &Outcome| (o.stop, o.sweeps, o.corrections, o.best_sweep, o.remaining, o.lost);
     assert_eq!(told(a), told(b), "{what}");
@@ -41,7 +41,7 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
     assert_eq!(more(a), more(b), "{what}");
 }
 
-/// Continues a run from every `every`th checkpoint: each time it must end with the same bits.
+/// Continues a run from every `every`th checkpoint, and checks that each continuation ends with identical bits.
 fn assert_goes_on(smoother: &Smoother<'_>, options: &Options, backend: &Backend, every: usize) {
     assert_goes_on_as("", smoother, options, backend, every);
 }
@@ -88,7 +88,7 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
     }
 }
 
-/// A checkpoint in the middle of a period holds what the stages were when the period began.
+/// A checkpoint within a period contains the state of the stages at the beginning of the period.
 #[test]
 fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
@@ -121,7 +121,7 @@ fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
     }
 }
 
-/// The curves and the field of targets belong to the run, as the mesh does.
+/// Curves and target fields belong to a run, like the mesh.
 #[test]
 fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
@@ -142,8 +142,8 @@ fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
     smoother.run(&options).resume(from).block().unwrap();
 }
 
-/// A hard mesh: sweeps on the CPU open flat triangles for the device, secant pairs accelerate corrections, and levels are
-/// fitted again.
+/// A hard mesh: on the CPU, opening sweeps prepare flat triangles for the device; secant pairs accelerate corrections;
+/// and levels are fitted again.
 #[test]
 fn a_hard_run_goes_on_to_the_same_bits() {
     let stretched = |mesh: &Mesh| -> Vec<[f64; 2]> {
@@ -158,7 +158,7 @@ fn a_hard_run_goes_on_to_the_same_bits() {
             let mut all = All::default();
             let kept = smoother.run(&options).on(backend).checkpoints(&mut all).block().unwrap();
             assert!(kept.corrections > 2, "{} corrections", kept.corrections);
-            // Secant pairs make a checkpoint twice as large.
+            // Secant pairs double the size of a checkpoint.
             let sizes: Vec<usize> = all.0.iter().map(|one| one.to_bytes().len()).collect();
             let per_vertex = sizes.iter().max().unwrap() / mesh.points.len();
             assert!(
@@ -237,7 +237,7 @@ fn a_run_that_was_canceled_goes_on() {
     assert_same(&whole, &end, "canceled");
 }
 
-/// A run left on a GPU can go on on the CPU. One left on the CPU goes on there, whatever the backend.
+/// A run canceled on a GPU can continue on the CPU. A run canceled on the CPU continues there with any backend.
 #[test]
 fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
@@ -302,7 +302,7 @@ fn a_checkpoint_of_another_run_is_refused() {
     assert!(error.contains("of another mesh"), "{error}");
 }
 
-/// When positions are kept in memory, and how often, does not change the result.
+/// Storing positions in memory, at any interval, does not change the result.
 #[test]
 fn keeping_positions_changes_no_bit() {
     struct Often;
@@ -324,7 +324,7 @@ fn keeping_positions_changes_no_bit() {
     }
 }
 
-/// Flat triangles are reopened within the run, after sweeps that were undone once.
+/// The run opens flat triangles again, after sweeps that were undone once.
 #[test]
 fn a_run_by_edge_that_reopens_triangles_goes_on_to_the_same_bits() {
     for (seed, share) in [(87, 0.05), (5, 0.05)] {

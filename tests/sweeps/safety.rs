@@ -1,9 +1,9 @@
-//! What a run must never do: invert a triangle, move a fixed vertex, or leave a sliver.
+//! Safety of runs: no inverted triangle, no moved fixed vertex, no remaining sliver.
 
 use crate::{all_schemes, backends, name, perturbed, plate, run, support, with_points};
 use gpu_smooth::{Mesh, Metric, Options, Quality, Smoother, Stopping};
 
-/// A strongly perturbed plate with some fixed vertices inside, and some vertices that no triangle uses.
+/// Makes a strongly perturbed plate with some fixed inner vertices and some unused vertices.
 fn held() -> Mesh {
     let mut mesh = plate(700);
     let interior: Vec<u32> = support::check::held(&mesh)
@@ -49,7 +49,8 @@ fn no_scheme_inverts_a_triangle_or_moves_what_is_held() {
 
 #[test]
 fn metrics_without_a_barrier_leave_no_slivers() {
-    // In the mild mesh no triangle is above the guard. In the strongly perturbed one some are far above, and must go.
+    // In the mild mesh, no triangle exceeds the guard. In the strongly perturbed mesh, some triangles exceed the guard
+    // by far and must improve.
     let mild = support::perturb_random(&plate(2000), 0.5, 3);
     assert!(support::worst_imr(&mild) < 30.0 && support::worst_imr(perturbed()) > 100.0);
     for mesh in [&mild, perturbed()] {
@@ -61,7 +62,7 @@ fn metrics_without_a_barrier_leave_no_slivers() {
                     Options { scheme: metric.into(), max_sweeps: 150, ..Options::default() };
                 let outcome = run(&smoother, &options, backend);
                 let worst = support::worst_imr(&with_points(mesh, &outcome.points));
-                // The guard may be exceeded only by the rounding of single precision.
+                // Only rounding in single precision may exceed the guard.
                 assert!(
                     worst <= guard * (1.0 + 1e-4),
                     "{metric} on the {}: {worst}",
@@ -74,8 +75,8 @@ fn metrics_without_a_barrier_leave_no_slivers() {
 
 #[test]
 fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
-    // Sizes differ a thousandfold, and shapes are good. Evening out lengths and areas would flatten triangles up to any
-    // fixed guard.
+    // Sizes differ by a factor of a thousand, and shapes are good. Evening out lengths and areas would flatten
+    // triangles up to any fixed guard.
     let even = support::perturb_random(&plate(2000), 0.2, 3);
     let graded = |[x, y]: [f64; 2]| {
         let r = x.hypot(y).max(1e-3);
@@ -102,7 +103,8 @@ fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
 
 #[test]
 fn an_optimal_mesh_comes_back_as_it_was() {
-    // Rounding on a device once moved thousands of vertices by a millionth, and raised f in the eighth digit.
+    // A former defect: rounding on a device moved thousands of vertices by a millionth, and raised f in the eighth
+    // digit.
     let smoother = Smoother::new(perturbed()).unwrap();
     let options =
         Options { stopping: Stopping::Tolerance(1e-13), max_sweeps: 300, ..Options::default() };
@@ -118,7 +120,7 @@ fn an_optimal_mesh_comes_back_as_it_was() {
 
 #[test]
 fn points_rounded_to_single_precision_are_feasible_once_certified() {
-    // So far from the origin that neighboring floats are farther apart than an edge is long.
+    // So far from the origin, neighboring floats are farther apart than the length of an edge.
     let here = support::perturb_random(&plate(800), 0.6, 4);
     let mesh = support::transformed(&here, 1.0, [1.2e6, 9e5]);
     let smoother = Smoother::new(&mesh).unwrap();
@@ -139,8 +141,8 @@ fn points_rounded_to_single_precision_are_feasible_once_certified() {
 
 #[test]
 fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
-    // Beyond 2^52, doubles are whole numbers. Rows of a wavy strip are one unit apart. The places that sweeps find must be
-    // rounded to whole numbers, which flattens triangles that were good.
+    // Beyond 2^52, doubles are integers. Rows of a wavy strip are one unit apart. The positions found by sweeps must be
+    // rounded to integers, which flattens good triangles.
     let (columns, rows) = (36, 24);
     let far = 2f64.powi(52);
     let mut mesh = Mesh::default();
@@ -171,7 +173,7 @@ fn a_mesh_as_fine_as_its_numbers_stays_feasible() {
 
 #[test]
 fn points_that_rounding_makes_worse_than_the_start_are_not_returned() {
-    // A free vertex among whole numbers: every place that it can be rounded to is worse than its own.
+    // A free vertex among integer coordinates: all positions to which it can be rounded are worse than its own.
     let far = 2f64.powi(52);
     let at = |x: f64, y: f64| [far + x, far + y];
     let mesh = Mesh {

@@ -7,13 +7,13 @@ use gpu_smooth::{
     Stop, Stopping, Targets, Topology, options::Feature, precision::Precision, topology,
 };
 
-/// A plate with two holes and a perturbed interior.
+/// Makes a plate with two holes and a perturbed interior.
 fn worn() -> Mesh {
     support::perturb_random(&plate(500), 0.5, 3)
 }
 
-/// A rectangle of two halves, 12 by 6 fields, and the edges of the line between them. All vertices but corners are
-/// perturbed, those on a line along it.
+/// Makes a rectangle of two halves, 12 by 6 cells, and returns the edges of the line between them. All vertices except
+/// corners are perturbed, vertices on a line along the line.
 fn halves() -> (Mesh, Vec<[u32; 2]>) {
     let (columns, rows) = (12_u32, 6_u32);
     let mut random = SplitMix64::new(5);
@@ -84,7 +84,8 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     for metric in [Metric::Imr, Metric::Rms] {
         let options = Options { scheme: metric.into(), ..Options::default() };
         let outcome = run(&smoother, &options, &Backend::Cpu);
-        // The guard of RMS is the worst triangle before the run. Taken anew after some sweeps, it would hold vertices back.
+        // The guard of RMS is the worst triangle before the run. A guard renewed after some sweeps would hold vertices
+        // back.
         assert_eq!((outcome.stop, outcome.held_back), (Stop::Converged, 0), "{metric}");
         let slid = outcome.slid.unwrap();
         assert!(count > 50 && slid.vertices == count && slid.moved > count / 2, "{slid:?}");
@@ -95,7 +96,7 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
         for &v in &held {
             assert_eq!(mesh.points[v as usize], outcome.points[v as usize]);
         }
-        // `astray` finds a vertex that is off its line or past its neighbor.
+        // `astray` finds vertices off their line or past their neighbors.
         let moved = |v: &usize| !topology.free()[*v] && mesh.points[*v] != outcome.points[*v];
         let v = (0..mesh.points.len()).find(moved).unwrap();
         let mut spoiled = outcome.points.clone();
@@ -108,7 +109,7 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     }
 }
 
-/// A circle of 40 vertices around its center, all on one closed line without a corner.
+/// Makes a circle of 40 vertices around a center. The circle is a closed line without a corner.
 #[test]
 fn vertices_slide_around_a_circle() {
     let mut random = SplitMix64::new(9);
@@ -133,9 +134,9 @@ fn vertices_slide_around_a_circle() {
     assert_eq!(outcome.stop, Stop::Converged);
     let radii = outcome.points[..40].iter().map(|[x, y]| x.hypot(*y));
     let off = radii.fold(0.0, |off: f64, radius| off.max((radius - 2.0).abs()));
-    // The distance between the circle and a cubic through four of its points, for edges of a sixth of the radius.
+    // The distance between a circle and a cubic through four of its points, for edges of a sixth of the radius.
     assert!(off < 1e-3, "{off}");
-    // Each vertex ends in the middle between two of the inner ones.
+    // Each vertex ends in the middle between two inner vertices.
     for (k, point) in outcome.points[..40].iter().enumerate() {
         let there = at(k as f64 / f64::from(count), 2.0);
         assert!(support::check::squared_distance(*point, there).sqrt() < 0.02, "{k}: {point:?}");
@@ -145,7 +146,7 @@ fn vertices_slide_around_a_circle() {
 #[test]
 fn sliding_vertices_respect_targets() {
     let (mesh, lines) = halves();
-    // Targets are twice as high as wide, so that fields should become rectangles of that shape.
+    // Targets are twice as high as wide, so cells should become rectangles of that shape.
     let targets = Targets::tensors(&vec![[1.0, 0.0, 4.0]; mesh.points.len()]).unwrap();
     let mut smoother = Smoother::new(&mesh).unwrap();
     smoother.set_targets(&targets).unwrap();
@@ -194,7 +195,7 @@ fn options_that_cannot_be_combined_with_sliding_are_refused() {
     }
 }
 
-/// A strip of triangles has no vertex inside. Those on its sides slide, on any engine to the same bits.
+/// A strip of triangles has no inner vertex. Vertices on its sides slide, with identical bits on both engines.
 #[test]
 fn a_strip_slides_without_a_free_vertex() {
     let mut mesh = Mesh { points: Vec::new(), triangles: Vec::new(), fixed: Vec::new() };
@@ -223,7 +224,7 @@ fn a_strip_slides_without_a_free_vertex() {
         ends.push(outcome.points);
     }
     assert!(ends.iter().all(|end| *end == ends[0]));
-    // With nothing to slide either, there is nothing to do.
+    // Without sliding vertices, the run has nothing to do.
     let held = Slide { held: (0..26).collect(), ..Slide::default() };
     for slide in [Some(&held), None] {
         smoother.set_slide(slide).unwrap();

@@ -1,4 +1,4 @@
-//! Runs by EDGE that would end at a shape guard far from what can be reached.
+//! Runs by EDGE in which a shape guard could prevent convergence far from the optimum.
 
 use crate::{backends, name, run, support, with_points};
 use gpu_smooth::{
@@ -7,7 +7,7 @@ use gpu_smooth::{
 use std::ops::ControlFlow;
 use support::SplitMix64;
 
-/// A square of 11 by 11 vertices, each cell halved along a diagonal, along which is up to `is_rising`.
+/// Makes a square of 11 by 11 vertices. Each cell is halved along a diagonal, which rises if `is_rising` returns true.
 fn square(mut is_rising: impl FnMut() -> bool) -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..11 {
@@ -26,7 +26,7 @@ fn square(mut is_rising: impl FnMut() -> bool) -> Mesh {
     mesh
 }
 
-/// The mesh with a share of its free vertices at random places of the square, untangled again.
+/// Moves a fraction of the free vertices to random points of the square, and untangles the mesh.
 fn untangled(mesh: &Mesh, share: f64, rng: &mut SplitMix64) -> Mesh {
     let tangled = support::tangle::moved(mesh, |p| match rng.unit() < share {
         true => [0, 1].map(|_| rng.range(0.0, 10.0)),
@@ -37,7 +37,7 @@ fn untangled(mesh: &Mesh, share: f64, rng: &mut SplitMix64) -> Mesh {
     with_points(mesh, &result.points)
 }
 
-/// The square of equal cells, tangled so and untangled.
+/// Returns the square of equal cells after tangling and untangling.
 pub(super) fn untangled_square(seed: u64, share: f64) -> Mesh {
     untangled(&square(|| true), share, &mut SplitMix64::new(seed))
 }
@@ -50,8 +50,8 @@ fn by_edge(mesh: &Mesh, backend: &Backend) -> (Outcome, f64) {
     (outcome, f)
 }
 
-/// By EDGE alone, these lattices ended 0.5 to 7 % above 2 after 83 to 1000 sweeps: with triangles that lay flat from the first
-/// exponent on, at the shape guard in the end.
+/// With EDGE alone, these lattices ended 0.5 to 7 % above 2 after 83 to 1000 sweeps. Their triangles had become flat
+/// with the first exponent, and ended at the shape guard.
 #[test]
 fn an_untangled_lattice_ends_as_low_as_can_be() {
     let few = [11, 26, 48, 59, 98].map(|seed| (seed, 0.02));
@@ -64,15 +64,15 @@ fn an_untangled_lattice_ends_as_low_as_can_be() {
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
             assert!(f < 2.0 + 1e-4, "{label}: {f}");
             assert!(outcome.sweeps < 90, "{label}: {} sweeps", outcome.sweeps);
-            // Every sweep is in the history, those that opened triangles as well.
+            // All sweeps are in the history, including those that opened triangles.
             let evaluations = outcome.history.len() as u32;
             assert_eq!(evaluations, outcome.sweeps + 1, "{label}");
         }
     }
 }
 
-/// Where means of neighbors untangle a mesh, they leave no flat triangles: the guard is close from the start, and vertices come to
-/// stay at it. All corrections were refused after the first exponents, and runs took 800 to 1000 sweeps.
+/// Untangling by means of neighbors leaves no flat triangles, so the guard is close from the start and holds vertices.
+/// A former defect: all corrections after the first exponents were refused, and runs took 800 to 1000 sweeps.
 #[test]
 fn a_guard_that_holds_vertices_does_not_end_the_corrections() {
     for (seed, best) in [(17, 1.600493), (23, 1.670747)] {

@@ -20,7 +20,7 @@ fn mapped(mesh: &Mesh, matrix: Matrix) -> Mesh {
     Mesh { points, ..mesh.clone() }
 }
 
-/// The tensor under which a circle mapped by the matrix L is a unit circle: (L Lᵀ)⁻¹.
+/// Returns the tensor (L Lᵀ)⁻¹, under which a circle mapped by the matrix L is a unit circle.
 fn tensor([[a, b], [c, d]]: Matrix) -> [f64; 3] {
     let (xx, xy, yy) = (a * a + b * b, a * c + b * d, c * c + d * d);
     let det = xx * yy - xy * xy;
@@ -40,13 +40,13 @@ fn corrected(metric: Metric) -> bool {
 #[test]
 fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_before() {
     let mesh = support::perturb_random(&plate(2000), 0.5, 3);
-    // Turns by some 20 degrees, and stretches by 40 in that direction.
+    // Rotates by some 20 degrees, and stretches by 40 in that direction.
     let matrix = [[37.6, -0.342], [13.7, 0.94]];
     let stretched = mapped(&mesh, matrix);
     let plain = Smoother::new(&mesh).unwrap();
     let targets = Targets::tensors(&vec![tensor(matrix); mesh.points.len()]).unwrap();
     let smoother = with_targets(&stretched, &targets);
-    // EDGE has many minima, and rounding decides in which of them a run ends.
+    // EDGE has many minima, and rounding decides in which minimum a run ends.
     for &metric in Metric::ALL.iter().filter(|&&m| corrected(m) && m.is_smooth()) {
         let options = Options { scheme: metric.into(), ..Options::default() };
         for backend in backends() {
@@ -55,10 +55,10 @@ fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_be
             let f = [&one, &other].map(|outcome| *history(outcome, metric).last().unwrap());
             assert!((f[1] / f[0] - 1.0).abs() < 3e-6, "{label}: {f:?}");
             assert_eq!(other.stop, Stop::Converged, "{label}");
-            // In single precision, stretching enlarges rounding, so that a run notices its end later.
+            // In single precision, stretching amplifies rounding, so a run detects its end later.
             let more = if matches!(backend, Backend::Cpu) { 3 } else { 60 };
             assert!(other.sweeps <= one.sweeps + more, "{label}: {} {}", one.sweeps, other.sweeps);
-            // Distances, divided by the stretching. An edge is about a thirtieth of the plate.
+            // Distances divided by the stretching. An edge is approximately a thirtieth of the plate.
             let apart = one.points.iter().zip(&other.points).map(|(&p, &q)| {
                 let p = times(matrix, p);
                 support::check::squared_distance(p, q).sqrt() / 40.0
@@ -68,7 +68,7 @@ fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_be
     }
 }
 
-/// Tensors that turn and stretch from place to place.
+/// Returns tensors whose rotation and stretching vary over the plane.
 fn swirling(mesh: &Mesh) -> Targets {
     let tensors: Vec<[f64; 3]> = mesh
         .points
@@ -126,7 +126,7 @@ fn both_engines_end_at_the_same_minimum_and_hold_the_certificate() {
     }
 }
 
-/// Half the logarithm of the mean area of the triangles at each vertex: the logarithm of a size.
+/// Returns half the logarithm of the mean area of the triangles at each vertex, the logarithm of a size.
 fn sizes(mesh: &Mesh) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
     for &t in &mesh.triangles {
@@ -139,7 +139,7 @@ fn sizes(mesh: &Mesh) -> Vec<f64> {
     sums.iter().map(|(sum, count): &(f64, f64)| 0.5 * (sum / count).ln()).collect()
 }
 
-/// The factor by which sizes at vertices change, up or down, that 19 of 20 vertices do not exceed.
+/// Returns the 95th percentile, over vertices, of the factors by which sizes grow or shrink.
 fn size_change(before: &Mesh, points: &[[f64; 2]]) -> f64 {
     let after = Mesh { points: points.to_vec(), ..before.clone() };
     let (before, after) = (sizes(before), sizes(&after));
@@ -169,13 +169,13 @@ fn keep_size_keeps_sizes_that_equilateral_elements_would_not() {
         let options = Options { scheme: Metric::ShapeSize.into(), ..Options::default() };
         let kept = run(&keeping, &options, backend);
         let change = [&free, &kept].map(|outcome| size_change(&mesh, &outcome.points));
-        // The strip is compressed in one direction only, so sizes and shapes cannot both be kept.
+        // The strip is compressed in one direction only, so sizes and shapes cannot both be preserved.
         assert!(change[0] > 1.5 && change[1] < 1.35, "{change:?}");
     }
 }
 
-/// The mean height of each row of a lattice, and the noise in rows: the mean distance of vertices from that height, in
-/// gaps to the nearest row of `at`. Leaves out the ragged ends of rows.
+/// Returns the mean height of each row of a lattice, and the noise of rows: the mean distance of vertices from that
+/// height, in units of the gap to the nearest row of `at`. The ragged ends of rows are omitted.
 fn rows(points: &[[f64; 2]], columns: usize, at: &[f64]) -> (Vec<f64>, f64) {
     let inner = |row: &[[f64; 2]]| row[5..columns - 4].iter().map(|p| p[1]).collect::<Vec<_>>();
     let rows: Vec<Vec<f64>> = points.chunks(columns + 1).map(inner).collect();
@@ -195,7 +195,7 @@ fn gap(heights: &[f64], row: usize) -> f64 {
 
 #[test]
 fn keep_shape_keeps_the_spacing_of_a_layer_and_takes_its_noise() {
-    // Rows are pressed together in the middle, where triangles are stretched by 50.
+    // Rows are compressed in the middle, where triangles are stretched by 50.
     let columns = 40;
     let layer = support::layered(columns, 50.0);
     let heights: Vec<f64> = layer.points.chunks(columns + 1).map(|row| row[0][1]).collect();
@@ -250,7 +250,8 @@ fn equilateral_targets_change_nothing() {
 
 #[test]
 fn degrees_are_seen_as_lengths_on_the_sphere() {
-    // A lattice of equilateral triangles around 60 degrees north, where a degree east is half as long as a degree north.
+    // A lattice of equilateral triangles around 60 degrees north, where a degree east is half as long as a degree
+    // north.
     let lattice = support::lattice(30, 30);
     let [width, height] = [0, 1].map(|i| lattice.points.iter().map(|p| p[i]).fold(0.0, f64::max));
     let to_degrees = |&[x, y]: &[f64; 2]| {

@@ -5,7 +5,7 @@ use gpu_smooth::{
     Backend, Method, Metric, Options, Smoother, Stop, Stopping, TargetField, Targets,
 };
 
-/// The distance to the limit is estimated from the last sweeps, and may be up to this many times the estimate.
+/// Largest allowed ratio of the actual distance to the limit and the distance estimated from the last sweeps.
 const TRUST: f64 = 1.5;
 
 fn check(smoother: &Smoother, options: &Options, limit: f64) {
@@ -18,7 +18,7 @@ fn check(smoother: &Smoother, options: &Options, limit: f64) {
             let f = *history(&outcome, options.scheme.base()).last().unwrap();
             let left = (f - limit) / limit;
             assert!(left <= TRUST * tolerance, "{label}: {left:e} left");
-            // The tolerance must not be kept by far too many sweeps either. One corrected sweep gains a factor of up to ten.
+            // The tolerance must not be exceeded by many sweeps either. A corrected sweep gains a factor of up to ten.
             let room = if options.is_multilevel() { 100.0 } else { 20.0 };
             assert!(left >= tolerance / room, "{label}: {left:e} left");
         }
@@ -46,8 +46,8 @@ fn the_rest_above_the_limit_is_within_the_tolerance() {
 
 #[test]
 fn the_rest_above_the_limit_of_edge_is_within_the_tolerance() {
-    // The limit is that of the run's own sweeps, where the p-norm leads, and not the best there is. There are no
-    // corrections, as with them rounding decides in which of many minima a run ends.
+    // The limit is that of the run's own sweeps, where the p-norm leads, not the best minimum. Corrections are
+    // disabled, because with them, rounding decides in which of many minima a run ends.
     let smoother = Smoother::new(perturbed()).unwrap();
     let (scheme, method) = (Metric::Edge.into(), Method::RELAXED);
     let options = Options { scheme, method, ..Options::default() };
@@ -60,7 +60,7 @@ fn the_rest_above_the_limit_of_edge_is_within_the_tolerance() {
     check(&smoother, &options, limit);
 }
 
-/// f cannot fall below its ideal, whatever a decay promises that has only begun.
+/// f cannot fall below its ideal, whatever the extrapolation of a short decay predicts.
 #[test]
 fn the_rest_above_the_limit_is_at_most_that_above_the_ideal() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -106,8 +106,8 @@ fn a_run_that_is_cut_short_says_how_far_it_is() {
 
 #[test]
 fn a_mesh_that_can_become_ideal_converges() {
-    // Each sweep of such a small mesh takes more than a sixth of what is left, so that corrections never begin. Runs once went
-    // on to the last sweep, at an f of 1 to all digits.
+    // Each sweep of the small meshes gains more than a sixth of the remainder, so that corrections never begin. A
+    // former defect: runs continued to the last sweep at an f of 1 to all digits.
     for (columns, rows) in [(3, 3), (5, 4), (8, 8), (12, 12)] {
         let mesh = support::perturb_random(&support::lattice(columns, rows), 0.8, 3);
         let smoother = Smoother::new(&mesh).unwrap();

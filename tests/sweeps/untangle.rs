@@ -1,4 +1,4 @@
-//! Untangling: meshes tangled in the ways of the literature.
+//! Untangling of meshes tangled as in the literature.
 
 use crate::{plate, support, with_points};
 use gpu_smooth::{
@@ -14,7 +14,7 @@ fn mend(mesh: &Mesh) -> Untangled {
     untangle(mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
-/// Checks that a mesh gets untangled, and that only free vertices have moved.
+/// Checks that a mesh is untangled, and that only free vertices have moved.
 fn check(label: &str, mesh: &Mesh) -> Untangled {
     let result = mend(mesh);
     let (left, sweeps) = (result.left.len(), result.sweeps);
@@ -52,7 +52,7 @@ fn meshes_of_every_kind_of_tangle_are_untangled() {
 
 #[test]
 fn a_hole_turned_by_half_a_turn_is_untangled_at_once() {
-    // It is as far either way round, so that no sweep finds out which way triangles are to go.
+    // Both directions of rotation are equally far, so sweeps cannot detect the direction in which triangles must turn.
     let result = check("half a turn", &tangle::turned_hole(112, 0.5));
     assert!(result.sweeps < 60, "{} sweeps", result.sweeps);
     let layers = boundaries::layers(69);
@@ -74,7 +74,8 @@ fn meshes_whose_boundary_was_taken_elsewhere_are_untangled() {
     }
 }
 
-/// Each of the best cuts leads to a mesh here that its sweeps do not untangle. Going on from the nearest of them does.
+/// The meshes after each of the best cuts cannot be untangled by their sweeps. Continuing from the closest of these
+/// meshes succeeds.
 #[test]
 fn holes_that_the_best_cuts_do_not_untangle_at_once_are_untangled_by_going_on() {
     let two = boundaries::two_holes(2000);
@@ -82,7 +83,7 @@ fn holes_that_the_best_cuts_do_not_untangle_at_once_are_untangled_by_going_on() 
     check("swapped", &boundaries::swapped(&two, 8));
 }
 
-/// Here that does not do it either, and lines are taken by chance that are nearly as good.
+/// Continuing fails as well, so randomly chosen cuts that are nearly as good must be tried.
 #[test]
 fn holes_that_the_best_cuts_do_not_untangle_are_untangled_by_others() {
     let two = boundaries::two_holes(1000);
@@ -92,7 +93,7 @@ fn holes_that_the_best_cuts_do_not_untangle_are_untangled_by_others() {
 
 #[test]
 fn random_positions_are_not_taken_for_sizes() {
-    // Among vertices at random places some triangles are sound by chance, and far larger than those of the mesh.
+    // Among randomly placed vertices, some triangles are valid by chance, and far larger than triangles of the mesh.
     let layers = boundaries::layers(69);
     for seed in 1..=3 {
         let result = check("layers at random places", &tangle::scattered(&layers, seed));
@@ -105,7 +106,7 @@ fn random_positions_are_not_taken_for_sizes() {
 
 #[test]
 fn the_sizes_of_a_graded_mesh_do_not_matter() {
-    // Edges from 1 to 1e-6 long. The vertices near the hole, where edges are shortest, are tangled.
+    // Edges from 1 down to 1e-6. The vertices near the hole, where edges are shortest, are tangled.
     let mut mesh = support::graded(24, 1e-6);
     let held = support::check::held(&mesh);
     let small = |p: [f64; 2]| p[0].hypot(p[1]) < 1e-5;
@@ -155,7 +156,7 @@ fn triangles_that_no_move_can_untangle_are_listed_and_the_rest_untangled() {
 
 #[test]
 fn a_tangle_that_cannot_be_undone_ends() {
-    // A fixed vertex in the middle of a square is moved out of it.
+    // A fixed vertex in the middle of a square is moved out of the square.
     let mut mesh = support::lattice(6, 6);
     let middle = (0..mesh.points.len())
         .find(|&v| mesh.points[v][0] > 2.9 && mesh.points[v][1] > 2.0)
@@ -215,8 +216,8 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
     let mesh = support::disturb::beyond_double_precision();
     let smoother = Smoother::new(&mesh).unwrap();
     assert_eq!(smoother.beyond_precision().len(), 1);
-    // With a rounded area below zero f is finite, 8e30. Such a mesh once came back unsmoothed and was called converged.
-    // EDGE has no barrier, but its shape guard held the vertex where it was, and f ended 16 % above the least.
+    // With a negative rounded area, f is finite: 8e30. A former defect: the mesh was returned unsmoothed as converged.
+    // EDGE has no barrier, but its shape guard held the vertex, and f ended 16 % above the minimum.
     let refused = |metric: &&Metric| metric.properties().barrier || !metric.is_smooth();
     for metric in Metric::ALL.iter().filter(refused) {
         for backend in crate::backends() {
@@ -229,7 +230,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
         }
     }
 
-    // These need no area.
+    // AREA and RMS judge triangles without a division by the area.
     for metric in [Metric::Area, Metric::Rms] {
         let options = Options { scheme: metric.into(), ..Options::default() };
         let outcome = smoother.run(&options).on(&Backend::Cpu).block().unwrap();

@@ -1,4 +1,4 @@
-//! `improve_worst`: the worst triangles are improved after a run.
+//! `improve_worst`, which improves the worst triangles after a run.
 
 use crate::support::{self, check};
 use crate::{backends, distorted, name, plate, run, with_points};
@@ -8,7 +8,7 @@ use gpu_smooth::{
 };
 use std::ops::ControlFlow;
 
-/// The least angle of a triangle, in degrees, by the law of cosines.
+/// Returns the smallest angle of a triangle in degrees, by the law of cosines.
 fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {
     let length = |[x, y]: [f64; 2], [a, b]: [f64; 2]| (x - a).hypot(y - b);
     let (a, b, c) = (length(q, r), length(r, p), length(p, q));
@@ -16,7 +16,7 @@ fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {
     angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b)).to_degrees()
 }
 
-/// The worst value among triangles with a free vertex, as [`gpu_smooth::outcome::Improved::worst`] defines it.
+/// Returns the worst value among triangles with a free vertex, as [`gpu_smooth::outcome::Improved::worst`] defines it.
 fn worst(smoother: &Smoother, points: &[[f64; 2]], by: WorstBy) -> f64 {
     let topology = smoother.topology();
     let can_move = |t: &&[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
@@ -66,13 +66,13 @@ fn the_worst_triangle_is_better_by_each_measure_at_a_small_cost_in_f() {
         assert!(told.f[0] < told.f[1] && told.f[1] < most * told.f[0], "{label}");
         assert!(told.vertices > 0 && told.vertices <= smoother.topology().free_count(), "{label}");
         assert!(check::is_valid(&with_points(&mesh, &outcome.points)), "{label}");
-        // No other triangle may get a worse shape than the worst had.
+        // No other triangle may become worse in shape than the worst triangle was.
         let shapes = [&usual, &outcome].map(|o| worst(&smoother, &o.points, WorstBy::Imr));
         assert!(shapes[1] <= shapes[0] * (1.0 + 1e-6), "{label}: {shapes:?}");
     }
 }
 
-/// The result is kept although f is higher than before.
+/// The result is returned although f is higher than before.
 #[test]
 fn a_smooth_mesh_is_improved_without_a_sweep() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -103,7 +103,7 @@ fn bounds_and_altitudes_hold_while_the_worst_is_improved() {
     assert!(after >= before && outcome.improved.unwrap().vertices > 0);
 }
 
-/// A mesh, and its image under a linear map with targets that undo the map: both end with the same shapes.
+/// A mesh, and its image under a linear map with targets that invert the map, end with equal shapes.
 #[test]
 fn the_worst_triangle_is_judged_in_the_shape_of_its_target() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -139,7 +139,7 @@ fn triangles_that_cannot_be_improved_stay() {
     assert_eq!((told.vertices, told.stuck), (0, 1), "{told:?}");
     assert_eq!(told.worst[0], told.worst[1]);
     assert_eq!(outcome.points, mesh.points);
-    // After a run that was canceled, nothing is improved.
+    // After a canceled run, nothing is improved.
     let mesh = distorted();
     let smoother = Smoother::new(mesh).unwrap();
     let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
@@ -148,7 +148,7 @@ fn triangles_that_cannot_be_improved_stay() {
     assert_eq!(outcome.improved, None);
 }
 
-/// The worst triangles are around a vertex that is at its best place already, and others are not as good as they could be.
+/// The worst triangles surround a vertex at its best position, and other triangles could be improved.
 #[test]
 fn a_pass_that_leaves_the_worst_as_it_is_is_undone() {
     let mut mesh = support::perturb_random(&plate(300), 0.5, 3);
@@ -193,22 +193,23 @@ fn improving_the_worst_ends_where_the_observer_says_so() {
     let told = outcome.improved.unwrap();
     assert_eq!((outcome.stop, told.vertices), (Stop::Canceled, 0));
     assert_eq!(told.worst[0], told.worst[1]);
-    // What the passes until then have gained is kept.
+    // The gain of completed passes is preserved.
     let (outcome, _) = passes_before_it_ends(1);
     let told = outcome.improved.unwrap();
     assert_eq!(outcome.stop, Stop::Canceled);
     assert!(told.vertices > 0 && told.worst[1] < told.worst[0], "{told:?}");
 }
 
-/// A triangle on the boundary without a free vertex is stuck only if none of its corners may slide.
+/// A triangle without a free vertex on the boundary is stuck only if none of its corners can slide.
 #[test]
 fn a_triangle_whose_corners_may_slide_is_not_stuck() {
-    // Six triangles around a free vertex, and two outside of one side. One vertex of theirs can slide along a straight line.
+    // Six triangles around a free vertex, and two outside of one side. One of the outer vertices can slide along a
+    // straight line.
     let mut points: Vec<[f64; 2]> =
         (0..6).map(|k| support::trig::on_circle(f64::from(k) / 6.0)).collect();
     points.push([0.0, 0.0]);
     let mut triangles: Vec<[u32; 3]> = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
-    // Outside of the side from vertex 0 to 1: `out` is halfway on the straight line from vertex 0 to `far`.
+    // Outside of the side from vertex 0 to 1: `out` is the middle of the straight line from vertex 0 to `far`.
     let [a, b] = [points[0], points[1]];
     let out = [a[0] + 0.5, a[1]];
     let far = [a[0] + 1.0, a[1]];

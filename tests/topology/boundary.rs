@@ -3,13 +3,13 @@
 use crate::support::{self, Outline, SplitMix64, check};
 use gpu_smooth::{Mesh, MeshError, Topology, topology::signed_area};
 
-/// A plate with two round holes.
+/// Makes a plate with two round holes.
 fn plate(vertices: usize) -> Mesh {
     let text = "loop\n0 0\n3 0\n3 2\n0 2\ncircle 0.9 1 0.4 20\ncircle 2.1 1 0.3 16\n";
     support::triangulate(&Outline::parse(text).unwrap(), vertices).unwrap()
 }
 
-/// Checks that the edges of the loops are the edges with one triangle, in the direction that the triangle has them.
+/// Checks that the loops consist of the edges with a single triangle, in the direction of that triangle's winding.
 pub(crate) fn assert_loops_are_the_boundary(mesh: &Mesh) {
     let topology = Topology::new(mesh).unwrap();
     let loops = topology.boundary_loops();
@@ -64,7 +64,7 @@ fn signed_area_by_hand() {
     assert_eq!([signed_area(&points, &[]), signed_area(&points, &[0, 1])], [0.0; 2]);
 }
 
-/// A grid of unit squares without the squares at the given places.
+/// Makes a grid of unit squares, in which the squares at `squares` are missing.
 fn without(side: u32, squares: &[[u32; 2]]) -> Mesh {
     let at = |x: u32, y: u32| y * (side + 1) + x;
     let all = (0..side * side).map(|i| [i % side, i / side]);
@@ -79,7 +79,8 @@ fn without(side: u32, squares: &[[u32; 2]]) -> Mesh {
 
 #[test]
 fn loops_that_touch_are_apart() {
-    // Two holes that share a corner; a hole that shares a corner with the outside; a part that hangs by one vertex.
+    // Two holes that share a corner, a hole that shares a corner with the outside, and a part attached by one
+    // vertex.
     for (squares, holes, outsides) in [
         (vec![[1, 1], [2, 2]], 2, 1),
         (vec![[1, 1], [2, 2], [3, 3]], 3, 1),
@@ -102,7 +103,7 @@ fn one_triangle_is_its_own_loop() {
     assert_eq!(topology.boundary_loops(), [[0, 1, 2]]);
 }
 
-/// Random vertices with targets, near and far: one alone or with its neighbors, boundary vertices among them.
+/// Returns random vertices with near and far targets: single vertices or with neighbors, some on the boundary.
 fn random_moves(mesh: &Mesh, rng: &mut SplitMix64) -> Vec<(u32, [f64; 2])> {
     let count = 1 + rng.below(4);
     let reach = [0.01, 0.1, 1.0, 100.0][rng.below(4)];
@@ -112,7 +113,7 @@ fn random_moves(mesh: &Mesh, rng: &mut SplitMix64) -> Vec<(u32, [f64; 2])> {
         let [x, y] = mesh.points[v as usize];
         let to = [x + reach * rng.range(-1.0, 1.0), y + reach * rng.range(-1.0, 1.0)];
         moves.push((v, to));
-        // Its neighbors as well, so that triangles turn and shear.
+        // The neighbors move as well, so that triangles rotate and shear.
         let star: Vec<_> = mesh.triangles.iter().filter(|t| t.contains(&v)).collect();
         for &w in star[rng.below(star.len())].iter().filter(|&&w| w != v) {
             let [x, y] = mesh.points[w as usize];
@@ -133,7 +134,7 @@ fn moved(mesh: &Mesh, moves: &[(u32, [f64; 2])], share: f64) -> Mesh {
 
 #[test]
 fn a_clamped_move_inverts_nothing_and_goes_as_far_as_that_allows() {
-    // One of the meshes is far from the origin, where coordinates are coarse.
+    // One of the meshes is far from the origin, where coordinates have a coarse resolution.
     let meshes = [
         support::perturb_random(&plate(300), 0.8, 1),
         support::transformed(&plate(300), 1.0, [3e5, -2e5]),
@@ -170,13 +171,13 @@ fn a_clamped_move_inverts_nothing_and_goes_as_far_as_that_allows() {
                 let near = |x: usize| (found[x] - wish[x]).abs() <= 1e-9 * unit;
                 assert!(near(0) && near(1), "{case}: vertex {v} at {found:?}, not {wish:?}");
             }
-            // Part of the way inverts nothing.
+            // Smaller fractions of the moves invert no triangle.
             for part in 1..8 {
                 let there = moved(mesh, &moves, share * f64::from(part) / 8.0);
                 assert!(check::orientations(&there).iter().all(|&o| o == 1), "{case}, {part}");
             }
             if share < 1.0 {
-                // A little farther inverts a triangle. Coarse coordinates need a little more.
+                // A slightly larger fraction inverts a triangle. Coarse coordinates need a larger excess.
                 let farther = share + [1e-9, 1e-6, 1e-9][which] * (1.0 + share);
                 let there = moved(mesh, &moves, farther);
                 assert!(!check::is_ccw(&there), "{case}: it could have gone on");

@@ -1,4 +1,4 @@
-//! Edges that cross and cannot move are found.
+//! Detection of crossings between edges that cannot move.
 
 use super::support::{self, SplitMix64};
 use gpu_smooth::{Mesh, MeshError, Topology, topology::Crossing};
@@ -7,7 +7,7 @@ fn found(mesh: &Mesh, most: usize) -> Vec<Crossing> {
     Topology::by_area(mesh).unwrap().crossings(&mesh.points, most).unwrap()
 }
 
-/// A square of five by five vertices, numbered by rows, with a diagonal through each cell.
+/// Makes a square of five by five vertices, numbered by rows, with a diagonal in each cell.
 fn square() -> Mesh {
     let points = (0..25).map(|k| [f64::from(k % 5), f64::from(k / 5)]).collect();
     let cells = (0..20u32).filter(|k| k % 5 < 4);
@@ -19,7 +19,7 @@ fn square() -> Mesh {
 fn a_boundary_vertex_beyond_the_other_side_crosses_it() {
     let mut mesh = square();
     assert!(found(&mesh, 10).is_empty());
-    // The middle of the lower side goes out through the upper one.
+    // The middle vertex of the lower side passes through the upper side.
     mesh.points[2] = [1.5, 9.0];
     let expected = [[[1, 2], [21, 22]], [[2, 3], [22, 23]]];
     assert_eq!(found(&mesh, 10), expected.map(|edges| Crossing { edges }));
@@ -34,17 +34,17 @@ fn free_vertices_and_edges_that_touch_do_not_cross() {
     let mut mesh = square();
     mesh.points[12] = [40.0, 7.0];
     assert!(found(&mesh, 10).is_empty());
-    // On the upper side, in one of its vertices, and along it.
+    // Onto the upper side: between two vertices, and onto a vertex.
     for place in [[1.5, 4.0], [2.0, 4.0]] {
         let mut mesh = square();
         mesh.points[2] = place;
         assert!(found(&mesh, 10).is_empty(), "{place:?}");
     }
-    // A fixed vertex inside makes edges only with other vertices that are not free.
+    // A fixed inner vertex contributes only edges to other vertices that are not free.
     let mut mesh = square();
     mesh.fixed = vec![6];
     mesh.points[6] = [1.5, 9.0];
-    // The edge from 15 to 21 is across a corner.
+    // The edge from 15 to 21 cuts a corner.
     let expected = [
         [[0, 6], [15, 21]],
         [[0, 6], [20, 21]],

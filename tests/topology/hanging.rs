@@ -1,4 +1,4 @@
-//! Hanging nodes are found, and boundaries that lie on each other on purpose are none.
+//! Detection of hanging nodes, and of intentional slits without hanging nodes.
 
 use super::support::SplitMix64;
 use gpu_smooth::{Mesh, Topology, topology::HangingNode};
@@ -8,7 +8,7 @@ fn found(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<HangingNode> {
     Topology::new(&mesh).unwrap().hanging_nodes(points).unwrap()
 }
 
-/// A triangle below the line from 0 to 1, and a fan above it over `inside` vertices on that line.
+/// Makes a triangle below the line from 0 to 1, and a fan above it with `inside` vertices on the line.
 fn fan(inside: u32, turned: impl Fn([f64; 2]) -> [f64; 2]) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
     let mut points = vec![[0.0, 0.0], [1.0, 0.0], [0.5, -1.0], [0.5, 1.0]];
     points.extend((1..=inside).map(|k| [f64::from(k) / f64::from(inside + 1), 0.0]));
@@ -27,7 +27,7 @@ fn nodes_inside_an_edge_hang() {
         let expected: Vec<_> =
             (4..4 + inside).map(|vertex| HangingNode { vertex, edge: [1, 0] }).collect();
         assert_eq!(found(&points, &triangles), expected);
-        // Either winding, any place and direction, with the digits that a file may hold.
+        // Either winding, any position and direction, with the digits of a text file.
         let reversed: Vec<_> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         assert_eq!(found(&points, &reversed).len(), inside as usize);
         for k in 0..40 {
@@ -42,8 +42,8 @@ fn nodes_inside_an_edge_hang() {
     }
 }
 
-/// A square of many triangles, each field of one half cut into four with its middle: nodes hang along the diagonal line
-/// between the halves only.
+/// In one half of a square, each cell is cut into four triangles around its center. Nodes hang only along the diagonal
+/// between the halves.
 #[test]
 fn refined_parts_have_a_node_on_each_edge_between() {
     let n = 40_u32;
@@ -70,12 +70,12 @@ fn refined_parts_have_a_node_on_each_edge_between() {
         .map(|y| HangingNode { vertex: at(n, 2 * y + 1), edge: [at(n, 2 * y), at(n, 2 * y + 2)] })
         .collect();
     assert_eq!(nodes, expected);
-    // The order of triangles does not matter.
+    // The result must not depend on the order of triangles.
     SplitMix64::new(5).shuffle(&mut triangles);
     assert_eq!(found(&points, &triangles), expected);
 }
 
-/// A slit between 0 and 1 whose vertices are double, be they at the same places or not, and parts that only touch.
+/// A slit between 0 and 1 with double vertices, at equal or different positions, and parts that only touch.
 #[test]
 fn slits_and_interfaces_have_none() {
     for places in [[0.5, 0.5], [0.3, 0.7]] {
@@ -84,12 +84,12 @@ fn slits_and_interfaces_have_none() {
         let triangles = [[2, 4, 0], [2, 1, 4], [0, 5, 3], [5, 1, 3]];
         assert_eq!(found(&points, &triangles), []);
     }
-    // An interface with ends of its own on each side.
+    // An interface with separate end vertices on each side.
     let (mut points, mut triangles) = fan(1, |point| point);
     points.extend([points[0], points[1]]);
     triangles[0] = [2, 6, 5];
     assert_eq!(found(&points, &triangles), []);
-    // A real hole of the same vertices.
+    // An actual hole between the same vertices.
     let (mut points, triangles) = fan(1, |point| point);
     points[4][1] = 0.05;
     assert_eq!(found(&points, &triangles), []);
@@ -103,7 +103,7 @@ fn slits_and_interfaces_have_none() {
     );
 }
 
-/// At a vertex of many triangles, directions on either side of the negative axis are near each other.
+/// Directions on either side of the negative x axis must be neighbors in the sorted order around a vertex.
 #[test]
 fn directions_go_on_at_the_negative_axis() {
     let mut points = vec![[0.0, 0.0], [-2.0, -1e-4], [-1.0, 1e-4], [-1.0, 1.0], [-1.0, -1.0]];
@@ -120,7 +120,7 @@ fn directions_go_on_at_the_negative_axis() {
     assert_eq!(found(&points, &triangles), [HangingNode { vertex: 2, edge: [1, 0] }]);
 }
 
-/// A hundred thousand needles that meet in one vertex, each apart from the next.
+/// A hundred thousand separate needles around a common vertex.
 #[test]
 fn hubs_are_searched_by_direction() {
     let count = 100_000;

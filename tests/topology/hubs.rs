@@ -1,5 +1,5 @@
-//! Vertices with very many triangles. Nothing is timed: work that grows with the square of their number would take minutes
-//! to hours.
+//! Vertices with very many triangles. No test measures time: work quadratic in the number of triangles would take
+//! minutes to hours.
 
 use crate::boundary::assert_loops_are_the_boundary;
 use crate::support::{self, trig};
@@ -8,11 +8,11 @@ use gpu_smooth::{
     internal::{Coloring, prepare},
 };
 
-/// Triangles around the hub.
+/// Number of triangles around the hub.
 const MANY: u32 = 200_000;
 
-/// A fan of triangles around the first vertex, and another strip of triangles outside of it. If the fan does not go all
-/// the way around, the hub is on the boundary.
+/// Makes a fan of triangles around the first vertex, surrounded by a strip of triangles. The hub of an open fan is a
+/// boundary vertex.
 fn fan(count: u32, is_closed: bool) -> Mesh {
     let mut mesh = Mesh { points: vec![[0.0, 0.0]], ..Mesh::default() };
     let rim = if is_closed { count } else { count + 1 };
@@ -35,7 +35,7 @@ fn fan(count: u32, is_closed: bool) -> Mesh {
 #[test]
 fn a_hub_inside_takes_no_more_than_its_triangles_are_worth() {
     let mesh = fan(MANY, true);
-    // As it is, and with shuffled windings, which must be made consistent from neighbor to neighbor.
+    // Once as generated, once with shuffled windings, which must be made consistent from neighbor to neighbor.
     for mesh in [mesh.clone(), support::shuffled_windings(&mesh, 1)] {
         let (topology, problem) = prepare(&mesh).unwrap();
         assert!(topology.free()[..=MANY as usize].iter().all(|&free| free));
@@ -65,7 +65,7 @@ fn a_hub_on_the_boundary_takes_no_more_than_its_triangles_are_worth() {
         assert!(Coloring::new(&topology).is_proper(&topology));
         let loops = topology.boundary_loops();
         let rim = MANY + 1;
-        // The loop goes from the hub out along one side, around the rim, and back along the other.
+        // The loop leads from the hub along one side, around the rim, and back along the other side.
         let outside = [0, 1].into_iter().chain(1 + rim..=2 * rim).chain([rim]);
         assert!(loops.len() == 1 && loops[0].iter().copied().eq(outside));
     }
@@ -73,7 +73,7 @@ fn a_hub_on_the_boundary_takes_no_more_than_its_triangles_are_worth() {
 
 #[test]
 fn a_hub_of_fans_that_touch_nowhere_else_takes_no_more_than_its_triangles_are_worth() {
-    // Every other triangle of a fan: each is a component with a loop of its own.
+    // Every second triangle of a fan, each a component with a loop of its own.
     let whole = fan(MANY, true);
     let triangles = whole.triangles.iter().step_by(6).copied().collect();
     let mesh = Mesh { triangles, ..whole };
@@ -100,7 +100,7 @@ fn small_hubs_have_the_boundary_that_all_meshes_have() {
 
 #[test]
 fn a_strip_turned_once_has_loops_that_end() {
-    // A Möbius strip: its windings cannot be made consistent, and walks around its vertices must end.
+    // A Möbius strip: consistent windings do not exist, and walks around vertices must end.
     let count = 9;
     let points = (0..2 * count).map(|i| [f64::from(i), f64::from(i * i % 7)]).collect();
     let mut triangles = Vec::new();

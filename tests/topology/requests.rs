@@ -1,4 +1,4 @@
-//! Mistakes of an application are answered with an error, not a panic.
+//! Invalid requests of an application are answered with an error, not a panic.
 
 use crate::support;
 use gpu_smooth::{

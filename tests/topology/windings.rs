@@ -1,4 +1,4 @@
-//! Which triangles count as inverted: the minority of each edge-connected part, by exact arithmetic.
+//! Identification of inverted triangles: the minority in each edge-connected part, by exact arithmetic.
 
 use crate::support::{self, check};
 use gpu_smooth::{
@@ -6,7 +6,7 @@ use gpu_smooth::{
     topology::BadTriangle,
 };
 
-/// The bad triangles of a mesh, by index, and those of them that are flat.
+/// Returns the indices of all bad triangles of a mesh, and the indices of the flat ones.
 fn bad(mesh: &Mesh) -> (Vec<usize>, Vec<usize>) {
     let found = Topology::new(mesh).unwrap().bad_triangles(&mesh.points).unwrap();
     let flat = |bad: &&BadTriangle| bad.flat;
@@ -14,7 +14,7 @@ fn bad(mesh: &Mesh) -> (Vec<usize>, Vec<usize>) {
     (found.iter().map(index).collect(), found.iter().filter(flat).map(index).collect())
 }
 
-/// Checks that exactly the triangles with these vertices are bad, however the mesh is numbered and wound.
+/// Checks that exactly the triangles with these vertices are bad, for any numbering and winding of the mesh.
 #[track_caller]
 fn assert_bad(mesh: &Mesh, wanted: &[[u32; 3]]) {
     let sorted = |mut triangle: [u32; 3]| {
@@ -41,7 +41,7 @@ fn assert_bad(mesh: &Mesh, wanted: &[[u32; 3]]) {
 
 #[test]
 fn one_large_mirrored_triangle_does_not_make_all_others_inverted() {
-    // Adds a triangle at an edge of the boundary that lies across the mesh rather than outside of it.
+    // Adds a triangle at a boundary edge that overlaps the mesh instead of extending it.
     let mut mesh = support::lattice(10, 8);
     let [a, b] = [0, 1];
     let far = mesh.points.len() as u32;
@@ -67,7 +67,7 @@ fn a_mesh_of_the_globe_has_only_the_triangles_across_the_date_line_inverted() {
             let at = |row: u32, column: u32| row * columns as u32 + column;
             let [a, b] = [at(row, column), at(row, next)];
             let [c, d] = [at(row + 1, next), at(row + 1, column)];
-            // Land has no triangles, so the triangles across the date line have the larger area.
+            // Land has no triangles, so the triangles across the date line have the larger total area.
             if (5..9).contains(&column) && (3..7).contains(&row) {
                 continue;
             }
@@ -109,7 +109,7 @@ fn each_part_has_its_own_majority() {
     assert_bad(&mesh, &[]);
 }
 
-/// A triangle around a point, as thin as rounding: every area of it that is computed with rounding is useless.
+/// Makes three triangles around a point, as thin as rounding. Areas computed with rounding have arbitrary signs.
 fn thin() -> Mesh {
     Mesh {
         points: vec![
@@ -123,7 +123,7 @@ fn thin() -> Mesh {
     }
 }
 
-/// The sign of a triangle's area, computed in integers: all these coordinates are multiples of 2^-54.
+/// Returns the sign of a triangle's area in integer arithmetic: all coordinates are multiples of 2^-54.
 fn exact_sign(mesh: &Mesh, triangle: [u32; 3]) -> i128 {
     let whole = |x: f64| {
         let scaled = x * 2f64.powi(54);
@@ -147,7 +147,8 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
     };
     let outcome = run(Metric::Area).unwrap();
     assert_bad(&Mesh { points: outcome.points, ..mesh.clone() }, &[]);
-    // Its area is rounded to zero or below, so imr cannot judge it. The error names it, and does not call it inverted.
+    // The triangle's rounded area is not positive, so imr cannot judge the triangle. The error names the triangle
+    // without calling it inverted.
     let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, .. })) = run(Metric::Imr)
     else {
         panic!("a mesh without a finite f was smoothed")
@@ -157,7 +158,7 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
 
 #[test]
 fn quality_of_a_valid_mesh_as_thin_as_rounding_is_finite() {
-    // With a large triangle beside it, which alone determines the orientation if areas are rounded.
+    // Next to a large triangle, which alone would determine the orientation if areas were rounded.
     let mut mesh = thin();
     let side = exact_sign(&mesh, mesh.triangles[0]) as f64;
     mesh.points.push([-side, side]);
@@ -206,7 +207,7 @@ fn a_point_that_is_no_number_counts_as_inverted() {
 
 #[test]
 fn a_mesh_of_clockwise_triangles_is_smoothed_as_well() {
-    // All triangles clockwise: the result is as good as that of the counterclockwise mesh.
+    // All triangles are clockwise. The result must be as good as that of the counterclockwise mesh.
     let mesh = support::perturb_random(&support::lattice(6, 6), 0.6, 2);
     let clockwise: Vec<_> = mesh.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     let run = |triangles: &[[u32; 3]]| {

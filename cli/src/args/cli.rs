@@ -12,8 +12,8 @@ use crate::args::{
     BenchArgs, MoveArgs, QualityArgs, ReadArgs, RidingArgs, SlideArgs, SmoothArgs, SurfaceArgs,
 };
 
-/// Smooths a 2D triangle mesh: moves its interior vertices until the elements are as good as they can be,
-/// without inverting one. OUT is the same as IN but for the coordinates of vertices that moved.
+/// Smooths a 2D triangle mesh: moves interior vertices until element quality is optimal, and never inverts a triangle.
+/// OUT differs from IN in the coordinates of moved vertices only.
 #[derive(Parser)]
 #[command(
     name = "gpu-smooth",
@@ -31,7 +31,7 @@ pub(crate) struct Cli {
     pub(crate) output: OutputArgs,
 }
 
-/// Words what stands below the options in the help of the program.
+/// Returns the text below the options in the program's help.
 fn after_help() -> String {
     format!(
         "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats, \
@@ -51,7 +51,7 @@ const EXAMPLES: &str = "Examples:
   gpu-smooth quality better.msh
   gpu-smooth bench";
 
-/// How much is printed, whatever the command.
+/// Options of the amount and the form of messages, valid with every command.
 #[derive(Args)]
 pub(crate) struct OutputArgs {
     /// Print errors only; commands still print their answer
@@ -60,7 +60,7 @@ pub(crate) struct OutputArgs {
     /// Print every sweep of a run
     #[arg(short, long, global = true, help_heading = "Output")]
     pub(crate) verbose: bool,
-    /// What goes to standard error: lines of text, or an object of JSON on each line
+    /// Form of messages on standard error: lines of text, or one JSON object per line
     #[arg(
         long,
         global = true,
@@ -78,7 +78,7 @@ pub(crate) enum LogForm {
     Json,
 }
 
-/// Where shells look for completions.
+/// Examples of `completions`, with the directories in which each shell looks for completions.
 const COMPLETIONS: &str = "Examples:
   gpu-smooth completions bash > ~/.local/share/bash-completion/completions/gpu-smooth
   gpu-smooth completions zsh > ~/.zfunc/_gpu-smooth
@@ -86,24 +86,25 @@ const COMPLETIONS: &str = "Examples:
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Tells how good meshes are, and where they are worst
+    /// Measures the element quality of meshes and lists the worst triangles
     #[command(after_help = "Examples:\n  \
         gpu-smooth quality coast.msh -m min-angle,skewness --picture coast.png\n  \
         gpu-smooth quality before.su2 after.su2 --csv\n  \
         gpu-smooth quality part.msh --threshold 'min-angle<20' --threshold 'size-ratio>4'")]
     Quality(QualityArgs),
-    /// Lists what can be named in a mesh file: physical groups, markers, references, materials and the like, and data of
-    /// vertices
+    /// Lists the names in a mesh file that options accept: physical groups, markers, references, materials and the
+    /// like, and data of vertices
     #[command(after_help = "Example:\n  gpu-smooth groups wing.su2")]
     Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted
     #[command(after_help = "Example:\n  gpu-smooth compare part.msh smooth.msh --only steel")]
     Compare(CompareArgs),
-    /// Writes a mesh in another format; if that does not hold all of it, lists what is lost, and writes only with --lossy
+    /// Writes a mesh in another format; if that format cannot hold all of the mesh, lists the losses, and writes only
+    /// with --lossy
     Convert(ConvertArgs),
-    /// Lists the GPU adapters there are, best first, and whether each can be used
+    /// Lists the GPU adapters of this machine, best first, and whether each is usable
     Adapters(AdaptersArgs),
-    /// Tells what each metric measures and what it is good for
+    /// Explains what each metric measures and when to use it
     Metrics,
     /// Measures how fast this machine smooths: sweeps, bytes, and each kernel
     #[command(
@@ -137,7 +138,7 @@ pub(crate) struct CompareArgs {
     pub(crate) before: PathBuf,
     /// The mesh after
     pub(crate) after: PathBuf,
-    /// What may have moved: give the options of the run
+    /// Vertices that may have moved, by the options of the run
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
     #[command(flatten)]
@@ -152,11 +153,11 @@ pub(crate) struct CompareArgs {
 
 #[derive(Args)]
 pub(crate) struct ConvertArgs {
-    /// The mesh, in any format that is read; - for the standard input
+    /// Mesh in any supported input format; - reads standard input
     pub(crate) input: PathBuf,
-    /// Where to write it; its ending tells the format. - for the standard output, with --to
+    /// File to write; its extension determines the format. - writes to standard output, with --to
     pub(crate) output: PathBuf,
-    /// The format to write, where the ending of OUT does not tell it: .msh alone stands for gmsh 4.1
+    /// Output format, if the extension of OUT does not determine the format; .msh without --to means gmsh 4.1
     #[arg(long, value_name = "FORMAT", value_parser = targets())]
     pub(crate) to: Option<Format>,
     /// Write the mesh even if the format does not hold all of it

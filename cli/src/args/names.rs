@@ -1,5 +1,5 @@
-//! Options whose values are names of metrics and measures: parsers that offer the names to completions, and lists of names for
-//! help texts and messages. All names come from the rows of the tables.
+//! Names of metrics and measures in options: parsers that offer the names as completions, and lists for help texts and
+//! messages. All names come from the library's tables.
 
 use std::ffi::OsStr;
 
@@ -10,7 +10,8 @@ use mesh_io::Format;
 
 use crate::args::parse;
 
-/// A parser of values that offers names to completions. Values that are no such name may be right too, such as `edge+imr`.
+/// A parser of values that offers names as completions. Values beyond the offered names may be valid, such as
+/// `edge+imr`.
 #[derive(Clone)]
 pub(crate) struct Offering<T> {
     parse: fn(&str) -> Result<T, String>,
@@ -45,7 +46,7 @@ pub(crate) fn measures() -> Offering<Measure> {
     Offering { parse, names: || Measure::ALL.iter().map(|measure| measure.name()).collect() }
 }
 
-/// Lists the names of the metrics that are as wanted.
+/// Returns the names of the metrics for which `is_wanted` is true.
 pub(crate) fn metrics(is_wanted: impl Fn(Metric) -> bool) -> Vec<&'static str> {
     let wanted = Metric::ALL.iter().filter(|&&metric| is_wanted(metric));
     wanted.map(|metric| metric.name()).collect()
@@ -60,7 +61,7 @@ pub(crate) fn either(names: &[&str]) -> String {
     }
 }
 
-/// Words the help of `--scheme`.
+/// Returns the help text of `--scheme`.
 pub(crate) fn scheme_help() -> String {
     let names = metrics(|_| true).join(", ");
     format!(
@@ -69,7 +70,7 @@ pub(crate) fn scheme_help() -> String {
     )
 }
 
-/// Words the help of `--method`.
+/// Returns the help text of `--method`.
 pub(crate) fn method_help() -> String {
     let uncorrected = either(&metrics(|metric| !metric.supports_multilevel()));
     format!(
@@ -79,7 +80,7 @@ pub(crate) fn method_help() -> String {
     )
 }
 
-/// Words the help of `--measure`.
+/// Returns the help text of `--measure`.
 pub(crate) fn measure_help() -> String {
     let own = Measure::ALL.iter().filter(|measure| !matches!(measure, Measure::Metric(_)));
     let names: Vec<_> = own.map(|measure| measure.name()).collect();
@@ -89,7 +90,7 @@ pub(crate) fn measure_help() -> String {
     )
 }
 
-/// Lists the formats that are read, each with the usual ending of its files.
+/// Returns a list of the supported input formats, each with the usual extension of its files.
 pub(crate) fn formats() -> String {
     let mut names: Vec<String> = Vec::new();
     for format in Format::ALL {

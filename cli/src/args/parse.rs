@@ -13,7 +13,7 @@ pub(crate) enum Desired {
 }
 
 impl Desired {
-    /// Returns the desired f as the library takes it.
+    /// Returns the desired f as `Goal::desired` has it: `None` stands for the optimum.
     pub(crate) fn value(self) -> Option<f64> {
         match self {
             Self::Auto => None,
@@ -22,12 +22,13 @@ impl Desired {
     }
 }
 
-/// Parses a number of an option's range.
+/// Parses a number and checks that `range` contains it.
 fn within(text: &str, range: &OptionRange) -> Result<f64, String> {
     number(text, |value| range.contains(value), range.words)
 }
 
-/// Parses a number, and refuses it if `fits` does not hold. `range` describes the numbers that fit.
+/// Parses a number. If `fits` is false for the number, returns an error with `range`, the
+/// description of valid numbers.
 pub(crate) fn number(text: &str, fits: impl Fn(f64) -> bool, range: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("not a number; it must be {range}"))?;
     if fits(value) { Ok(value) } else { Err(format!("it must be {range}")) }
@@ -43,7 +44,7 @@ pub(crate) fn group_names(text: &str) -> Result<String, String> {
     }
 }
 
-/// Parses two opposite corners of a box.
+/// Parses two opposite corners of a box, as in `0,0,1,1`. All four numbers must be finite.
 pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 2], String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse().ok()).collect();
     match numbers.as_deref() {
@@ -54,7 +55,7 @@ pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 2], String> {
     }
 }
 
-/// Parses an inverse mean ratio.
+/// Parses an inverse mean ratio: a finite number from 1.
 pub(crate) fn ratio(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|q| *q >= 1.0 && q.is_finite());
     number.ok_or_else(|| "it must be a number from 1, which an equilateral triangle has".into())
@@ -78,7 +79,7 @@ pub(crate) fn two_names(text: &str) -> Result<[String; 2], String> {
     }
 }
 
-/// Parses the name of data of vertices.
+/// Parses the name of data of vertices, or `all`.
 pub(crate) fn field_name(text: &str) -> Result<String, String> {
     match text.starts_with("--") || text.trim().is_empty() {
         true => Err("the name of data is needed, or all".into()),
@@ -91,12 +92,12 @@ pub(crate) fn nonnegative(text: &str) -> Result<f64, String> {
     within(text, &OptionRange::TOLERANCE)
 }
 
-/// Parses a share of the way to the desired f.
+/// Parses a fraction of the reduction from the initial f to the desired f.
 pub(crate) fn fraction(text: &str) -> Result<f64, String> {
     within(text, &OptionRange::FRACTION)
 }
 
-/// Parses a number of lengths of edges.
+/// Parses a distance in lengths of edges.
 pub(crate) fn edges(text: &str) -> Result<f64, String> {
     within(text, &OptionRange::MAX_MOVE)
 }
@@ -114,7 +115,7 @@ pub(crate) fn scheme(text: &str) -> Result<Scheme, String> {
     if fits { Ok(scheme) } else { Err(limit()) }
 }
 
-/// Parses a desired f.
+/// Parses a desired f: a finite number, or `auto`.
 pub(crate) fn desired(text: &str) -> Result<Desired, String> {
     match text {
         "auto" => Ok(Desired::Auto),
@@ -129,7 +130,7 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(seconds).map_err(|_| format!("it is too large; it must be {range}"))
 }
 
-/// Parses the number of vertices of a lattice.
+/// Parses the number of vertices of a lattice: an integer from 9 to 100,000,000.
 pub(crate) fn vertices(text: &str) -> Result<usize, String> {
     let range = "a number of vertices from 9 to 100000000";
     let value = text.trim().parse().map_err(|_| range.to_owned())?;

@@ -27,7 +27,7 @@ pub(crate) struct QualityArgs {
         help = names::measure_help()
     )]
     pub(crate) measure: Vec<Measure>,
-    /// How many of the worst triangles to list
+    /// Number of worst triangles to list
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) worst: usize,
     /// Show the statistics of each region too: physical groups, materials, references, attributes
@@ -54,7 +54,8 @@ pub(crate) struct QualityArgs {
     pub(crate) reading: ReadArgs,
 }
 
-/// Values of a measure that no triangle may have.
+/// A range of bad values of a measure, as in `min-angle<20`. If a triangle has a value in the range, the exit code
+/// is 1.
 #[derive(Clone, Debug)]
 pub(crate) struct Threshold {
     pub(crate) measure: Measure,
@@ -63,7 +64,7 @@ pub(crate) struct Threshold {
 }
 
 impl Threshold {
-    /// Whether a value is one that no triangle may have.
+    /// Returns whether a triangle with this value of the measure violates the threshold.
     pub(crate) fn is_met(&self, value: f64) -> bool {
         self.measure.is_worse(value, self.value) || self.or_equal && value == self.value
     }

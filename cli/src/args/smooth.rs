@@ -14,12 +14,12 @@ use crate::args::{names, parse};
 #[derive(Args)]
 #[command(group = ArgGroup::new("kept").args(["checkpoint", "continued"]).multiple(true))]
 pub(crate) struct SmoothArgs {
-    /// The mesh to read; its content tells the format. It may be compressed by gzip or zstd; - stands for the standard
+    /// Mesh to read; the format is detected from its content. It may be compressed by gzip or zstd; - reads standard
     /// input
     #[arg(required = true, value_name = "IN")]
     pub(crate) input: Option<PathBuf>,
-    /// Where to write the smoothed mesh, in the format of IN; may be IN itself. The file is compressed if its name ends
-    /// in .gz or .zst; - stands for the standard output
+    /// File for the smoothed mesh, in the format of IN; may be IN itself. The file is compressed if its name ends in
+    /// .gz or .zst; - writes to standard output
     #[arg(required_unless_present = "out_dir", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Further meshes, with --out-dir
@@ -59,8 +59,8 @@ pub(crate) struct SmoothArgs {
     /// Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep
     #[arg(long, default_value_t = 1e-6, value_name = "T", help_heading = "Stopping", value_parser = parse::nonnegative, allow_negative_numbers = true, conflicts_with_all = ["fraction", "desired"])]
     pub(crate) tolerance: f64,
-    /// Stop at this share of the way from the first f to the desired one, instead of at the tolerance. Park & Shontz's is
-    /// 0.95 [default with --desired: 0.95]
+    /// Stop after this fraction of the reduction from the initial f to the desired f, instead of at the tolerance. Park
+    /// & Shontz use 0.95 [default with --desired: 0.95]
     #[arg(long, value_name = "SHARE", help_heading = "Stopping", value_parser = parse::fraction, allow_negative_numbers = true)]
     pub(crate) fraction: Option<f64>,
     /// The desired f by the first metric; auto finds the optimum before the run, in tries of up to 5000 sweeps [default
@@ -79,9 +79,9 @@ pub(crate) struct SmoothArgs {
     /// How often the state is saved
     #[arg(long, default_value = "300", value_name = "SECONDS", requires = "kept", help_heading = "Stopping", value_parser = parse::seconds, allow_negative_numbers = true)]
     pub(crate) checkpoint_every: Duration,
-    /// Go on with the run whose checkpoint FILE is. IN and the options must be the same. The result is the same to the bit as if the run
-    /// had not been interrupted, on the CPU or on the GPU that it was on. If the driver of that GPU ended the process, add --engine cpu.
-    /// The state is saved to FILE again, unless --checkpoint names another
+    /// Continue the run that saved the checkpoint FILE, with the same IN and options. On the CPU, or on the GPU of the
+    /// saved run, the result is bit-identical to that of an uninterrupted run. If the driver of that GPU ended the
+    /// process, add --engine cpu. The state is saved to FILE again, unless --checkpoint names another file
     #[arg(
         long = "continue",
         value_name = "FILE",
@@ -108,13 +108,14 @@ pub(crate) struct SmoothArgs {
     /// How --method paper differentiates metrics; finite differences only serve to test the paper's cost model
     #[arg(long, value_enum, default_value = "analytic", help_heading = "Method")]
     pub(crate) derivatives: DerivativesChoice,
-    /// The exponent of the p-norm that stands for edge in Newton steps: 16 throughout (fixed), or doubled from 2 up to 8192 (continued;
-    /// 512 without corrections from coarser levels), which ends lower [default: continued with corrections, fixed without]
+    /// Exponent of the p-norm that replaces edge in Newton steps: 16 throughout (fixed), or doubled from 2 up to 8192
+    /// (continued; 512 without corrections from coarser levels), which reaches a lower f [default: continued with
+    /// corrections, fixed without]
     #[arg(long, value_enum, help_heading = "Method")]
     pub(crate) edge_norm: Option<EdgeNorm>,
 
-    /// How bad a step may make a triangle, by its inverse mean ratio as a --target shows it: by-metric sets a bound for metrics without
-    /// a barrier only; worst lets no triangle become worse than the worst one with a free vertex was
+    /// Bound on the inverse mean ratio of triangles after a step, measured under the --target: by-metric bounds only
+    /// metrics without a barrier; worst lets no triangle exceed the initial maximum of the triangles with a free vertex
     #[arg(long, value_enum, default_value = "by-metric", help_heading = "Method")]
     pub(crate) guard: GuardChoice,
 
@@ -152,13 +153,13 @@ pub(crate) struct SmoothArgs {
     #[arg(long, requires = "untangle", help_heading = "Untangling")]
     pub(crate) keep_going: bool,
 
-    /// Replace OUT even if it holds another mesh than IN, or is no mesh. Without --force, OUT may be a new or empty file, IN itself, or
-    /// hold a mesh with the triangles and the fixed vertices of IN
+    /// Replace OUT even if OUT holds another mesh than IN, or no mesh. Without --force, OUT must be new or empty, be IN
+    /// itself, or hold a mesh with the triangles and the fixed vertices of IN
     #[arg(long, help_heading = "Output")]
     pub(crate) force: bool,
-    /// Write a report as JSON: the history of every sweep, and a certificate, for which the written mesh is read again and what
-    /// `gpu-smooth compare` proves is proved of it, with hashes of both files. If inverted or flat triangles keep the mesh from
-    /// being smoothed, the report lists them
+    /// Write a JSON report with the history of every sweep and a certificate: the written mesh is read again, the
+    /// statements of `gpu-smooth compare` are proved for it, and both files are hashed. If inverted or flat triangles
+    /// prevent smoothing, the report lists them
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) report: Option<PathBuf>,
     /// Which f the report's history holds: that of the first metric (base), or those of all metrics (all)
@@ -171,8 +172,8 @@ pub(crate) struct SmoothArgs {
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
 
-    /// Smooth all meshes that are given, each into a file of its name in DIR, which is made if it does not exist. Small
-    /// meshes are smoothed side by side; one that fails does not stop the rest
+    /// Smooth all given meshes, each into a file of the same name in the directory DIR, created if missing. Small
+    /// meshes are smoothed concurrently; a failed mesh does not stop the rest
     #[arg(long, value_name = "DIR", help_heading = "Many meshes", conflicts_with = "picture")]
     pub(crate) out_dir: Option<PathBuf>,
     /// Skip meshes whose smoothed files are all in DIR and newer than the mesh

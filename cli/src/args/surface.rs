@@ -1,12 +1,12 @@
-//! The option `--surface`, which says what coordinates mean.
+//! The option `--surface`, which sets the meaning of coordinates.
 
 use clap::{Args, ValueEnum};
 
-/// The option that says what coordinates mean.
+/// The option that sets the meaning of coordinates.
 #[derive(Args)]
 pub(crate) struct SurfaceArgs {
-    /// What coordinates are: lengths in the plane, or longitude and latitude in degrees on a sphere, which are
-    /// continued across the line where longitudes start again
+    /// Meaning of coordinates: lengths in the plane, or longitude and latitude in degrees on a sphere,
+    /// continued across the meridian at which longitudes wrap
     #[arg(
         long,
         value_enum,

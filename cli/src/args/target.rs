@@ -1,4 +1,4 @@
-//! The options that say what elements should look like.
+//! Options of the target shapes and sizes of elements.
 
 use clap::{Args, ValueEnum};
 
@@ -6,21 +6,22 @@ use crate::args::SurfaceArgs;
 
 const HEADING: &str = "Target elements";
 
-/// The options that say what elements should look like.
+/// Options of the target shapes and sizes of elements.
 #[derive(Args)]
 pub(crate) struct TargetArgs {
-    /// What elements are to look like: equilateral, of any size that their neighbors leave them (equilateral); equilateral, of the
-    /// sizes they have (keep-size); of the size, stretching and orientation they have (keep-shape); equilateral, of the sizes
-    /// in SOURCE (size=SOURCE); or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE has a value for each vertex:
-    /// a .sol file of Medit, a metric file of BAMG, or the name of point data of IN. Or it is on another mesh: BACKGROUND:DATA, where
-    /// BACKGROUND is a mesh file and DATA its point data or such a file, or a view of gmsh (.pos) of scalars on triangles
+    /// Desired shape and size of elements: equilateral, of any size (equilateral); equilateral, of their present sizes
+    /// (keep-size); of their present size, stretching and orientation (keep-shape); equilateral, of the sizes in SOURCE
+    /// (size=SOURCE); or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE has a value for each vertex: a
+    /// .sol file of Medit, a metric file of BAMG, or the name of point data of IN. SOURCE may also refer to another
+    /// mesh: BACKGROUND:DATA, where BACKGROUND is a mesh file and DATA its point data or a .sol or BAMG file, or a view
+    /// of gmsh (.pos) of scalars on triangles
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
     pub(crate) target: Target,
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 2]
     #[arg(long, value_name = "N", help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) target_rings: Option<u32>,
-    /// What a target belongs to: vertices, which take it along, or places, so that it is taken anew from where vertices have moved
-    /// [default: place for a BACKGROUND, else vertex]
+    /// Owner of targets: vertices, which carry them along, or places, so that targets are evaluated again at the new
+    /// positions of vertices [default: place for a BACKGROUND, else vertex]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = HEADING)]
     pub(crate) target_of: Option<Owner>,
     #[command(flatten)]

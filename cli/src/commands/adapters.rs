@@ -1,4 +1,4 @@
-//! `gpu-smooth adapters`: lists the GPU adapters and whether each can be used.
+//! The command `gpu-smooth adapters`, which lists GPU adapters and whether each is usable.
 
 use gpu_smooth::{GpuError, gpu::AdapterSummary};
 
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &AdaptersArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Describes an adapter in one line, with the error if it cannot be used.
+/// Describes an adapter in one line, with the error of an unusable adapter.
 fn line(adapter: &AdapterSummary, usable: Result<(), GpuError>) -> String {
     let state = match usable {
         Ok(()) if adapter.is_software() => {

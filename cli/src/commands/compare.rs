@@ -1,4 +1,5 @@
-//! `gpu-smooth compare BEFORE AFTER`: proves that only vertices which may move have moved.
+//! The command `gpu-smooth compare BEFORE AFTER`, which proves that only movable vertices have
+//! moved.
 
 use crate::args::{CompareArgs, OutputArgs};
 use crate::error::CliError;
@@ -11,10 +12,11 @@ use crate::run::proof::{self, MeshVersion, Proof};
 use crate::terminal::tell;
 use gpu_smooth::targets::Surface;
 
-/// How many vertices, or triangles, are listed at most.
+/// Largest number of listed vertices, and of listed triangles.
 const LISTED: usize = 10;
 
-/// Compares two files. Returns an error if they differ in anything but vertices that may move.
+/// Compares two files. Returns an error if the files differ in anything but movable vertices and
+/// interpolated data.
 pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
     let (reading, surface) = (ReadRequest::from(args.reading), Surface::from(&args.surface));
     let movable = MovableRequest::from(args.moving);
@@ -85,7 +87,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     Ok(())
 }
 
-/// Says in a line or two which vertices moved.
+/// Returns two or three lines on the moved vertices.
 fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
     let Proof { moved, slid, pairs, .. } = proof;
     let (old, new) = (&before.mesh().points, &after.mesh().points);

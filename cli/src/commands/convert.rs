@@ -1,4 +1,4 @@
-//! `gpu-smooth convert IN OUT`: writes a mesh in another format.
+//! The command `gpu-smooth convert IN OUT`, which writes a mesh in another format.
 
 use std::fs;
 use std::io::Write;
@@ -15,8 +15,7 @@ use crate::load::streams::{self, is_standard};
 use crate::request::{MeshOutput, Outputs, ReadRequest};
 use crate::terminal::tell;
 
-/// Writes a mesh in another format. Returns an error if the format does not hold all of the mesh, unless `--lossy` is
-/// given.
+/// Writes a mesh in another format. Without `--lossy`, returns an error if that format cannot hold all of the mesh.
 pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError> {
     let format = format(args)?;
     let outputs = Outputs::of_mesh(MeshOutput::Converted);
@@ -70,18 +69,18 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     Ok(())
 }
 
-/// Checks that no file in `written` holds another mesh, or something else than a mesh.
+/// Checks that the files in `written` are new, or hold an earlier result of this conversion or the same triangles.
 fn check_overwrite(
     file: &LoadedMesh,
     conversion: &Conversion,
     written: &[PathBuf],
     reading: ReadRequest,
 ) -> Result<(), CliError> {
-    // The mesh that is there may be an STL, whatever the format of IN is.
+    // An existing mesh may be an STL, independent of the format of IN.
     let reading = ReadRequest { weld: true, ..reading };
     let found = overwrite::check(file, written, reading.options(), Likeness::Triangles);
     let Err(error) = found else { return Ok(()) };
-    // Formats may number vertices in another way. Then the file is known by its bytes.
+    // A format may renumber vertices. Equal bytes then identify an earlier result of this conversion.
     let is_same = |path: &PathBuf, new: Vec<u8>| fs::read(path).is_ok_and(|old| old == new);
     if let ([path], Some(new)) = (written, conversion.bytes())
         && is_same(path, new)
@@ -91,7 +90,7 @@ fn check_overwrite(
     Err(error.with_remedy("Give OUT another name, or replace the file by --force"))
 }
 
-/// Returns the format to write: that of `--to`, or that of the ending of OUT.
+/// Returns the format selected by `--to`, or else by the extension of OUT.
 fn format(args: &ConvertArgs) -> Result<Format, CliError> {
     let by_ending = || Conversion::target_of(&args.output);
     args.to.or_else(by_ending).ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! `gpu-smooth groups MESH`: lists what can be named in a mesh.
+//! The command `gpu-smooth groups MESH`, which lists the group names of a mesh.
 
 use mesh_io::{Group, Groups};
 use serde_json::json;
@@ -10,7 +10,7 @@ use crate::load::streams::read;
 use crate::render::columns::{left, right};
 use crate::terminal::tell;
 
-/// Prints what can be named in a mesh, and the name that options take.
+/// Prints the groups of a mesh with the names that options accept, and the names of vertex data.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     let file = read(&args.mesh, args.reading.into())?;
     let groups = file.source.groups()?;
@@ -61,7 +61,7 @@ fn as_json(group: &Group, spelling: &str) -> serde_json::Value {
     })
 }
 
-/// Makes a table with a row for each group. Columns that hold only zeros are left out.
+/// Returns a table with a row for each group. Columns of zeros are omitted.
 fn table(groups: &Groups) -> String {
     let texts = |group: &Group, spelling: &String| {
         let tag = group.tag.map_or_else(|| "-".to_owned(), |tag| tag.to_string());

@@ -1,11 +1,11 @@
-//! `gpu-smooth metrics`: tells what each metric measures.
+//! The command `gpu-smooth metrics`, which explains all metrics.
 
 use gpu_smooth::Metric;
 
 use crate::error::CliError;
 use crate::terminal::tell::say;
 
-/// Prints the properties of all metrics, for `gpu-smooth metrics`.
+/// Prints the formula, purpose, properties and source of each metric.
 pub(crate) fn run() -> Result<(), CliError> {
     for metric in Metric::ALL {
         say(&format!("{:<10} q = {}", metric.name(), metric.formula()));
@@ -15,7 +15,8 @@ pub(crate) fn run() -> Result<(), CliError> {
             guard if guard.is_finite() => format!(", shape guard at imr {guard}"),
             _ => String::new(),
         };
-        // Single precision has the digits that tell, and none that only rounding has made.
+        // Single precision shows the significant digits of an ideal, without rounding errors of
+        // double precision.
         say(&format!(
             "           best q {}, {barrier}{guard}, omega {}",
             metric.ideal() as f32,

@@ -1,5 +1,5 @@
-//! `gpu-smooth completions` and `gpu-smooth man`: make completions and manual pages from the definitions of the
-//! options.
+//! The commands `gpu-smooth completions` and `gpu-smooth man`, which derive completions and manual pages from
+//! the definitions of the options.
 
 use std::fs;
 use std::path::Path;
@@ -45,7 +45,7 @@ fn write(directory: &Path, name: &str, command: Command) -> Result<(), CliError>
     Ok(atomic::write(&path, &page(command)?)?)
 }
 
-/// Returns a page in roff, the language of manuals.
+/// Returns a manual page in roff.
 fn page(command: Command) -> Result<Vec<u8>, CliError> {
     let mut page = Vec::new();
     Man::new(command).render(&mut page).map_err(|error| CliError::run(error.to_string()))?;

@@ -1,4 +1,4 @@
-//! Words what is wrong with a mesh in the terms of its file.
+//! Error messages about meshes, in the terms of their files.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -10,13 +10,13 @@ use mesh_io::{Format, Location, SourceLocation};
 use serde::Serialize;
 use std::collections::HashSet;
 
-/// How many bad triangles are listed on the terminal.
+/// Largest number of bad triangles, or pairs of crossing edges, listed on the terminal.
 pub(crate) const TOLD: usize = 10;
 
 /// An inverted or flat triangle in the terms of its file.
 #[derive(Serialize)]
 pub(crate) struct BadTriangleReport {
-    /// The file's number or tag for the triangle.
+    /// The triangle's number or tag in the file.
     triangle: u64,
     file: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -24,7 +24,7 @@ pub(crate) struct BadTriangleReport {
     /// Offset of the triangle in a binary file, which has no lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     byte: Option<usize>,
-    /// The file's numbers or tags for the triangle's vertices, in the order of the file.
+    /// Numbers or tags of the vertices in the file, in the file's winding order.
     vertices: [u64; 3],
     /// `inverted` or `flat`.
     problem: &'static str,
@@ -33,16 +33,16 @@ pub(crate) struct BadTriangleReport {
 }
 
 impl BadTriangleReport {
-    /// Names the triangle, its vertices and its problem, without its place in the file.
+    /// Describes the triangle, its vertices and its problem, without the location in the file.
     fn statement(&self) -> String {
         let Self { triangle, vertices: [a, b, c], problem, .. } = self;
         format!("triangle {triangle} (vertices {a}, {b}, {c}) is {problem}")
     }
 }
 
-/// Finds all of these bad triangles in their file at once.
+/// Returns a report for each bad triangle. One search of the file finds the locations of all triangles.
 pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTriangleReport> {
-    // The order of the file: the library may have reversed windings.
+    // File order of the vertices: the library may have reversed the winding.
     let corners = |bad: &BadTriangle| file.mesh().triangles[bad.triangle];
     let places = file.source.triangle_locations(bad.iter().map(|bad| bad.triangle));
     let names = file.vertex_places(bad.iter().flat_map(corners));
@@ -64,8 +64,8 @@ pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTr
     bad.iter().zip(places.into_values()).map(one).collect()
 }
 
-/// Lists the first bad triangles, one a line. The last line counts the rest of `count`; `all` names the option that
-/// lists them.
+/// Lists the first [`TOLD`] bad triangles, one per line. If `count` is larger, a last line counts the rest and names
+/// `all`, the option that lists every triangle.
 pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> Vec<String> {
     let line = |bad: &BadTriangleReport| format!("{}: {}", bad.place, bad.statement());
     let mut lines: Vec<String> = first.iter().take(TOLD).map(line).collect();
@@ -75,7 +75,7 @@ pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> Vec<
     lines
 }
 
-/// Words that edges cross and cannot move, and lists the first pairs, one a line; `None` if there are none.
+/// Returns an error that lists the first crossings of edges which cannot move, one per line; `None` without crossings.
 pub(crate) fn crossings(file: &LoadedMesh, topology: &Topology<'_>) -> Option<CliError> {
     let found = topology.crossings(&file.mesh().points, TOLD + 1).ok()?;
     let places = file.vertex_places(found.iter().flat_map(|crossing| crossing.edges).flatten());
@@ -91,7 +91,7 @@ pub(crate) fn crossings(file: &LoadedMesh, topology: &Topology<'_>) -> Option<Cl
     (!found.is_empty()).then(|| CliError::input(all).with_details(list))
 }
 
-/// Whether triangles seem inverted because they reach across the line where longitudes start again.
+/// Returns whether triangles seem inverted because they reach across the meridian at which longitudes wrap.
 pub(crate) fn are_across(file: &LoadedMesh, bad: &[BadTriangle]) -> bool {
     let points = &file.mesh().points;
     let is_far = |bad: &BadTriangle| {
@@ -104,12 +104,13 @@ pub(crate) fn are_across(file: &LoadedMesh, bad: &[BadTriangle]) -> bool {
         && bad.iter().any(is_far)
 }
 
-/// Returns a triangle of a part of the mesh without boundary, if there is one.
+/// Returns the first triangle of a closed part of the mesh, such as a closed surface in space. `None` for meshes on a
+/// sphere, or if each part has a boundary.
 fn closed_part(file: &LoadedMesh) -> Option<usize> {
     Topology::new(file.mesh()).ok().filter(|_| file.chart().is_none())?.closed_part()
 }
 
-/// Words a remark on vertices that hang on edges of other triangles, if there are such.
+/// Returns a remark on vertices that hang on edges of other triangles; `None` without hanging nodes.
 pub(crate) fn hanging(file: &LoadedMesh, nodes: &[HangingNode]) -> Option<String> {
     let HangingNode { vertex, edge: [a, b] } = *nodes.first()?;
     let names = file.vertex_places([vertex, a, b]);
@@ -127,8 +128,8 @@ pub(crate) fn hanging(file: &LoadedMesh, nodes: &[HangingNode]) -> Option<String
     })
 }
 
-/// Returns the coordinate that is the same at all vertices, and its value, if there is one. The mesh then stands
-/// upright on the plane of x and y.
+/// Returns the axis and the value of a coordinate that is equal at all vertices; `None` if both coordinates vary. A
+/// mesh with a constant coordinate stands upright on the plane of x and y.
 fn constant(points: &[[f64; 2]]) -> Option<(char, f64)> {
     let first = points.first()?;
     let is_constant = |k: usize| points.iter().all(|point| point[k] == first[k]);
@@ -139,7 +140,7 @@ fn constant(points: &[[f64; 2]]) -> Option<(char, f64)> {
         .map(|(name, k)| (name, first[k]))
 }
 
-/// Whether two of these triangles have the same vertices.
+/// Returns whether two of `triangles` have equal vertices.
 fn has_twins(file: &LoadedMesh, triangles: &[usize]) -> bool {
     let corners = |&triangle: &usize| {
         let mut corners = *file.mesh().triangles.get(triangle)?;
@@ -150,12 +151,14 @@ fn has_twins(file: &LoadedMesh, triangles: &[usize]) -> bool {
     triangles.iter().filter_map(corners).any(|corners| !seen.insert(corners))
 }
 
-/// That nothing of a file is free. On the sphere, a mesh may have copies of vertices, which the file has not.
+/// Returns the error for a mesh without free vertices. Counts the vertices of the file: on the sphere, the mesh may
+/// have further copies.
 pub(crate) fn nothing_free(file: &LoadedMesh) -> MeshError {
     MeshError::NothingFree { vertices: file.source.points().len() }
 }
 
-/// Words an error in the terms of a file: file, place, problem and remedy, in one line unless several triangles are listed.
+/// Returns an error in the terms of a file: path, location, problem and remedy, on one line unless several triangles
+/// are listed.
 pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
     let name = |v: u32| file.vertex_place(v).id;
     let path = file.source.path().display();
@@ -267,7 +270,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
         MeshError::OutOfRange { .. } => {
             CliError::input(format!("{path}: {error}")).with_remedy("Write the mesh in another unit")
         }
-        // The readers refuse other meshes, and the command does not ask for such runs.
+        // Readers refuse meshes with the other errors, or the command never requests the runs that cause them.
         _ => CliError::input(format!("{path}: {error}")),
     }
 }

@@ -1,4 +1,4 @@
-//! The interpolation of data of vertices at their new places: depths, third coordinates, point data.
+//! Interpolation of vertex data at moved positions: depths, third coordinates, point data.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -6,25 +6,27 @@ use crate::request::FieldsRequest;
 use gpu_smooth::{Topology, interpolate::Interpolation};
 use mesh_io::PointField;
 
-/// Data of vertices that are interpolated at the new places.
+/// The fields of vertex data that are interpolated at new positions.
 pub(crate) struct Riding {
-    /// The data that the user named, followed by parameters of vertices on surfaces of a model and centers of elements.
+    /// The fields named by the user, then dependents: parameters of vertices on surfaces of a model, and centers of
+    /// elements.
     fields: Vec<PointField>,
-    /// How many of the fields the user named.
+    /// Number of fields named by the user, at the front of `fields`.
     data: usize,
-    /// Whether the user asked for any data.
+    /// Whether `--interpolate` was given.
     asked: bool,
-    /// Whether the user asked for all: what is not taken is the same at all vertices.
+    /// Whether `--interpolate all` was given. Fields missing in the list are then constant and need no
+    /// interpolation.
     all: bool,
 }
 
 impl FieldsRequest {
-    /// Finds the data that the user named in a file.
+    /// Finds the fields of a file that `--interpolate` names.
     pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<Riding, CliError> {
         if self.names.is_empty() {
             return Ok(Riding { fields: Vec::new(), data: 0, asked: false, all: false });
         }
-        // A name may contain commas.
+        // A field's name may contain commas.
         let split = |text: &String| match file.source.data_names().contains(text) {
             true => vec![text.clone()],
             false => text.split(',').map(|name| name.trim().to_owned()).collect(),
@@ -34,7 +36,7 @@ impl FieldsRequest {
         let fields = file.source.point_fields(if all { None } else { Some(&names) });
         let mut fields = fields.map_err(|error| CliError::from(error).about("--interpolate"))?;
         if all {
-            // Third coordinates that are all the same need no interpolation.
+            // Constant fields, such as a third coordinate of 0, need no interpolation.
             fields.retain(|field| {
                 let first = field.values().first();
                 field.values().iter().any(|value| Some(value) != first)
@@ -49,12 +51,12 @@ impl Riding {
         &self.fields
     }
 
-    /// Returns the fields that the user named.
+    /// Returns the fields named by the user.
     fn data(&self) -> &[PointField] {
         &self.fields[..self.data]
     }
 
-    /// Returns the names of the data, each once.
+    /// Returns the names of the user's fields, each once.
     fn names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for field in self.data() {
@@ -65,7 +67,7 @@ impl Riding {
         names
     }
 
-    /// Words the remark on data that stay as they are.
+    /// Returns the remark on fields that are not interpolated; `None` if there are none.
     pub(crate) fn left_behind(&self, file: &LoadedMesh) -> Option<String> {
         if self.all {
             return None;
@@ -90,7 +92,7 @@ impl Riding {
         ))
     }
 
-    /// Returns an error if data are to be interpolated from a mesh that has to be untangled.
+    /// Returns an error if the request interpolates data of a mesh that must be untangled first.
     pub(crate) fn check_untangled(&self) -> Result<(), CliError> {
         match self.data().is_empty() {
             true => Ok(()),
@@ -101,8 +103,9 @@ impl Riding {
         }
     }
 
-    /// Adds what follows from the places of vertices, as it is at new points: parameters of vertices on plane surfaces of a
-    /// model, and centers of elements. Returns remarks on what is not known to follow from them.
+    /// Adds the fields that follow from vertex positions, evaluated at `points`: parameters of vertices on plane
+    /// surfaces of a model, and centers of elements. Returns remarks on parameters and element positions that remain
+    /// unchanged.
     pub(crate) fn add_dependents(
         &mut self,
         file: &LoadedMesh,
@@ -132,7 +135,8 @@ impl Riding {
         Ok(remarks)
     }
 
-    /// Interpolates the data at the new points. Returns a remark on what was done, if anything was asked for.
+    /// Interpolates the fields at the new points. Returns a remark on the result; `None` without fields and without
+    /// `--interpolate`.
     pub(crate) fn carry(
         &mut self,
         file: &LoadedMesh,
@@ -172,8 +176,8 @@ impl Riding {
 }
 
 impl Riding {
-    /// Lists what is implausible in the data of another file. Vertices that have not moved must have the same bits, and
-    /// no value may lie beyond the least and the greatest of these data. `moved` is ascending.
+    /// Lists implausible values in the fields of another file. Values must keep their bits at vertices that have not
+    /// moved, and lie within the range of this file's values elsewhere. `moved` is ascending.
     pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
         let mut problems = Vec::new();
         if self.data != other.data {
@@ -218,7 +222,7 @@ impl Riding {
         problems
     }
 
-    /// Words what was checked of data that are not implausible.
+    /// Returns a sentence on the comparison of plausible fields; `None` without fields.
     pub(crate) fn compared(&self) -> Option<String> {
         let names = self.names();
         let (verb, it) = match names.len() {
@@ -233,7 +237,7 @@ impl Riding {
     }
 }
 
-/// Lists the first names, and counts the rest.
+/// Joins the first six names, and counts the rest.
 fn listed<'n>(names: impl ExactSizeIterator<Item = &'n str>) -> String {
     const TOLD: usize = 6;
     let more = names.len().saturating_sub(TOLD);

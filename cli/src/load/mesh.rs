@@ -1,4 +1,4 @@
-//! A mesh file with the mesh that is smoothed.
+//! A mesh file together with the mesh to smooth.
 
 use gpu_smooth::{
     Mesh, MeshError,
@@ -12,16 +12,16 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A mesh file and the mesh that is made from its facts: the vertices of constraints and those between regions are fixed, and
-/// longitudes may be continued across the date line.
+/// A mesh file, and the mesh made from its points, triangles and constraints. Constrained vertices and vertices between
+/// regions are fixed, and longitudes may be continued across the date line.
 pub(crate) struct LoadedMesh {
     /// The file. It never changes.
     pub(crate) source: MeshFile,
-    /// The mesh to smooth. Behind the vertices of the file stand copies that the chart made.
+    /// The mesh to smooth. Copies of vertices, made by the chart, follow the vertices of the file.
     mesh: Mesh,
-    /// The continued mesh in longitude and latitude; `None` if no triangle is across the date line or at a pole.
+    /// The mesh with continued longitudes; `None` if no triangle crosses the date line or touches a pole.
     chart: Option<Chart>,
-    /// Vertices that are fixed only because they lie between regions. They are the last ones of `mesh.fixed`.
+    /// Vertices fixed only because they lie between regions, ascending. They are the last entries of `mesh.fixed`.
     interfaces: Vec<u32>,
     has_free_interfaces: bool,
     /// Vertices that neither move nor slide.
@@ -29,7 +29,7 @@ pub(crate) struct LoadedMesh {
 }
 
 impl LoadedMesh {
-    /// Makes the mesh of a file: constrained vertices and vertices between regions are fixed.
+    /// Makes the mesh of a file. Constrained vertices and vertices between regions are fixed.
     pub(crate) fn new(source: MeshFile) -> Self {
         let constraints = source.constraints();
         let (mut fixed, anchored) = (constraints.vertices.clone(), constraints.anchored.clone());
@@ -43,31 +43,31 @@ impl LoadedMesh {
         Self { source, mesh, chart: None, interfaces, has_free_interfaces: false, anchored }
     }
 
-    /// Returns the files that were read.
+    /// Returns the paths of all files that were read.
     pub(crate) fn paths(&self) -> Vec<PathBuf> {
         self.source.paths().map(Path::to_path_buf).collect()
     }
 
-    /// The mesh to smooth.
+    /// Returns the mesh to smooth.
     pub(crate) fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// The continued mesh in longitude and latitude, if the mesh needs one.
+    /// Returns the mesh with continued longitudes; `None` if longitudes are not continued.
     pub(crate) fn chart(&self) -> Option<&Chart> {
         self.chart.as_ref()
     }
 
-    /// The precision of coordinates in the file.
+    /// Returns the precision with which the file stores coordinates.
     pub(crate) fn precision(&self) -> Precision {
         precision(self.source.precision())
     }
 
-    /// Takes coordinates as longitude and latitude in degrees, and continues longitudes across the line where they start
-    /// again.
+    /// Interprets coordinates as longitude and latitude in degrees, and continues longitudes across the meridian at
+    /// which they wrap.
     ///
     /// # Errors
-    /// The errors of [`Chart::new`]; then the mesh is unchanged.
+    /// Returns the errors of [`Chart::new`], and then leaves the mesh unchanged.
     pub(crate) fn lay_out_on_sphere(&mut self) -> Result<(), MeshError> {
         if self.chart.is_none()
             && let Some(chart) = Chart::new(&self.mesh, self.precision())?
@@ -77,8 +77,8 @@ impl LoadedMesh {
         Ok(())
     }
 
-    /// Continues the longitudes of another file of this mesh, each vertex nearest to its place here. Does nothing if this
-    /// mesh has no chart, or if the other mesh has another number of vertices.
+    /// Continues the longitudes of `other`, a moved state of this mesh: each vertex is placed nearest to its position
+    /// in this mesh. Does nothing if this mesh has no chart, or if the numbers of vertices differ.
     pub(crate) fn lay_out_likewise(&self, other: &mut LoadedMesh) {
         let Some(chart) = self.chart() else { return };
         if other.chart.is_none() && other.mesh.points.len() == chart.original().points.len() {
@@ -93,8 +93,8 @@ impl LoadedMesh {
         self.chart = Some(chart);
     }
 
-    /// The vertices that are fixed only because they lie between regions, ascending. Empty after
-    /// [`free_interfaces`](Self::free_interfaces).
+    /// Returns the vertices fixed only because they lie between regions, ascending. After
+    /// [`free_interfaces`](Self::free_interfaces), the list is empty.
     pub(crate) fn interface_vertices(&self) -> &[u32] {
         &self.interfaces
     }
@@ -106,7 +106,7 @@ impl LoadedMesh {
         self.mesh.fixed.truncate(self.mesh.fixed.len() - held.len());
     }
 
-    /// Returns the vertices between regions that are fixed for another reason too, ascending.
+    /// Returns the vertices between regions that are fixed for a further reason, ascending.
     pub(crate) fn held_interface_vertices(&self) -> Vec<u32> {
         let mut is_held = vec![false; self.mesh.points.len()];
         self.mesh.fixed.iter().for_each(|&v| is_held[v as usize] = true);
@@ -116,8 +116,8 @@ impl LoadedMesh {
         between
     }
 
-    /// Returns the edges along which vertices inside the mesh may slide: lines of the file, and edges between regions unless
-    /// these may move.
+    /// Returns the edges along which vertices inside the mesh may slide: lines of the file, and edges between regions.
+    /// Edges between regions are omitted after [`free_interfaces`](Self::free_interfaces).
     pub(crate) fn lines(&self) -> Vec<[u32; 2]> {
         let mut lines = self.source.constraints().lines.clone();
         if !self.has_free_interfaces {
@@ -126,7 +126,7 @@ impl LoadedMesh {
         lines
     }
 
-    /// The vertices that neither move nor slide.
+    /// Returns the vertices that neither move nor slide.
     pub(crate) fn held_vertices(&self) -> &[u32] {
         &self.anchored
     }
@@ -137,20 +137,20 @@ impl LoadedMesh {
         pairs.map(|p| Periodic { pairs: p.pairs.clone(), motion: p.motion }).collect()
     }
 
-    /// Fixes these vertices. They neither move nor slide. In any order, with repeats.
+    /// Fixes `vertices`, so that they neither move nor slide. The list may be unordered and have repeats.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist; then the mesh is unchanged.
+    /// Returns [`MeshError::IndexOutOfRange`] if a vertex does not exist, and then leaves the mesh unchanged.
     pub(crate) fn fix(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
         let held = self.marked(vertices)?;
         self.hold(held);
         Ok(())
     }
 
-    /// Fixes all vertices but these. Of these vertices, those that are fixed already stay fixed.
+    /// Fixes all vertices except `vertices`. A listed vertex stays fixed if it was fixed before.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist; then the mesh is unchanged.
+    /// Returns [`MeshError::IndexOutOfRange`] if a vertex does not exist, and then leaves the mesh unchanged.
     pub(crate) fn fix_all_but(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
         let mut held = self.marked(vertices)?;
         held.iter_mut().for_each(|held| *held = !*held);
@@ -158,7 +158,7 @@ impl LoadedMesh {
         Ok(())
     }
 
-    /// Returns for each vertex of the mesh whether the list has the vertex.
+    /// Returns a mask of the mesh's vertices, true for each entry of `vertices`.
     fn marked(&self, vertices: &[u32]) -> Result<Vec<bool>, MeshError> {
         let count = self.mesh.points.len();
         let mut marked = vec![false; count];
@@ -172,29 +172,30 @@ impl LoadedMesh {
         Ok(marked)
     }
 
-    /// Fixes the vertices that are marked in `held`, for another reason than lying between regions.
+    /// Fixes the vertices of the mask `held` as constrained vertices, also those between regions.
     fn hold(&mut self, mut held: Vec<bool>) {
         let all = (0..).zip(&held).filter(|&(_, &held)| held);
         self.anchored.extend(all.map(|(vertex, _)| vertex));
         let fixed = &mut self.mesh.fixed;
         fixed.truncate(fixed.len() - self.interfaces.len());
         self.interfaces.retain(|&vertex| !held[vertex as usize]);
-        // Vertices that are fixed already must not be listed again.
+        // `mesh.fixed` must list each vertex once.
         fixed.iter().for_each(|&vertex| held[vertex as usize] = false);
         fixed.extend((0..).zip(held).filter(|&(_, held)| held).map(|(vertex, _)| vertex));
         fixed.extend_from_slice(&self.interfaces);
     }
 
-    /// Finds where the file has the coordinates of a vertex. A copy of the chart stands where its vertex stands.
+    /// Returns the location of a vertex's coordinates in the file. For a copy made by the chart, returns the location
+    /// of the original vertex.
     ///
     /// # Panics
-    /// If there is no such vertex.
+    /// Panics if the vertex does not exist.
     pub(crate) fn vertex_place(&self, index: u32) -> SourceLocation {
         self.source.vertex_location(self.owner(index))
     }
 
-    /// Finds where the file has the coordinates of vertices, in one search of the file. Vertices that do not exist are left
-    /// out.
+    /// Returns the locations of the coordinates of vertices, found in one search of the file. Vertices that do not
+    /// exist are omitted.
     pub(crate) fn vertex_places(
         &self,
         indices: impl IntoIterator<Item = u32>,
@@ -205,7 +206,8 @@ impl LoadedMesh {
         wanted.iter().filter_map(place).collect()
     }
 
-    /// Returns the vertex of the file that a vertex of the mesh stands for.
+    /// Returns the file's vertex for a vertex of the mesh: the original vertex, if the chart made `v` as a copy, else
+    /// `v`.
     fn owner(&self, v: u32) -> u32 {
         match self.chart().zip((v as usize).checked_sub(self.source.points().len())) {
             Some((chart, copy)) => chart.owners().get(copy).copied().unwrap_or(v),
@@ -213,19 +215,19 @@ impl LoadedMesh {
         }
     }
 
-    /// Returns points of the mesh as points of the file: without copies, with longitudes in the file's range.
+    /// Converts points of the mesh to points of the file, without copies and with longitudes in the file's range.
     pub(crate) fn given<'p>(&self, points: &'p [[f64; 2]]) -> Cow<'p, [[f64; 2]]> {
         match self.chart() {
-            // A list of another length is refused when it is written.
+            // The writer refuses a list of any other length.
             Some(chart) if points.len() == self.mesh.points.len() => chart.given(points).into(),
             _ => points.into(),
         }
     }
 
-    /// Writes the file with the vertices of the mesh at `points` and with the numbers of `fields`.
+    /// Writes the file with the vertices of the mesh at `points` and the values of `fields`.
     ///
     /// # Errors
-    /// The errors of [`MeshFile::write_with`].
+    /// Returns the errors of [`MeshFile::write_with`].
     pub(crate) fn write_with(
         &self,
         path: &Path,
@@ -235,10 +237,11 @@ impl LoadedMesh {
         self.source.write_with_fields(path, &self.given(points), fields)
     }
 
-    /// Writes the file to a stream, as [`write_with`](Self::write_with) does to a path. `name` stands for the stream in messages.
+    /// Writes the file to a stream instead of a path, as [`write_with`](Self::write_with) does. `name` identifies the
+    /// stream in messages.
     ///
     /// # Errors
-    /// The errors of [`MeshFile::write_to_with`].
+    /// Returns the errors of [`MeshFile::write_to_with`].
     pub(crate) fn write_to_with(
         &self,
         name: &Path,
@@ -250,10 +253,11 @@ impl LoadedMesh {
     }
 }
 
-/// Converts the precision of a file format to the smoother's.
+/// Converts a precision of mesh-io to one of the smoother.
 pub(crate) fn precision(stored: mesh_io::Precision) -> Precision {
     use mesh_io::Precision as Stored;
-    /// The rule of a precision, with functions that know the precision by type.
+    /// Makes the rounding rule of a precision. Each rule needs functions of its own, because function pointers capture
+    /// nothing.
     macro_rules! rule {
         ($variant:ident) => {
             Precision::Custom(Rounding {
@@ -276,7 +280,7 @@ pub(crate) fn precision(stored: mesh_io::Precision) -> Precision {
 mod tests {
     use super::*;
 
-    /// A square of two regions with a vertex in its middle.
+    /// A square with two regions and a vertex in the middle.
     const VTK: &str = "# vtk DataFile Version 3.0\nsquare\nASCII\nDATASET UNSTRUCTURED_GRID\n\
         POINTS 5 double\n0 0 0 1 0 0 1 1 0 0 1 0 .4 .5 0\n\
         CELLS 4 16\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\nCELL_TYPES 4\n5\n5\n5\n5\n\

@@ -1,4 +1,4 @@
-//! Meshes as the command line works on them: what a file holds, and which vertices may move.
+//! Meshes of the command line: the content of a file, and the selection of movable vertices.
 
 pub(crate) mod explain;
 mod fields;

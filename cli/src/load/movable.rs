@@ -1,4 +1,4 @@
-//! The choice of the vertices of a mesh that may move.
+//! Selection of the movable vertices of a mesh.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -9,19 +9,20 @@ use crate::load::explain;
 use crate::request::{MovableRequest, NearBad};
 use crate::terminal::numbers::six;
 
-/// The effect of the options on a mesh.
+/// The effect on a mesh of the options that select movable vertices.
 #[derive(Default)]
 pub(crate) struct Choice {
-    /// What each option holds or lets move, one line each.
+    /// A line for each option, with the number of vertices that the option fixes or frees.
     pub(crate) notes: Vec<String>,
-    /// How many vertices would be free without the options; 0 if none is given.
+    /// Number of vertices that could move without `--fix…` and `--only…`; 0 if the command line has neither.
     free_without: usize,
-    /// Why there is nothing to smooth: no triangle is as bad as the options ask for. The mesh is then left as it was.
+    /// The reason if there is nothing to smooth: no triangle is as bad as `--only-bad` requires. The mesh is then
+    /// unchanged.
     pub(crate) nothing_to_do: Option<String>,
 }
 
 impl MovableRequest {
-    /// Whether any vertices are fixed.
+    /// Returns whether the request fixes vertices.
     fn restricts(&self) -> bool {
         let Self { fix, fix_vertices, fix_array, fix_box, only, near_bad, .. } = self;
         !fix.is_empty()
@@ -32,7 +33,7 @@ impl MovableRequest {
             || near_bad.is_some()
     }
 
-    /// Frees and fixes vertices of a mesh.
+    /// Frees and fixes the vertices of a mesh as requested.
     pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<Choice, CliError> {
         if self.free_interfaces {
             file.free_interfaces();
@@ -55,7 +56,7 @@ impl MovableRequest {
 }
 
 impl Choice {
-    /// Words the error if the options leave nothing to move.
+    /// Returns the error for options that leave no free vertex; `None` if another cause or another error is at hand.
     pub(crate) fn nothing_free(&self, file: &LoadedMesh, error: &MeshError) -> Option<CliError> {
         let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
         let path = file.source.path().display();
@@ -67,7 +68,7 @@ impl Choice {
     }
 }
 
-/// Words that vertices between regions are held all the same, if some are.
+/// Returns a note on vertices between regions that remain fixed for another reason; `None` if all were freed.
 fn held_interfaces(file: &LoadedMesh) -> Option<String> {
     let held = match file.held_interface_vertices().len() {
         0 => return None,
@@ -79,7 +80,7 @@ fn held_interfaces(file: &LoadedMesh) -> Option<String> {
     ))
 }
 
-/// Finds what options name in a mesh.
+/// Resolver of the names and numbers in options to vertices of a mesh.
 struct Chooser<'f> {
     file: &'f LoadedMesh,
     topology: Topology<'f>,
@@ -92,12 +93,12 @@ impl<'f> Chooser<'f> {
         Ok(Self { file, topology })
     }
 
-    /// Counts how many of these vertices would be free without the options.
+    /// Counts the vertices that would be free without the options.
     fn free_among(&self, vertices: &[u32]) -> usize {
         vertices.iter().filter(|&&vertex| self.topology.free()[vertex as usize]).count()
     }
 
-    /// Finds the vertices that the options keep fixed.
+    /// Returns the vertices that options fix, and adds a note for each option.
     fn fixed(&self, request: &MovableRequest, choice: &mut Choice) -> Result<Vec<u32>, CliError> {
         let file = self.file;
         let mut fixed = Vec::new();
@@ -136,8 +137,8 @@ impl<'f> Chooser<'f> {
         Ok(fixed)
     }
 
-    /// Finds the vertices that the options let move, one list for each kind of option. A vertex may move if all lists
-    /// have it.
+    /// Returns the vertices that `--only` and `--only-bad` let move, one list for each of the two options. A vertex
+    /// may move if all lists contain the vertex.
     fn movers(
         &self,
         request: &MovableRequest,
@@ -191,14 +192,15 @@ impl<'f> Chooser<'f> {
         Ok(self.file.source.groups()?)
     }
 
-    /// Finds the groups that a text names: one, or several with commas between. Each comes with its part of the text.
+    /// Returns the groups that the value of an option names, separated by commas. Each group is paired with the name
+    /// used in the value.
     fn named<'t, 'g>(
         &self,
         groups: &'g Groups,
         option: &str,
         text: &'t str,
     ) -> Result<Vec<(&'t str, &'g Group)>, CliError> {
-        // A name may contain commas.
+        // A group's name may contain commas.
         let ends = |name: &str| name.contains(',') && text.ends_with(name);
         if groups.iter().any(|group| group.name.as_deref().is_some_and(ends))
             && let Ok(group) = groups.find(text)
@@ -219,12 +221,12 @@ impl<'f> Chooser<'f> {
     }
 }
 
-/// Counts things: `1 ring`, `2 rings`.
+/// Formats a count with its noun in the singular or plural: `1 ring`, `2 rings`.
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Says how many vertices an option keeps fixed, and how many of these would be free without it.
+/// Describes the effect of an option: `count` fixed vertices, of which `free` would otherwise be free.
 fn held(count: usize, free: usize) -> String {
     match (count, free) {
         (0, _) => "it names no vertex".into(),

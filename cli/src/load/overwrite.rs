@@ -1,4 +1,5 @@
-//! The check that a written mesh replaces no other mesh and no file that is no mesh.
+//! Protection of existing files: a written mesh may replace an earlier state of the mesh, but no foreign mesh or
+//! file.
 
 use std::fs;
 use std::path::PathBuf;
@@ -8,21 +9,21 @@ use mesh_io::{MeshFile, ReadOptions, atomic};
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 
-/// What two meshes must have in common so that one may replace the other.
+/// Properties in which a written mesh must equal the existing mesh that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Likeness {
     /// The triangles and the fixed vertices.
     Mesh,
-    /// The triangles. A format may hold no groups, so a conversion may lose what fixes vertices.
+    /// The triangles. A conversion may lose groups, and with them the constraints that fix vertices.
     Triangles,
 }
 
-/// Checks that the files `written`, the main file first, hold nothing, the mesh that was read, or an earlier state of this
-/// mesh. Devices and pipes hold nothing. `options` are those by which the mesh was read.
+/// Checks that the files `written`, the main file first, are empty or hold the input mesh or an earlier state of the
+/// mesh. Devices and pipes count as empty. `options` are the options by which the mesh was read.
 ///
 /// # Errors
-/// Of the kind [`Output`](crate::error::ErrorKind::Output) if a file holds another mesh, or is not empty and cannot be read as
-/// a mesh.
+/// Returns an error of kind [`Output`](crate::error::ErrorKind::Output) if a file holds another mesh, or has content
+/// that cannot be read as a mesh.
 pub(crate) fn check(
     file: &LoadedMesh,
     written: &[PathBuf],
@@ -34,7 +35,8 @@ pub(crate) fn check(
         return Ok(());
     }
     let is_full = |path: &PathBuf| fs::metadata(path).is_ok_and(|at| at.is_file() && at.len() > 0);
-    // A killed run may leave the companions of its mesh without the main file. Of a Triangle mesh they are copies.
+    // A killed run may leave companion files without the main file. Companions of a Triangle mesh are copies of the
+    // input's.
     let own: Vec<&[u8]> = file.source.contents().map(|(_, bytes)| bytes).collect();
     let is_copy = |(part, path): (usize, &PathBuf)| {
         !is_full(path)
@@ -44,7 +46,7 @@ pub(crate) fn check(
     if !main.exists() && written.iter().enumerate().skip(1).all(is_copy) {
         return Ok(());
     }
-    // Reading a pipe would wait for its writer.
+    // A read from a pipe would block until a writer appears.
     let is_readable = written.iter().all(|path| !path.exists() || path.is_file());
     let old = match is_readable {
         true => options.read(main).map_err(|error| error.to_string()),
@@ -59,7 +61,7 @@ pub(crate) fn check(
     Err(CliError::output(text))
 }
 
-/// Describes the first difference between two meshes; `None` if one may replace the other.
+/// Describes the first difference between two meshes; `None` if `new` may replace `old`.
 fn difference(new: &MeshFile, old: &MeshFile, likeness: Likeness) -> Option<String> {
     let counts = |file: &MeshFile| [file.points().len(), file.triangles().len()];
     if counts(new) != counts(old) {
@@ -76,7 +78,7 @@ fn difference(new: &MeshFile, old: &MeshFile, likeness: Likeness) -> Option<Stri
         .then(|| "its fixed vertices are others".to_owned())
 }
 
-/// Returns the triangles in an order that does not depend on the order of the file.
+/// Returns the triangles sorted, with sorted corners, independent of the order in the file.
 fn ascending(file: &MeshFile) -> Vec<[u32; 3]> {
     let sorted = |corners: &[u32; 3]| {
         let mut corners = *corners;
@@ -88,7 +90,7 @@ fn ascending(file: &MeshFile) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// Returns the vertices that the file fixes, ascending.
+/// Returns the vertices fixed by the file, ascending.
 fn fixed(file: &MeshFile) -> Vec<u32> {
     let mut fixed = file.constraints().vertices.clone();
     fixed.extend(file.interface_vertices());

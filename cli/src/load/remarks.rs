@@ -1,10 +1,11 @@
-//! Remarks on a mesh that was read.
+//! Remarks on a mesh after reading.
 
 use mesh_io::{Format, Remark};
 
 use crate::load::LoadedMesh;
 
-/// Lists the remarks on a mesh, one line each. If vertices slide, those between regions are not said to stay fixed.
+/// Returns the remarks on a mesh, one line each. If `slides` is true, no remark says that vertices between regions stay
+/// fixed.
 pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
     let mut remarks: Vec<String> = file.source.remarks().iter().map(worded).collect();
     match file.interface_vertices().len() {
@@ -20,7 +21,7 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
     remarks
 }
 
-/// Words a remark of the file by what a run does with the vertices.
+/// Adds to a remark of the file how a run treats the affected vertices.
 fn worded(remark: &Remark) -> String {
     match remark {
         Remark::OtherElements { count, .. } => {
@@ -35,8 +36,8 @@ fn worded(remark: &Remark) -> String {
     }
 }
 
-/// Words a remark if a mesh in a format of coastal models seems to be in longitude and latitude, at latitudes where a degree of
-/// longitude is shorter by more than a few percent.
+/// Returns a remark if a mesh in a format of coastal models seems to have longitudes and latitudes, at latitudes above
+/// 20°, where a degree of longitude is shorter by more than 6 %. `None` for other meshes.
 pub(crate) fn degrees(file: &LoadedMesh) -> Option<String> {
     let is_of_oceans = matches!(
         file.source.format(),

@@ -1,4 +1,4 @@
-//! The vertices of a mesh that slide along lines, and the periodic pairs among them.
+//! Vertices of a mesh that slide along lines, and the periodic pairs of sliding vertices.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -8,7 +8,7 @@ use crate::load::explain;
 use crate::request::SlideRequest;
 
 impl SlideRequest {
-    /// Chooses what slides in a mesh.
+    /// Returns the lines, held vertices and periodic pairs of a mesh for sliding.
     pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Slide, CliError> {
         let Self { corner_angle, hausdorff, .. } = *self;
         let (held, periodic) = (file.held_vertices().to_vec(), file.periodic().to_vec());
@@ -33,7 +33,7 @@ impl SlideRequest {
         Ok(slide)
     }
 
-    /// Adds the pairs of vertices that `--periodic` asks for.
+    /// Adds the pairs of vertices on the boundary sides that `--periodic` names.
     fn pair(
         &self,
         file: &LoadedMesh,
@@ -67,7 +67,8 @@ impl SlideRequest {
         Ok(())
     }
 
-    /// Lets vertices of a mesh slide. Returns a remark on how many may.
+    /// Sets the sliding vertices of a smoother. Returns a remark that counts sliding vertices and
+    /// periodic pairs.
     pub(crate) fn set(
         &self,
         file: &LoadedMesh,
@@ -103,7 +104,7 @@ impl SlideRequest {
     }
 }
 
-/// Whether the file says that its model is periodic, but no pair of vertices is known.
+/// Returns whether the file declares its model periodic, but no pair of vertices is known.
 fn has_lost_pairs(file: &LoadedMesh, slide: &Slide) -> bool {
     let has_some =
         file.source.constraints().has_unread_pairs || !file.source.constraints().motions.is_empty();

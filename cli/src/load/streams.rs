@@ -1,4 +1,4 @@
-//! Reads and writes meshes. The name `-` stands for the standard input or output.
+//! Input and output of meshes. The path `-` denotes standard input or output.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::load::LoadedMesh;
 use crate::request::ReadRequest;
 use crate::terminal::tell;
 
-/// Reads a mesh from a file, or from the standard input if its name is `-`.
+/// Reads a mesh from a file, or from standard input if the path is `-`.
 pub(crate) fn read(path: &Path, request: ReadRequest) -> Result<LoadedMesh, CliError> {
     read_source(path, request).map(LoadedMesh::new)
 }
@@ -27,12 +27,12 @@ fn read_source(path: &Path, request: ReadRequest) -> Result<MeshFile, CliError> 
     Ok(options.from_bytes(Path::new("standard input"), bytes)?)
 }
 
-/// Whether a name stands for the standard input or output.
+/// Returns whether a path denotes standard input or output.
 pub(crate) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Writes a mesh with these data to a file, or to the standard output if its name is `-`.
+/// Writes a mesh with the values of `fields` to a file, or to standard output if the path is `-`.
 pub(crate) fn write(
     file: &LoadedMesh,
     out: &Path,
@@ -49,10 +49,11 @@ pub(crate) fn write(
     Ok(written?)
 }
 
-/// Lists the files that a mesh is written to; none for the standard output.
+/// Returns the paths of the files to which a mesh is written; no path for standard output.
 ///
 /// # Errors
-/// If the mesh cannot be written there.
+/// Returns an error if the mesh cannot be written to `out`, or has several files and `out` is standard
+/// output.
 pub(crate) fn destinations(file: &LoadedMesh, out: &Path) -> Result<Vec<PathBuf>, CliError> {
     if !is_standard(out) {
         file.source.check_destination(out)?;
@@ -66,7 +67,7 @@ pub(crate) fn destinations(file: &LoadedMesh, out: &Path) -> Result<Vec<PathBuf>
     }
 }
 
-/// Prints a text to the standard output, or to the standard error if the mesh goes to the standard output.
+/// Prints a text to standard output, or to standard error if standard output receives the mesh.
 pub(crate) fn say_beside(out: &Path, text: &str) {
     match is_standard(out) {
         true => tell::aside(text),

@@ -1,4 +1,4 @@
-//! The layout of a mesh on the surface that its coordinates are on.
+//! Layout of a mesh on the surface of its coordinates.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -6,7 +6,7 @@ use gpu_smooth::{interpolate::Chart, targets::Surface};
 
 use crate::load::explain;
 
-/// Lays a mesh out on a surface. Returns remarks on what was done.
+/// Lays a mesh out on `surface`. Returns remarks on continued longitudes and poles.
 pub(crate) fn lay_out(file: &mut LoadedMesh, surface: Surface) -> Result<Vec<String>, CliError> {
     if surface == Surface::Plane {
         return Ok(Vec::new());
@@ -17,12 +17,12 @@ pub(crate) fn lay_out(file: &mut LoadedMesh, surface: Surface) -> Result<Vec<Str
     }
 }
 
-/// Returns a point of a mesh that is laid out on its surface as the file would have it.
+/// Converts a point of a laid-out mesh to the coordinates of the file.
 pub(crate) fn as_in_file(file: &LoadedMesh, [x, y]: [f64; 2]) -> [f64; 2] {
     [file.chart().map_or(x, |chart| chart.given_longitude(x)), y]
 }
 
-/// Words what was done to lay a mesh out on the sphere.
+/// Describes the triangles and vertices that the layout on the sphere affects.
 fn remarks(chart: &Chart) -> Vec<String> {
     let mut remarks = Vec::new();
     let count = |n: usize, one: &str, many: &str| match n {

@@ -1,4 +1,4 @@
-//! The targets of the elements of a mesh, from the mesh itself, other files or background meshes.
+//! Targets of the elements of a mesh, from the mesh itself, other files or background meshes.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -17,8 +17,8 @@ use crate::request::{ElementProperty, TargetNumbers, TargetRequest, TargetSource
 use crate::terminal::numbers::six;
 
 impl TargetRequest {
-    /// Sets the targets of a mesh whose vertices are at `points` on a surface. Returns a remark on vertices outside of a
-    /// background.
+    /// Sets the targets of a smoother, for vertices at `points` on a surface. Returns a remark on vertices outside of
+    /// the background; `None` if there are none.
     pub(crate) fn set(
         &self,
         file: &LoadedMesh,
@@ -53,7 +53,8 @@ impl TargetRequest {
         smoother.set_target_field(field).map(|_| None).map_err(told)
     }
 
-    /// Reads the targets that a background carries, if the target is on one. Also returns the file of the background.
+    /// Reads the target field on a background mesh or view. Returns the field and the path of its file; `None` for
+    /// other targets.
     fn field(&self, surface: Surface) -> Result<Option<(&Path, TargetField)>, CliError> {
         let Self::Given { what, source, .. } = self else { return Ok(None) };
         match source {
@@ -65,7 +66,7 @@ impl TargetRequest {
         }
     }
 
-    /// Returns the targets of the vertices; `None` for equilateral in the plane.
+    /// Returns the targets of the vertices; `None` for equilateral targets in the plane.
     fn targets(
         &self,
         file: &LoadedMesh,
@@ -88,7 +89,7 @@ impl TargetRequest {
             }
         };
         let surface = match self {
-            // Shapes are kept as they are in the coordinates, also on the sphere.
+            // Shapes are kept as they appear in coordinates, also on the sphere.
             Self::Keep { what: ElementProperty::Shape, .. } => Surface::Plane,
             _ => surface,
         };
@@ -97,13 +98,13 @@ impl TargetRequest {
     }
 }
 
-/// Targets of the vertices of a mesh, in lengths on a surface.
+/// Targets of the vertices of a mesh, with lengths measured on `surface`.
 struct MeshTargets {
     targets: Targets,
     surface: Surface,
 }
 
-/// Returns how many numbers a vertex has in a source of targets.
+/// Returns the count of numbers per vertex in a source of targets.
 fn components(what: TargetNumbers) -> usize {
     match what {
         TargetNumbers::Sizes => 1,
@@ -111,7 +112,7 @@ fn components(what: TargetNumbers) -> usize {
     }
 }
 
-/// Makes targets of the numbers of a source.
+/// Makes targets from the numbers of a source, in the order of the vertices.
 fn of_numbers(what: TargetNumbers, numbers: &[f64]) -> Result<Targets, MeshError> {
     match what {
         TargetNumbers::Sizes => Targets::sizes(numbers),
@@ -119,7 +120,7 @@ fn of_numbers(what: TargetNumbers, numbers: &[f64]) -> Result<Targets, MeshError
     }
 }
 
-/// Reads the targets that a background mesh carries.
+/// Reads the target field on a background mesh.
 fn field_of_mesh(
     path: &Path,
     data: &str,
@@ -127,7 +128,7 @@ fn field_of_mesh(
     surface: Surface,
 ) -> Result<TargetField, CliError> {
     let read = MeshFile::read(path).map_err(|error| match error {
-        // No option lets a background mesh name files elsewhere.
+        // No option allows a background mesh to refer to files elsewhere.
         ReadError::Outside { .. } => {
             of_background(CliError::from(error).with_remedy("Move the file beside the mesh"))
         }
@@ -142,7 +143,7 @@ fn field_of_mesh(
         .map_err(|error| explain::mesh_error(&background, &error))
 }
 
-/// Reads the sizes in a view of gmsh.
+/// Reads the target field of sizes in a view of gmsh.
 fn field_of_view(path: &Path, surface: Surface) -> Result<TargetField, CliError> {
     let view = GmshView::read(path).map_err(|error| of_background(error.into()))?;
     let name = path.display();
@@ -166,7 +167,7 @@ fn field_of_view(path: &Path, surface: Surface) -> Result<TargetField, CliError>
         .map_err(told_of)
 }
 
-/// Words the remark on vertices outside of a background.
+/// Returns the remark on vertices outside of a background; `None` if all vertices are inside.
 fn remark(background: &Path, outside: Outside) -> Option<String> {
     let Outside { count, most } = outside;
     let vertices = match count {
@@ -181,12 +182,12 @@ fn remark(background: &Path, outside: Outside) -> Option<String> {
     ))
 }
 
-/// Words an error in the background mesh of a target.
+/// Prefixes an error with its origin, the background mesh of a target.
 fn of_background(error: CliError) -> CliError {
     error.within("the background of --target")
 }
 
-/// Reads `components` numbers for each vertex, from a file beside the mesh or from point data of the mesh.
+/// Reads `components` numbers per vertex, from a file if `source` exists, else from point data of the mesh.
 fn given(file: &LoadedMesh, source: &str, components: usize) -> Result<Vec<f64>, CliError> {
     let (found, values) = match Path::new(source).exists() {
         true => {

@@ -4,23 +4,23 @@ use std::io::IsTerminal;
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Returns the number of columns of the terminal, if standard output is one.
+/// Returns the width of the terminal in columns; `None` if standard output is not a terminal.
 pub(crate) fn of_terminal() -> Option<usize> {
     let size = std::io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
     size.map(|(width, _)| usize::from(width.0))
 }
 
-/// Pads a text with spaces after it to `width` columns.
+/// Appends spaces to a text up to `width` columns.
 pub(crate) fn left(text: &str, width: usize) -> String {
     format!("{text}{}", " ".repeat(width.saturating_sub(text.width())))
 }
 
-/// Pads a text with spaces before it to `width` columns.
+/// Prepends spaces to a text up to `width` columns.
 pub(crate) fn right(text: &str, width: usize) -> String {
     format!("{}{text}", " ".repeat(width.saturating_sub(text.width())))
 }
 
-/// Shortens a name that is wider than `most` columns to its end, after two dots.
+/// Shortens a name that exceeds `most` columns to two dots and the name's end.
 pub(crate) fn shortened(name: &str, most: usize) -> String {
     if name.width() <= most {
         return name.to_owned();
@@ -36,7 +36,7 @@ pub(crate) fn shortened(name: &str, most: usize) -> String {
     format!("..{}", &name[start..])
 }
 
-/// Quotes a field of CSV if it needs quotes.
+/// Quotes a field of CSV if the field contains commas, quotes or line ends.
 pub(crate) fn quoted(field: &str) -> String {
     match field.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", field.replace('"', "\"\"")),
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(shortened("name.msh", 1), "..");
     }
 
-    /// Characters of Chinese, Japanese and Korean take two columns each, combining ones none.
+    /// Chinese, Japanese and Korean characters take two columns each, combining characters none.
     #[test]
     fn wide_characters_count_twice() {
         assert_eq!(left("網格", 6), "網格  ");

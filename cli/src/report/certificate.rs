@@ -1,26 +1,26 @@
-//! The certificate of a report: what was proved of the written mesh.
+//! The certificate of a report: facts proved about the written mesh.
 
 use serde::Serialize;
 
-/// A file, and the SHA-256 hash of its bytes as `sha256sum` prints it.
+/// A file and its SHA-256 hash in hexadecimal, as `sha256sum` prints hashes.
 #[derive(Serialize)]
 pub(crate) struct FileHash {
     pub(crate) path: String,
     pub(crate) sha256: String,
 }
 
-/// What the report says after the written mesh was read again. It rests on the files alone.
+/// Facts about the written mesh, proved by reading the input and output files again.
 #[derive(Serialize)]
 pub(crate) struct Certificate {
-    /// Whether the files differ in nothing but coordinates and interpolated data.
+    /// Whether the files differ only in coordinates and interpolated data.
     pub(crate) connectivity_identical: bool,
-    /// Vertices whose coordinates have other bits.
+    /// Number of vertices with changed coordinates, compared bit by bit.
     pub(crate) moved: usize,
-    /// Vertices whose coordinates have other bits though they must not move.
+    /// Number of vertices with changed coordinates among the vertices that must not move.
     pub(crate) fixed_moved: usize,
-    /// Triangles that are inverted or flat, by exact predicates.
+    /// Number of inverted or flat triangles by exact predicates.
     pub(crate) inverted: usize,
-    /// The objective by the first metric, of the mesh that was read again.
+    /// The base metric's objective, evaluated on the mesh from the output file.
     pub(crate) f: f64,
     pub(crate) input: Vec<FileHash>,
     pub(crate) output: Vec<FileHash>,

@@ -1,28 +1,28 @@
-//! Histograms of measures. Their bins depend on the measure alone, so that histograms of two meshes can be compared.
+//! Histograms of measures. The bins depend only on the measure, so that histograms of two meshes are comparable.
 
 use gpu_smooth::measure::{Measure, Measured};
 
-/// How many triangles have a value in each bin.
+/// Numbers of triangles by bins of a measure.
 pub(crate) struct Histogram {
     pub(crate) measure: Measure,
-    /// The edges of the bins, one more than there are bins.
+    /// The edges of the bins, ascending: one more than `counts` has entries.
     pub(crate) edges: Vec<f64>,
     pub(crate) counts: Vec<usize>,
 }
 
-/// Counts the triangles that have their value in each bin of a measure.
+/// Counts the triangles in each bin of a measure.
 pub(crate) fn histogram(measured: &Measured<'_>, measure: Measure) -> Histogram {
     let edges = edges(measure);
     let counts = measured.histogram(measure, &edges);
     Histogram { measure, edges, counts }
 }
 
-/// Returns the edges of a measure's bins, ascending, one more than there are bins.
+/// Returns the edges of a measure's bins, ascending.
 fn edges(measure: Measure) -> Vec<f64> {
     let definition = measure.definition();
     let [least, most] = definition.range;
     if most.is_finite() {
-        // Angles go by 5° or 10°, shares by tenths.
+        // Bins of angles are 5° or 10° wide, other bins of bounded measures 0.1.
         let bins = if most - least == 60.0 || most - least == 120.0 {
             12
         } else {
@@ -31,8 +31,8 @@ fn edges(measure: Measure) -> Vec<f64> {
         let edge = |i| least + (most - least) * f64::from(i) / f64::from(bins);
         return (0..=bins).map(edge).collect();
     }
-    // Ratios go by their distance above the ideal, and the last bin takes all the rest. Size ratios may be below the
-    // ideal.
+    // Bins of ratios are measured from the ideal value upward, and the last bin is unbounded. Size ratios may also
+    // be below the ideal.
     let below = [0.0, 0.1, 0.25, 0.5, 0.75, 0.9].into_iter().filter(|_| least < definition.ideal);
     let below = below.map(|share| share * definition.ideal);
     let above =

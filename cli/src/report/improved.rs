@@ -1,11 +1,11 @@
-//! The report on how the worst triangles were improved.
+//! The report on the improvement of the worst triangles.
 
 use gpu_smooth::outcome::Improved;
 use serde::Serialize;
 
 use crate::terminal::numbers::six;
 
-/// A change of the worst triangle by less than this share does not count.
+/// Smallest relative change of the worst value that the report mentions.
 const TO_SPEAK_OF: f64 = 1e-3;
 
 /// The result of improving the worst triangles.
@@ -13,11 +13,12 @@ const TO_SPEAK_OF: f64 = 1e-3;
 pub(crate) struct ImprovedReport {
     /// `imr`, `min-angle` (in degrees) or `altitude` (in the unit of the mesh).
     measure: &'static str,
-    /// How many vertices were moved.
+    /// Number of moved vertices.
     vertices: usize,
-    /// The worst value of a triangle with a free vertex, before and after.
+    /// Worst value of the triangles with a free vertex, before and after.
     worst: [f64; 2],
-    /// How many triangles without a free vertex are worse than the worst one with a free vertex.
+    /// Number of triangles without a free vertex that are worse than the worst triangle with a free
+    /// vertex.
     stuck: usize,
     /// The base metric's objective, before and after.
     f: [f64; 2],
@@ -30,7 +31,7 @@ impl From<Improved> for ImprovedReport {
 }
 
 impl ImprovedReport {
-    /// Says in a sentence what was improved, and what that cost.
+    /// Describes the improvement and its cost in f, in one sentence.
     pub(crate) fn told(&self) -> String {
         let Self { measure, vertices, worst: [before, after], stuck, f } = self;
         let worst = match *measure {
@@ -54,7 +55,7 @@ impl ImprovedReport {
                     change if change.abs() < 0.005 => "changed f by less than 0.01 %".to_owned(),
                     change => format!("changed f by {change:+.2} %"),
                 };
-                // Patches around others may have become better all the same.
+                // Patches around other triangles may have improved nevertheless.
                 match (after / before - 1.0).abs() > TO_SPEAK_OF {
                     true => format!(
                         "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which {cost}",

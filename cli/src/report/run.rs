@@ -17,59 +17,59 @@ use crate::report::{Certificate, ImprovedReport, TargetReport};
 pub(crate) struct Report {
     pub(crate) engine: EngineReport,
     pub(crate) mesh: MeshReport,
-    /// How the mesh was untangled before the run, if it had inverted or flat triangles.
+    /// The result of untangling before the run; `None` if no triangle was inverted or flat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) untangled: Option<UntangleReport>,
     pub(crate) scheme: String,
-    /// The target of the elements, if it is not equilateral in the plane.
+    /// The target of the elements; `None` if elements are to be equilateral in the plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) target: Option<TargetReport>,
     pub(crate) sweeps: u32,
-    /// How many sweeps were corrected from coarser levels.
+    /// Number of sweeps corrected from coarser levels.
     pub(crate) corrections: u32,
-    /// How many of the first sweeps were done in double precision on the CPU, because triangles were too flat or too
-    /// small for the GPU.
+    /// Number of first sweeps computed in double precision on the CPU, because triangles were too flat or too small
+    /// for the GPU.
     pub(crate) opening_sweeps: u32,
     pub(crate) levels_left_out: bool,
-    /// The sweep whose mesh was written.
+    /// The sweep whose result was written; 0 for the mesh as it was.
     pub(crate) best_sweep: u32,
-    /// The share of f that is estimated to be left to gain; null where the decay of f says nothing.
+    /// Estimated remaining gain as a fraction of f; null if the decay of f allows no estimate.
     pub(crate) remaining: Option<f64>,
     /// reached, converged, stalled, held-back, max-sweeps, canceled, time-limit, not-finite or nothing-to-do.
     pub(crate) stop: &'static str,
-    /// The sweep after which the run was left, if it was continued from a checkpoint.
+    /// Sweeps completed at the checkpoint from which the run continued; `None` for uninterrupted runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) continued_from: Option<u32>,
-    /// Why there was nothing to do, if that is so.
+    /// The reason why no vertex needed to move; `None` if the mesh was smoothed.
     #[serde(skip)]
     pub(crate) nothing_to_do: Option<String>,
-    /// What each option fixes or lets move, a line each.
+    /// A line for each option that fixes or frees vertices.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) choices: Vec<String>,
-    /// Which data of vertices were interpolated at the new positions.
+    /// A sentence on the vertex data that were interpolated at the new positions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) interpolated: Option<String>,
-    /// Vertices that the guard kept from moving at the end of a run that converged otherwise.
+    /// Number of vertices that the guard kept from moving at the end of an otherwise converged run.
     pub(crate) held_back: usize,
-    /// The share of the gain in f that is lost by rounding coordinates to the digits of the file.
+    /// Fraction of the gain in f that is lost by rounding coordinates to the digits of the file.
     pub(crate) lost: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) goal: Option<GoalReport>,
-    /// Vertices put back because rounding had inverted a triangle.
+    /// Number of vertices moved back because rounding had inverted a triangle.
     pub(crate) returned: usize,
-    /// The most that vertices might move, in lengths of an edge, if there was a bound.
+    /// Largest allowed move of a vertex, in lengths of an edge; `None` without `--max-move`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) max_move: Option<f64>,
     pub(crate) change: ChangeReport,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
-    /// How vertices slid along lines, if they might.
+    /// Movement of vertices along lines; `None` without `--slide`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) slid: Option<SlideReport>,
-    /// What improving the worst triangles did, if it was asked for.
+    /// Result of improving the worst triangles; `None` without `--improve-worst`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) improved: Option<ImprovedReport>,
-    /// What was proved from the files alone, if the mesh was written to a file.
+    /// Facts proved from the files alone; `None` if the mesh was not written to a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) certificate: Option<Certificate>,
     pub(crate) history: Vec<SweepReport>,
@@ -79,7 +79,7 @@ pub(crate) struct Report {
 /// The report of a run that was refused because of inverted or flat triangles.
 #[derive(Serialize)]
 pub(crate) struct Refusal {
-    /// The message on the terminal, without its list of triangles.
+    /// The message of the error, without its list of triangles.
     pub(crate) error: String,
     /// All inverted and flat triangles, in the order of the file.
     pub(crate) triangles: Vec<BadTriangleReport>,
@@ -91,7 +91,7 @@ pub(crate) struct EngineReport {
     pub(crate) kind: &'static str,
     pub(crate) adapter: Option<String>,
     pub(crate) driver: Option<String>,
-    /// Why this engine was taken, if the command line left that open.
+    /// The reason for choosing this engine; `None` if the command line determined the engine.
     pub(crate) reason: Option<String>,
     /// The fault of the GPU after which the run continued on the CPU.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -114,21 +114,21 @@ pub(crate) struct MeshReport {
     pub(crate) colors: usize,
 }
 
-/// How far vertices moved, and how the sizes of elements at them changed.
+/// Distances that vertices moved, and changes of element sizes at vertices.
 #[derive(Serialize)]
 pub(crate) struct ChangeReport {
     /// Distances in lengths of an edge at the vertex.
     pub(crate) moved: SpreadReport,
-    /// Factors by which sizes grew or shrank, at least 1.
+    /// Factors by which element sizes grew or shrank, at least 1.
     pub(crate) size: SpreadReport,
-    /// The least altitude of a triangle in the unit of the mesh, before and after.
+    /// Smallest triangle altitude before and after, in units of the mesh.
     pub(crate) least_altitude: [f64; 2],
 }
 
 #[derive(Serialize)]
 pub(crate) struct SpreadReport {
     pub(crate) median: f64,
-    /// The 95th percentile: nineteen of twenty vertices have no larger value.
+    /// The 95th percentile: 19 of 20 vertices have values up to this one.
     pub(crate) most_of_twenty: f64,
     pub(crate) most: f64,
 }
@@ -146,20 +146,20 @@ impl From<Change> for ChangeReport {
     }
 }
 
-/// How vertices slid along lines.
+/// Movement of vertices along lines.
 #[derive(Serialize)]
 pub(crate) struct SlideReport {
-    /// Vertices that might slide.
+    /// Number of vertices that were allowed to slide.
     pub(crate) vertices: usize,
-    /// How many of these vertices slid.
+    /// Number of vertices that slid.
     pub(crate) moved: usize,
-    /// Periodic pairs among these vertices. Both vertices of a pair slide together.
+    /// Number of periodic pairs among the sliding vertices. Both vertices of a pair slide together.
     pub(crate) pairs: usize,
-    /// Rounds of sweeps, each followed by sweeps along the lines.
+    /// Number of rounds of sweeps, each followed by sweeps along the lines.
     pub(crate) rounds: u32,
-    /// How far the lines are from those of the input, in the unit of the mesh.
+    /// Largest distance between the lines of output and input, in units of the mesh.
     pub(crate) off: f64,
-    /// The change of the mesh's area, as a share of the area.
+    /// Change of the mesh's area as a fraction of the area.
     pub(crate) area_change: f64,
 }
 
@@ -172,10 +172,10 @@ impl From<Slid> for SlideReport {
 /// The result of untangling.
 #[derive(Serialize)]
 pub(crate) struct UntangleReport {
-    /// How many triangles were inverted or flat.
+    /// Number of triangles that were inverted or flat.
     pub(crate) bad_before: usize,
     pub(crate) sweeps: u32,
-    /// How many vertices were moved.
+    /// Number of moved vertices.
     pub(crate) moved: usize,
 }
 
@@ -190,12 +190,12 @@ pub(crate) struct GoalReport {
 
 #[derive(Serialize)]
 pub(crate) struct QualityReport {
-    /// The objective by each metric, by the metric's name.
+    /// Objectives of all metrics, by the metric's name.
     pub(crate) f: BTreeMap<&'static str, f64>,
     pub(crate) min_angle: f64,
     pub(crate) max_angle: f64,
     pub(crate) worst_imr: f64,
-    /// The worst inverse mean ratio of a triangle with a free vertex.
+    /// Worst inverse mean ratio of the triangles with a free vertex.
     pub(crate) worst_movable_imr: f64,
     pub(crate) inverted: usize,
 }
@@ -203,11 +203,11 @@ pub(crate) struct QualityReport {
 #[derive(Serialize)]
 pub(crate) struct SweepReport {
     pub(crate) sweep: u32,
-    /// The metric that this sweep minimized; none before the first sweep.
+    /// The metric minimized by this sweep; `None` for the entry before the first sweep.
     pub(crate) metric: Option<&'static str>,
     /// The base metric's objective after the sweep.
     pub(crate) f: f64,
-    /// The objective of every metric, where asked for.
+    /// Objectives of all metrics after the sweep; empty without `--history all`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) all: BTreeMap<&'static str, f64>,
 }
@@ -234,7 +234,7 @@ impl From<&Quality> for QualityReport {
     }
 }
 
-/// Makes the history of a run, sweep by sweep.
+/// Returns the history of a run, one entry per sweep.
 pub(crate) fn history(outcome: &Outcome, scheme: &Scheme, all: bool) -> Vec<SweepReport> {
     let metric = |sweep| match sweep <= outcome.alternated {
         true => scheme.metric(sweep),

@@ -1,4 +1,4 @@
-//! The summary of a run for a terminal, and sentences of it that pages show too.
+//! The summary of a run for a terminal, with sentences that pages show too.
 
 use std::fmt::Write;
 
@@ -10,24 +10,24 @@ use crate::report::{
 };
 use crate::terminal::numbers::{percent, six};
 
-/// The message of a run that a number which is not finite has ended.
+/// The message of a run ended by a sweep whose objective was infinite or NaN.
 const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a mistake of this program or of the driver of the GPU; the mesh is of the last good state";
 
 /// If more than one vertex in twenty changes its size by more than this factor, the summary mentions `--target
 /// keep-size`.
 const LARGE_CHANGE: f64 = 1.25;
-/// If f by imr is below this, the sizes of elements are likely to be intended.
+/// If f by imr is below this value before the run, the sizes of elements are likely to be intended.
 const SOUND: f64 = 2.0;
-/// Shares of a smaller f are told of this, as `Outcome::remaining` has them.
+/// `Outcome::remaining` is relative to f, or to this value where f is smaller.
 const LEAST_SCALE: f64 = 1e-6;
 
 impl Report {
-    /// Returns the metric that judges convergence: the first of the scheme.
+    /// Returns the base metric, the first of the scheme, which judges convergence.
     pub(crate) fn base(&self) -> &str {
         self.scheme.split('+').next().unwrap_or("imr")
     }
 
-    /// Writes the summary for the terminal: what was done, before and after, and the times.
+    /// Returns the summary for the terminal: subject, table of values before and after, result and times.
     pub(crate) fn summary(&self) -> String {
         let mut text = self.subject() + "\n\n";
         let _ = writeln!(text, "{:<14}{:>12}{:>12}", "", "before", "after");
@@ -53,7 +53,7 @@ impl Report {
         text
     }
 
-    /// Writes what was smoothed, on which engine and by which scheme.
+    /// Describes the size of the mesh, the engine, the scheme and the untangling.
     pub(crate) fn subject(&self) -> String {
         let mut text = String::new();
         let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
@@ -84,7 +84,7 @@ impl Report {
         text.trim_end().to_owned()
     }
 
-    /// Returns the rows of the table before and after: a name, and both values.
+    /// Returns the rows of the table of quality: the row's name, the value before, the value after.
     pub(crate) fn rows(&self) -> Vec<[String; 3]> {
         let base = self.base();
         let mut rows = Vec::new();
@@ -105,7 +105,7 @@ impl Report {
         row("min angle", angle(self.before.min_angle), angle(self.after.min_angle));
         row("max angle", angle(self.before.max_angle), angle(self.after.max_angle));
         row("worst imr", six(self.before.worst_imr), six(self.after.worst_imr));
-        // Without a free vertex there is none.
+        // The value is 0 if no triangle has a free vertex.
         let movable = self.after.worst_movable_imr;
         if movable > 0.0 && movable < self.after.worst_imr {
             let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
@@ -117,7 +117,7 @@ impl Report {
         rows
     }
 
-    /// Warns if the worst element is worse than before by a hundredth or more.
+    /// Returns a warning if the worst movable element became worse by more than 1 %; `None` otherwise.
     pub(crate) fn warning(&self) -> Option<String> {
         let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
         if after <= 1.01 * before {
@@ -135,7 +135,7 @@ impl Report {
         Some(format!("worst imr rose from {before} to {after}: {remedy}"))
     }
 
-    /// Writes in a sentence how far vertices moved and how much sizes changed.
+    /// Describes in one sentence how far vertices moved and how much sizes changed.
     pub(crate) fn moves(&self) -> String {
         let ChangeReport { moved, size, .. } = &self.change;
         if moved.most == 0.0 {
@@ -145,7 +145,7 @@ impl Report {
             change if change < 99.5 => format!("{change:.0} %"),
             _ => format!("{factor:.1} times"),
         };
-        // Sizes of a mesh in a bad state mean nothing.
+        // Sizes in a mesh of bad elements are hardly intended.
         let is_sound = self.before.f["imr"] < SOUND;
         let keeps = match self.target.is_none() && is_sound && size.most_of_twenty > LARGE_CHANGE {
             true => "; --target keep-size keeps sizes",
@@ -162,7 +162,8 @@ impl Report {
         )
     }
 
-    /// Writes in a sentence how many vertices slid, and what that did to the domain.
+    /// Describes in one sentence how many vertices slid, and how lines and area changed; `None` without
+    /// `--slide`.
     pub(crate) fn slides(&self) -> Option<String> {
         let SlideReport { vertices, moved, pairs, off, area_change, .. } = self.slid.as_ref()?;
         let pairs = match pairs {
@@ -180,11 +181,11 @@ impl Report {
         ))
     }
 
-    /// Writes how far the run is from the limit of f, if that is known.
+    /// Returns a clause on the estimated distance of f from its limit, for the end of a sentence.
     fn left(&self) -> String {
         let f = self.target.as_ref().map_or(self.after.f[self.base()], |target| target.f[1]);
         match self.remaining {
-            // A decay that has only begun says nothing.
+            // An estimate of 0.5 or more comes from a decay that has just begun.
             None | Some(0.5..) => "; more sweeps may gain more".into(),
             Some(left) if f < LEAST_SCALE => {
                 format!("; f is estimated to be {:.1e} above its limit", left * LEAST_SCALE)
@@ -193,7 +194,8 @@ impl Report {
         }
     }
 
-    /// Says why the run ended, if it neither converged nor reached its goal.
+    /// Returns the reason why the run ended, if the run neither converged nor reached its goal; `None`
+    /// otherwise.
     pub(crate) fn fell_short(&self) -> Option<String> {
         let is_done = match &self.goal {
             Some(goal) => goal.reached,
@@ -202,7 +204,7 @@ impl Report {
         (!is_done).then(|| self.ending())
     }
 
-    /// Says in a sentence why the run ended.
+    /// Describes in one sentence why the run ended.
     pub(crate) fn ending(&self) -> String {
         if let Some(reason) = &self.nothing_to_do {
             return format!("nothing to do: {reason}; the mesh is written as it was");

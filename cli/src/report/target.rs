@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::error::CliError;
 use crate::request::TargetRequest;
 
-/// The target of the elements, if it is not equilateral in the plane.
+/// The target of the elements, with objectives under the target maps.
 #[derive(Serialize)]
 pub(crate) struct TargetReport {
     /// `equilateral`, `keep-size`, `keep-shape`, `size=SOURCE` or `metric=SOURCE`.
@@ -15,16 +15,17 @@ pub(crate) struct TargetReport {
     pub(crate) of: &'static str,
     /// `plane` or `sphere`.
     pub(crate) surface: &'static str,
-    /// Over how many rings of neighbors sizes and shapes were averaged, if those of the mesh were to be kept.
+    /// Number of rings of neighbors over which sizes and shapes of the mesh were averaged; `None` for other
+    /// targets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) rings: Option<u32>,
-    /// The base metric's objective of the triangles as targets show them, before and after.
+    /// The base metric's objective of triangles under the target maps, before and after.
     pub(crate) f: [f64; 2],
 }
 
 impl TargetRequest {
-    /// Returns the report on targets, with the objective of targets before and after, unless elements were to be
-    /// equilateral in the plane.
+    /// Returns the report on targets; `None` if elements are to be equilateral in the plane. `before` and
+    /// `after` are the objectives under the target maps.
     pub(crate) fn report(
         &self,
         surface: Surface,

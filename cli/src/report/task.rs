@@ -1,4 +1,4 @@
-//! A mesh that is to be smoothed, and the result of its run.
+//! The task to smooth a mesh, and the result of its run.
 
 use std::path::Path;
 
@@ -11,31 +11,31 @@ use crate::report::Report;
 use crate::request::SmoothRequest;
 use crate::terminal::Verbosity;
 
-/// A mesh that is to be smoothed.
+/// The task to smooth one mesh.
 pub(crate) struct Task<'a> {
     pub(crate) request: &'a SmoothRequest,
     pub(crate) verbosity: Verbosity,
     pub(crate) input: &'a Path,
     pub(crate) out: &'a Path,
-    /// The checkpoint that the run continues from, if there is one.
+    /// The checkpoint from which the run continues; `None` for a new run.
     pub(crate) resumed: Option<&'a Checkpoint>,
 }
 
-/// A mesh that was smoothed and written.
+/// The result for a mesh that was smoothed and written.
 pub(crate) struct Done<'a> {
     pub(crate) file: &'a LoadedMesh,
     pub(crate) smoother: &'a Smoother<'a>,
     pub(crate) outcome: &'a Outcome,
-    /// Pairs of a number of sweeps and the seconds of the run after which these sweeps were done.
+    /// Pairs of a sweep's number and the run's elapsed seconds after that sweep.
     pub(crate) times: Vec<(u32, f64)>,
     pub(crate) report: Report,
 }
 
-/// The reason why a mesh was not smoothed.
+/// An error that kept a mesh from being smoothed.
 pub(crate) struct Failure {
     pub(crate) error: CliError,
-    /// All inverted and flat triangles in the order of the file, if they are the reason and a report was asked for;
-    /// else empty.
+    /// All inverted and flat triangles, in the order of the file, if triangles caused the error and a report was
+    /// requested. Otherwise empty.
     pub(crate) triangles: Vec<BadTriangleReport>,
 }
 

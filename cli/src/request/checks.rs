@@ -1,5 +1,5 @@
-//! Checks that hold for any command line, parsed without a process: nothing panics, what is refused has a message, and
-//! what is accepted can be carried out. Unit tests choose the words at random, the fuzzer by the bytes it tries.
+//! Checks of arbitrary command lines, parsed without a process: nothing panics, each refusal has a message, and each
+//! accepted command line can be carried out. Unit tests choose the words at random, the fuzzer by its input bytes.
 
 use std::ffi::OsString;
 
@@ -16,7 +16,7 @@ use crate::request::{SmoothRequest, TargetRequest};
 
 /// A source of choices: random numbers, or bytes of the fuzzer.
 pub(crate) trait Choices {
-    /// Returns a number below `n`, which must not be 0.
+    /// Returns a number below `n`. `n` must be positive.
     fn below(&mut self, n: usize) -> usize;
 }
 
@@ -58,8 +58,8 @@ const VALUES: [&str; 34] = [
     "é\u{301}\u{7f}",
 ];
 
-/// Makes a command line of random options with values, half of the time after IN and OUT, and at times of words that
-/// belong nowhere.
+/// Returns a random command line with up to four options and their values. Half of the lines begin with IN and OUT, a
+/// quarter with a subcommand. Some lines contain a misplaced word, others a word in invalid UTF-8.
 fn line(program: &Command, choices: &mut impl Choices) -> Vec<OsString> {
     let mut words = vec!["gpu-smooth".to_owned()];
     let mut command = program;
@@ -131,7 +131,7 @@ impl Checker {
         Self { program, mesh: small_mesh() }
     }
 
-    /// Prepares the mesh with the kinds of sliding and of targets that a request has.
+    /// Prepares the mesh, with default sliding and equilateral targets if the request has sliding or targets.
     fn smoother(&self, request: &SmoothRequest) -> Smoother<'_> {
         let mut smoother = Smoother::new(&self.mesh).unwrap();
         if request.slide.is_some() {
@@ -148,7 +148,8 @@ impl Checker {
         smoother
     }
 
-    /// Makes a command line by `choices`, checks it, and returns how it ended. Runs are limited to three sweeps.
+    /// Checks the command line chosen by `choices`, and returns the kind of its result. Runs are limited to three
+    /// sweeps.
     ///
     /// # Panics
     ///
@@ -159,15 +160,15 @@ impl Checker {
             Ok(cli) if cli.command.is_some() => "command",
             Ok(cli) => {
                 assert!(cli.smooth.input.is_some(), "{words:?}");
-                // The name of a picture may have the ending of another file.
+                // `SmoothRequest::new` refuses a picture whose extension is neither `.png` nor `.svg`.
                 let Ok(request) = SmoothRequest::new(cli.smooth) else { return "contradiction" };
                 let mut options = request.options(Precision::Double);
                 options.max_sweeps = options.max_sweeps.min(3);
-                // Looking for the optimum would take most of the time.
+                // The search of the optimum would take most of the time.
                 if let Stopping::Goal(goal) = &mut options.stopping {
                     goal.desired = goal.desired.or(Some(1.0));
                 }
-                // What the library would refuse is refused before, in the words of the options.
+                // The parser must have refused all options that the library refuses.
                 match self.smoother(&request).run(&options).on(&Backend::Cpu).block() {
                     Ok(_) => "run",
                     Err(error) => panic!("{words:?}: {error}"),
@@ -191,7 +192,7 @@ impl Checker {
     }
 }
 
-/// Checks the command line that bytes choose, one byte for each choice. After the last byte the first choice is taken.
+/// Checks the command line chosen by `bytes`, one byte per choice. Choices beyond the last byte are 0.
 #[cfg(fuzzing)]
 pub(crate) fn any_line(bytes: &[u8]) {
     struct Bytes<'a>(std::slice::Iter<'a, u8>);

@@ -10,16 +10,17 @@ use crate::args::{Cli, Command, OutputArgs};
 use crate::request::conflicts::{self, OF_BENCH, OF_CONVERT, OF_QUALITY, OF_RUN};
 use crate::terminal::Verbosity;
 
-/// Reads the command line of this process. If it is wrong, or asks for help, prints that and ends the process.
+/// Parses the command line of this process. If the command line is invalid, or asks for help or the version,
+/// prints the answer and ends the process.
 pub(crate) fn command_line() -> Cli {
     checked(std::env::args_os()).unwrap_or_else(|error| error.exit())
 }
 
-/// Parses a command line, which begins with the name of the program. Checks the values of options, and that no
-/// options contradict each other.
+/// Parses a command line, whose first word is the name of the program. Checks the values of options, and that
+/// no options contradict each other.
 ///
 /// # Errors
-/// An error says what is wrong with it, or holds the help or version that it asks for.
+/// The error describes the invalid words, or contains the requested help or version.
 pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
     let matches = Cli::command().try_get_matches_from(words)?;
     let refused = |kind, text: String| Err(Cli::command().error(kind, text));
@@ -46,7 +47,7 @@ impl From<&OutputArgs> for Verbosity {
     }
 }
 
-/// Words what is wrong with options that contradict each other.
+/// Returns a message about the first pair of conflicting options; `None` without conflicts.
 fn contradiction(cli: &Cli) -> Option<String> {
     match &cli.command {
         None => {
@@ -75,7 +76,7 @@ fn command_of(matches: &ArgMatches) -> clap::Command {
     named.cloned().unwrap_or(program)
 }
 
-/// Returns the error if a command comes after arguments of a run.
+/// Returns the error message if a command follows arguments of a run; `None` if none does.
 fn misplaced(matches: &ArgMatches) -> Option<String> {
     let name = matches.subcommand_name()?;
     let command = Cli::command();

@@ -17,7 +17,7 @@ pub(super) struct Conflict<A> {
     options: [&'static str; 2],
     /// Whether a command line has both options.
     has_both: fn(&A) -> bool,
-    /// Words the sentence that refuses both options.
+    /// Returns the message that refuses both options.
     reason: fn([&str; 2], &A) -> String,
 }
 
@@ -29,13 +29,13 @@ const fn row<A>(
     Conflict { options, has_both, reason }
 }
 
-/// Words the first conflict of a table that a command line has.
+/// Returns the message for the first conflict of a table that a command line has.
 pub(super) fn first<A>(table: &[Conflict<A>], args: &A) -> Option<String> {
     let found = table.iter().find(|conflict| (conflict.has_both)(args))?;
     Some((found.reason)(found.options, args))
 }
 
-/// The options of a run, in the order in which conflicts are looked for.
+/// Conflicts between options of a run, in the order of the search.
 pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
     row(["--target", "--scheme"], sizes_unseen, |a| {
         a.target.is_of_sizes() && !a.scheme().metrics().iter().any(sees_sizes)
@@ -75,7 +75,7 @@ pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
     }),
 ];
 
-/// The options of `quality`.
+/// Conflicts between options of `quality`.
 pub(super) const OF_QUALITY: &[Conflict<QualityArgs>] = &[
     row(["--picture", "several meshes"], one_mesh, |a| {
         a.picture.picture.is_some() && a.meshes.len() > 1
@@ -83,19 +83,19 @@ pub(super) const OF_QUALITY: &[Conflict<QualityArgs>] = &[
     row(["--picture-arrows", "no run"], no_arrows, |a| a.picture.picture_arrows),
 ];
 
-/// The options of `bench`.
+/// Conflicts between options of `bench`.
 pub(super) const OF_BENCH: &[Conflict<BenchArgs>] =
     &[row(["--engine cpu", "--adapter"], idle, |a| {
         a.engine == EngineChoice::Cpu && a.adapter.is_some()
     })];
 
-/// The options of `convert`.
+/// Conflicts between options of `convert`.
 pub(super) const OF_CONVERT: &[Conflict<ConvertArgs>] =
     &[row(["--to triangle", "-"], several_files, |a| {
         a.to == Some(Format::Triangle) && a.output.as_os_str() == "-"
     })];
 
-/// Words the first conflict of the library's table that a run has.
+/// Returns the message for the first conflict in the library's table; `None` if the options of a run are valid.
 pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
     let targets = args.target.target != Target::Equilateral
         || args.target.surface.surface == OnSurface::Sphere;
@@ -115,13 +115,13 @@ pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
             };
             Some(format!("{a} does not go with {b}: {why}{remedy}"))
         }
-        // Parsers have checked the ranges.
+        // Other errors concern ranges, which parsers have checked.
         Err(error) => Some(error.to_string()),
         Ok(()) => None,
     }
 }
 
-/// Returns the option of a command line that gives a run a feature.
+/// Returns the option of a command line by which a run has a feature.
 fn flag(feature: Feature, args: &SmoothArgs) -> String {
     match feature {
         Feature::UnevenScheme | Feature::UncorrectedScheme => format!("--scheme {}", args.scheme()),
@@ -207,7 +207,7 @@ mod tests {
     use crate::request::command_line::checked;
     use clap::Parser;
 
-    /// Returns the words that give an option of a table on a command line.
+    /// Returns the words of a command line that give both options of a table's row.
     fn words(options: [&str; 2], view: &str) -> Vec<String> {
         let of = |option: &str| match (option, options) {
             ("--target metric=VIEW", _) => format!("--target metric={view}"),
@@ -229,7 +229,8 @@ mod tests {
         options.map(of).join(" ").split_whitespace().map(str::to_owned).collect()
     }
 
-    /// Checks each row of a table: it is the first of the table that its options meet, and they are refused by its words.
+    /// Checks for each row that a command line with its options meets no earlier row, and is refused with the row's
+    /// message.
     fn check<A>(table: &[Conflict<A>], command: &[&str], args_of: fn(&Cli) -> &A) {
         let folder = tempfile::tempdir().unwrap();
         let view = folder.path().join("view.pos");
@@ -254,7 +255,7 @@ mod tests {
         check(OF_RUN, &["gpu-smooth", "in", "out"], |cli| &cli.smooth);
     }
 
-    /// A feature of the library without an option of its own here would be refused in the words of the library.
+    /// Errors would name a feature in the library's terms if `flag` returned no option for the feature.
     #[test]
     fn each_feature_of_a_run_has_an_option() {
         let cli = Cli::try_parse_from(["gpu-smooth", "in", "out"]).unwrap();

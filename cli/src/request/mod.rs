@@ -1,4 +1,4 @@
-//! Typed requests of the options, and what is refused before any mesh is read.
+//! Typed requests made from the options, and all checks that precede the reading of meshes.
 
 #[cfg(any(test, fuzzing))]
 pub(crate) mod checks;

@@ -1,10 +1,10 @@
-//! The request on which vertices may move, slide, and have their data interpolated.
+//! Requests for the movement of vertices: selection, sliding, and interpolated data.
 
 use std::path::PathBuf;
 
 use crate::args::{MoveArgs, RidingArgs, SlideArgs};
 
-/// The vertices that may move. By default all but those of constraints and between regions.
+/// The selection of vertices that may move. By default, vertices on constraints and between regions are fixed.
 pub(crate) struct MovableRequest {
     /// Whether vertices between regions may move.
     pub(crate) free_interfaces: bool,
@@ -27,7 +27,7 @@ pub(crate) struct MovableRequest {
 pub(crate) struct NearBad {
     /// Triangles with an inverse mean ratio above this are bad.
     pub(crate) above: f64,
-    /// How many rings of triangles around a bad one are near.
+    /// Number of rings of triangles, around a bad triangle, that count as near.
     pub(crate) rings: u32,
 }
 
@@ -39,11 +39,12 @@ impl From<MoveArgs> for MovableRequest {
     }
 }
 
-/// The vertices that slide along lines.
+/// Options of vertices that slide along lines.
 pub(crate) struct SlideRequest {
-    /// A vertex where a line turns by more than this angle, in degrees, is a corner.
+    /// The smallest turn of a line, in degrees, at a corner. Vertices at corners are fixed.
     pub(crate) corner_angle: f64,
-    /// How far lines may be from those of the mesh before the run; `None` for a tenth of the edge there.
+    /// Largest distance of lines from those of the mesh before the run, in the unit of the mesh. `None` stands for
+    /// a tenth of the local edge length.
     pub(crate) hausdorff: Option<f64>,
     /// Pairs of groups whose vertices slide together.
     pub(crate) periodic: Vec<[String; 2]>,
@@ -57,7 +58,7 @@ impl SlideRequest {
     }
 }
 
-/// The data of vertices that are interpolated at the new places.
+/// The data of vertices to interpolate at the new positions.
 pub(crate) struct FieldsRequest {
     /// Names of data, several with commas between them, or `all`. Empty for none.
     pub(crate) names: Vec<String>,

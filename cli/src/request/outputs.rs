@@ -1,4 +1,4 @@
-//! The files that a command writes, and the check of all of them before any work.
+//! Files that a command writes, and checks of all their paths before any work.
 
 use std::fs::File;
 use std::io::Read;
@@ -13,7 +13,7 @@ use crate::error::{CliError, ErrorKind};
 use crate::request::picture::PictureRequest;
 use crate::request::target::TargetRequest;
 
-/// A file with a checkpoint, and how often it is written.
+/// Path of the checkpoint file, and the interval between two checkpoints.
 pub(crate) struct CheckpointPlan {
     pub(crate) file: PathBuf,
     pub(crate) every: Duration,
@@ -22,17 +22,17 @@ pub(crate) struct CheckpointPlan {
 /// How a command writes its mesh, which decides what the mesh may replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MeshOutput {
-    /// A run on one mesh may write it in place, unless it has a checkpoint.
+    /// A run on one mesh. The output may replace IN, unless the run saves checkpoints.
     Smoothed,
-    /// Runs on many meshes write none in place.
+    /// Runs on many meshes may not replace an input mesh.
     OfMany,
-    /// A conversion does not write in place.
+    /// A conversion may not replace its input mesh.
     Converted,
     /// The command writes no mesh.
     None,
 }
 
-/// What a file beside the mesh is.
+/// The purpose of a file beside the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
     Report,
@@ -51,9 +51,10 @@ pub(crate) struct Outputs {
     /// The page for a browser.
     pub(crate) page: Option<PathBuf>,
     pub(crate) checkpoint: Option<CheckpointPlan>,
-    /// Files that are read besides meshes. The checkpoint alone may replace the one that a run continues from.
+    /// Files that are read besides meshes, such as lists of vertices and sources of targets. No output may replace
+    /// them.
     inputs: Vec<PathBuf>,
-    /// The checkpoint that a run continues from.
+    /// The checkpoint from which a run continues. Only the new checkpoint may replace this file.
     continued: Option<PathBuf>,
 }
 
@@ -72,10 +73,10 @@ impl Outputs {
         }
     }
 
-    /// Returns the outputs of a run on one mesh or many.
+    /// Returns the outputs of a run on one mesh or several meshes.
     ///
     /// # Errors
-    /// If the ending of the picture's name is not that of a format of pictures.
+    /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`.
     pub(crate) fn of_run(args: &SmoothArgs) -> Result<Self, CliError> {
         let checkpoint = args.checkpoint.as_ref().or(args.continued.as_ref());
         let mut inputs = args.moving.fix_vertices.clone();
@@ -85,7 +86,7 @@ impl Outputs {
                 Some(_) => MeshOutput::OfMany,
                 None => MeshOutput::Smoothed,
             },
-            // Who resumes says that the directory holds results.
+            // With `--resume`, files in the directory are results of earlier runs.
             replaces_any: args.force || args.resume,
             report: args.report.clone(),
             picture: PictureRequest::of(&args.picture)?,
@@ -100,12 +101,12 @@ impl Outputs {
     /// Returns the outputs of a command that only draws a picture.
     ///
     /// # Errors
-    /// If the ending of the picture's name is not that of a format of pictures.
+    /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`.
     pub(crate) fn of_picture(args: &PictureArgs) -> Result<Self, CliError> {
         Ok(Self { picture: PictureRequest::of(args)?, ..Self::of_mesh(MeshOutput::None) })
     }
 
-    /// Lists the files beside the mesh.
+    /// Lists the paths of the report, picture, page and checkpoint.
     fn beside_mesh(&self) -> impl Iterator<Item = (Role, &Path)> {
         let picture = self.picture.as_ref().map(|picture| &picture.path);
         let checkpoint = self.checkpoint.as_ref().map(|plan| &plan.file);
@@ -118,11 +119,12 @@ impl Outputs {
         all.into_iter().filter_map(|(role, path)| Some((role, path?.as_path())))
     }
 
-    /// Checks, before a mesh is read, all that is known of a mesh that is read from `read` and written to `written`.
+    /// Checks all paths before a mesh is read. `read` and `written` are paths of meshes on the command line.
     ///
     /// # Errors
-    /// Of the kind [`Usage`](ErrorKind::Usage) if a name is that of another kind of file, or if a file would replace another
-    /// one. Of the kind [`Output`](ErrorKind::Output) if the disk has another file at a name, or does not take one.
+    /// Returns a [`Usage`](ErrorKind::Usage) error if a path has a wrong extension, or if an output would replace
+    /// another file of the command. Returns an [`Output`](ErrorKind::Output) error if an output would replace a foreign
+    /// file on disk, or cannot be written.
     pub(crate) fn check(&self, read: &[PathBuf], written: &[PathBuf]) -> Result<(), CliError> {
         self.check_names()?;
         self.check_files(read, written, ErrorKind::Usage)?;
@@ -130,7 +132,8 @@ impl Outputs {
         self.check_disk()
     }
 
-    /// Checks that no name of a file beside the mesh ends as those of meshes do, and that a page is called HTML.
+    /// Checks that no file beside the mesh has an extension of a mesh format, and that the page ends in `.html` or
+    /// `.htm`.
     pub(crate) fn check_names(&self) -> Result<(), CliError> {
         for (role, path) in self.beside_mesh() {
             if role == Role::Page && !is_page(path) {
@@ -144,11 +147,11 @@ impl Outputs {
         Ok(())
     }
 
-    /// Checks that no file replaces another one that is read or written. The files of the mesh are known exactly once it is
-    /// read; before, as far as the command line tells them.
+    /// Checks that no output replaces a file that is read, nor another output. Before the mesh is read, `read` and
+    /// `written` are the paths on the command line; afterwards, all files of the mesh.
     ///
     /// # Errors
-    /// Of the given kind.
+    /// Returns an error of kind `kind` for the first conflict between paths.
     pub(crate) fn check_files(
         &self,
         read: &[PathBuf],
@@ -175,18 +178,18 @@ impl Outputs {
         }
     }
 
-    /// Checks that OUT is not a file of the mesh beside the one that was given as IN: who names two files of a mesh may take them
-    /// for two meshes. `files` are all files of the mesh, the main file first.
+    /// Checks that OUT equals IN if OUT is a file of the mesh: users who name two files of one mesh may mistake them
+    /// for two meshes. `files` lists all files of the mesh, the main file first.
     ///
     /// # Errors
-    /// Of the kind [`Output`](ErrorKind::Output).
+    /// Returns an [`Output`](ErrorKind::Output) error if OUT is a companion file of IN.
     pub(crate) fn check_companion(
         input: &Path,
         out: &Path,
         files: &[PathBuf],
     ) -> Result<(), CliError> {
         let Some(part) = files.iter().position(|own| is_same(own, out)) else { return Ok(()) };
-        // A name without an ending is that of the whole mesh, and so is the main file then.
+        // An IN without an extension denotes the whole mesh, and so does the main file then.
         if is_same(input, out) || (part == 0 && !input.is_file()) {
             return Ok(());
         }
@@ -199,7 +202,7 @@ impl Outputs {
         Err(CliError::output(text).with_remedy(remedy))
     }
 
-    /// Returns the error if the mesh may not replace one of its own files.
+    /// Returns the error if the mesh may not replace its own file `path`; `None` if replacing is allowed.
     fn mesh_in_place(&self, path: &Path, kind: ErrorKind) -> Option<CliError> {
         let path = path.display();
         let (text, remedy) = match self.mesh {
@@ -219,7 +222,8 @@ impl Outputs {
         Some(CliError::new(kind, text).with_remedy(remedy))
     }
 
-    /// Checks that the files beside the mesh can be written, and that none replaces a mesh or a foreign file.
+    /// Checks that the files beside the mesh can be written, that none replaces a mesh, and that a checkpoint replaces
+    /// no foreign file.
     pub(crate) fn check_disk(&self) -> Result<(), CliError> {
         for (role, path) in self.beside_mesh() {
             let head = head(path);
@@ -235,15 +239,15 @@ impl Outputs {
         Ok(())
     }
 
-    /// Checks whether the report can be written, as this may have changed during a long run.
+    /// Checks that the report can still be written. The disk may have changed during a long run.
     pub(crate) fn check_report(&self) -> Result<(), CliError> {
         let Some(report) = &self.report else { return Ok(()) };
         let cannot = |error| CliError::from(error).within(Role::Report.cannot_be_written());
         atomic::ensure_writable(report).map_err(cannot)
     }
 
-    /// Refuses a checkpoint that would replace the checkpoint of another run, or any other file. `head` is the beginning of
-    /// the file, if there is one.
+    /// Refuses to replace another run's checkpoint, or a file of another kind. `head` contains the first bytes of the
+    /// existing file; `None` if the path is free.
     fn check_checkpoint(&self, path: &Path, head: Option<&[u8]>) -> Result<(), CliError> {
         let name = path.display();
         let is_continued = self.continued.as_deref().is_some_and(|from| is_same(from, path));
@@ -266,7 +270,7 @@ impl Outputs {
 }
 
 impl Role {
-    /// Words that a file would replace one of the mesh, or is called like one.
+    /// Returns the error for an output at the path of a mesh file, or with the extension of a mesh format.
     fn is_no_mesh(self, path: &Path, kind: ErrorKind) -> CliError {
         match self {
             Self::Report => {
@@ -315,7 +319,7 @@ impl Role {
     }
 }
 
-/// Whether two paths lead to one file. The standard streams are none.
+/// Returns whether two paths lead to one file. The standard streams (`-`) are never equal.
 fn is_same(a: &Path, b: &Path) -> bool {
     let is_stream = |path: &Path| path.as_os_str() == "-";
     !is_stream(a) && !is_stream(b) && atomic::same_file(a, b)
@@ -326,7 +330,7 @@ fn is_page(path: &Path) -> bool {
     matches!(ending.as_deref(), Some("html" | "htm"))
 }
 
-/// Whether a name ends as files of a format of meshes do, or as the outline beside a Triangle mesh.
+/// Returns whether a path has the extension of a mesh format, or `.poly`, that of a Triangle mesh's outline.
 fn is_named_like_a_mesh(path: &Path) -> bool {
     let is_outline = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly"));
     is_outline || Format::name_of_extension(path).is_some()
@@ -341,9 +345,9 @@ fn check_folder(path: &Path) -> Result<(), CliError> {
     }
 }
 
-/// Returns the beginning of a file. `None` if there is no such file.
+/// Returns the first bytes of a file; `None` if there is no readable file.
 fn head(path: &Path) -> Option<Vec<u8>> {
-    /// Longer than the comments at the beginning of usual meshes.
+    /// Number of bytes read. Comments at the beginning of usual meshes are shorter.
     const LENGTH: u64 = 1 << 16;
     if !path.is_file() {
         return None;
@@ -353,7 +357,7 @@ fn head(path: &Path) -> Option<Vec<u8>> {
     Some(head)
 }
 
-/// Whether a file is a checkpoint, of whichever run.
+/// Returns whether a file is a checkpoint of any run.
 pub(crate) fn is_checkpoint(path: &Path) -> bool {
     head(path).is_some_and(|head| head.starts_with(Checkpoint::MAGIC))
 }

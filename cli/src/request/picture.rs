@@ -27,10 +27,10 @@ pub(crate) struct PictureRequest {
 }
 
 impl PictureRequest {
-    /// Returns the picture of the options, if they ask for one.
+    /// Returns the requested picture; `None` without `--picture`.
     ///
     /// # Errors
-    /// If the ending of the name is not that of a format of pictures.
+    /// A usage error if the extension of the path is neither `.png` nor `.svg`.
     pub(super) fn of(args: &PictureArgs) -> Result<Option<Self>, CliError> {
         let Some(path) = &args.picture else { return Ok(None) };
         Ok(Some(Self {

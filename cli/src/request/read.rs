@@ -7,7 +7,8 @@ use crate::args::ReadArgs;
 /// How meshes are read.
 #[derive(Clone, Copy)]
 pub(crate) struct ReadRequest {
-    /// Whether corners of triangles at one place are joined to one vertex. Only an STL needs it.
+    /// Whether corners of triangles at equal positions are joined to one vertex. STL requires
+    /// joining; other formats ignore the option.
     pub(crate) weld: bool,
     /// Whether a mesh may name files outside of its directory.
     pub(crate) allow_outside: bool,

@@ -1,4 +1,4 @@
-//! The request of a run on one mesh or many.
+//! The request for a run on one mesh or several meshes.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -20,27 +20,27 @@ use crate::request::outputs::Outputs;
 use crate::request::read::ReadRequest;
 use crate::request::target::TargetRequest;
 
-/// A run, or the same run on many meshes.
+/// A run on one mesh, or equal runs on many meshes.
 pub(crate) struct SmoothRequest {
     pub(crate) meshes: Meshes,
     pub(crate) reading: ReadRequest,
-    /// What coordinates are.
+    /// The surface on which coordinates lie.
     pub(crate) surface: Surface,
     pub(crate) target: TargetRequest,
     pub(crate) movable: MovableRequest,
-    /// What slides; `None` if nothing does.
+    /// Options of sliding vertices; `None` if no vertex slides.
     pub(crate) slide: Option<SlideRequest>,
     pub(crate) fields: FieldsRequest,
     pub(crate) engine: EngineRequest,
     /// The options of the library, for coordinates in double precision.
     run: Options,
-    /// The time after which the run ends, from when the mesh begins to be read.
+    /// The time after which the run ends, counted from the start of reading the mesh.
     pub(crate) time_limit: Option<Duration>,
-    /// Whether and how a tangled mesh is untangled; `None` to refuse it.
+    /// The treatment of a mesh with inverted or flat triangles; `None` if the mesh is refused.
     pub(crate) untangle: Option<UntangleRequest>,
-    /// The checkpoint that the run continues from.
+    /// The checkpoint from which the run continues.
     pub(crate) continue_from: Option<PathBuf>,
-    /// Whether a run that falls short is an error.
+    /// Whether a run that neither converges nor reaches its goal is an error.
     pub(crate) is_strict: bool,
     pub(crate) outputs: Outputs,
 }
@@ -56,12 +56,12 @@ pub(crate) struct Batch {
     pub(crate) inputs: Vec<PathBuf>,
     /// The directory of the results.
     pub(crate) directory: PathBuf,
-    /// Whether meshes whose results are newer than they are left out.
+    /// Whether a mesh is skipped if its result files are all newer than the mesh.
     pub(crate) skips_done: bool,
     pub(crate) table: TableForm,
 }
 
-/// How the table of many meshes is printed.
+/// The format of the printed table of many meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TableForm {
     Text,
@@ -75,7 +75,7 @@ pub(crate) enum EngineRequest {
     /// The CPU or a GPU, whichever is estimated to end the run sooner.
     Auto,
     Cpu,
-    /// On the first adapter with this text in its name, or on the best one.
+    /// The first GPU adapter with the text `adapter` in its name, or the best adapter if that is `None`.
     Gpu {
         adapter: Option<String>,
     },
@@ -91,18 +91,18 @@ impl EngineRequest {
     }
 }
 
-/// How a mesh is untangled.
+/// Options of untangling a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct UntangleRequest {
-    /// Whether the best mesh found is written if triangles stay inverted.
+    /// Whether the best mesh found is written if inverted triangles remain.
     pub(crate) keeps_going: bool,
 }
 
 impl SmoothRequest {
-    /// Returns the request of options that do not contradict each other.
+    /// Returns the request for options without conflicts.
     ///
     /// # Errors
-    /// If a file has a name that its kind of file cannot have.
+    /// Returns a usage error if IN or OUT is missing, or if the picture's extension is unknown.
     pub(crate) fn new(args: SmoothArgs) -> Result<Self, CliError> {
         let (run, outputs) = (options(&args), Outputs::of_run(&args)?);
         let (given, more) = (args.input.into_iter().chain(args.output), args.more);
@@ -149,17 +149,18 @@ impl SmoothRequest {
         self.run.max_sweeps
     }
 
-    /// Returns how far vertices may move, in lengths of an edge, if that is bounded.
+    /// Returns the largest distance that a vertex may move, in lengths of an edge; `None` without a limit.
     pub(crate) fn max_move(&self) -> Option<f64> {
         self.run.max_move
     }
 
-    /// Whether the history of a report has the objectives of all metrics.
+    /// Returns whether the history of a report has the objectives of all metrics.
     pub(crate) fn tracks_all(&self) -> bool {
         self.run.track_all
     }
 
-    /// Returns the share of f within which the run ends, if it has no other goal.
+    /// Returns `--tolerance` if it ends the run, `None` with `--fraction` or `--desired`. The time display
+    /// extrapolates to the tolerance.
     pub(crate) fn estimated_end(&self) -> Option<f64> {
         match self.run.stopping {
             Stopping::Tolerance(tolerance) => Some(tolerance),
@@ -208,14 +209,14 @@ pub(super) fn options(args: &SmoothArgs) -> Options {
     let edge_norm = match args.edge_norm {
         None => None,
         Some(EdgeNorm::Fixed) => Some(PNormExponent::FIXED),
-        // The default exponent of such runs, as far as the tolerance asks.
+        // By default, the exponent of multilevel runs doubles as far as the tolerance requires.
         Some(EdgeNorm::Continued) if doubles_anyway(&options) => None,
         Some(EdgeNorm::Continued) => Some(PNormExponent::CONTINUED),
     };
     Options { edge_norm, ..options }
 }
 
-/// Returns the method of a run. A setting of one method alone chooses that method if the command line names none.
+/// Returns the method of a run. With `--method auto`, a setting that only one method has selects that method.
 fn method(args: &SmoothArgs) -> Method {
     let derivatives = match args.derivatives {
         DerivativesChoice::Analytic => Derivatives::Analytic,
@@ -233,12 +234,12 @@ fn method(args: &SmoothArgs) -> Method {
     }
 }
 
-/// Whether the exponent of edge's p-norm doubles anyway.
+/// Returns whether the exponent of edge's p-norm doubles without `--edge-norm`.
 fn doubles_anyway(options: &Options) -> bool {
     options.is_multilevel() && options.scheme.base() == Metric::Edge
 }
 
-/// Returns the measure of the worst triangles, if they are to be improved.
+/// Returns the measure of `--improve-worst`; `None` without the option.
 fn worst_by(args: &WorstArgs) -> Option<WorstBy> {
     args.improve_worst.map(|choice| match choice {
         WorstChoice::Imr => WorstBy::Imr,
@@ -255,7 +256,7 @@ mod tests {
     use clap::Parser;
     use std::path::Path;
 
-    /// Returns the request of a command line after the name of the program.
+    /// Returns the request of a command line without the name of the program.
     fn request(words: &str) -> Result<SmoothRequest, CliError> {
         let words = std::iter::once("gpu-smooth").chain(words.split_whitespace());
         SmoothRequest::new(Cli::try_parse_from(words).unwrap().smooth)

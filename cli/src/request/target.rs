@@ -1,4 +1,4 @@
-//! The request on the targets of elements, and on the surface that coordinates are on.
+//! Requests for the targets of elements, and for the surface on which coordinates lie.
 
 use std::path::{Path, PathBuf};
 
@@ -15,10 +15,10 @@ impl From<&SurfaceArgs> for Surface {
     }
 }
 
-/// What elements are to look like.
+/// The desired shape and size of elements.
 pub(crate) enum TargetRequest {
     Equilateral,
-    /// The sizes, or the sizes and shapes, that the mesh has.
+    /// The present sizes, or sizes and shapes, of the elements of the mesh.
     Keep {
         what: ElementProperty,
         /// The number of rings of neighbors over which sizes and shapes are averaged.
@@ -28,7 +28,7 @@ pub(crate) enum TargetRequest {
     /// Sizes or tensors of a file or of point data.
     Given {
         what: TargetNumbers,
-        /// The source as the command line has it.
+        /// The text after `size=` or `metric=` on the command line.
         text: String,
         source: TargetSource,
         is_of_places: bool,
@@ -42,7 +42,7 @@ pub(crate) enum ElementProperty {
     Shape,
 }
 
-/// The numbers that a source of targets has.
+/// The quantity given for each vertex by the source of a target.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TargetNumbers {
     /// One length for each vertex.
@@ -51,7 +51,7 @@ pub(crate) enum TargetNumbers {
     Tensors,
 }
 
-/// Where the numbers of targets are.
+/// The location of the numbers of targets.
 pub(crate) enum TargetSource {
     /// A file with numbers for each vertex of the mesh, or point data of the mesh.
     OfMesh(String),
@@ -80,7 +80,7 @@ impl From<&TargetArgs> for TargetRequest {
 }
 
 impl TargetRequest {
-    /// Whether targets belong to places and are taken anew where vertices have moved to.
+    /// Returns whether targets belong to places, and are evaluated again at the new positions of vertices.
     pub(crate) fn is_of_places(&self) -> bool {
         match self {
             Self::Equilateral => false,
@@ -88,7 +88,7 @@ impl TargetRequest {
         }
     }
 
-    /// Returns the target as the command line has it.
+    /// Returns the value of `--target` on the command line.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::Equilateral => "equilateral".to_owned(),
@@ -99,7 +99,7 @@ impl TargetRequest {
         }
     }
 
-    /// Returns the files that targets are read from, as far as they exist.
+    /// Returns the existing files from which targets are read.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let Self::Given { source, .. } = self else { return Vec::new() };
         let files = match source {
@@ -112,7 +112,8 @@ impl TargetRequest {
 }
 
 impl TargetSource {
-    /// Finds out what a text names. That depends on which files exist.
+    /// Parses SOURCE of `--target`. An existing file with a colon in its name takes precedence over
+    /// BACKGROUND:DATA.
     fn of(text: &str) -> Self {
         let path = Path::new(text);
         if is_view(path) {
@@ -134,17 +135,18 @@ fn is_view(path: &Path) -> bool {
 }
 
 impl TargetArgs {
-    /// Returns the metric if the user chose none.
+    /// Returns the metric of a run without `--scheme`.
     pub(crate) fn default_metric(&self) -> Metric {
         if self.is_of_sizes() { Metric::SoftSize } else { Metric::Imr }
     }
 
-    /// Whether the target is only of sizes, so that a metric that sees no sizes would ignore it.
+    /// Returns whether the target has sizes but no shapes. A metric that sees no sizes would ignore such a
+    /// target.
     pub(crate) fn is_of_sizes(&self) -> bool {
         matches!(self.target, Target::KeepSize | Target::Size { .. })
     }
 
-    /// Returns the source of sizes or tensors, if there is one.
+    /// Returns the text after `size=` or `metric=`; `None` for other targets.
     pub(crate) fn source(&self) -> Option<&str> {
         match &self.target {
             Target::Size { source } | Target::Metric { source } => Some(source),
@@ -152,12 +154,13 @@ impl TargetArgs {
         }
     }
 
-    /// Whether the source is a view of gmsh.
+    /// Returns whether the source is an existing view of gmsh.
     pub(crate) fn has_view(&self) -> bool {
         self.source().is_some_and(|source| is_view(Path::new(source)))
     }
 
-    /// Whether targets belong to places, not to vertices.
+    /// Returns whether targets belong to places instead of vertices. By default, targets on a background
+    /// mesh or view do.
     pub(crate) fn is_of_places(&self) -> bool {
         let is_on_background = self
             .source()
@@ -166,7 +169,7 @@ impl TargetArgs {
         self.target != Target::Equilateral && self.target_of.unwrap_or(default) == Owner::Place
     }
 
-    /// Whether sizes or shapes of the mesh itself are kept.
+    /// Returns whether the target keeps sizes or shapes of the mesh itself.
     pub(crate) fn keeps(&self) -> bool {
         matches!(self.target, Target::KeepSize | Target::KeepShape)
     }

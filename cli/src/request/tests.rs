@@ -1,4 +1,5 @@
-//! Random command lines, and the test that no option is untested. The environment variable `FUZZ_ROUNDS` multiplies their number.
+//! Tests of random command lines, whose number the environment variable `FUZZ_ROUNDS` multiplies, and a test that each
+//! option is used in a test.
 
 #[allow(dead_code, unreachable_pub)]
 #[path = "../../../tests/support/rng.rs"]
@@ -32,7 +33,7 @@ fn command_lines_of_any_words_are_refused_or_can_be_carried_out() {
     assert!(seen.len() >= 6 && seen.values().all(|count| *count > 8), "{seen:?}");
 }
 
-/// Whether a text has a word that begins with `option` and ends there.
+/// Returns whether a text contains `option`, and not only a longer name that begins with `option`.
 fn names(text: &str, option: &str) -> bool {
     let is_longer = |c: char| c.is_ascii_alphanumeric() || c == '-';
     let mut found = text.match_indices(option);

@@ -1,4 +1,4 @@
-//! Keeps what a long run needs to go on: checkpoints, and another engine if a device fails.
+//! Recovery of long runs: checkpoints, and the change of engine if a device fails.
 
 use std::cell::Cell;
 use std::fs;
@@ -17,7 +17,7 @@ use crate::run::observer::Follow;
 
 const WITHOUT_CONTINUE: &str = "Without --continue the run starts anew";
 
-/// Reads the checkpoint from which the run continues. `None` without `--continue`.
+/// Reads the checkpoint from which the run continues; `None` without `--continue`.
 pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>, CliError> {
     let Some(path) = continue_from else { return Ok(None) };
     let name = path.display();
@@ -37,14 +37,14 @@ pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>
     Checkpoint::from_bytes(&bytes).map(Some).ok_or_else(refused)
 }
 
-/// Keeps the state of a run as the command line asks.
+/// Saver of the checkpoints of a run, as `--checkpoint` and `--checkpoint-every` request.
 pub(crate) struct CheckpointSaver<'a, 'f> {
-    /// Where and how often checkpoints are saved; `None` if they are not.
+    /// File and interval of checkpoints; `None` if none are saved.
     plan: Option<&'a CheckpointPlan>,
     follow: &'a Mutex<&'f mut dyn Follow>,
-    /// When the next checkpoint is due; `None` if never.
+    /// Time of the next checkpoint; `None` if no checkpoint will be saved.
     due: Option<Instant>,
-    /// Whether there is a checkpoint of this run in its file.
+    /// Whether the file holds a checkpoint of this run.
     saved: Cell<bool>,
     told_of_fault: bool,
 }
@@ -63,7 +63,7 @@ impl<'a, 'f> CheckpointSaver<'a, 'f> {
         self.follow.lock().unwrap_or_else(PoisonError::into_inner).remark(text);
     }
 
-    /// Tells the user how to go on with a run that was left.
+    /// Tells the user how to continue a canceled run, if a checkpoint was saved.
     pub(crate) fn left(&self) {
         if let (true, Some(plan)) = (self.saved.get(), self.plan) {
             let path = plan.file.display();
@@ -91,8 +91,8 @@ impl CheckpointPolicy for CheckpointSaver<'_, '_> {
     }
 
     fn falls_back_to_cpu(&mut self, error: &GpuError, from: u32) -> bool {
-        // Before the first sweep there is nothing to go on with. The caller then takes the CPU if the choice of engine
-        // was left open, or refuses the mesh.
+        // Before the first sweep, no progress would be lost. The caller then chooses the CPU if the engine was left
+        // open, or refuses the mesh.
         if from == 0 && engine::is_too_large_for_device(error) {
             return false;
         }
@@ -105,11 +105,11 @@ impl CheckpointPolicy for CheckpointSaver<'_, '_> {
     }
 }
 
-/// Removes the checkpoint of a run whose mesh is written, unless the run was left before its end.
+/// Removes the checkpoint of a run after its mesh is written, unless the run was canceled.
 pub(crate) fn clear(plan: Option<&CheckpointPlan>, stop: Stop) {
     let Some(CheckpointPlan { file, .. }) = plan else { return };
     if stop != Stop::Canceled && is_checkpoint(file) {
-        // A checkpoint that is left does no harm.
+        // A checkpoint that cannot be removed does no harm.
         let _ = fs::remove_file(file);
     }
 }
@@ -121,7 +121,7 @@ mod tests {
     use crate::terminal::progress::Stage;
     use gpu_smooth::Progress;
 
-    /// Collects remarks.
+    /// An observer that collects remarks.
     #[derive(Default)]
     struct Remarks(Vec<String>);
 

@@ -1,4 +1,4 @@
-//! Tries the drivers of GPUs in a process of its own. A driver that crashes ends that process, not this one.
+//! Trial of GPU drivers in a child process, which isolates this process from a driver's crash.
 
 use std::collections::BTreeMap;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -7,28 +7,28 @@ use std::time::{Duration, Instant};
 
 use gpu_smooth::GpuError;
 
-/// How long drivers may take to start and answer. Slow ones have taken five seconds to compile their first kernel.
+/// Time limit for drivers to start and answer. Slow drivers have needed five seconds to compile their first kernel.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// How often the process is checked for its end.
+/// Interval between two checks whether the child process has ended.
 const INTERVAL: Duration = Duration::from_millis(5);
 
-/// Environment variable that marks a trial process, which must not start another one.
+/// Environment variable that marks a child process. A marked process must not start another trial.
 const MARK: &str = "GPU_SMOOTH_IS_TRIAL";
 
-/// The drivers that are tried.
+/// The drivers of a trial.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tried<'a> {
     /// The drivers of all adapters.
     All,
-    /// The driver of the adapter that [`gpu_smooth::Gpu::open`] takes for this name.
+    /// The driver of the adapter that [`gpu_smooth::Gpu::open`] opens for this name.
     Adapter(Option<&'a str>),
 }
 
-/// Tries whether the driver of an adapter, or of all adapters, starts, opens the adapter and computes. Each driver is
-/// tried once.
+/// Tests whether a driver starts, opens its adapter and computes, for one adapter or all adapters. Results are cached
+/// for the life of the process.
 ///
 /// # Errors
-/// [`GpuError::Crashed`] if the driver ended the process, or did not answer.
+/// Returns [`GpuError::Crashed`] if a driver ended the child process, or did not answer in time.
 pub(crate) fn drivers(tried: Tried<'_>) -> Result<(), GpuError> {
     static KNOWN: Mutex<BTreeMap<Option<String>, Result<(), GpuError>>> =
         Mutex::new(BTreeMap::new());
@@ -37,7 +37,7 @@ pub(crate) fn drivers(tried: Tried<'_>) -> Result<(), GpuError> {
     }
     let name = match tried {
         Tried::All => None,
-        // Every name contains the empty text, so this stands for the first adapter.
+        // An empty name matches every adapter, so it denotes the first one.
         Tried::Adapter(name) => Some(name.unwrap_or_default().to_owned()),
     };
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -52,10 +52,10 @@ fn outcome(name: Option<&str>) -> Result<(), String> {
     let mut command = Command::new(program);
     command.arg("adapters").args(name.map(|name| ["--", name]).into_iter().flatten());
     command.env(MARK, "1").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    // If no second process can be started, the driver counts as working.
+    // If no child process can be started, the driver is assumed to work.
     let Ok(mut child) = command.spawn() else { return Ok(()) };
     match ended(&mut child) {
-        // 0: the adapters were listed. 1: an error that will be reported when a device is opened here.
+        // Code 0: the adapters were listed. Code 1: an error that this process will report when opening a device.
         Some(status) if matches!(status.code(), Some(0 | 1)) => Ok(()),
         Some(status) => Err(status.to_string()),
         None => {
@@ -66,7 +66,7 @@ fn outcome(name: Option<&str>) -> Result<(), String> {
     }
 }
 
-/// Waits for the process to end. `None` if it does not end in time.
+/// Waits for a process to end; `None` if it exceeds the time limit.
 fn ended(child: &mut Child) -> Option<ExitStatus> {
     let start = Instant::now();
     while start.elapsed() < PATIENCE {

@@ -1,4 +1,4 @@
-//! Chooses and opens the engine that a run computes on.
+//! Choice and opening of the engine that computes a run.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -13,12 +13,12 @@ use crate::run::driver_probe::{self, Tried};
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
 
-/// An engine, and the reason for it if the command line left the choice open.
+/// An open engine. `reason` explains an automatic choice; `None` if the command line determined the engine.
 #[derive(Clone)]
 pub(crate) struct Taken {
     pub(crate) backend: Arc<Backend>,
     pub(crate) reason: Option<String>,
-    /// Locked during a run, if other runs wait for the same device.
+    /// Lock that the runs on a shared device hold in turn; `None` for engines without turns.
     turn: Option<Arc<Mutex<()>>>,
 }
 
@@ -27,13 +27,13 @@ impl Taken {
         Self { backend: Arc::new(backend), reason, turn: None }
     }
 
-    /// Waits until no other run uses the device. The device is taken as long as the returned guard lives.
+    /// Waits until no other run uses the device, and reserves the device for the life of the returned guard.
     pub(crate) fn turn(&self) -> Option<MutexGuard<'_, ()>> {
         self.turn.as_ref().map(|turn| turn.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// Opens the engine of a request. `None` if the engine is to be chosen by the size of the mesh.
+/// Opens the requested engine; `None` if the size of the mesh is to determine the engine.
 pub(crate) fn open(engine: &EngineRequest) -> Result<Option<Taken>, CliError> {
     let backend = match engine {
         EngineRequest::Auto => return Ok(None),
@@ -43,14 +43,14 @@ pub(crate) fn open(engine: &EngineRequest) -> Result<Option<Taken>, CliError> {
     Ok(Some(Taken::new(backend, None)))
 }
 
-/// Chooses the engine for a mesh of this size and opens it.
+/// Chooses an engine for a mesh by its size, and opens the engine.
 pub(crate) fn choose(request: &SmoothRequest, size: MeshSize) -> Taken {
     let options = request.options(Precision::Double);
     let (backend, reason) = Backend::auto_tried(size, &options, try_best);
     Taken::new(backend, Some(worded(&reason)))
 }
 
-/// Opens the engine that a run was left on, or the CPU if that engine does not open.
+/// Opens the engine of a checkpoint's last sweep, or the CPU if that engine fails to open.
 pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
     let Some(name) = checkpoint.adapter() else {
         return Taken::new(Backend::Cpu, Some("where the run was left".into()));
@@ -64,7 +64,7 @@ pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
     }
 }
 
-/// Words the reason of a choice, with the option that makes another.
+/// Describes the reason of a choice, with the option that overrides the choice.
 fn worded(reason: &Reason) -> String {
     match reason {
         Reason::GpuFails(_) => reason.to_string(),
@@ -73,34 +73,34 @@ fn worded(reason: &Reason) -> String {
     }
 }
 
-/// The engines of many runs. A device is opened once, and runs take turns on it.
+/// The engines of many runs. A device is opened once, and its runs take turns.
 pub(crate) struct Engines<'a> {
     request: &'a SmoothRequest,
-    /// The engine that the command line asks for, if it asks for one.
+    /// The engine determined by the command line; `None` if meshes determine it.
     asked: Option<Taken>,
     found: Mutex<Found>,
 }
 
-/// The engines that earlier choices found.
+/// The results of earlier automatic choices.
 #[derive(Default)]
 struct Found {
-    /// A device, and the least number of vertices for which it is taken.
+    /// An open device, and the smallest number of vertices for which the device is faster.
     gpu: Option<(Taken, usize)>,
-    /// The CPU, and the most vertices for which it is taken because no GPU is faster.
+    /// The CPU, and the largest number of vertices for which the CPU was found faster.
     small: Option<(Taken, usize)>,
-    /// The CPU, and the least number of vertices for which it is taken because there is no GPU.
+    /// The CPU, and the smallest number of vertices for which no usable GPU was found.
     large: Option<(Taken, usize)>,
 }
 
 impl<'a> Engines<'a> {
-    /// Opens the engine that the command line asks for, if it asks for one.
+    /// Opens the engine that the command line determines, if any.
     pub(crate) fn new(request: &'a SmoothRequest) -> Result<Self, CliError> {
         let asked = open(&request.engine)?.map(in_turns);
         Ok(Self { request, asked, found: Mutex::default() })
     }
 
-    /// Returns the engine for a mesh of this size. Must not be called from a thread of a rayon pool, as the choice
-    /// counts the threads.
+    /// Returns the engine for a mesh of a given size. The choice counts rayon's threads, so the caller must not be on
+    /// a thread of a rayon pool.
     pub(crate) fn take(&self, size: MeshSize) -> Taken {
         if let Some(asked) = &self.asked {
             return asked.clone();
@@ -131,14 +131,14 @@ impl<'a> Engines<'a> {
             | Reason::GpuFails(GpuError::NoAdapter { .. } | GpuError::Crashed(_)) => {
                 *large = Some(known);
             }
-            // The GPU may have room for a smaller mesh, so nothing is remembered.
+            // The GPU may have enough memory for smaller meshes, so this choice is not reused.
             _ => {}
         }
         taken
     }
 }
 
-/// Makes runs take turns on an engine that they share.
+/// Makes the runs on a shared device take turns. The CPU needs no turns.
 fn in_turns(taken: Taken) -> Taken {
     match &*taken.backend {
         Backend::Cpu => taken,
@@ -146,23 +146,23 @@ fn in_turns(taken: Taken) -> Taken {
     }
 }
 
-/// Opens an adapter, for a command that needs one.
+/// Opens an adapter for a command that requires one.
 pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, CliError> {
     tried_and_opened(name).map_err(refusal)
 }
 
-/// Opens an adapter after it was tried in a process of its own, as a driver that crashes would end this one without a
-/// message.
+/// Opens an adapter after a trial in a child process. A driver that crashes would otherwise end this process without
+/// a message.
 fn tried_and_opened(name: Option<&str>) -> Result<Gpu, GpuError> {
     driver_probe::drivers(Tried::Adapter(name)).and_then(|()| Gpu::open(name))
 }
 
-/// Tries the adapter that would be taken by default, in a process of its own.
+/// Tries the default adapter in a child process.
 fn try_best() -> Result<(), GpuError> {
     driver_probe::drivers(Tried::Adapter(None))
 }
 
-/// Words why there is no adapter, and what to do.
+/// Converts the failure to open an adapter to an error with a remedy.
 pub(crate) fn refusal(error: GpuError) -> CliError {
     match error {
         GpuError::NoAdapter { wanted: Some(name), available } if !available.is_empty() => {
@@ -173,22 +173,22 @@ pub(crate) fn refusal(error: GpuError) -> CliError {
             CliError::device("no GPU adapter was found").with_remedy(INSTALL)
         }
         GpuError::Arithmetic { .. } => error.into(),
-        // There is a driver, but it fails.
+        // A driver exists but fails.
         error => CliError::from(error).with_remedy("Use --engine cpu, or another driver"),
     }
 }
 
-/// The error if the thread that starts a driver ended by a panic.
+/// Returns the error for a panic of the thread that opens the engine.
 pub(crate) fn driver_crashed() -> CliError {
     CliError::device("the graphics driver crashed on start")
 }
 
-/// Whether a run failed because the GPU cannot hold the mesh.
+/// Returns whether a run failed because the mesh does not fit the GPU.
 pub(crate) fn is_too_large(error: &SmoothError) -> bool {
     matches!(error, SmoothError::Gpu(error) if is_too_large_for_device(error))
 }
 
-/// Whether a device has no room for what is asked of it.
+/// Returns whether a device's limits or memory were exceeded.
 pub(crate) fn is_too_large_for_device(error: &GpuError) -> bool {
     matches!(error, GpuError::Limit { .. } | GpuError::TooLarge { .. } | GpuError::OutOfMemory(_))
 }

@@ -1,19 +1,19 @@
-//! The input of the stages of a run.
+//! Input shared by the stages of a run.
 
 use crate::load::{Choice, LoadedMesh};
 use crate::report::Task;
 use crate::request::SmoothRequest;
 use std::time::Instant;
 
-/// A mesh as its stages see it, with the task that it comes from.
+/// A mesh with its task and the selection of movable vertices.
 #[derive(Clone, Copy)]
 pub(super) struct Input<'a> {
     pub(super) task: &'a Task<'a>,
     pub(super) file: &'a LoadedMesh,
     pub(super) choice: &'a Choice,
-    /// The size of the input file, or 0 if the input is no file.
+    /// Size of the input file in bytes; 0 if the input is not a file.
     pub(super) bytes: u64,
-    /// The time at which the run began, from which its time limit counts.
+    /// Start of the run, from which the time limit counts.
     pub(super) began: Instant,
 }
 

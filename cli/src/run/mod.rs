@@ -1,4 +1,4 @@
-//! The run on a mesh: its engine, its stages from file to file, and the proof of its result.
+//! Runs on a mesh: engine, stages from input to output file, and proof of the result.
 
 pub(crate) mod checkpoint;
 pub(crate) mod driver_probe;

@@ -1,4 +1,4 @@
-//! A trait to be told of each step in the life of a mesh, from reading to writing.
+//! Observation of a mesh's pipeline from reading to writing.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -6,16 +6,17 @@ use gpu_smooth::Progress;
 
 use crate::terminal::progress::Stage;
 
-/// Is told how far a mesh is on its way from file to file.
+/// Observer of the pipeline of one mesh. An error from `has_read` or `has_smoothed` stops the
+/// pipeline before the next stage.
 pub(crate) trait Follow: Send {
-    /// Is told that a stage begins.
+    /// Called at the start of each stage.
     fn stage(&mut self, stage: Stage);
-    /// Is told that the mesh has been read. An error ends the run before any work is done.
+    /// Called after the mesh has been read. An error stops the pipeline before any work.
     fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError>;
-    /// Takes a remark on the mesh for the user.
+    /// Receives a remark on the mesh, to be shown to the user.
     fn remark(&mut self, text: &str);
-    /// Is told that sweeps were done.
+    /// Receives the progress after each sweep or batch of sweeps.
     fn sweep(&mut self, progress: &Progress);
-    /// Is told that the sweeps are over. An error keeps the mesh from being written.
+    /// Called after the last sweep. An error prevents the mesh from being written.
     fn has_smoothed(&mut self) -> Result<(), CliError>;
 }

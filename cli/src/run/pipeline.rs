@@ -1,4 +1,4 @@
-//! The way of a mesh from file to file, in a run by itself or as one of many.
+//! The pipeline of one mesh from input to output file, for single meshes and batches.
 
 use std::path::Path;
 use std::time::Instant;
@@ -19,18 +19,19 @@ use crate::run::run_report;
 use crate::run::sweeps::smooth;
 use crate::terminal::progress::Stage;
 
-/// A mesh that was read, with what its options chose in it.
+/// A mesh after reading, with the selection of movable vertices and interpolated fields.
 struct ReadMesh {
     file: LoadedMesh,
     choice: Choice,
     riding: Riding,
-    /// The size of the input file, or 0 if the input is no file.
+    /// Size of the input file in bytes; 0 if the input is not a file.
     bytes: u64,
-    /// The time at which reading ended.
+    /// Time at the end of reading.
     at: Instant,
 }
 
-/// Reads a mesh, smooths it on the engine that `engine` returns for its size, and writes it. Then calls `finish`.
+/// Reads a mesh, smooths it on the engine that `engine` returns for the mesh's size, and writes the result. Then
+/// calls `finish`.
 pub(crate) fn carry_out<T>(
     task: &Task<'_>,
     engine: impl FnOnce(MeshSize) -> Result<Taken, CliError> + Send,
@@ -72,7 +73,8 @@ pub(crate) fn carry_out<T>(
     Ok(finish(done)?)
 }
 
-/// Reads a mesh and chooses what may move in it. Tells the remarks on the mesh.
+/// Reads a mesh, and applies the options that select vertices and fields. Passes remarks on the mesh to the
+/// observer.
 fn read(task: &Task<'_>, follow: &mut dyn Follow) -> Result<ReadMesh, CliError> {
     let request = task.request;
     let bytes = size_of(task.input);
@@ -91,7 +93,7 @@ fn read(task: &Task<'_>, follow: &mut dyn Follow) -> Result<ReadMesh, CliError> 
     Ok(ReadMesh { file, choice, riding, bytes, at })
 }
 
-/// Returns the size of a file, or 0 if there is no such file.
+/// Returns the size of a file in bytes; 0 if the file does not exist.
 fn size_of(path: &Path) -> u64 {
     std::fs::metadata(path).map_or(0, |found| found.len())
 }

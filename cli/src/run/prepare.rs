@@ -1,4 +1,4 @@
-//! The preparation of a mesh: its engine, its colors and levels, untangling, targets and sliding.
+//! Preparation of a mesh: engine, colors and levels, untangling, targets and sliding.
 
 use std::time::Instant;
 
@@ -15,37 +15,37 @@ use crate::run::observer::Follow;
 use crate::run::untangle::{self, Mended};
 use crate::terminal::progress::Stage;
 
-/// A mesh that can be smoothed: as it was read, or after it was untangled.
+/// A mesh ready for sweeps, either as read or after untangling.
 pub(super) enum Prepared<'a> {
     Ready(Box<Smoother<'a>>),
     Mended(Mended),
 }
 
-/// The prepared mesh and the engine, each with the reason if there is none.
+/// The prepared mesh and the open engine, or the errors that prevented them.
 pub(super) struct Opened<'a> {
     pub(super) prepared: Result<Prepared<'a>, Failure>,
     pub(super) taken: Result<Taken, CliError>,
 }
 
-/// The smoother of a mesh, and how the mesh was untangled before, if it was.
+/// The smoother of a mesh. `mended` describes the untangling; `None` if the mesh was not untangled.
 pub(super) struct Subject<'a> {
     pub(super) smoother: Smoother<'a>,
     pub(super) mended: Option<&'a Mended>,
 }
 
-/// All that the sweeps need.
+/// Input of the sweeps.
 pub(super) struct Ready<'a> {
     pub(super) smoother: Smoother<'a>,
     pub(super) mended: Option<&'a Mended>,
     pub(super) taken: Taken,
-    /// The quality of the mesh before the run.
+    /// Quality of the mesh before the run, and before untangling.
     pub(super) before: Quality,
-    /// The time at which the preparation ended.
+    /// Time at the end of the preparation.
     pub(super) at: Instant,
 }
 
 impl<'a> Subject<'a> {
-    /// Prepares a mesh that was untangled.
+    /// Prepares an untangled mesh.
     pub(super) fn of_mended(file: &LoadedMesh, mended: &'a Mended) -> Result<Self, CliError> {
         let smoother = Smoother::new(&mended.mesh);
         let smoother = smoother.map_err(|error| explain::mesh_error(file, &error))?;
@@ -53,7 +53,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// Prepares a mesh while its engine starts, and untangles the mesh if that was asked for.
+/// Prepares a mesh while a second thread opens its engine. Untangles the mesh if requested and necessary.
 pub(super) fn open<'a>(
     input: &Input<'a>,
     riding: &Riding,
@@ -89,8 +89,8 @@ fn prepared<'a>(
     }
 }
 
-/// Sets the targets of a prepared mesh and what slides in it, and measures the mesh. Takes the CPU instead of `taken` if
-/// no vertex is free.
+/// Sets targets and sliding vertices of a prepared mesh, and measures its quality. If no vertex is free, the CPU
+/// replaces `taken`.
 pub(super) fn set_up<'a>(
     input: &Input<'a>,
     subject: Subject<'a>,
@@ -122,7 +122,7 @@ pub(super) fn set_up<'a>(
     Ok(Ready { smoother, mended, taken, before, at: Instant::now() })
 }
 
-/// Prepares a mesh to be smoothed. If vertices slide, none needs to be free.
+/// Prepares a mesh for smoothing. Returns [`MeshError::NothingFree`] if no vertex is free and none can slide.
 fn smoother<'f>(request: &SmoothRequest, file: &'f LoadedMesh) -> Result<Smoother<'f>, MeshError> {
     let mut smoother = Smoother::new(file.mesh())?;
     if smoother.topology().free_count() == 0 {
@@ -135,7 +135,8 @@ fn smoother<'f>(request: &SmoothRequest, file: &'f LoadedMesh) -> Result<Smoothe
     Ok(smoother)
 }
 
-/// Words why a mesh is not smoothed, with its inverted and flat triangles if a report was asked for.
+/// Returns the failure of a mesh that cannot be smoothed, with all inverted and flat triangles if a report is
+/// requested.
 fn refusal(
     request: &SmoothRequest,
     choice: &Choice,

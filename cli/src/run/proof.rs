@@ -1,4 +1,4 @@
-//! Compares two files of a mesh to prove that one is the other with vertices moved.
+//! Comparison of two mesh files, to prove that they differ only by moved vertices.
 
 use crate::load::LoadedMesh;
 use gpu_smooth::{MeshError, Slide, Topology, topology::BadTriangle};
@@ -9,23 +9,23 @@ use std::collections::BTreeSet;
 use crate::load::Riding;
 use crate::report::FileHash;
 
-/// What a comparison of two mesh files finds. It does not rest on anything that a run says it did.
+/// Result of comparing two mesh files. The result depends on the files alone, not on data of a run.
 pub(crate) struct Proof {
-    /// The first difference that is neither in coordinates nor in data that may change.
+    /// The first difference outside of coordinates and interpolated data; `None` if there is none.
     pub(crate) difference: Option<Difference>,
-    /// Vertices whose coordinates have other bits, ascending.
+    /// Vertices whose coordinates differ in any bit, ascending.
     pub(crate) moved: Vec<u32>,
-    /// Vertices that moved and must not, ascending.
+    /// Moved vertices that are not free, ascending. With sliding, only vertices that left their line.
     pub(crate) held: Vec<u32>,
-    /// How many vertices on lines slid along their line.
+    /// Number of vertices that slid along their line.
     pub(crate) slid: usize,
-    /// How many periodic pairs of vertices slid together.
+    /// Number of periodic pairs whose vertices slid together.
     pub(crate) pairs: usize,
-    /// Triangles that are inverted or flat in the second file, by exact predicates.
+    /// Inverted or flat triangles of the second file, by exact predicates.
     pub(crate) bad: Vec<BadTriangle>,
 }
 
-/// A mesh before or after a run, with its data that may change.
+/// A mesh before or after a run, with its interpolated fields.
 #[derive(Clone, Copy)]
 pub(crate) struct MeshVersion<'a> {
     pub(crate) file: &'a LoadedMesh,
@@ -33,7 +33,7 @@ pub(crate) struct MeshVersion<'a> {
 }
 
 impl Proof {
-    /// Compares two files of a mesh. The first says which vertices may move, `slide` which may slide.
+    /// Compares two files of a mesh. The first file determines the movable vertices, `slide` the sliding ones.
     pub(crate) fn of(
         before: MeshVersion<'_>,
         after: MeshVersion<'_>,
@@ -60,14 +60,15 @@ impl Proof {
             }
             bad = topology.bad_triangles(new)?;
             if !bad.is_empty() {
-                // Where more than half of the triangles were inverted before, windings are those of the wrong half.
+                // If more than half of the triangles were inverted before, the windings derived from `before` are
+                // reversed.
                 bad = Topology::new(after.mesh())?.bad_triangles(new)?;
             }
         }
         Ok(Self { difference, moved, held, slid, pairs, bad })
     }
 
-    /// Words what is wrong, in a sentence; `None` if nothing is.
+    /// Returns a sentence on the problems found; `None` if the proof succeeds.
     pub(crate) fn problem(&self) -> Option<String> {
         if let Some(Difference { location, other_location, description }) = &self.difference {
             return Some(format!(
@@ -89,7 +90,7 @@ impl Proof {
     }
 }
 
-/// Counts the periodic pairs whose two vertices are both among these, which are ascending.
+/// Counts the periodic pairs with both vertices in `vertices`, which must be ascending.
 fn pairs_among(slide: &Slide, vertices: &[u32]) -> usize {
     let has = |v: &u32| vertices.binary_search(v).is_ok();
     let all = slide.periodic.iter().flat_map(|periodic| &periodic.pairs);
@@ -97,7 +98,7 @@ fn pairs_among(slide: &Slide, vertices: &[u32]) -> usize {
     among.map(|&[a, b]| [a.min(b), a.max(b)]).collect::<BTreeSet<_>>().len()
 }
 
-/// Hashes each file of a mesh, as it was read.
+/// Returns the hash of each file of a mesh, computed from the bytes that were read.
 pub(crate) fn hashes(file: &LoadedMesh) -> Vec<FileHash> {
     let hash = |(path, bytes): (&std::path::Path, &[u8])| {
         let hex = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();

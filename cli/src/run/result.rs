@@ -1,4 +1,4 @@
-//! The result of a run: its measures, its data and its files.
+//! Results of a run: measures, interpolated data and files.
 
 use std::time::Instant;
 
@@ -15,26 +15,26 @@ use crate::run::proof::{self, MeshVersion, Proof};
 use crate::run::sweeps::Ran;
 use crate::terminal::progress::Stage;
 
-/// What is measured of a smoothed mesh.
+/// Measures of a smoothed mesh.
 pub(super) struct Measures {
     pub(super) after: Quality,
     pub(super) change: Change,
     pub(super) target: Option<TargetReport>,
-    /// The sentence on interpolated data, if there are some.
+    /// A sentence on interpolated data; `None` without interpolation.
     pub(super) interpolated: Option<String>,
-    /// The time at which the measures were done.
+    /// Time at the end of the measurements.
     pub(super) at: Instant,
 }
 
-/// What writing a mesh leads to.
+/// Result of writing a mesh.
 pub(super) struct Written {
-    /// What the written files prove, if a report was asked for.
+    /// Facts proved from the written files; `None` without a report or with output to a stream.
     pub(super) certificate: Option<Certificate>,
-    /// The time at which the files were written.
+    /// Time at the end of writing.
     pub(super) at: Instant,
 }
 
-/// Measures a smoothed mesh, and brings the data of its vertices to their new places.
+/// Measures a smoothed mesh, and interpolates vertex data at the new positions.
 pub(super) fn measure(
     input: &Input<'_>,
     ready: &Ready<'_>,
@@ -61,8 +61,8 @@ pub(super) fn measure(
     Ok(Measures { after, change, target, interpolated, at: Instant::now() })
 }
 
-/// Writes a smoothed mesh, and proves from the files what a report says of them. Removes the checkpoint of a run that
-/// came to its end.
+/// Writes a smoothed mesh, and proves the statements of the report from the files. Removes the checkpoint unless the
+/// run was canceled.
 pub(super) fn write(
     input: &Input<'_>,
     ready: &Ready<'_>,
@@ -72,7 +72,7 @@ pub(super) fn write(
 ) -> Result<Written, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);
     follow.stage(Stage::Writing { bytes: input.bytes });
-    // The files are hashed before the mesh is written, which may replace them.
+    // Hashing precedes writing, which may replace the input files.
     let hashes = if request.outputs.report.is_some() { proof::hashes(file) } else { Vec::new() };
     streams::write(file, out, &ran.outcome.points, riding.fields())?;
     let certificate = match request.outputs.report.is_some() && !streams::is_standard(out) {
@@ -83,7 +83,7 @@ pub(super) fn write(
     Ok(Written { certificate, at: Instant::now() })
 }
 
-/// Reads the written mesh again, and proves from the files alone that only vertices which may move have moved.
+/// Reads the written mesh again, and proves from the files alone that only movable vertices have moved.
 fn certificate(
     input: &Input<'_>,
     ready: &Ready<'_>,

@@ -1,4 +1,4 @@
-//! The report of a run, from the results of its stages.
+//! Construction of a run's report from the results of its stages.
 
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ use crate::run::result::Measures;
 use crate::run::sweeps::Ran;
 use crate::run::untangle::Mended;
 
-/// The times at which a run began and its stages ended.
+/// Times at the start of a run and at the end of each stage.
 pub(super) struct Clock {
     pub(super) began: Instant,
     pub(super) read: Instant,
@@ -26,7 +26,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// Returns how long each stage took.
+    /// Returns the duration of each stage in seconds.
     fn seconds(&self) -> Seconds {
         Seconds {
             read: (self.read - self.began).as_secs_f64(),
@@ -38,7 +38,7 @@ impl Clock {
     }
 }
 
-/// Makes the report of a run whose mesh is written.
+/// Returns the report of a run after its mesh is written.
 pub(super) fn report(
     input: &Input<'_>,
     ready: &Ready<'_>,
@@ -81,7 +81,7 @@ pub(super) fn report(
     }
 }
 
-/// Names the reason for which a run ended.
+/// Returns the name of the reason why a run ended.
 fn stop(input: &Input<'_>, ran: &Ran) -> &'static str {
     match input.choice.nothing_to_do {
         Some(_) => "nothing-to-do",

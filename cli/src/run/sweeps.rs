@@ -1,4 +1,4 @@
-//! The sweeps of a run, on one engine or, if that fails, on another.
+//! The sweeps of a run, on the chosen engine or, after a failure, on the CPU.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,7 +20,7 @@ use crate::run::prepare::Ready;
 use crate::terminal::interrupt;
 use crate::terminal::progress::Stage;
 
-/// A finished run, its engine, and the times in seconds after which sweeps were done.
+/// A finished run with its engine. `times` pairs sweeps with the elapsed seconds after them.
 pub(super) struct Ran {
     pub(super) outcome: Outcome,
     pub(super) taken: Taken,
@@ -29,7 +29,7 @@ pub(super) struct Ran {
     pub(super) out_of_time: bool,
 }
 
-/// The clock of a run: the times after which sweeps were done, and whether the time limit has passed.
+/// Timer of a run's sweeps, which also checks the time limit.
 struct SweepClock<'a> {
     input: &'a Input<'a>,
     start: Instant,
@@ -38,7 +38,7 @@ struct SweepClock<'a> {
 }
 
 impl SweepClock<'_> {
-    /// Takes the time of a sweep. Ends the run if the user interrupts it or its time is up.
+    /// Records the time of a sweep. Breaks if the user interrupts the run or the time limit has passed.
     fn sweep(&mut self, progress: &Progress) -> ControlFlow<()> {
         if progress.phase == Phase::Smoothing {
             self.times.push((progress.sweep, self.start.elapsed().as_secs_f64()));
@@ -51,15 +51,15 @@ impl SweepClock<'_> {
         }
     }
 
-    /// Ends the times of a run with the sweep whose mesh is returned.
+    /// Removes records from the outcome's last sweep on, and adds that sweep with the time at the end of the run.
     fn end(&mut self, outcome: &Outcome) {
         self.times.retain(|time| time.0 < outcome.sweeps);
         self.times.push((outcome.sweeps, self.start.elapsed().as_secs_f64()));
     }
 }
 
-/// Smooths. Falls back to the CPU if the GPU cannot hold the mesh and the user left the choice of engine open, or if
-/// the GPU fails.
+/// Smooths a mesh. The CPU takes over if the GPU fails, or if the GPU cannot hold the mesh and the command line left
+/// the engine open.
 pub(super) fn smooth(
     input: &Input<'_>,
     ready: &Ready<'_>,
@@ -107,7 +107,7 @@ pub(super) fn smooth(
     Ok(Ran { outcome, taken, times: clock.times, out_of_time })
 }
 
-/// Words the error of a run in the terms of the file and the command line.
+/// Converts the error of a run to the terms of the file and the command line.
 fn worded(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> CliError {
     match error {
         SmoothError::Mesh(error) => explain::mesh_error(file, &error),
@@ -122,7 +122,7 @@ fn worded(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> Cli
     }
 }
 
-/// Returns the options of the run. If there is nothing to do, the run has no sweeps.
+/// Returns the options of the run. Without any triangle to improve, the run has no sweeps.
 fn options(request: &SmoothRequest, choice: &Choice, stored: Precision) -> Options {
     let options = request.options(stored);
     match choice.nothing_to_do {

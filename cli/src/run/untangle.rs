@@ -1,4 +1,4 @@
-//! `--untangle`: untangles a mesh that has inverted or flat triangles.
+//! Untangling of meshes with inverted or flat triangles, for `--untangle`.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -16,20 +16,20 @@ use crate::load::streams;
 use crate::report::Task;
 use crate::terminal::interrupt;
 
-/// A mesh that was untangled, with the work that this took.
+/// An untangled mesh, with counts of the work.
 pub(crate) struct Mended {
     pub(crate) mesh: Mesh,
     pub(crate) bad_before: usize,
     pub(crate) sweeps: u32,
     pub(crate) moved: usize,
-    /// What is wrong with the mesh still.
+    /// A remark on remaining crossings of fixed edges; `None` without crossings.
     pub(crate) remark: Option<String>,
 }
 
-/// Untangles a mesh that cannot be smoothed as it is.
+/// Untangles a mesh that has inverted or flat triangles.
 ///
-/// If triangles stay inverted, the error lists them. With `--keep-going` the best mesh found is written before. The time limit
-/// counts from `began`.
+/// If triangles stay inverted, returns an error that lists them. With `--keep-going`, the best mesh found is written
+/// before. The time limit counts from `began`.
 pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, CliError> {
     let Task { request, verbosity, out, .. } = *task;
     let keeps_going = request.untangle.is_some_and(|untangle| untangle.keeps_going);
@@ -90,7 +90,7 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
 const KEPT: &str = "; --keep-going writes the best mesh found";
 const PERHAPS: &str = ". Perhaps fixed vertices leave no room, or the boundary winds around itself";
 
-/// Words that no triangle is inverted, but that those around a vertex wind more than once around it.
+/// Returns the error for a mesh without inverted triangles in which the triangles around a vertex wind more than once.
 fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     let place = file.vertex_place(vertex);
     let vertex = place.id;
@@ -101,19 +101,20 @@ fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     ))
 }
 
-/// What untangling has left of a tangled mesh.
+/// The remaining problems of a tangled mesh.
 struct TangledRest<'a> {
-    /// All triangles that are inverted or flat still.
+    /// All remaining inverted or flat triangles.
     triangles: &'a [BadTriangle],
-    /// Those of them that have no free vertex.
+    /// The remaining triangles without a free vertex.
     hopeless: &'a [BadTriangle],
-    /// How many sweeps were done.
+    /// Number of completed sweeps.
     sweeps: u32,
-    /// Whether untangling was ended before it gave up.
+    /// Whether a signal or the time limit ended untangling.
     was_ended: bool,
 }
 
-/// Words why a mesh could not be untangled, with the first triangles that are left, or are hopeless.
+/// Returns the error for a mesh that could not be untangled. Lists the first hopeless triangles if any exist,
+/// otherwise the first remaining triangles.
 fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
     let TangledRest { triangles: left, hopeless, sweeps, was_ended } = *left;
     let name = file.source.path().display();
@@ -148,8 +149,8 @@ fn counted(sweeps: u32) -> String {
     if sweeps == 1 { "1 sweep".to_owned() } else { format!("{sweeps} sweeps") }
 }
 
-/// Whether a mesh was refused for inverted or flat triangles, or has some that double precision cannot judge, which
-/// untangling may mend.
+/// Returns whether untangling may help: the mesh was refused for inverted or flat triangles, or has movable triangles
+/// that double precision cannot judge.
 pub(crate) fn can_mend(prepared: &Result<Smoother<'_>, MeshError>) -> bool {
     match prepared {
         Ok(smoother) => {

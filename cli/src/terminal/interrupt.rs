@@ -1,7 +1,8 @@
-//! The signals that ask a run to end: SIGINT (Ctrl-C), SIGTERM, and SIGHUP of a closed terminal.
+//! Signals that request the end of a run: SIGINT (Ctrl-C), SIGTERM, and SIGHUP of a closed terminal.
 //!
-//! Before there is a smoothed state, a signal ends the process at once. After that, the first signal ends the run at the
-//! next sweep, and the best mesh so far is written; a second one ends the process at once. No half-written file is left.
+//! Before a smoothed state exists, a signal ends the process at once. Afterwards, the first signal ends the run at the
+//! next sweep, and the best mesh so far is written; a second signal ends the process at once. No signal leaves a
+//! half-written file.
 
 #[cfg(unix)]
 use std::io::IsTerminal;
@@ -17,27 +18,27 @@ use signal_hook::{flag, low_level};
 
 use crate::terminal::tell;
 
-/// How often signals are looked for. A thread that waits for signals would need different code on each system.
+/// Interval at which the thread polls for signals. A blocking wait would need different code on each system.
 const INTERVAL: Duration = Duration::from_millis(20);
 
-/// Whether there is a smoothed state to write.
+/// Whether a smoothed state exists that can be written.
 static HAS_RESULT: AtomicBool = AtomicBool::new(false);
-/// The signal that asked the run to end, or 0.
+/// Number of the signal that requested the end of the run; 0 without a request.
 static REQUESTED: AtomicI32 = AtomicI32::new(0);
-/// Held while a file other than the mesh is written.
+/// Lock held while any file but the mesh is written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// Makes a write beyond the user's limit on file sizes (`ulimit -f`) an error, like that of a full disk. Otherwise it
-/// would end the process at once and leave a temporary file.
+/// Turns a write beyond the user's limit on file sizes (`ulimit -f`) into an error, like that of a full disk. Without a
+/// handler, SIGXFSZ would end the process and leave a temporary file.
 pub(crate) fn survive_large_files() {
     #[cfg(unix)]
     {
-        // If the system does not allow that, such a write ends the process as usual.
+        // If registration fails, a write beyond the limit ends the process.
         let _ = flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     }
 }
 
-/// Handles the signals from now on. If the system does not allow that, they end the process as usual.
+/// Starts to handle signals. If the system refuses a handler, the signal ends the process at once.
 pub(crate) fn watch(quiet: bool) {
     let register = |signal| {
         let arrived = Arc::new(AtomicBool::new(false));
@@ -55,7 +56,8 @@ pub(crate) fn watch(quiet: bool) {
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
 }
 
-/// Lists the signals that ask a run to end. SIGHUP is none of them if the process was started to outlive its terminal, as by nohup.
+/// Returns the signals that request the end of a run. SIGHUP is omitted if the process was started to outlive its
+/// terminal, as by nohup.
 fn signals() -> Vec<i32> {
     #[cfg(unix)]
     if !ignores_hangup() {
@@ -64,8 +66,8 @@ fn signals() -> Vec<i32> {
     vec![SIGINT, SIGTERM]
 }
 
-/// Whether the process was started with SIGHUP ignored. Where the system does not tell it, it was if the standard output is no
-/// terminal, as nohup leaves none.
+/// Returns whether the process was started with SIGHUP ignored. On systems without `/proc`, a standard output that is
+/// no terminal indicates nohup.
 #[cfg(unix)]
 fn ignores_hangup() -> bool {
     let ignored = std::fs::read_to_string("/proc/self/status").ok().and_then(|status| {
@@ -78,7 +80,7 @@ fn ignores_hangup() -> bool {
     }
 }
 
-/// Handles a signal: the first one asks the run to end if there is a result. Otherwise the process ends.
+/// Handles a signal. The first signal requests the end of the run if a result exists; other signals end the process.
 fn received(signal: i32, quiet: bool) {
     let has_result = HAS_RESULT.load(Ordering::SeqCst);
     let set = |from| REQUESTED.compare_exchange(from, signal, Ordering::SeqCst, Ordering::SeqCst);
@@ -94,26 +96,27 @@ fn received(signal: i32, quiet: bool) {
         "interrupted: nothing was written"
     };
     tell::note(quiet, text);
-    // `std::process::exit` would let a driver clean up while its threads still run.
+    // `std::process::exit` would run clean-up code of GPU drivers whose threads are still active.
     low_level::exit(exit_status(signal).into());
 }
 
-/// Leaves the first signal to the run from now on, as there is a result.
+/// From now on the first signal only sets what `is_requested` returns, so that the run can write its result. Before, a
+/// signal ends the process.
 pub(crate) fn has_result() {
     HAS_RESULT.store(true, Ordering::SeqCst);
 }
 
-/// Whether a signal has asked the run to end.
+/// Returns whether a signal has requested the end of the run.
 pub(crate) fn is_requested() -> bool {
     REQUESTED.load(Ordering::SeqCst) != 0
 }
 
-/// Keeps signals from ending the process as long as the returned guard lives.
+/// Returns a guard that delays the end of the process by signals for as long as the guard lives.
 pub(crate) fn uninterrupted() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns the exit code of a command that succeeded: 0 unless it was interrupted.
+/// Returns the exit code of a successful command: 0, or that of the signal that interrupted the run.
 pub(crate) fn exit_code() -> ExitCode {
     match REQUESTED.load(Ordering::SeqCst) {
         0 => ExitCode::SUCCESS,
@@ -121,7 +124,7 @@ pub(crate) fn exit_code() -> ExitCode {
     }
 }
 
-/// Returns the exit status by which shells tell the end by a signal: 130, 143 or 129.
+/// Returns the exit status with which shells report a signal: 130 for SIGINT, 143 for SIGTERM, 129 for SIGHUP.
 fn exit_status(signal: i32) -> u8 {
     128 + signal as u8
 }

@@ -13,7 +13,7 @@ pub(crate) fn six(x: f64) -> String {
     }
 }
 
-/// Formats a share in percent, rounded down so that no goal seems reached before it is.
+/// Formats a fraction in percent, rounded down so that no goal seems reached early.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.2}", (share * 1e4).floor() / 1e2)
 }

@@ -1,6 +1,6 @@
-//! Panics of wgpu, which it uses to report some failures of drivers. The library turns them into errors, so they are
-//! not printed. A panic that the library does not see, as while a device is dropped, ends the process with an error
-//! message.
+//! Panics of wgpu, which reports some failures of drivers by panics. The library converts panics of wgpu to errors,
+//! so nothing is printed for them. If a panic escapes the library, for example while a device is dropped, the
+//! process ends with an error message.
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
@@ -10,11 +10,11 @@ use crate::error::CliError;
 use crate::terminal::tell;
 
 thread_local! {
-    /// Whether the latest panic of this thread was one of wgpu.
+    /// Whether the latest panic of this thread came from wgpu.
     static OF_WGPU: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Does the work of the process. Reports a panic of wgpu that nothing has caught as an error.
+/// Runs `work`, the whole process, and reports an uncaught panic of wgpu as an error.
 pub(crate) fn told(work: impl FnOnce() -> ExitCode) -> ExitCode {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
@@ -35,7 +35,7 @@ pub(crate) fn told(work: impl FnOnce() -> ExitCode) -> ExitCode {
     }
 }
 
-/// Whether a source file is one of wgpu's crates (wgpu, wgpu-core, wgpu-hal).
+/// Returns whether a source file belongs to a crate of wgpu (wgpu, wgpu-core, wgpu-hal).
 fn is_of_wgpu(file: &str) -> bool {
     file.split(['/', '\\']).any(|folder| folder.starts_with("wgpu"))
 }

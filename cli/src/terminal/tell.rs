@@ -1,4 +1,4 @@
-//! Prints everything that the program prints.
+//! All output of the program to standard output and standard error.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -12,22 +12,22 @@ use serde_json::{Value, json};
 
 use crate::error::CliError;
 
-/// Whether standard error gets JSON, and when the process began.
+/// Whether standard error receives JSON. `START` is the time from which events count seconds.
 static JSON: AtomicBool = AtomicBool::new(false);
 static START: OnceLock<Instant> = OnceLock::new();
 
-/// Makes every line on standard error an object of JSON from now on.
+/// Switches standard error to JSON, one object per line.
 pub(crate) fn log_json() {
     START.get_or_init(Instant::now);
     JSON.store(true, Ordering::Relaxed);
 }
 
-/// Whether standard error gets JSON.
+/// Returns whether standard error receives JSON.
 pub(crate) fn is_json() -> bool {
     JSON.load(Ordering::Relaxed)
 }
 
-/// Writes a line to standard error. Nothing is done if that fails, as where the terminal was closed: the run must go on to its
+/// Writes a line to standard error. Ignores failures, such as a closed terminal, because the run must continue to its
 /// end.
 fn put(line: Arguments<'_>) {
     let _ = writeln!(std::io::stderr(), "{line}");
@@ -39,8 +39,8 @@ pub(crate) fn event(mut event: Value) {
     put(format_args!("{event}"));
 }
 
-/// Prints a result to the standard output. It is no error if the reader has gone, as `head` does; a full disk ends the
-/// process.
+/// Prints a result to standard output. Ignores a reader that has closed the pipe, as `head` does; other failures, such
+/// as a full disk, end the process.
 pub(crate) fn say(text: &str) {
     match writeln!(std::io::stdout(), "{text}") {
         Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
@@ -51,12 +51,12 @@ pub(crate) fn say(text: &str) {
     }
 }
 
-/// Prints a result to the standard error, where the standard output is the mesh.
+/// Prints a result to standard error, for commands whose standard output receives the mesh.
 pub(crate) fn aside(text: &str) {
     put(format_args!("{text}"));
 }
 
-/// Prints a remark to the standard error, unless `quiet`.
+/// Prints a remark to standard error, unless `quiet` is true.
 pub(crate) fn note(quiet: bool, text: &str) {
     match () {
         () if quiet => {}
@@ -65,8 +65,8 @@ pub(crate) fn note(quiet: bool, text: &str) {
     }
 }
 
-/// Escapes the control characters in a message, except for line ends. Names of files may have such characters, and a
-/// terminal would obey them.
+/// Escapes control characters of a message, except for line ends. File names may contain control characters, which a
+/// terminal would execute.
 fn printable(text: &str) -> String {
     let shown = |c: char| match c.is_control() && c != '\n' {
         true => c.escape_default().to_string(),
@@ -75,14 +75,14 @@ fn printable(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Ends the last line of a terminal, where a bar may stand.
+/// Ends the last line of a terminal, which may show a progress bar.
 pub(crate) fn leave_bar() {
     if std::io::stderr().is_terminal() && !is_json() {
         put(format_args!(""));
     }
 }
 
-/// Prints an error to the standard error. A line of JSON also has its kind and, if there is one, its remedy.
+/// Prints an error to standard error. A line of JSON also contains the error's kind and remedy.
 pub(crate) fn error(error: &CliError) {
     let text = error.to_string();
     let shown = printable(&text);
@@ -102,7 +102,7 @@ pub(crate) fn error(error: &CliError) {
     }
 }
 
-/// Whether standard error is colored: on a terminal with colors, unless `NO_COLOR` (<https://no-color.org>) is set;
+/// Returns whether errors are colored: on a terminal with colors, unless `NO_COLOR` (<https://no-color.org>) is set;
 /// anywhere if `CLICOLOR_FORCE` (<https://bixense.com/clicolors>) is set.
 fn is_colored() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
@@ -111,7 +111,7 @@ fn is_colored() -> bool {
     !set("NO_COLOR") && (forced || std::io::stderr().is_terminal() && !is_dumb)
 }
 
-/// Describes an adapter: its kind, backend and driver.
+/// Describes an adapter by its type, backend and driver.
 pub(crate) fn adapter(adapter: &AdapterSummary) -> String {
     let software = if adapter.is_software() { ": software" } else { "" };
     format!("({}{software}, {}; {})", adapter.kind, adapter.backend, adapter.driver)

@@ -1,9 +1,9 @@
-//! How much a command prints.
+//! Amount of output of a command.
 
-/// How much a command prints.
+/// Amount of output of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Verbosity {
-    /// Whether errors alone are printed, and the answer of the command.
+    /// Whether nothing is printed but errors and the answer of the command.
     pub(crate) quiet: bool,
     /// Whether every sweep is printed.
     pub(crate) verbose: bool,

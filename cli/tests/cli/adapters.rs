@@ -1,4 +1,4 @@
-//! Which adapter a run takes, and what it does without one.
+//! Choice of an adapter by a run, and runs on machines without adapters.
 
 use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
 use std::process::Command;
@@ -77,7 +77,7 @@ fn without_an_adapter_the_gpu_engine_tells_what_to_install() {
     assert_holds(&list, &install[..1]);
 }
 
-/// Without a Vulkan driver, a run takes OpenGL. `tests/run` installs a driver of OpenGL.
+/// Without a Vulkan driver, a run uses OpenGL. `tests/run` installs an OpenGL driver.
 #[cfg(target_os = "linux")]
 #[test]
 fn where_there_is_no_vulkan_a_driver_of_opengl_is_taken() {
@@ -118,8 +118,8 @@ fn a_small_mesh_is_smoothed_on_the_cpu_and_the_summary_says_why() {
     folder.line("none out").refused(&["none: "]);
 }
 
-/// A mesh large enough, and a scheme with enough sweeps, that a run on one core looks for a GPU. The goal is met at the
-/// start, so that the run itself is short.
+/// Returns a mesh and arguments for which a run on one core considers a GPU: the mesh is large, and the scheme needs
+/// many sweeps. The goal is reached at the start, so the run itself is short.
 fn large() -> (Folder, [&'static str; 6]) {
     let [node, ele] = support::triangle_text(&support::lattice(200, 200), "");
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
@@ -133,7 +133,7 @@ fn a_software_adapter_is_not_taken_unless_asked_for() {
     let is_software = adapters.lines().next().unwrap().contains("(CPU: software, ");
     let run = finish(folder.command().args(args).env("RAYON_NUM_THREADS", "1"));
     let out = run.clean().out;
-    // The name of the adapter that the test machine takes, which may be a real GPU.
+    // The adapter that the test machine uses by default, which may be a real GPU.
     let name = adapters.split(" (").next().unwrap();
     let told = match is_software {
         true => format!("edge on cpu (all cores): only a software adapter ({name}"),

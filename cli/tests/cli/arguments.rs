@@ -85,7 +85,7 @@ fn contradictions_are_refused() {
     assert_usage(&folder, "in out --history all", &["--report <FILE>"]);
 }
 
-/// They would be refused as late as the mesh is read and prepared otherwise, or would do nothing at all.
+/// Without this check, the library would refuse the options after reading and preparing a mesh, or ignore them.
 #[test]
 fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
     let folder = Folder::new(&[]);
@@ -154,7 +154,7 @@ fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
         ("--method relaxed --derivatives finite-difference", "a setting of --method paper"),
         ("--omega 1.2 --inner 2", "--omega does not go with --inner, a setting of --method paper"),
     ] {
-        // There is no mesh, so that reading one would be another error.
+        // The mesh does not exist, so reading it would cause a different error.
         assert_usage(&folder, &format!("none out {options}"), &[told]);
     }
     let bench = "bench --engine cpu --adapter nvidia";
@@ -246,8 +246,8 @@ fn help_and_version_go_to_standard_output() {
     }
 }
 
-/// Runs the program with random words: it must end with a documented exit code, must not panic, and must leave no file
-/// that it should not. The environment variable FUZZ_ROUNDS is a factor for the number of runs.
+/// Runs the program with random words. The program must end with a documented exit code, must not panic, and must
+/// leave no unexpected file. The environment variable FUZZ_ROUNDS multiplies the number of runs.
 #[test]
 fn command_lines_of_any_words_neither_panic_nor_damage_files() {
     const WORDS: [&str; 62] = [

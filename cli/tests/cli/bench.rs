@@ -1,4 +1,4 @@
-//! `gpu-smooth bench` measures what it says. No test judges how fast it is.
+//! The measurements of `gpu-smooth bench` are consistent. No test judges the speed.
 
 use serde_json::Value;
 
@@ -69,7 +69,7 @@ fn markdown_tells_the_machine_and_compares_with_a_baseline() {
         known[0]["version"].as_str().unwrap(),
         &["gpu-smooth ", env!("CARGO_PKG_VERSION")],
     );
-    // A baseline as if a sweep had taken a thousand seconds.
+    // Claims an earlier time of a thousand seconds per sweep.
     known[0]["seconds_per_sweep"] = 1000.0.into();
     std::fs::write(folder.path("saved.json"), Value::from(known).to_string()).unwrap();
 
@@ -88,7 +88,7 @@ fn markdown_tells_the_machine_and_compares_with_a_baseline() {
     assert_holds(&text, &["  baseline    change ", " 1000000.000  -100.0 % "]);
     let told = folder.line(&format!("{line} --baseline saved.json --json")).clean().out;
     assert_eq!(self::rows(&told)[0]["baseline_seconds_per_sweep"], 1000.0);
-    // The baseline has nothing for a mesh of another size.
+    // The baseline lacks rows for meshes of other sizes.
     let other = "bench --vertices 400 --engine cpu --seconds 0 --markdown --baseline saved.json";
     assert_eq!(table(&folder.line(other).clean().out)[2][2..4], ["-", "-"]);
 

@@ -1,5 +1,5 @@
-//! The page of a run in a real browser: its script runs, draws, and follows links. This is not part of the suite, as a
-//! browser takes longer to install than all tests take:
+//! The page of a run in a real browser: the script runs, draws, and follows links. The suite skips these tests,
+//! because installing a browser takes longer than all tests:
 //!
 //! ```sh
 //! GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored
@@ -21,7 +21,7 @@ impl Picture {
         self.pixels.iter().filter(|pixel| is_meant(**pixel)).count()
     }
 
-    /// The number of pixels that differ from those of another picture.
+    /// Counts the pixels that differ between two pictures.
     fn difference(&self, other: &Self) -> usize {
         self.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count()
     }
@@ -64,14 +64,14 @@ fn a_browser_draws_the_mesh_and_follows_links() {
     let plate = plate_path().to_str().unwrap();
     folder.line(&format!("{plate} out --engine cpu --html page.html")).clean();
 
-    // The document after the script has run to its end.
+    // The document after the script has finished.
     let dom = String::from_utf8(browser(&folder, &["--dump-dom"], "").stdout).unwrap();
     for measure in ["shape", "min-angle", "max-angle", "size-ratio"] {
         assert_holds(&dom, &[&format!(">{measure}</option>")]);
     }
     assert_holds(&dom, &["linear-gradient(to right, rgb(68,1,84)"]);
 
-    // Yellow is the end of the scale that only good triangles have.
+    // Yellow is the good end of the color scale.
     let is_good = |[r, g, b]: [u8; 3]| r > 200 && g > 200 && b < 80;
     for size in [[1200, 1100], [420, 1400]] {
         let whole = picture(&folder, "", LIGHT, size);

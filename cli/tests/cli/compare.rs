@@ -1,15 +1,15 @@
-//! `gpu-smooth compare`: what it proves from two files, and which differences it finds.
+//! The command `gpu-smooth compare`: statements proved from two files, and differences found.
 
 use super::{Folder, assert_holds, disturbed, small, support};
 use std::fs;
 
-/// The words of a vertex's row in a `.node`.
+/// Returns the words in the row of a vertex in a `.node`.
 fn words(text: &str, vertex: usize) -> Vec<&str> {
     let is_vertex = |row: &&str| !row.starts_with('#') && !row.trim().is_empty();
     text.lines().filter(is_vertex).nth(vertex + 1).unwrap().split_whitespace().collect()
 }
 
-/// The text with the x of one vertex replaced; the blanks of its row stay.
+/// Returns the text with a new x for one vertex. Blanks in the row are kept.
 fn with_x(text: &str, vertex: usize, x: &str) -> String {
     let old = words(text, vertex)[1];
     let row = text.lines().find(|row| row.split_whitespace().eq(words(text, vertex))).unwrap();

@@ -1,4 +1,4 @@
-//! `gpu-smooth convert`.
+//! The command `gpu-smooth convert`.
 
 use super::{Folder, assert_holds};
 use std::fs;
@@ -51,7 +51,7 @@ fn a_mesh_is_converted_by_the_ending_or_by_name() {
     folder.line("quality out.node").clean();
 }
 
-/// SU2 knows markers by name only.
+/// SU2 identifies markers by name only.
 #[test]
 fn names_that_change_are_told_once() {
     let two = SMS.replace("-3 \"shore\"", "-3 \"a b\"\nNS 3 -4 \"a_b\"");
@@ -78,7 +78,8 @@ fn conversions_that_cannot_work_are_refused() {
     folder
         .line("convert in.2dm out.xyz")
         .misused(&["out.xyz: its ending names no format", "gmsh22"]);
-    // It could be read, but not smoothed under that name.
+    // SU2 content in a file with the extension of VTK could be read, but not smoothed under that
+    // name.
     folder
         .line("convert in.2dm out.vtk --to su2 --lossy -q")
         .refused(&["out.vtk: its ending is that of legacy VTK, and not of SU2", ".su2"]);
@@ -103,7 +104,7 @@ fn conversions_that_cannot_work_are_refused() {
     assert!(!folder.path("out.node").exists());
 }
 
-/// Names in XML are written as it demands, and read as they are meant.
+/// Names are escaped in XML and read back unchanged.
 #[test]
 fn names_of_data_come_through_xml_and_those_without_get_one() {
     let view = |name: &str, value: f64| {

@@ -1,4 +1,4 @@
-//! Where a mesh and its report may be written, and which names of files are possible.
+//! Destinations of meshes and reports, and unusual file names.
 
 use super::files::{Layout, gmsh_text, middle_row, triangle_files, triangle_folder};
 use super::{Folder, assert_holds, disturbed, number, small, support};
@@ -84,7 +84,7 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
     }
 }
 
-/// IN does not exist, so that reading it would be another error.
+/// IN does not exist, so reading IN would cause a different error.
 #[test]
 fn files_beside_the_mesh_with_names_of_meshes_are_refused_before_a_mesh_is_read() {
     let folder = Folder::new(&[]);
@@ -178,7 +178,7 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
         "mesh out --report here/mesh",
         "./mesh out --report mesh",
         "mesh out --report mesh.json",
-        // A file that the run writes, whether it exists or not.
+        // A file written by the run, both existing and new.
         "mesh out --report ./out",
         "mesh later --report to-later.json",
         "mesh here/later --report to-to-later.json",
@@ -187,7 +187,7 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
         folder.line(&format!("{line} --engine cpu")).misused(&["the report is JSON, not a mesh"]);
         assert!(folder.content() == before, "{line} has changed files");
     }
-    // Which files a Triangle mesh has is known once it is read.
+    // The files of a Triangle mesh are known only after reading.
     for line in [
         "in out --report to-in.node.json",
         "in out --report here/to-in.ele.json",
@@ -208,7 +208,8 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
 fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
     let folder = small();
     fs::write(folder.path("r.json"), "old").unwrap();
-    // The hard link keeps the old content if a file is replaced, and changes if it is written into.
+    // A hard link keeps the old content if the file is replaced, and shows the new content if the file is
+    // overwritten.
     fs::hard_link(folder.path("r.json"), folder.path("kept")).unwrap();
     folder.line("in out --engine cpu --report r.json").clean();
     assert_eq!(folder.text("kept"), "old");

@@ -1,4 +1,4 @@
-//! Drivers that fail: a driver in front of Mesa's makes one function fail from a certain call on (`faulty_driver.c`).
+//! Failing drivers: a layer in front of Mesa's driver makes one function fail from a given call on (`faulty_driver.c`).
 
 use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
 use std::fs;
@@ -22,7 +22,7 @@ fn real_driver() -> String {
     registered["ICD"]["library_path"].as_str().unwrap().to_owned()
 }
 
-/// A folder with the driver that fails, compiled once.
+/// Returns a folder with the faulty driver, compiled once per process.
 fn faulty_driver() -> &'static TempDir {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -45,7 +45,7 @@ fn faulty_driver() -> &'static TempDir {
     })
 }
 
-/// Sets the environment such that the command finds only the failing driver.
+/// Sets the environment so that the command finds only the faulty driver.
 fn with_fault<'c>(
     command: &'c mut Command,
     function: &str,
@@ -74,7 +74,7 @@ fn a_device_that_is_lost_in_the_middle_does_not_end_the_run() {
     folder.line(&RUN.replace("gpu", "cpu")).clean();
     let f = |folder: &Folder| folder.json("r.json")["after"]["f"]["imr"].as_f64().unwrap();
     let on_cpu = f(&folder);
-    // A submission fails, and the program notices the reset while it waits for the device.
+    // A submission fails, and the program notices the lost device while waiting.
     for (function, from) in
         [("vkQueueSubmit", 12), ("vkWaitSemaphores", 7), ("vkGetSemaphoreCounterValue", 15)]
     {
@@ -93,7 +93,7 @@ fn a_device_that_is_lost_in_the_middle_does_not_end_the_run() {
     }
 }
 
-/// Functions of a driver that a run calls, and how each fails.
+/// Functions of a driver that a run calls, each with an error code to return.
 const FAULTS: [(&str, &str); 17] = [
     ("vkQueueSubmit", LOST),
     ("vkQueueSubmit", NO_MEMORY),
@@ -114,8 +114,8 @@ const FAULTS: [(&str, &str); 17] = [
     ("vkEnumeratePhysicalDevices", "-3"),
 ];
 
-/// One call of a function fails, and all later ones: the mesh must be smoothed, or nothing written and a remedy named. A few
-/// calls of each function are tried, or each call if the environment variable ALL_FAULTS is set.
+/// A function fails from one call on. The command must smooth the mesh, or write nothing and name a remedy. Several
+/// calls of each function are tried, or all calls if the environment variable ALL_FAULTS is set.
 #[test]
 fn whatever_call_of_a_driver_fails_the_mesh_is_smoothed_or_untouched() {
     let line = "in out -q --engine gpu --max-sweeps 6";
@@ -161,7 +161,7 @@ fn whatever_call_of_a_driver_fails_the_mesh_is_smoothed_or_untouched() {
 
 #[test]
 fn a_driver_that_crashes_on_start_does_not_end_a_run_that_was_free_to_choose() {
-    // The mesh is so large, and the scheme takes so many sweeps, that a run on one core looks for a GPU.
+    // The mesh is large and the scheme needs many sweeps, so that a run on one core considers a GPU.
     let [node, ele] = support::triangle_text(&support::lattice(200, 200), "");
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
     for function in ["vkCreateInstance", "vkCreateDevice", "vkQueueSubmit"] {
@@ -197,7 +197,8 @@ fn a_driver_that_crashes_on_start_is_an_error_where_a_gpu_is_asked_for() {
     assert!(folder.content() == before);
 }
 
-/// A process that a driver has ended cannot report it. Its checkpoint stays, and the next call says how to go on.
+/// A driver that ends the process leaves no time for a message. The checkpoint remains, and the next command names the
+/// option to continue.
 #[test]
 fn after_a_driver_has_ended_the_process_the_run_goes_on_from_its_checkpoint() {
     let folder = small();
@@ -213,7 +214,7 @@ fn after_a_driver_has_ended_the_process_the_run_goes_on_from_its_checkpoint() {
     assert!(folder.json("r.json")["continued_from"].as_u64().unwrap() > 0);
     assert_eq!(folder.json("r.json")["sweeps"], 40);
     assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
-    // With a choice of engines, the run does not start the driver that crashes in its own process.
+    // With an automatic choice of the engine, the crashing driver is never started in the run's own process.
     folder.line(
         "in out --tolerance 0 --max-sweeps 40 --time-limit 1e-9 --checkpoint c --engine gpu -q",
     );

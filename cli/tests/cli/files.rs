@@ -1,4 +1,4 @@
-//! What is kept of the input file in each format.
+//! Preservation of the input file in each format.
 
 use super::{Folder, assert_smoothed, disturbed, support};
 use gpu_smooth::Mesh;
@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 
-/// Which words of a file are coordinates.
+/// The layout of coordinates in a text file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Layout {
     Node,
@@ -15,7 +15,7 @@ pub(crate) enum Layout {
 }
 
 impl Layout {
-    /// For each row, the indices of the words that are x and y.
+    /// Returns, for each row, the indices of the words for x and y.
     fn coordinates(self, text: &str) -> Vec<[usize; 2]> {
         const NONE: [usize; 2] = [usize::MAX; 2];
         let (mut in_nodes, mut header_seen) = (false, false);
@@ -44,7 +44,7 @@ impl Layout {
     }
 }
 
-/// Words and the blanks between them, in turn.
+/// Splits a row into alternating words and blanks.
 fn pieces(row: &str) -> Vec<&str> {
     let mut pieces = Vec::new();
     let mut rest = row;
@@ -58,7 +58,7 @@ fn pieces(row: &str) -> Vec<&str> {
     pieces
 }
 
-/// Checks that two texts are the same but for coordinates. Returns the number of rows that differ.
+/// Checks that two texts differ only in coordinates. Returns the number of differing rows.
 #[track_caller]
 fn rows_moved(before: &str, after: &str, layout: Layout) -> usize {
     let columns = layout.coordinates(before);
@@ -78,8 +78,8 @@ fn rows_moved(before: &str, after: &str, layout: Layout) -> usize {
     rows.iter().filter(|(old, new)| old != new).count()
 }
 
-/// Smooths `input` of the folder on the CPU, and checks all its files. `notes` are what each line on standard error must
-/// contain.
+/// Smooths `input` on the CPU, and checks all files of the mesh. Each line on standard error must contain the
+/// corresponding entry of `notes`.
 #[track_caller]
 fn assert_only_coordinates_change(
     folder: &Folder,
@@ -129,7 +129,7 @@ pub(crate) fn triangle_folder([node, ele]: &[String; 2]) -> Folder {
     Folder::new(&[("in.node", node), ("in.ele", ele)])
 }
 
-/// The note about data of vertices that are not interpolated.
+/// The note about vertex data that are not interpolated.
 const ATTRIBUTES: &str = "attribute1, attribute2 stay as they are and no longer fit where vertices have moved (--interpolate all takes \
                           them to the new places)";
 
@@ -161,7 +161,8 @@ fn triangle_files_keep_all_but_coordinates() {
     }
 }
 
-/// The mesh as gmsh text, with the lines as elements before the triangles, and with sections that the program does not use.
+/// Returns the mesh as gmsh text, with `lines` as elements before the triangles, and with sections that the program
+/// ignores.
 pub(crate) fn gmsh_text(mesh: &Mesh, lines: &[[u32; 2]], layout: Layout) -> String {
     let (n, k) = (mesh.triangles.len(), lines.len());
     let rows = |start: &str| -> String {
@@ -243,13 +244,13 @@ fn binary_files_are_smoothed_like_text() {
     }
 }
 
-/// Every edge between two vertices of the middle row of the small mesh.
+/// Returns each edge between neighboring vertices in the middle row of the small mesh.
 pub(crate) fn middle_row() -> Vec<[u32; 2]> {
     let first = 4 * 11;
     (first..first + 10).map(|v| [v, v + 1]).collect()
 }
 
-/// Checks that the vertices of the middle row stayed, and those of the rows beside it moved.
+/// Checks that the vertices of the middle row stayed, and the vertices of adjacent rows moved.
 #[track_caller]
 pub(crate) fn assert_middle_row_held(before: &Mesh, after: &Mesh) {
     let row: BTreeSet<_> = middle_row().into_iter().flatten().collect();

@@ -7,7 +7,7 @@ use mesh_io::{Format, MeshFile, Precision};
 use std::fmt::Write;
 use std::fs;
 
-/// The small mesh far from the origin, where single precision resolves it with few digits.
+/// Returns the small mesh far from the origin, where single precision resolves few digits of the coordinates.
 fn far() -> Mesh {
     let mut mesh = disturbed();
     mesh.points.iter_mut().for_each(|[x, y]| (*x, *y) = (*x + 300.0, *y - 150.0));
@@ -26,7 +26,7 @@ fn su2(mesh: &Mesh) -> Vec<u8> {
     (text + "NMARK= 0\n").into_bytes()
 }
 
-/// VTK's legacy format with points of single precision, written as text with more digits than that.
+/// Returns a VTK legacy file with points of single precision, as text with more digits than single precision has.
 fn vtk_text(mesh: &Mesh) -> Vec<u8> {
     let n = mesh.triangles.len();
     let mut text =
@@ -54,7 +54,7 @@ fn vtk_binary(mesh: &Mesh) -> Vec<u8> {
     file.bytes
 }
 
-/// Medit's binary format of version 1, which has single precision.
+/// Returns a binary Medit file of version 1, which stores single precision.
 fn meshb(mesh: &Mesh) -> Vec<u8> {
     let mut file = Binary::empty(false);
     let (n, m) = (mesh.points.len() as i32, mesh.triangles.len() as i32);
@@ -73,7 +73,7 @@ fn meshb(mesh: &Mesh) -> Vec<u8> {
     file.bytes
 }
 
-/// Bulk data of Nastran with fields of so many characters.
+/// Returns Nastran bulk data with fields of the width of `precision`.
 fn nastran(mesh: &Mesh, precision: Precision) -> Vec<u8> {
     let (width, mark) = if precision == Precision::Text8 { (8, "") } else { (16, "*") };
     let mut text = "BEGIN BULK\n".to_owned();
@@ -111,7 +111,7 @@ fn the_file_written_by_a_run_holds_what_its_report_says() {
             let file = MeshFile::read(&folder.path(&out)).unwrap();
             assert_eq!((file.format(), file.precision()), (format, precision));
             let (before, after) = (folder.mesh(name), support::mesh_of(&file));
-            // By exact predicates, on the rounded coordinates of the file.
+            // Exact predicates on the rounded coordinates of the file.
             assert_smoothed(&before, &after);
             assert!(check::is_ccw(&after));
 
@@ -133,7 +133,8 @@ fn the_file_written_by_a_run_holds_what_its_report_says() {
     }
 }
 
-/// An XDMF with its numbers in HDF5 beside it: to another folder, in place, with a report, many at once and through a pipe.
+/// An XDMF mesh with numbers in an HDF5 file is written to another folder, in place, with a report, in a batch and
+/// through a pipe.
 #[test]
 fn an_xdmf_comes_with_the_files_beside_it() {
     let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../mesh-io/tests/formats/h5");
@@ -166,7 +167,7 @@ fn an_xdmf_comes_with_the_files_beside_it() {
     folder.line("dolfin.h5 out.h5").refused(&["name the .xdmf"]);
 }
 
-/// A mesh of UGRID in netCDF-4: its data and the places of its faces follow the vertices, also through a conversion.
+/// In a UGRID mesh in netCDF-4, interpolated data and face positions follow the vertices, also through a conversion.
 #[test]
 fn places_and_data_of_ugrid_follow_the_vertices() {
     let made = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../mesh-io/tests/formats/h5");

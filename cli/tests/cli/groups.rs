@@ -1,4 +1,4 @@
-//! `gpu-smooth groups`: the groups of a file, as a table and as JSON.
+//! The command `gpu-smooth groups` lists the groups of a file as a table and as JSON.
 
 use super::Folder;
 

@@ -1,4 +1,5 @@
-//! The page of a run: what it contains, and that it loads no other file. CONTRIBUTING.md says how to look at it.
+//! The page of a run: its content, and that it loads no other file. CONTRIBUTING.md explains how to test the
+//! page in a browser.
 
 use super::{Folder, assert_holds, plate_path, small};
 use base64::Engine;
@@ -10,7 +11,7 @@ use gpu_smooth::{
 use serde_json::Value;
 use std::fs;
 
-/// The text of the page, and the data that its script draws.
+/// Returns the text of the page, and the data drawn by the script.
 fn page(folder: &Folder, args: &str) -> (String, Value) {
     let run = folder.line(&format!("{args} --html page.html --engine cpu"));
     assert_eq!(run.code, Some(0), "{}", run.err);
@@ -34,14 +35,14 @@ fn points(value: &Value) -> Vec<[f64; 2]> {
     bytes(value).chunks(16).map(|two| [number(&two[..8]), number(&two[8..])]).collect()
 }
 
-/// The corners of all triangles that are drawn, before the run for state 0 and after it for state 1.
+/// Returns the corners of all drawn triangles: before the run for state 0, after the run for state 1.
 fn corners(data: &Value, state: usize) -> Vec<[[f64; 2]; 3]> {
     let points = points(&data["states"][state]["points"]);
     let triangles = indices(&data["triangles"]);
     triangles.chunks(3).map(|t| [points[t[0]], points[t[1]], points[t[2]]]).collect()
 }
 
-/// The corners of all triangles of a mesh, in counterclockwise order.
+/// Returns the corners of all triangles of a mesh, in counterclockwise order.
 fn of_mesh(mesh: &Mesh, topology: &Topology<'_>) -> Vec<[[f64; 2]; 3]> {
     topology.triangles().iter().map(|t| t.map(|v| mesh.points[v as usize])).collect()
 }
@@ -65,7 +66,7 @@ fn the_mesh_of_a_page_is_that_of_the_files() {
             let (ideal, bad) = (measure["ideal"].as_f64().unwrap(), measure["bad"].as_f64());
             for (code, value) in codes.iter().zip(measured.values(name)) {
                 let goodness = f64::from(code - 1) / 65533.0;
-                // Decodes the value as the script of the page does.
+                // Decodes the value in the same way as the script of the page.
                 let told = match bad {
                     Some(bad) => bad + goodness * (ideal - bad),
                     None => ideal + 10f64.powf(1.0 - goodness) - 1.0,
@@ -110,7 +111,7 @@ fn a_page_needs_nothing_else_and_tells_all_of_the_run() {
     for measure in Measure::ALL {
         assert_holds(&page, &[&format!(">{measure}")]);
     }
-    // Each link leads to the triangle that its picture shows.
+    // Each link leads to the triangle shown by its picture.
     let links = page.matches("<a href=\"#spot-").count();
     let spots = data["spots"].as_array().unwrap();
     assert!(links == spots.len() && links >= 16, "{links}");

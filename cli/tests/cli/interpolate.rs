@@ -1,4 +1,4 @@
-//! `--interpolate`: data of vertices are interpolated where vertices move.
+//! Vertex data interpolated at moved vertices (`--interpolate`).
 
 use super::{Folder, assert_holds, disturbed, small};
 use gpu_smooth::Mesh;
@@ -6,7 +6,7 @@ use mesh_io::MeshFile;
 use std::fmt::Write;
 use std::fs;
 
-/// A depth that is linear in x and y.
+/// Returns a depth linear in x and y.
 fn depth([x, y]: [f64; 2]) -> f64 {
     2.5 * x - 4.0 * y + 3.0
 }
@@ -22,7 +22,7 @@ fn gr3(mesh: &Mesh) -> String {
     text + "0 = Number of open boundaries\n"
 }
 
-/// The largest difference between depths in a file and the linear depth at the same place.
+/// Returns the largest difference between the depths of a file and the linear depth at its vertices.
 fn error(folder: &Folder, name: &str) -> f64 {
     let file = MeshFile::read(&folder.path(name)).unwrap();
     let fields = file.point_fields(Some(&["depth".into()])).unwrap();
@@ -30,7 +30,7 @@ fn error(folder: &Folder, name: &str) -> f64 {
     pairs.map(|(&point, value)| (depth(point) - value).abs()).fold(0.0, f64::max)
 }
 
-/// Data that are the same everywhere fit all places, so that no note says that they were left behind.
+/// Constant data remain valid at all positions, so no note may say that they no longer fit.
 #[test]
 fn equal_depths_are_not_told_as_left_behind() {
     let flat: String = gr3(&disturbed())
@@ -74,7 +74,7 @@ fn depths_stay_as_they_are_unless_they_are_to_come_along() {
     let out = folder.line("compare in.gr3 out.gr3 --interpolate depth").clean().out;
     assert_holds(&out, &["depth differs only at vertices that have moved"]);
     folder.line("compare in.gr3 out.gr3").refused(&["differ in more than coordinates"]);
-    // Compressed output, and a run without sweeps, which changes nothing.
+    // Compressed output, and a run without sweeps, which leaves all data unchanged.
     fs::write(folder.path("empty"), "").unwrap();
     folder.run(["in.gr3", "again.gr3.gz", "--engine=cpu", "--interpolate=all", "--quiet"]).clean();
     assert!(error(&folder, "again.gr3.gz") < 1e-12);
@@ -88,7 +88,8 @@ fn compare_finds_interpolated_data_that_are_wrong() {
     let folder = Folder::new(&[("in.gr3", &text)]);
     folder.line("in.gr3 out.gr3 --engine cpu --quiet --interpolate all").clean();
     let out = folder.text("out.gr3");
-    // Spoils the depth of the first vertex, a corner that stays, and then one inside that is beyond all values.
+    // Spoils the depth of the first vertex, a fixed corner, then that of a vertex inside with a value outside
+    // of the range.
     let corner = out.lines().nth(2).unwrap();
     let other = corner.rsplit_once(' ').unwrap().0.to_owned() + " 2.75";
     fs::write(folder.path("corner.gr3"), out.replace(corner, &other)).unwrap();

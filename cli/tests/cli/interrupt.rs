@@ -1,4 +1,4 @@
-//! What signals do to a run, in every stage of it.
+//! Effects of signals on a run, in each of its stages.
 #![cfg(unix)]
 
 use super::{Folder, assert_holds, assert_smoothed, plate_path, small, support};
@@ -9,21 +9,21 @@ use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
-/// The longest time that a command may take. After it the command is killed, and the test fails.
+/// Time limit of a command. A command that exceeds the limit is killed, and its test fails.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A running command that a test can send signals to.
+/// A running command to which a test can send signals.
 pub(crate) struct Started {
     child: Child,
     err: Option<BufReader<ChildStderr>>,
-    /// Dropped when the process has ended.
+    /// Dropping this sender tells the watchdog that the process has ended.
     _running: Sender<()>,
 }
 
 impl Started {
     pub(crate) fn new(folder: &Folder, args: &[&str]) -> Self {
         let mut command = folder.command();
-        // A program whose parent ignores SIGHUP, as tests under nohup do, ignores the signal too.
+        // A child process whose parent ignores SIGHUP, as tests under nohup do, would ignore the signal too.
         #[cfg(target_os = "linux")]
         {
             let program = command;
@@ -50,7 +50,7 @@ impl Started {
         Self { child, err, _running: running }
     }
 
-    /// Starts a long run on the plate, and waits until it has begun its sweeps.
+    /// Starts a long run on the plate, and waits for the first sweep.
     fn sweeping(folder: &Folder, args: &[&str]) -> Self {
         let plate = plate_path().to_str().unwrap();
         let lasting = ["-v", "--tolerance", "0", "--max-sweeps", "100000000"];
@@ -67,7 +67,7 @@ impl Started {
         line
     }
 
-    /// Returns the next line on standard error that begins with `start`, and skips lines of progress before it.
+    /// Returns the next line on standard error that begins with `start`, skipping lines of progress.
     pub(crate) fn first_of(&mut self, start: &str) -> String {
         loop {
             let line = self.line();
@@ -77,7 +77,7 @@ impl Started {
         }
     }
 
-    /// Returns the next line on standard error that does not report progress.
+    /// Returns the next line on standard error that is not a line of progress.
     fn remark(&mut self) -> String {
         loop {
             let line = self.line();
@@ -96,7 +96,7 @@ impl Started {
         self.child.try_wait().unwrap().is_some()
     }
 
-    /// Sends a signal, unless the command has ended by then.
+    /// Sends a signal, unless the command has ended.
     pub(crate) fn signal_if_running(&mut self, name: &str) {
         if !self.has_ended() {
             self.signal(name);
@@ -104,18 +104,18 @@ impl Started {
         }
     }
 
-    /// Closes the ends at which the output of the command is read.
+    /// Closes the reading ends of the command's output pipes.
     fn close_streams(&mut self) {
         self.err = None;
         self.child.stdout = None;
     }
 
-    /// Waits for the end. Returns the exit code.
+    /// Waits for the process to end. Returns the exit code.
     fn wait(mut self) -> Option<i32> {
         self.child.wait().unwrap().code()
     }
 
-    /// Waits for the end. Returns exit code, standard output, and the rest of standard error.
+    /// Waits for the process to end. Returns exit code, standard output, and the rest of standard error.
     pub(crate) fn end(mut self) -> (Option<i32>, String, String) {
         let (mut out, mut err) = (String::new(), String::new());
         self.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
@@ -165,7 +165,8 @@ fn an_interrupted_run_leaves_the_best_mesh_so_far() {
     }
 }
 
-/// A folder with a square lattice in `in.off`, of so many cells along each side, its vertices at random places.
+/// Returns a folder with `in.off`, a square lattice of `side` cells along each side with randomly moved
+/// vertices.
 fn perturbed_lattice(side: usize) -> Folder {
     let mesh = support::perturb_random(&support::lattice(side, side), 1.0, 1);
     let mut text = format!("OFF\n{} {} 0\n", mesh.points.len(), mesh.triangles.len());
@@ -176,7 +177,7 @@ fn perturbed_lattice(side: usize) -> Folder {
 
 #[test]
 fn an_interrupted_run_reports_that_its_goal_was_not_reached() {
-    // The mesh is so large, and the sweeps are so slow, that the run does not stop by itself before the signal.
+    // The mesh is so large and the sweeps so slow that the run cannot end before the signal.
     let folder = perturbed_lattice(90);
     let args = ["in.off", "out.off", "-v", "--engine", "cpu", "--method", "paper"];
     let args = [&args[..], &["--desired", "1", "--fraction", "1", "--scheme", "edge+imr"]].concat();
@@ -189,7 +190,7 @@ fn an_interrupted_run_reports_that_its_goal_was_not_reached() {
     assert_holds(&out, &["\ninterrupted after ", " % of the way to f = 1.000000"]);
 }
 
-/// A closed terminal takes no more text: here the standard error is a pipe whose reader has gone.
+/// A closed terminal accepts no more text; a pipe without a reader, as standard error, simulates one.
 #[test]
 fn a_run_whose_terminal_is_closed_leaves_the_best_mesh_and_its_checkpoint() {
     let folder = small();
@@ -241,7 +242,7 @@ fn an_interrupt_while_the_file_is_read_ends_at_once_with_nothing_written() {
 #[test]
 fn an_interrupt_while_the_optimum_is_sought_ends_at_once_with_nothing_written() {
     let folder = perturbed_lattice(200);
-    // The optimum by `area` takes thousands of sweeps to find, without corrections.
+    // Without corrections, the search for the optimum by `area` takes thousands of sweeps.
     let goal = ["--scheme", "area", "--desired", "auto"];
     let args = [&["in.off", "out.off", "-v", "--engine", "cpu"][..], &goal].concat();
     let mut run = Started::new(&folder, &args);
@@ -253,7 +254,7 @@ fn an_interrupt_while_the_optimum_is_sought_ends_at_once_with_nothing_written() 
     assert_eq!(names(&folder), ["in.off"]);
 }
 
-/// The `.ele` of OUT is a pipe that nobody reads, so the run hangs while it writes.
+/// The `.ele` of OUT is a pipe without a reader, so the run blocks while writing.
 #[test]
 fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     let folder = small();
@@ -281,7 +282,7 @@ fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     assert_eq!(folder.text("out.node"), "old\n");
 }
 
-/// In a call with many meshes, an interrupt keeps those that are done, and leaves nothing of one under way.
+/// An interrupt of a batch keeps the finished meshes, and leaves no file of the mesh under way.
 #[test]
 fn an_interrupted_call_of_many_meshes_leaves_whole_ones() {
     let folder = small();

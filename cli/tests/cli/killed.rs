@@ -1,4 +1,4 @@
-//! A process that is killed at any moment while it writes.
+//! Processes that are killed at random moments while they write.
 #![cfg(unix)]
 
 use super::{Folder, disturbed, finish, support};
@@ -11,7 +11,7 @@ use support::SplitMix64;
 
 const PARTS: [&str; 3] = ["out.node", "out.ele", "out.poly"];
 
-/// The content of the files of the output; `None` for those that do not exist.
+/// Returns the contents of the output files; `None` for missing files.
 fn parts(folder: &Folder) -> [Option<Vec<u8>>; 3] {
     PARTS.map(|name| fs::read(folder.path(name)).ok())
 }
@@ -22,8 +22,8 @@ fn start(folder: &Folder, input: &str) -> Child {
     command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }
 
-/// Kills the process while it writes a mesh of three files, over an older state of it, and where there was none. The
-/// environment variable KILLS is the number of kills.
+/// Kills a process that writes a mesh of three files, both over an earlier state of the mesh and into an empty
+/// folder. The environment variable KILLS is the number of kills.
 #[test]
 fn a_killed_process_leaves_all_files_old_or_all_new() {
     let kills: usize = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(20);
@@ -31,7 +31,7 @@ fn a_killed_process_leaves_all_files_old_or_all_new() {
     // A .poly without segments and holes.
     let poly = "0 2 0 0\n0 0\n0\n";
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele), ("in.poly", poly)]);
-    // The first run shows what it writes and how long it takes. The mesh replaced has the same triangles.
+    // The first run provides the expected output and its duration. The replaced mesh has equal triangles.
     let began = Instant::now();
     assert!(start(&folder, "in").wait().unwrap().success());
     let whole = began.elapsed();
@@ -51,20 +51,20 @@ fn a_killed_process_leaves_all_files_old_or_all_new() {
             }
         }
         let mut run = start(&folder, "in");
-        // A run with so few sweeps spends most of its time on writing, or just before.
+        // With few sweeps, a run spends most of its time on writing or shortly before.
         let after: Duration = whole.mul_f64(random.range(0.3, 1.1));
         std::thread::sleep(after);
         let _ = run.kill();
         run.wait().unwrap();
         let found = parts(&folder);
         if replaces {
-            // Only the .node differs between the two meshes, so each moment must leave the old or the new one.
+            // The two meshes differ only in the .node, so each moment must leave the old or the new mesh.
             assert!(found == old || found == new, "kill {kill} left a mixture");
             *(if found == new { &mut left_new } else { &mut left_old }) += 1;
         } else if found == new {
             left_new += 1;
         } else {
-            // Without its .node there is no mesh, and the other files are complete.
+            // Without its .node, the mesh does not exist, and the other files must be complete.
             assert!(found[0].is_none(), "kill {kill} left a part of a mesh");
             assert!(MeshFile::read(&folder.path("out.node")).is_err());
             for (found, new) in found.iter().zip(&new) {
@@ -72,7 +72,7 @@ fn a_killed_process_leaves_all_files_old_or_all_new() {
             }
             left_none += 1;
         }
-        // A temporary file may stay. It has a name of its own, and the next run ignores it.
+        // A temporary file may remain. Its name is unique, and the next run ignores the file.
         for entry in fs::read_dir(&folder.0).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
             if name.ends_with(".tmp") {
@@ -90,7 +90,7 @@ fn a_killed_process_leaves_all_files_old_or_all_new() {
     assert_eq!(left_old + left_new + left_none, kills);
 }
 
-/// A new mesh replaces one with other triangles: a kill leaves the old one, the new one, or none that can be read.
+/// A new mesh replaces one with other triangles. A kill must leave the old mesh, the new mesh, or no readable mesh.
 #[test]
 fn a_killed_process_leaves_no_mixture_of_two_meshes() {
     let kills: usize = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
@@ -100,7 +100,7 @@ fn a_killed_process_leaves_no_mixture_of_two_meshes() {
     assert!(start(&folder, "in").wait().unwrap().success());
     let whole = began.elapsed();
     let new = ["out.node", "out.ele"].map(|name| fs::read(folder.path(name)).ok());
-    // The same vertices with other triangles, so that a mixture of both could be read as a mesh.
+    // Equal vertices with other triangles, so that a mixture of both meshes could be read.
     let mut other = disturbed();
     other.triangles.rotate_left(7);
     let old = support::triangle_text(&other, "another").map(|text| Some(text.into_bytes()));
@@ -122,7 +122,7 @@ fn a_killed_process_leaves_no_mixture_of_two_meshes() {
         } else {
             assert!(found[0].is_none(), "kill {kill} left a mixture");
             left_none += 1;
-            // The old files still exist, under temporary names.
+            // The old files still exist under temporary names.
             let entries =
                 fs::read_dir(&folder.0).unwrap().map(|entry| fs::read(entry.unwrap().path()).ok());
             let there: Vec<_> = entries.collect();
@@ -144,14 +144,14 @@ fn a_killed_process_leaves_no_mixture_of_two_meshes() {
     assert_eq!(left_old + left_new + left_none, kills);
 }
 
-/// A limit on the size of files stands in for a full disk, which only root can make: see `tests/full-disk`.
+/// A limit on file sizes simulates a full disk. `tests/full-disk` tests a real full disk, which requires root.
 #[test]
 fn a_mesh_that_does_not_fit_on_the_disk_leaves_the_old_one() {
     let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
     let old = [("out.node", "old node\n"), ("out.ele", "old ele\n")];
     let folder = Folder::new(&[&[("in.node", &*node), ("in.ele", &*ele)][..], &old].concat());
     let kept = folder.content();
-    // One or two kilobytes: a block has 512 or 1024 bytes, depending on the shell.
+    // The limit is one or two kilobytes: a block has 512 or 1024 bytes, depending on the shell.
     let line = "ulimit -f 2; exec \"$0\" in out.node --engine cpu --force";
     let mut command = std::process::Command::new("sh");
     command.current_dir(&folder.0).args(["-c", line, env!("CARGO_BIN_EXE_gpu-smooth")]);

@@ -9,10 +9,10 @@ use mesh_io::MeshFile;
 use std::fs;
 use std::time::{Duration, Instant};
 
-/// A run by a metric that takes all of its many sweeps, so that there is time to stop it.
+/// A run that takes all of its 300 sweeps, long enough for a test to stop the run.
 const LONG: &str = "in.node out --engine cpu --scheme edge+imr --tolerance 0 --max-sweeps 300";
 
-/// The result of the run if nothing stops it: its folder and the mesh.
+/// Returns the result of the run without a stop: its folder and the mesh.
 fn uninterrupted() -> (Folder, String) {
     let folder = small();
     folder.line(LONG).clean();
@@ -28,7 +28,7 @@ fn a_run_that_was_killed_goes_on_to_the_same_bits() {
     let checkpoint = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0.001"];
     let mut args: Vec<&str> = LONG.split(' ').collect();
     args.extend(checkpoint);
-    // Killed several times, and continued each time.
+    // Kills the run several times, and continues from the checkpoint each time.
     for round in 0..4 {
         let mut run = Started::new(&folder, &args);
         let start = Instant::now();
@@ -75,7 +75,7 @@ fn a_run_ended_by_the_time_limit_writes_its_mesh_and_goes_on() {
     assert_eq!(folder.json("r.json")["continued_from"].as_u64(), sweeps);
     assert_eq!(folder.json("r.json")["sweeps"], 300);
     assert!(!folder.path("run.ckpt").exists());
-    // With --strict, a run that is not done is an error.
+    // With --strict, an unfinished run is an error.
     let Run { code, err, .. } = folder.line(&format!("{LONG} --time-limit 0.001 --strict"));
     assert_eq!(code, Some(1));
     assert_holds(&err, &["ended by --time-limit after "]);
@@ -110,7 +110,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
         folder.line(line).refused(parts);
         assert!(folder.content() == kept, "{line}: something was written");
     };
-    // The checkpoint of another run would be overwritten and lost.
+    // The run would overwrite the checkpoint of another run.
     refused(
         &limited,
         &["run.ckpt: this file is the checkpoint of another run", "--continue run.ckpt"],
@@ -153,7 +153,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     assert_eq!(folder.text("notes.txt"), "mine");
 }
 
-/// A disk without room for the checkpoint does not end the run; it says so.
+/// If the disk has no room for a checkpoint, the run continues and reports the problem.
 #[test]
 fn a_checkpoint_that_cannot_be_saved_is_reported() {
     let folder = small();

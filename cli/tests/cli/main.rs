@@ -1,4 +1,4 @@
-//! The `gpu-smooth` command as a user meets it: run as a process, and judged by its output and the files it leaves.
+//! Tests of the `gpu-smooth` command as a process, judged by its output and files.
 
 #[path = "../../../tests/support/mod.rs"]
 mod support;
@@ -60,7 +60,7 @@ struct Run {
 }
 
 impl Run {
-    /// Checks that the run succeeded and printed nothing on standard error, except for progress on a slow machine.
+    /// Checks that the run succeeded, and printed nothing but progress to standard error. Slow machines print progress.
     #[track_caller]
     fn clean(self) -> Self {
         let remarks: Vec<&str> = self.err.lines().filter(|line| !is_progress(line)).collect();
@@ -68,13 +68,13 @@ impl Run {
         self
     }
 
-    /// Checks that the run failed with one line, perhaps with an indented list under it, that contains each of the parts.
+    /// Checks that the run failed with one line that contains all parts. An indented list may follow the line.
     #[track_caller]
     fn refused(self, parts: &[&str]) -> Self {
         self.refused_with(1, parts)
     }
 
-    /// Checks that the run was refused as [`refused`](Self::refused) says, but because the command line alone is wrong.
+    /// Checks that the run was refused as in [`refused`](Self::refused), but because of its command line alone.
     #[track_caller]
     fn misused(self, parts: &[&str]) -> Self {
         self.refused_with(2, parts)
@@ -91,7 +91,7 @@ impl Run {
     }
 }
 
-/// Whether a line on standard error reports progress.
+/// Returns whether a line on standard error reports progress.
 fn is_progress(line: &str) -> bool {
     let starts =
         ["reading", "preparing", "smoothing", "writing", "sweep ", "finding the optimum: "];
@@ -108,7 +108,7 @@ fn assert_holds(text: &str, parts: &[&str]) {
 
 fn command() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_gpu-smooth"));
-    // If the variable is not set, some drivers complain on standard error.
+    // Without the variable, some drivers print a complaint to standard error.
     command.env("XDG_RUNTIME_DIR", std::env::temp_dir()).stdin(Stdio::null());
     command
 }
@@ -162,7 +162,7 @@ impl Folder {
         self.run(args.split_whitespace())
     }
 
-    /// Every file in the folder with its bytes.
+    /// Returns the paths and bytes of all files in the folder.
     fn content(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files: Vec<_> = fs::read_dir(&self.0)
             .unwrap()
@@ -174,10 +174,10 @@ impl Folder {
     }
 }
 
-/// A small mesh with most of its vertices in bad places.
+/// Returns a small mesh with most vertices randomly displaced.
 fn disturbed() -> Mesh {
     let mut mesh = support::lattice(10, 8);
-    // Flattened, so that not all triangles can become equilateral.
+    // Flattened, so that the optimum is not a mesh of equilateral triangles.
     mesh.points.iter_mut().for_each(|point| point[1] *= 0.625);
     support::perturb_random(&mesh, 1.0, 5)
 }
@@ -188,8 +188,8 @@ fn small() -> Folder {
     Folder::new(&[("in.node", &node), ("in.ele", &ele)])
 }
 
-/// Checks that `after` is `before` smoothed: the same triangles, held vertices unchanged to the bit, no triangle inverted or
-/// flat, no fold, and some vertex moved.
+/// Checks that `after` is a smoothed state of `before`: equal triangles, bit-identical held vertices, no inverted or
+/// flat triangle, no fold, and some moved vertex.
 #[track_caller]
 fn assert_smoothed(before: &Mesh, after: &Mesh) {
     assert_eq!((&before.triangles, &before.fixed), (&after.triangles, &after.fixed));

@@ -1,10 +1,10 @@
-//! Many meshes in one call: `gpu-smooth MESH... --out-dir DIR`.
+//! Batches: `gpu-smooth MESH... --out-dir DIR`.
 
 use super::{Folder, Run, assert_holds, disturbed, number, support};
 use serde_json::Value;
 use std::fs;
 
-/// A folder with meshes of Triangle and gmsh, and a file that is not a mesh.
+/// Returns a folder with Triangle and gmsh meshes, and a file without a mesh.
 fn several() -> Folder {
     let [node, ele] = support::triangle_text(&disturbed(), "made for a test");
     let gmsh = support::write_msh22(&disturbed());
@@ -118,7 +118,7 @@ fn a_call_of_many_meshes_is_resumed() {
     fs::write(folder.path("out/c.msh"), "what newer files hold is not looked at").unwrap();
     assert_holds(&folder.line(line).clean().out, &["\n1 smoothed, 2 skipped of 3 meshes"]);
     assert_eq!(names(&folder, "out"), ["a.1.ele", "a.1.node", "b.msh", "c.msh"]);
-    // A mesh that was written again later is smoothed again.
+    // A mesh that has changed since its result was written is smoothed again.
     fs::write(folder.path("c.msh"), bytes("b.msh")).unwrap();
     assert_holds(&folder.line(line).clean().out, &["\n1 smoothed, 2 skipped of 3 meshes"]);
     assert!(bytes("out/c.msh") == bytes("out/b.msh"));

@@ -1,4 +1,4 @@
-//! Options that choose what may move: groups, lists, arrays, boxes, regions, and the neighborhood of bad triangles.
+//! Options that select movable vertices: groups, lists, arrays, boxes, regions, and neighborhoods of bad triangles.
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, support};
 use gpu_smooth::Mesh;
@@ -8,14 +8,14 @@ use std::fs;
 
 type Set = BTreeSet<usize>;
 
-/// Whether a triangle is in the left half of the small mesh.
+/// Returns whether a triangle is in the left half of the small mesh.
 fn is_left(mesh: &Mesh, triangle: usize) -> bool {
     // Each square is two triangles, and each row has ten squares.
     assert_eq!(mesh.triangles.len(), 160);
     triangle / 2 % 10 < 5
 }
 
-/// The small mesh as a .2dm file, with materials `land` on the left and `mud` on the right.
+/// Returns the small mesh as a .2dm file, with materials `land` on the left and `mud` on the right.
 fn sms(mesh: &Mesh) -> String {
     let mut text = "MESH2D\n".to_owned();
     for (t, corners) in mesh.triangles.iter().enumerate() {
@@ -34,7 +34,7 @@ fn folder() -> (Folder, Mesh) {
     (Folder::new(&[("in.2dm", &sms(&mesh))]), mesh)
 }
 
-/// The vertices of the triangles for which `holds` is true.
+/// Returns the vertices of the triangles for which `holds` is true.
 fn vertices_of(mesh: &Mesh, holds: impl Fn(usize) -> bool) -> Set {
     let triangles = (0..mesh.triangles.len()).filter(|&t| holds(t));
     triangles.flat_map(|t| mesh.triangles[t]).map(|v| v as usize).collect()
@@ -45,14 +45,14 @@ fn interior(mesh: &Mesh) -> Set {
     (0..mesh.points.len()).filter(|&v| !on_boundary[v]).collect()
 }
 
-/// The vertices whose coordinates differ in any bit.
+/// Returns the vertices whose coordinates differ in any bit.
 fn moved(before: &Mesh, after: &Mesh) -> Set {
     let bits = |mesh: &Mesh, v: usize| mesh.points[v].map(f64::to_bits);
     (0..before.points.len()).filter(|&v| bits(before, v) != bits(after, v)).collect()
 }
 
-/// Checks that a run with these options moves exactly `movers`, prints `note`, and that `compare` with the same options
-/// accepts the result. Also checks that a run without the options moves more, which `compare` with them must find.
+/// Checks that a run with `options` moves exactly `movers`, prints `note`, and passes `compare` with equal options. A
+/// run without the options must move further vertices, which `compare` with the options must report.
 #[track_caller]
 fn assert_moves(folder: &Folder, input: &str, options: &str, movers: &Set, note: &str) {
     let output = input.replace("in", "out");
@@ -60,7 +60,7 @@ fn assert_moves(folder: &Folder, input: &str, options: &str, movers: &Set, note:
     let run = folder.line(&line);
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert!(run.err.lines().any(|line| line == format!("gpu-smooth: {note}")), "{}", run.err);
-    // The fixed vertices of the file are ignored here, as those between regions may be free; `movers` is checked below.
+    // `fixed` is emptied because `options` may free vertices between regions. `movers` is compared below.
     let [before, after] = [input, &output].map(|name| Mesh { fixed: vec![], ..folder.mesh(name) });
     assert_smoothed(&before, &after);
     assert_eq!(moved(&before, &after), *movers, "{options}");
@@ -118,7 +118,7 @@ fn only_the_inside_of_named_regions_moves() {
     assert_moves(&folder, "in.2dm", "--only land", &land, note);
     let free = note.replace("of 56", "of 63");
     assert_moves(&folder, "in.2dm", "--only land --free-interfaces", &land, &free);
-    // With both materials, the vertices between them move too, if they may move at all.
+    // With both materials selected and interfaces free, vertices between the materials move too.
     let both = "--only land (material surface land), 9 (material surface mud): 63 of 63 free vertices may move";
     for options in ["--only land,9 --free-interfaces", "--only land --only 9 --free-interfaces"] {
         let run = folder.line(&format!("in.2dm out.2dm --engine cpu {options}"));
@@ -158,7 +158,7 @@ fn groups_of_every_format_stay() {
 #[test]
 fn listed_vertices_stay() {
     let (folder, mesh) = folder();
-    // Numbers of the file count from one. The second of the three is on the boundary.
+    // The file numbers vertices from 1. The second of the three vertices is on the boundary.
     fs::write(folder.path("list.txt"), "37 # in the middle\n\n1\t49\n").unwrap();
     let movers = &interior(&mesh) - &Set::from([36, 48]);
     let note = "--fix-vertices list.txt: 3 vertices stay fixed; 2 of them would be free";
@@ -234,7 +234,7 @@ fn only_vertices_near_bad_triangles_move() {
     let inside = interior(&mesh);
     let mut ratios: Vec<f64> = (0..160).map(|t| imr(&mesh, t)).collect();
     ratios.sort_by(f64::total_cmp);
-    // The limit is such that two triangles are above it.
+    // A limit that exactly two triangles exceed.
     let limit = format!("{:.3}", 0.5 * (ratios[157] + ratios[158]));
     let q: f64 = limit.parse().unwrap();
     let mut near = vertices_of(&mesh, |t| imr(&mesh, t) > q);
@@ -255,7 +255,7 @@ fn only_vertices_near_bad_triangles_move() {
         if rings == 2 {
             let options = format!("--free-interfaces --only-bad {limit}");
             assert_moves(&folder, "in.2dm", &options, &movers, &note);
-            // A vertex moves only if both options let it, and fixed vertices stay.
+            // A vertex moves only if both options allow the move. Fixed vertices stay.
             let land = &movers - &vertices_of(&mesh, |t| !is_left(&mesh, t));
             let options = format!("{options} --only land --fix-box 0,0,1.5,9");
             let held = |v: &usize| mesh.points[*v][0] <= 1.5;

@@ -1,9 +1,9 @@
-//! What each option does.
+//! The effects of options on a run.
 
 use super::{Folder, assert_holds, assert_smoothed, finish, number, plate_path, small};
 use serde_json::Value;
 
-/// Runs on the CPU. Returns the report and what was printed.
+/// Runs on the CPU. Returns the report and the printed text.
 #[track_caller]
 fn run(folder: &Folder, options: &str) -> (Value, String) {
     let line = format!("in out --engine cpu --report r.json {options}");
@@ -40,7 +40,8 @@ fn max_sweeps_ends_a_run() {
     assert_holds(&out, &["stopped after 1 sweep, the most"]);
 }
 
-/// What is left is a share of f, or of 1e-6 where f is less: "1.7e-2 of itself" was told of an f of 1.2e-8.
+/// The remaining gain is relative to f, or to 1e-6 for smaller f. An earlier version printed "1.7e-2 of
+/// itself" for an f of 1.2e-8.
 #[test]
 fn the_rest_above_the_limit_is_printed_also_where_f_is_small() {
     let folder = small();

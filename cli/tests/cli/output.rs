@@ -1,4 +1,4 @@
-//! What is printed, and what is left out.
+//! Printed text, and its absence with `--quiet`.
 
 use super::{Folder, assert_holds, finish, number, plate_path, small, support};
 use gpu_smooth::Metric;
@@ -6,7 +6,7 @@ use mesh_io::MeshFile;
 use std::fs;
 use std::process::Stdio;
 
-/// A square with its center vertex moved out to the right: triangle 2 is inverted.
+/// A square with the center vertex moved out to the right, which inverts triangle 2.
 pub(crate) const INVERTED: [&str; 2] = [
     "5 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n5 1.5 0.5\n",
     "4 3 0\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n",
@@ -110,7 +110,7 @@ fn a_worst_element_that_got_worse_is_reported_with_a_remedy() {
     let plate = plate_path().to_str().unwrap();
     let out = folder.run([plate, "good", "--engine", "cpu"]).clean().out;
     assert!(!out.contains(" rose "), "{out}");
-    // A graded mesh: even sizes cost it some of its shapes.
+    // A graded mesh, whose shapes become worse as sizes become even.
     let file = MeshFile::read(&folder.path("good.node")).unwrap();
     let graded = |&[x, y]: &[f64; 2]| [x * x.hypot(y), y * x.hypot(y)];
     let points: Vec<_> = file.points().iter().map(graded).collect();
@@ -189,10 +189,10 @@ fn no_bar_is_drawn_where_there_is_no_terminal() {
         command.args(["--report", "r.json", "--max-sweeps", &sweeps.to_string()]);
         let run = finish(&mut command);
         assert_eq!(run.code, Some(0), "{}", run.err);
-        // Standard error is not a terminal here: it gets lines of progress, as a log does.
+        // Standard error is not a terminal, so the program prints lines of progress.
         assert!(!run.err.contains(['\r', '\u{1b}']), "{}", run.err);
         assert!(run.err.lines().all(super::is_progress), "{}", run.err);
-        // The run took long enough that a terminal would show a bar.
+        // The run was long enough for a bar on a terminal.
         if number(&folder.json("r.json")["seconds"]["smooth"]) > 1.0 {
             return;
         }

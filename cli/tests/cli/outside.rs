@@ -1,11 +1,11 @@
-//! Files that a mesh file names outside of its own directory.
+//! Mesh files that refer to files outside of their directory.
 
 use super::Folder;
 use std::fs;
 use std::path::Path;
 
-/// A folder with an XDMF in `mesh`, whose numbers are in HDF5 in `other`, and an Abaqus input file in `mesh` that includes a file
-/// in `other`.
+/// Returns a folder with two meshes in `mesh`: an XDMF with numbers in an HDF5 file in `other`, and an Abaqus input
+/// file that includes a file in `other`.
 fn apart() -> Folder {
     let made = Path::new(env!("CARGO_MANIFEST_DIR")).join("../mesh-io/tests/formats/h5");
     let folder = Folder::new(&[]);
@@ -55,6 +55,6 @@ fn files_that_abaqus_includes_from_elsewhere_are_read_by_leave_only() {
         .refused(&["mesh/a.inp:12: it names ../other/steel.inp, which is ", "--allow-outside"]);
     folder.line("mesh/a.inp out.inp --engine cpu --allow-outside").clean();
     fs::copy(folder.path("mesh/a.inp"), folder.path("a.inp")).unwrap();
-    // What is not there is not read, and tells nothing.
+    // A file that does not exist is not read, so the run must not mention it.
     assert_eq!(folder.line("a.inp out.inp --engine cpu").code, Some(0));
 }

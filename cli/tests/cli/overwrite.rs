@@ -1,11 +1,13 @@
-//! Files that a mesh must not replace: another mesh, a file that is no mesh, a file of IN, and a file that has changed.
+//! Files that a mesh must not replace: another mesh, a file of another kind, a file of IN, and a file changed during
+//! the run.
 
 #[cfg(unix)]
 use super::interrupt::Started;
 use super::{Folder, assert_holds, disturbed, small, support};
 use std::fs;
 
-/// A folder with two meshes, `a.msh` and `b.msh`, of different triangles, and the first once more with other positions.
+/// Returns a folder with two meshes of different triangles, `a.msh` and `b.msh`, and `moved.msh`, which is `a.msh` with
+/// other positions.
 fn two_meshes() -> Folder {
     let mesh = disturbed();
     let other = support::perturb_random(&support::lattice(12, 8), 0.5, 5);
@@ -14,7 +16,7 @@ fn two_meshes() -> Folder {
     Folder::new(&[("a.msh", &text[0]), ("b.msh", &text[1]), ("moved.msh", &text[2])])
 }
 
-/// What a shell makes of `gpu-smooth *.msh` without `--out-dir`.
+/// A shell expands `gpu-smooth *.msh` without `--out-dir` to two meshes, of which the second would be OUT.
 #[test]
 fn another_mesh_is_replaced_by_force_only() {
     let folder = two_meshes();
@@ -42,7 +44,7 @@ fn an_earlier_state_of_the_mesh_is_replaced_without_force() {
     let parts = small();
     parts.line("in out --engine cpu -q --max-sweeps 1").clean();
     parts.line("in out.ele --engine cpu -q").clean();
-    // As a killed run may leave a mesh that was not there before.
+    // A killed run may leave these companion files of a new mesh.
     fs::remove_file(parts.path("out.node")).unwrap();
     parts.line("in out --engine cpu -q").clean();
 }
@@ -109,7 +111,7 @@ fn a_conversion_replaces_its_own_result_and_no_other_mesh() {
     folder.line("convert a.msh notes.vtk -q --lossy").refused(&["notes.vtk: exists, and cannot"]);
 }
 
-/// Who gives the two files of a Triangle mesh may take them for IN and OUT.
+/// A user may mistake the two files of a Triangle mesh for IN and OUT.
 #[test]
 fn a_file_of_the_mesh_beside_in_is_no_place_for_out() {
     let folder = small();

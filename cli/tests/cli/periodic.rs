@@ -1,10 +1,10 @@
-//! `--slide` on periodic models: the vertices of a pair slide together.
+//! Sliding on periodic models (`--slide`): the vertices of a pair slide together.
 
 use super::{Folder, assert_holds, number, slide};
 use gpu_smooth::Mesh;
 
-/// A mesh of 9 by 5 vertices, with two triangles in each field, and its materials. Vertices of the left and the right side
-/// are at the same heights.
+/// Returns a mesh of 9 by 5 vertices, with two triangles per cell, and its materials. Vertices of the left and right
+/// sides have equal heights.
 fn channel() -> (Mesh, Vec<i32>) {
     let (mut mesh, materials) = slide::square();
     for row in 0..5 {
@@ -55,7 +55,7 @@ fn gmsh4(mesh: &Mesh, version: &str, pairs: &str) -> String {
     )
 }
 
-/// A mesh as a binary file of gmsh 4.1. Each pair is an image and the vertex that it is the image of.
+/// Returns a mesh as a binary file of gmsh 4.1. Each pair has the image vertex first and its master vertex second.
 fn binary41(mesh: &Mesh, motion: &[f64], pairs: &[[u64; 2]]) -> Vec<u8> {
     let mut file = b"$MeshFormat\n4.1 1 8\n\x01\0\0\0\n$EndMeshFormat\n$Nodes\n".to_vec();
     let put = |file: &mut Vec<u8>, sizes: &[u64]| {
@@ -90,14 +90,14 @@ fn binary41(mesh: &Mesh, motion: &[f64], pairs: &[[u64; 2]]) -> Vec<u8> {
     file
 }
 
-/// The pairs of the channel's left and right sides, as tags from one.
+/// Returns the pairs of the channel's left and right sides, as tags counted from 1.
 fn sides() -> Vec<[u64; 2]> {
     (0..5).map(|row| [9 * row + 9, 9 * row + 1]).collect()
 }
 
 const MOTION: &str = "1 0 0 8 0 1 0 0 0 0 1 0 0 0 0 1";
 
-/// A section `$Periodic` as versions before 4.1 have it, or as 4.1 has it.
+/// Returns a `$Periodic` section in the syntax of gmsh 4.1, or of the versions before.
 fn section(version: &str, with_motion: bool, pairs: &[[u64; 2]]) -> String {
     let motion = match (version, with_motion) {
         ("4.1", true) => format!("16 {MOTION}\n"),
@@ -113,7 +113,7 @@ fn write(folder: &Folder, name: &str, content: impl AsRef<[u8]>) {
     std::fs::write(folder.path(name), content).unwrap();
 }
 
-/// Checks that in a run the vertices of each pair slide together, and that `compare` proves it.
+/// Checks that the vertices of each pair slide together in a run, and that `compare` proves the pairs.
 fn slides_together(folder: &Folder, mesh: &str, pairs: usize, options: &str) {
     let out = format!("out-{mesh}");
     let line = format!("{mesh} {out} --engine cpu --slide {options} --report r.json");
@@ -145,7 +145,7 @@ fn partners_of_a_translation_slide_together_in_all_forms_of_gmsh() {
             slides_together(&folder, mesh, 3, "");
         }
     }
-    // `compare` notices if one vertex of a pair is put back.
+    // `compare` must notice if one vertex of a pair returns to its old position.
     let text = folder.text("out-2.msh");
     let was = folder.text("2.msh");
     let own = |text: &str| text.lines().find(|row| row.starts_with("18 8")).unwrap().to_owned();
@@ -168,7 +168,7 @@ fn pairs_that_make_no_sense_stay_and_nothing_else_is_harmed() {
         assert_holds(&run.err, told);
         folder.line("compare in.msh out.msh --slide").clean();
     };
-    // The neighbors of this vertex would have to slide as those of its partner do.
+    // The neighbors of this vertex are paired with no neighbors of its partner.
     run(&sides(), &["--slide: 14 vertices", "1 pair stays"]);
     // A vertex paired with itself, a vertex in three pairs, a vertex inside, and vertices that do not exist.
     run(&[[10, 10]], &["--slide: 19 vertices"]);

@@ -1,10 +1,10 @@
-//! `--picture`: files that show what was asked for, the right way up.
+//! Pictures (`--picture`): correct content, orientation and size.
 
 use super::output::INVERTED;
 use super::{Folder, assert_holds, finish, small};
 use std::fs;
 
-/// The pixels of an image, and its size.
+/// An image, decoded to its pixels.
 struct Image {
     width: usize,
     height: usize,
@@ -22,14 +22,14 @@ impl Image {
         Self { width: info.width as usize, height: info.height as usize, pixels }
     }
 
-    /// The places of the pixels whose color fits.
+    /// Returns the columns and rows of the pixels whose color fits.
     fn places(&self, is: impl Fn([u8; 4]) -> bool) -> Vec<[usize; 2]> {
         let place = |i: usize| [i % self.width, i / self.width];
         (0..self.pixels.len()).filter(|&i| is(self.pixels[i])).map(place).collect()
     }
 }
 
-/// The least and the largest x and y.
+/// Returns the smallest and the largest column, and likewise for rows.
 fn bounds(places: &[[usize; 2]]) -> [[usize; 2]; 2] {
     [0, 1].map(|axis| {
         let all = places.iter().map(|place| place[axis]);
@@ -41,7 +41,7 @@ fn is_red(pixel: [u8; 4]) -> bool {
     pixel == [230, 25, 75, 255]
 }
 
-/// Whether a pixel has a color of the scale, and not the black or white of lines and letters.
+/// Returns whether a pixel has a color of the scale, unlike the black and white of lines and letters.
 fn is_face(pixel: [u8; 4]) -> bool {
     let [r, g, b, _] = pixel;
     r.abs_diff(g).max(g.abs_diff(b)) > 20
@@ -87,7 +87,7 @@ fn a_run_is_drawn_before_and_after_on_one_scale() {
     folder.line("in out --engine cpu -q --picture p.png --picture-size 900").clean();
     let image = Image::read(&folder, "p.png");
     let before = |x: usize| x < 450;
-    // Good triangles are light. The legend is left out.
+    // Good triangles are light. Rows of the legend are excluded.
     let mesh = |[_, row]: &[usize; 2]| *row < image.height - 90;
     let mean = |is_side: &dyn Fn(usize) -> bool| {
         let mut places = image.places(is_face);
@@ -151,7 +151,7 @@ fn an_svg_has_every_triangle() {
             _ => {}
         }
     }
-    // At least all triangles of the mesh; the insets show some of them again.
+    // Each triangle of the mesh is drawn, and some are drawn again in insets.
     assert!(triangles >= 160, "{triangles}");
     assert_holds(
         &words,

@@ -1,4 +1,4 @@
-//! The example of the README: the plate of `meshes/`, smoothed by the command.
+//! The example of the README: the program smooths the plate of `meshes/`.
 
 use super::{Folder, assert_holds, assert_smoothed, number, plate_path, support};
 use mesh_io::MeshFile;
@@ -38,7 +38,7 @@ fn plate_is_smoothed_alike_on_gpu_and_cpu() {
     }
 }
 
-/// Checks that comments, header, numbers and markers are kept, and the coordinates of boundary vertices too.
+/// Checks that comments, header, numbers, markers and boundary coordinates are unchanged.
 fn assert_rows_kept(before: &str, after: &str) {
     assert_eq!(before.lines().count(), after.lines().count());
     let rows = before.lines().zip(after.lines());

@@ -1,9 +1,9 @@
-//! What a run reports while it goes on, on a terminal and in a log.
+//! Progress of a run on a terminal and in a log.
 
 use super::{Folder, assert_holds, small};
 use serde_json::Value;
 
-/// The events on standard error, each a line of JSON.
+/// Parses the events on standard error, one JSON object per line.
 fn events(text: &str) -> Vec<Value> {
     let event =
         |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error} in {line}"));
@@ -63,7 +63,7 @@ fn many_meshes_are_logged_one_by_one() {
     assert_eq!(events[2]["event"], "error");
 }
 
-/// Every stage reports that it goes on, also one that cannot tell how far it is.
+/// Each stage reports its elapsed time, even if it cannot report its progress.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_long_stage_is_shown_on_a_terminal_and_in_a_log() {

@@ -1,4 +1,4 @@
-//! `gpu-smooth quality`: its text, JSON and CSV.
+//! The command `gpu-smooth quality`: text, JSON and CSV.
 
 use super::output::INVERTED;
 use super::{Folder, assert_holds, disturbed, finish, number, small, support};
@@ -10,7 +10,7 @@ use mesh_io::MeshFile;
 use serde_json::Value;
 use std::fs;
 
-/// The numbers in a row of the text.
+/// Returns the numbers in a row of text.
 fn numbers(row: &str) -> Vec<f64> {
     row.split_whitespace().filter_map(|word| word.parse().ok()).collect()
 }
@@ -151,7 +151,7 @@ fn a_threshold_fails_where_triangles_pass_it() {
     {
         run(&passed).clean();
     }
-    // Standard error has a line for each threshold that is exceeded, in each mesh, also with `--json`.
+    // Standard error has a line for each mesh and each violated threshold, also with `--json`.
     let line = "quality in in.ele --json --threshold min-angle<60 --threshold condition>=1 --threshold shape<0";
     let run = folder.line(line);
     assert_eq!((run.code, run.err.lines().count()), (Some(1), 4), "{}", run.err);
@@ -228,7 +228,7 @@ fn regions_have_statistics_of_their_own() {
         assert_eq!(region["first_triangle"], first.id);
         let least = shapes[range.clone()].iter().copied().fold(1.0, f64::min);
         assert!((number(&region["measures"]["shape"]["min"]) / least - 1.0).abs() < 1e-12);
-        // The name that `--only` takes.
+        // The group's name in the spelling for `--only`.
         let group = region["groups"][0].as_str().unwrap();
         let groups = file.groups().unwrap();
         let found = groups.find(group).unwrap();
@@ -253,7 +253,7 @@ fn regions_have_statistics_of_their_own() {
         Measure::ALL.len()
     );
     assert_holds(csv.lines().next().unwrap(), &[",p95,groups"]);
-    // A named group is told by its name, not by its tag.
+    // A group with a name is listed by name, not by tag.
     let named = support::write_msh22(&mesh)
         .replace("$Nodes", "$PhysicalNames\n1\n2 1 \"outer wall\"\n$EndPhysicalNames\n$Nodes");
     fs::write(folder.path("named.msh"), named).unwrap();
@@ -271,7 +271,7 @@ fn regions_have_statistics_of_their_own() {
 #[test]
 fn defects_are_counted() {
     let [node, ele] = INVERTED;
-    // The center moves onto a corner, and there is a sixth vertex that no triangle uses.
+    // The center moves onto a corner, and no triangle uses the sixth vertex.
     let node = node.replace("5 2 0 0", "6 2 0 0").replace("1.5 0.5", "1 1") + "6 9 9\n";
     let folder = Folder::new(&[("in.node", &node), ("in.ele", ele)]);
     let told = json(&folder, "quality in --json");
@@ -288,7 +288,8 @@ fn defects_are_counted() {
     assert_holds(row("condition"), &[" infinite"]);
 }
 
-/// Two squares side by side. The right one has a vertex in the middle of the edge that the left one has whole.
+/// Two squares share an edge. The right square has a vertex in the middle of the edge, the left square has
+/// none.
 #[test]
 fn hanging_nodes_are_counted_and_the_first_is_named() {
     let hanging = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\nND 5 .4 .5 0\nND 6 2 0 0\nND 7 2 1 0\nND 8 1 .5 0\n\

@@ -1,5 +1,5 @@
-//! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, and OUT untouched. Several inverted or
-//! flat triangles are listed under that line.
+//! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, and OUT unchanged. An indented
+//! list follows if several triangles are inverted or flat.
 
 use super::{Folder, assert_holds, output::INVERTED, plate_path, support};
 use serde_json::{Value, json};
@@ -13,7 +13,8 @@ const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n10 0 0 0\n2
 9 2 2 0 1 30 40 50\n11 2 2 0 1 40 10 50\n$EndElements\n";
 const TRIANGULATED: [(&str, &str); 2] = [("in.node", NODE), ("in.ele", ELE)];
 
-/// Checks that smoothing `input` is refused with each of the parts, and that OUT does not change, whether it exists or not.
+/// Checks that smoothing `input` fails with all parts in the message, both without and with an existing OUT, which
+/// must not change.
 #[track_caller]
 fn assert_refused(files: &[(&str, &str)], input: &str, parts: &[&str]) {
     let gmsh = input.ends_with(".msh");
@@ -26,7 +27,7 @@ fn assert_refused(files: &[(&str, &str)], input: &str, parts: &[&str]) {
             }
         }
         let before = folder.content();
-        // Files that are no mesh are replaced by force only.
+        // Existing files without a mesh are replaced only with --force.
         folder.run([input, out, "--engine", "cpu", "--force"]).refused(parts);
         assert!(folder.content() == before, "files have changed");
         let args = [input, out, "--engine", "cpu", "--force", "--report", "r.json"];
@@ -150,13 +151,14 @@ fn inverted_and_flat_triangles_are_counted_and_the_first_is_named() {
         "50 1.5 0.5",
         &["in.msh:15: triangle 8 (vertices 20, 30, 50) is inverted", untangle],
     );
-    // All triangles are clockwise but for one, which is inverted.
+    // All triangles are clockwise except one, which therefore counts as inverted.
     let clockwise = "4 3\n1 2 1 5\n2 3 2 5\n3 4 3 5\n4 1 4 5\n";
     assert_triangle_refused(&moved("0.5 -1"), clockwise, &["triangle 1 (vertices 2, 1, 5) is inv"]);
 }
 
-/// A strip two squares wide, as a Triangle and as a gmsh mesh. In every eighth row the middle vertex is moved across its
-/// neighbors, which inverts triangles. In another it is put onto a neighbor, which makes triangles flat.
+/// Returns a strip two squares wide, as a Triangle mesh and a gmsh mesh. In every eighth row, the middle vertex is
+/// moved across its neighbors, which inverts triangles. In the rows halfway between, the middle vertex coincides with
+/// a neighbor, which makes triangles flat.
 fn folded(rows: usize) -> Folder {
     let mut mesh = support::lattice(2, rows);
     for row in (1..rows).step_by(4) {
@@ -256,13 +258,13 @@ fn a_mesh_file_with_an_edge_of_three_triangles_is_an_error() {
         "5\n70 2 2 0 1 10 50 30\n7 2 2",
         &["the edge between vertices 10 and 50 belongs to 3 triangles (70, 7, 11)"],
     );
-    // gmsh lists an element of two physical groups twice in version 2.2.
+    // In version 2.2, gmsh lists an element of two physical groups twice.
     assert_gmsh_refused(
         "4\n7 2 2 0 1 10 20 50",
         "5\n70 2 2 0 2 50 10 20\n7 2 2 0 1 10 20 50",
         &["Some of them have the same vertices: remove these, or save as gmsh 4.1"],
     );
-    // Other formats do not list them so.
+    // Other formats have no such duplicates.
     let ele = "5 3 0\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n5 5 1 2\n";
     let folder = Folder::new(&[("in.node", NODE), ("in.ele", ele)]);
     let told = folder.line("in.node out.node").refused(&["the same vertices: remove these\n"]);
@@ -294,7 +296,7 @@ fn files_of_other_kinds_are_errors() {
     folder.line("in.obj out.obj").refused(&["y of all vertices is 5, ", "Turn the mesh"]);
 }
 
-/// Untangling cannot help there, and would take long to give up.
+/// On a closed surface, untangling would take long and fail.
 #[test]
 fn closed_surfaces_are_refused_without_advice_to_untangle() {
     let vertices = "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n";
@@ -309,7 +311,7 @@ fn closed_surfaces_are_refused_without_advice_to_untangle() {
         ]);
         assert!(!run.err.contains("--untangle"), "{}", run.err);
     }
-    // An open one may also be a tangled mesh with heights.
+    // An open surface may also be a tangled mesh with heights.
     let hint = "But if this is a surface in space that folds over itself";
     folder.line("cup.obj out.obj").refused(&["Untangle the mesh first: --untangle", hint]);
 }

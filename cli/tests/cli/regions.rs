@@ -1,4 +1,4 @@
-//! Vertices between regions of a mesh: which ones stay, what is reported, and how to let them move.
+//! Vertices between regions: default, report, and `--free-interfaces`.
 
 use super::files::{assert_middle_row_held, middle_row};
 use super::{Folder, assert_holds, assert_smoothed, disturbed, support};
@@ -15,7 +15,7 @@ fn folder(files: &support::regions::Files) -> Folder {
     folder
 }
 
-/// The region of each triangle of the small mesh: `below` or `above` its middle row.
+/// Returns the region of each triangle of the small mesh: `below` or `above` its middle row.
 fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
     let half = mesh.triangles.len() / 2;
     (0..mesh.triangles.len()).map(|t| if t < half { below } else { above }).collect()
@@ -24,7 +24,7 @@ fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
 #[test]
 fn interfaces_between_regions_stay_and_a_note_says_so() {
     let mesh = disturbed();
-    // The regions are physical groups, or entities of one physical group.
+    // Regions are physical groups, or entities within one physical group.
     for regions in [[[1, 7], [2, 7]], [[-1, 7], [-1, 8]]] {
         for files in support::write_regions(&mesh, &halves(&mesh, regions)) {
             let (folder, input) = (folder(&files), files[0].0);
@@ -41,7 +41,7 @@ fn interfaces_between_regions_stay_and_a_note_says_so() {
     }
 }
 
-/// Two squares side by side, of two regions, with a vertex in the middle of the edge between them.
+/// Two adjacent squares in two regions, with a vertex in the middle of their common edge.
 #[test]
 fn interfaces_that_lines_hold_are_told_where_they_were_to_be_free() {
     let mesh = |lines: &str| {
@@ -86,7 +86,7 @@ fn free_interfaces_move_as_if_all_were_one_region() {
     }
 }
 
-/// Attributes of an `.ele` may be anything, even another value for each triangle.
+/// Attributes of an `.ele` may have any values, even a unique value for each triangle.
 #[test]
 fn a_mesh_with_a_region_for_each_triangle_is_refused_with_the_way_to_smooth_it() {
     let mesh = disturbed();

@@ -1,4 +1,4 @@
-//! What the JSON report contains.
+//! The content of the JSON report.
 
 use super::{number, small};
 use gpu_smooth::Metric;
@@ -151,7 +151,8 @@ fn goal_is_in_the_report_of_a_run_that_has_one() {
     }
 }
 
-/// Compares the certificate of the report with the files, and its hashes with another program.
+/// Compares the report's certificate with the files, and the hashes with the output of another
+/// program.
 #[cfg(unix)]
 #[test]
 fn the_certificate_holds_of_the_files() {
@@ -180,7 +181,7 @@ fn the_certificate_holds_of_the_files() {
             .map(|file| format!("{}  {}\n", text(&file["sha256"]), text(&file["path"])))
             .collect();
         assert_eq!(mine, sums);
-        // `gpu-smooth compare`, which sees only the files, prints the same.
+        // `gpu-smooth compare`, which reads only the files, must print equal facts.
         let choice = if options.contains("box") { "--fix-box 0,0,3,3" } else { "" };
         let compared = folder.line(&format!("compare in out {choice}"));
         assert!(compared.out.contains(&sums), "{}{}", compared.out, compared.err);

@@ -31,7 +31,7 @@ fn assert_scheme_works(folder: &Folder, scheme: &str, engine: &str) {
     assert!(f("after") < f("before"), "{scheme} on {engine}: f {}", f("after"));
     let rows = report["history"].as_array().unwrap();
     assert!(rows.len() > 4);
-    // Metrics alternate until corrections begin, which lower the first one.
+    // Metrics alternate until corrections begin, which lower the base metric.
     let swept: Vec<_> = rows[1..].iter().map(|row| row["metric"].as_str().unwrap()).collect();
     let turns = swept.iter().zip(metrics.iter().cycle()).take_while(|(a, b)| a == b).count();
     assert!(swept[turns..].iter().all(|metric| *metric == metrics[0]), "{scheme}: {swept:?}");

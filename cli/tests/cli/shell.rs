@@ -4,7 +4,7 @@ use super::{Folder, assert_holds, finish};
 use gpu_smooth::{Metric, measure::Measure};
 use std::fs;
 
-/// All names of options and commands that a help text mentions.
+/// Returns the names of all options that a help text mentions, sorted.
 fn named(help: &str) -> Vec<String> {
     let words = help.split(|c: char| !(c.is_alphanumeric() || c == '-'));
     let mut names: Vec<String> =

@@ -1,9 +1,9 @@
-//! `--slide`: vertices on the boundary and between regions move along it.
+//! Sliding (`--slide`): vertices on the boundary and between regions move along lines.
 
 use super::{Folder, assert_holds, number, support};
 use gpu_smooth::Mesh;
 
-/// A square of two materials with 8 by 4 fields. Vertices on its lines are moved along these.
+/// Returns a square of two materials with 8 by 4 cells. Vertices on lines are displaced along their lines.
 pub(super) fn square() -> (Mesh, Vec<i32>) {
     let mut random = support::SplitMix64::new(2);
     let (mut points, mut triangles, mut materials) = (Vec::new(), Vec::new(), Vec::new());
@@ -22,7 +22,7 @@ pub(super) fn square() -> (Mesh, Vec<i32>) {
     (Mesh { points, triangles, fixed: vec![] }, materials)
 }
 
-/// The square as a file of Medit, in text.
+/// Returns the square as a Medit file in text.
 fn medit() -> String {
     let (mesh, materials) = square();
     let points = mesh.points.iter().map(|[x, y]| format!("{x} {y} 0\n"));
@@ -42,7 +42,8 @@ fn a_mesh_that_slid_is_reported_and_compared() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     let run = folder.line("in.mesh out.mesh --engine cpu --slide --report r.json");
     assert_eq!(run.code, Some(0), "{}", run.err);
-    // 2 x 6 + 2 x 3 vertices on the boundary, without the ends of the line between the materials, and 3 on that line.
+    // Count of sliding vertices: 2 x 6 + 2 x 3 on the boundary, without the ends of the line between the materials,
+    // and 3 on that line.
     assert_holds(
         &run.out,
         &["21 of 21 vertices on lines slid along them", "area of the mesh stayed the same"],
@@ -58,7 +59,7 @@ fn a_mesh_that_slid_is_reported_and_compared() {
     folder
         .line("compare in.mesh out.mesh")
         .refused(&["21 vertices have moved that must not", "--slide"]);
-    // A vertex that --fix-box fixes has moved.
+    // A vertex in the box of --fix-box has moved.
     let fixed = "compare -q in.mesh out.mesh --slide --fix-box 0.5,-1,2.5,0.5";
     folder.line(fixed).refused(&["2 vertices have moved that must not"]);
 }
@@ -102,7 +103,7 @@ fn options_that_do_not_go_with_sliding_are_refused() {
     }
 }
 
-/// A strip has all its vertices on lines. Those that are no corners slide.
+/// All vertices of a strip lie on lines. Vertices that are not corners slide.
 #[test]
 fn a_strip_is_smoothed_by_sliding_alone() {
     let columns = 8;
@@ -143,7 +144,7 @@ fn a_strip_is_smoothed_by_sliding_alone() {
     folder.line("in.2dm out.2dm -q --slide --fix-box -9,-9,99,99").refused(&["free to move"]);
 }
 
-/// A square of two triangles has nothing but corners.
+/// All vertices of a square of two triangles are corners.
 #[test]
 fn a_mesh_in_which_nothing_slides_either_is_refused() {
     let [node, ele] =

@@ -6,8 +6,9 @@ use std::fmt::Write;
 const COLUMNS: u32 = 18;
 const ROWS: u32 = 5;
 
-/// A band around the globe from 10 to 60 degrees north, as a grid of SCHISM, or a part of it. It is `fields` fields of 20
-/// degrees wide, and has longitudes from -180 to 180. With a pole, triangles join the top row to a vertex there.
+/// Returns a SCHISM grid of a band around the globe, or of a part of one, from 10 to 60 degrees north. The band is
+/// `fields` cells of 20 degrees wide, with longitudes from -180 to 180. With `has_pole`, triangles join the top row to
+/// a vertex at the pole.
 fn band(fields: u32, has_pole: bool) -> String {
     let mut random = support::SplitMix64::new(4);
     let across = if fields == COLUMNS { fields } else { fields + 1 };
@@ -62,7 +63,7 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
         assert!(f("after") < f("before"), "{} {}", f("before"), f("after"));
         let (before, after) = (folder.mesh("in.gr3"), folder.mesh("out.gr3"));
         assert_eq!(report["mesh"]["vertices"], before.points.len());
-        // Longitudes stay in the range of the file, and depths are those of the new places.
+        // Longitudes stay in the range of the file, and depths are interpolated at new positions.
         assert!(after.points.iter().all(|point| (-180.0..=180.0).contains(&point[0])));
         let compared =
             folder.line("compare in.gr3 out.gr3 --surface sphere --slide --interpolate depth");
@@ -83,7 +84,7 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
             let measured = number(&measures[measure][extreme]);
             assert!((measured / told - 1.0).abs() < 1e-9, "{key}: {measured} {told}");
         }
-        // Moves a vertex to the other side of its triangles: `compare` must find that.
+        // Moves a vertex across its triangles, which `compare` must detect.
         let text = folder.text("out.gr3");
         let inside = (fields + usize::from(fields < COLUMNS) as u32) as usize + 1;
         let row = text.lines().nth(2 + inside).unwrap();
@@ -96,7 +97,7 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
     }
 }
 
-/// Longitudes are continued to measure triangles across the date line, and told as the file has them.
+/// Triangles across the date line are measured with continued longitudes, and printed with longitudes of the file.
 #[test]
 fn the_worst_triangles_are_where_the_file_has_them() {
     for has_pole in [false, true] {
@@ -125,7 +126,7 @@ fn the_worst_triangles_are_where_the_file_has_them() {
     }
 }
 
-/// Triangles at a pole and where the globe is cut have copies of their vertices.
+/// Triangles at a pole and at a cut of the globe use copies of vertices, which must not be counted.
 #[test]
 fn vertices_are_counted_as_the_file_has_them() {
     let folder = Folder::new(&[("in.gr3", &band(COLUMNS, true))]);
@@ -148,10 +149,11 @@ fn a_mesh_across_the_date_line_is_refused_in_the_plane_with_a_remedy() {
         .refused(&["in.gr3:6: triangle 1 has a pole of the sphere inside of it", "projection"]);
 }
 
-/// A background gives the same sizes in either range of longitudes, and around the globe or not.
+/// The sizes of a background do not depend on its range of longitudes, nor on whether the background surrounds the
+/// globe.
 #[test]
 fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
-    // Depths serve as sizes, so none may be 0. Longitudes are in the 360 degrees after `from`.
+    // Depths serve as sizes, so all must be positive. Longitudes lie in the 360 degrees after `from`.
     let rewritten = |text: &str, from: f64| {
         let row = |row: &str| match row.split(' ').collect::<Vec<_>>()[..] {
             [number, x, y, depth] => {
@@ -207,7 +209,7 @@ fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
         let f = f(mesh, target);
         assert!((0..2).all(|k| (f[k] / own[k] - 1.0).abs() < 1e-6), "{target}: {f:?} {own:?}");
     }
-    // A background around the globe with a pole. Its other vertices are at other places.
+    // A background around the globe with a pole, whose other vertices are at other positions.
     let around = f("in.gr3", "size=globe.gr3:depth");
     assert!((around[0] / own[0] - 1.0).abs() < 0.1, "{around:?} {own:?}");
     let both = f("globe.gr3", "size=globe.gr3:depth");

@@ -8,7 +8,8 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::process::Stdio;
 
-/// Runs with these bytes on standard input. Returns the run, and its output as bytes, as it may be binary.
+/// Runs with `input` on standard input. Returns the run, and its output as bytes, because a mesh may be
+/// binary.
 fn piped(folder: &Folder, args: &str, input: &[u8]) -> (Run, Vec<u8>) {
     let mut command = folder.command();
     command.args(args.split_whitespace()).stdin(Stdio::piped());
@@ -32,7 +33,7 @@ fn a_mesh_goes_in_and_out_through_pipes() {
         let before = mesh_of(bytes.clone());
         let (run, out) = piped(&folder, "- - --engine cpu", &bytes);
         assert_eq!(run.code, Some(0), "{}", run.err);
-        // As the mesh goes to standard output, the summary goes to standard error.
+        // Standard output receives the mesh, so the summary goes to standard error.
         assert_holds(&run.err, &["99 vertices (63 free", "converged after"]);
         assert_smoothed(&before, &mesh_of(out.clone()));
 

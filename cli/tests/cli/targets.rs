@@ -1,4 +1,4 @@
-//! Target sizes and shapes: kept, given, or seen on the sphere.
+//! Target sizes and shapes: kept, given, or measured on the sphere.
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
 use gpu_smooth::Mesh;
@@ -16,7 +16,7 @@ fn folder(more: &[(&str, &str)]) -> Folder {
     Folder::new(&[&files, more].concat())
 }
 
-/// A size for each vertex, growing from left to right.
+/// Returns a size for each vertex, growing from left to right.
 fn sizes() -> Vec<f64> {
     disturbed().points.iter().map(|&[x, _]| 1.0 + x.abs()).collect()
 }
@@ -85,12 +85,12 @@ fn sizes_and_tensors_come_from_files_of_medit_and_bamg_and_from_point_data() {
         folder.line(&line).clean();
         ends.push(folder.mesh("out.node").points);
     }
-    // A size h is the tensor 1 / h² times the identity, so the meshes agree but for rounding.
+    // A size h is the tensor 1 / h² times the identity, so the meshes agree up to rounding.
     for other in &ends {
         let apart = ends[0].iter().zip(other).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1]));
         assert!(apart.fold(0.0, f64::max) < 1e-9);
     }
-    // Without targets the mesh comes out different.
+    // Without targets, the result differs.
     folder.line("in even --engine cpu --scheme soft-size").clean();
     assert_ne!(folder.mesh("even.node").points, ends[0]);
 
@@ -171,7 +171,7 @@ fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
     assert_eq!(run.code, Some(2), "{}", run.err);
 }
 
-/// The small mesh as a grid of SCHISM. Its latitudes grow from `south` by half its heights.
+/// Returns the small mesh as a SCHISM grid. Latitudes start at `south` and grow by half of the heights.
 fn gr3(south: f64) -> String {
     let mesh = disturbed();
     let mut text = format!("bay\n{} {}\n", mesh.triangles.len(), mesh.points.len());
@@ -195,7 +195,7 @@ fn degrees_are_noticed_in_formats_of_ocean_models_and_smoothed_on_the_sphere() {
     assert!(!sphere.err.contains(note), "{}", sphere.err);
     let report = folder.json("r.json");
     assert_eq!(report["target"]["surface"], "sphere");
-    // f and angles are those on the sphere. Targets take lengths at vertices, f those in the middle of triangles.
+    // f and angles are measured on the sphere. Targets use lengths at vertices, f those in the middle of triangles.
     let [f, target] = [&report["after"]["f"]["imr"], &report["target"]["f"][1]].map(number);
     assert!((f / target - 1.0).abs() < 2e-3, "{f} {target}");
     let angle = number(&report["after"]["min_angle"]);
@@ -207,7 +207,8 @@ fn degrees_are_noticed_in_formats_of_ocean_models_and_smoothed_on_the_sphere() {
         .refused(&["its latitude is not between -90 and 90 degrees"]);
 }
 
-/// Records of TELEMAC's SELAFIN stand between their lengths; the mesh is the small one at 60 degrees north.
+/// In SELAFIN of TELEMAC, the length of each record precedes and follows its data. The mesh is the small one at 60
+/// degrees north.
 #[test]
 fn degrees_are_noticed_in_selafin() {
     let mesh = disturbed();
@@ -239,7 +240,8 @@ fn degrees_are_noticed_in_selafin() {
     assert_holds(&run.err, &["the coordinates look like degrees: --surface sphere"]);
 }
 
-/// A file of gmsh with two triangles around the small mesh. `h` at their corners is 1 on the left and 4 on the right.
+/// Returns a gmsh file with two triangles around the small mesh. `h` is 1 at their left corners and 4 at the right
+/// ones.
 fn background(factor: f64) -> String {
     let points = disturbed().points;
     let most = |axis: usize| points.iter().fold(f64::MIN, |most, p| most.max(p[axis]));
@@ -280,7 +282,7 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
     }
     assert_eq!(ends[0], ends[1]);
     assert_ne!(ends[0], ends[2]);
-    // The same sizes as a view of gmsh, and files that are not such views.
+    // Equal sizes in a view of gmsh, and files with other content.
     let points = MeshFile::read(&folder.path("bg.msh")).unwrap().points().to_vec();
     let corners = |t: [usize; 3]| {
         let places = t.map(|v| format!("{:?},{:?},0", points[v][0], points[v][1])).join(", ");
@@ -314,7 +316,7 @@ fn sizes_come_from_a_mesh_of_their_own_and_belong_to_places() {
         &run.err,
         &["vertices are outside of half.msh, by up to", "the target of the nearest point"],
     );
-    // The sizes that the mesh itself has at its places.
+    // The sizes of the mesh itself at its original positions.
     folder.line("in out --engine cpu --target keep-size --target-of place").clean();
     for (target, parts) in [
         ("size=bg.msh:g", &["no point data is called 'g'"][..]),

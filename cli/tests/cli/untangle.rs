@@ -1,4 +1,4 @@
-//! `--untangle`: meshes with inverted triangles are untangled with it, and refused without it.
+//! Untangling: `--untangle` untangles meshes with inverted triangles, which are refused otherwise.
 
 use super::{Folder, assert_holds, disturbed, support};
 use gpu_smooth::Mesh;
@@ -13,7 +13,7 @@ fn folder(mesh: &Mesh) -> Folder {
     folder
 }
 
-/// The small mesh with all free vertices at one place.
+/// Returns the small mesh with all free vertices at one position.
 fn tangled() -> Mesh {
     let mut mesh = disturbed();
     let held = check::held(&mesh);
@@ -44,7 +44,7 @@ fn a_tangled_mesh_is_refused_with_the_option_that_mends_it() {
     assert_eq!(proof.code, Some(0), "{}{}", proof.out, proof.err);
 }
 
-/// The majority of the triangles does not tell then which side is up.
+/// The majority of the triangles then has the wrong orientation.
 #[test]
 fn a_mesh_with_more_than_half_of_its_triangles_inverted_is_proved_to_be_mended() {
     let mut mesh = support::lattice(14, 14);
@@ -114,7 +114,8 @@ fn a_tangle_that_remains_is_listed_and_written_only_if_asked_for() {
     assert_eq!(run.code, Some(2), "{}", run.err);
 }
 
-/// A square of twelve by twelve vertices, and the number of one in the middle of its lower side.
+/// Returns a square of twelve by twelve vertices, and the index of a vertex in the middle of its
+/// lower side.
 fn bed() -> (Mesh, usize) {
     let side = 12u32;
     let points = (0..side * side).map(|k| [f64::from(k % side), f64::from(k / side)]);
@@ -127,7 +128,7 @@ fn bed() -> (Mesh, usize) {
 #[test]
 fn edges_that_cross_and_cannot_move_are_listed_and_the_mesh_refused() {
     let (mut mesh, middle) = bed();
-    // Two vertices of the lower side change places, but for some distance.
+    // Two vertices of the lower side nearly exchange positions.
     mesh.points[middle] = [7.0, 2.5];
     mesh.points[middle + 1] = [6.0, 2.0];
     let folder = folder(&mesh);
@@ -135,7 +136,7 @@ fn edges_that_cross_and_cannot_move_are_listed_and_the_mesh_refused() {
     let parts = &["triangles overlap there wherever free vertices are. Correct them", crosses];
     folder.line("in.node out.node --untangle").refused(parts);
     assert!(!folder.path("out.node").exists());
-    // No triangle stays inverted, but they lie over one another.
+    // No triangle stays inverted, but triangles lie over one another.
     let run = folder.line("in.node out.node --untangle --keep-going --engine cpu");
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert_holds(&run.err, &[crosses]);

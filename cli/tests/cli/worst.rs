@@ -1,4 +1,4 @@
-//! `--improve-worst`: what it prints and reports.
+//! Improvement of the worst triangles (`--improve-worst`): printed text and report.
 
 use super::{Folder, assert_holds, assert_smoothed, number, support};
 

@@ -1,7 +1,7 @@
 //! gpu-smooth in a browser: the functions that the page `index.html` calls.
 //!
-//! The mesh is made in code. The CPU engine, compiled to WebAssembly, smooths it, and so does the GPU through WebGPU. Then
-//! the mesh stays on the device for frames in which a hole can be dragged and vertices thrown about.
+//! The page generates its mesh. The CPU engine, compiled to WebAssembly, smooths the mesh, and so does the GPU through
+//! WebGPU. Then the mesh stays on the device for frames, in which the user can drag a hole and scatter vertices.
 
 mod plate;
 mod scene;
@@ -12,7 +12,7 @@ use wasm_bindgen::prelude::*;
 use plate::Plate;
 use scene::Scene;
 
-/// A mesh, and the device or the reason why there is none.
+/// A mesh, with its device or the reason why no device was opened.
 #[wasm_bindgen]
 pub struct Page {
     plate: Plate,
@@ -22,18 +22,18 @@ pub struct Page {
 /// The result of a run.
 #[wasm_bindgen]
 pub struct Run {
-    /// f by the inverse mean ratio before the run; `after` is f after it.
+    /// f by the inverse mean ratio before the run; `after` is f after the run.
     pub before: f64,
     pub after: f64,
     pub sweeps: u32,
-    /// The number of triangles that are inverted or flat after the run, by exact predicates.
+    /// Number of inverted or flat triangles after the run, by exact predicates.
     pub inverted: usize,
     points: Vec<f32>,
 }
 
 #[wasm_bindgen]
 impl Run {
-    /// x and y of all vertices after the run, vertex by vertex.
+    /// Returns x and y of all vertices after the run, vertex by vertex.
     pub fn points(&self) -> Vec<f32> {
         self.points.clone()
     }
@@ -41,14 +41,14 @@ impl Run {
 
 #[wasm_bindgen]
 impl Page {
-    /// Makes a mesh of about this many vertices, and asks the browser for a device.
+    /// Makes a mesh of approximately `vertices` vertices, and requests a device from the browser.
     pub async fn open(vertices: usize) -> Page {
         console_error_panic_hook::set_once();
         let gpu = Gpu::open_async(None).await.map_err(|error| error.to_string());
         Page { plate: Plate::new(vertices), gpu }
     }
 
-    /// The name of the adapter, or why there is no device.
+    /// Returns the name of the adapter, or the reason why no device was opened.
     pub fn adapter(&self) -> String {
         match &self.gpu {
             Ok(gpu) => format!("{} ({})", gpu.adapter().name, gpu.adapter().backend),
@@ -60,30 +60,30 @@ impl Page {
         self.gpu.is_ok()
     }
 
-    /// x and y of all vertices as the mesh was made, vertex by vertex.
+    /// Returns x and y of all vertices before smoothing, vertex by vertex.
     pub fn points(&self) -> Vec<f32> {
         single(&self.plate.mesh.points)
     }
 
-    /// The three vertices of each triangle, triangle by triangle.
+    /// Returns the vertices of all triangles, three per triangle.
     pub fn triangles(&self) -> Vec<u32> {
         self.plate.mesh.triangles.as_flattened().to_vec()
     }
 
-    /// Smooths the mesh on the page's only thread, and blocks it meanwhile.
+    /// Smooths the mesh on the page's only thread. The page does not respond during the run.
     pub fn run_on_cpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
         Ok(told(&smoother, smoother.run(&Options::default()).on(&Backend::Cpu).block()?)?)
     }
 
-    /// Smooths the mesh on the device, without blocking the page.
+    /// Smooths the mesh on the device without blocking the page.
     pub async fn run_on_gpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
         let outcome = smoother.run(&Options::default()).on(&Backend::Gpu(self.gpu()?.clone())).await?;
         Ok(told(&smoother, outcome)?)
     }
 
-    /// Uploads the mesh as it was made, to be smoothed in frames.
+    /// Uploads the generated mesh to the device, for smoothing in frames.
     pub async fn live(&self) -> Result<Live, JsError> {
         let plate = self.plate.clone();
         let scene = Scene::new(self.gpu()?, &plate).await?;
@@ -108,8 +108,8 @@ pub struct Live {
 
 #[wasm_bindgen]
 impl Live {
-    /// Takes the results of earlier frames that have arrived. Submits another frame, unless three are under way: with more, the
-    /// user would see the effect of a drag later and later.
+    /// Takes results of earlier frames that have been read back. Submits another frame, unless three frames are under
+    /// way: more frames would delay the visible effect of a drag.
     pub fn frame(&mut self) -> Result<(), JsError> {
         if let Some((values, points)) = self.scene.seen()? {
             self.numbers = [values.of(Metric::Imr), values.worst_imr, values.inverted as f32];
@@ -122,22 +122,23 @@ impl Live {
         Ok(())
     }
 
-    /// The number of frames submitted, of those that have not arrived, and of the sweeps that the next frame has time for.
+    /// Returns the number of submitted frames, the number of frames not yet read back, and the number of sweeps for the
+    /// next frame.
     pub fn frames(&self) -> Vec<u32> {
         vec![self.scene.frames(), self.scene.behind(), self.scene.sweeps()]
     }
 
-    /// x and y of all vertices as they arrived last; empty before the first frame has arrived.
+    /// Returns x and y of all vertices from the latest frame read back; empty before the first.
     pub fn points(&self) -> Vec<f32> {
         self.points.clone()
     }
 
-    /// f, the worst inverse mean ratio and the number of inverted triangles, as they arrived last.
+    /// Returns f, the worst inverse mean ratio and the number of inverted triangles from the latest frame read back.
     pub fn numbers(&self) -> Vec<f32> {
         self.numbers.to_vec()
     }
 
-    /// Drags the hole's center toward x, y, as far as triangles allow. It is at 0, 0 at first.
+    /// Drags the hole's center toward x, y, as far as triangles allow. The center starts at 0, 0.
     pub fn hold(&mut self, x: f32, y: f32) {
         self.scene.hold(Some([x, y]));
     }
@@ -146,7 +147,7 @@ impl Live {
         self.scene.hold(None);
     }
 
-    /// Throws vertices about, which inverts triangles.
+    /// Scatters vertices, which inverts triangles.
     pub fn tear(&mut self) {
         self.scene.tear(&self.plate);
     }

@@ -1,24 +1,24 @@
-//! A mesh made in code: a square plate with a hole, and its vertices badly placed.
+//! A generated mesh: a square plate with a hole and displaced vertices.
 
 use gpu_smooth::Mesh;
 
-/// A plate of 2 by 2 around 0, 0 with a round hole of radius 0.35 in it.
+/// A plate of 2 by 2 around the origin, with a round hole of radius 0.35.
 #[derive(Clone)]
 pub(crate) struct Plate {
     pub(crate) mesh: Mesh,
-    /// The vertices of the hole.
+    /// Indices of the vertices on the hole.
     pub(crate) hole: Vec<u32>,
 }
 
-/// How far vertices are from their proper places, in units of the distance between them. Above about a quarter, triangles
-/// are inverted.
+/// Largest displacement of a vertex along each coordinate, in units of the distance between vertices. Values above
+/// approximately a quarter invert triangles.
 const BADLY: f64 = 0.2;
 
 impl Plate {
-    /// A plate of about this many vertices.
+    /// Makes a plate of approximately `vertices` vertices.
     pub(crate) fn new(vertices: usize) -> Self {
-        // Rings from the hole to the outside, each with 4.5 times as many vertices as there are rings. Some of these are the
-        // corners of the square.
+        // Rings of vertices surround the hole, each with approximately 4.5 times as many vertices as there are rings.
+        // Some vertices of the outermost ring are the corners of the square.
         let rings = ((vertices as f64 / 4.5).sqrt() as u32).max(4);
         let around = (vertices as u32 / rings).max(16) / 8 * 8;
         let mut random = Random(1);
@@ -44,24 +44,24 @@ impl Plate {
         Self { mesh: Mesh { points, triangles, fixed: Vec::new() }, hole }
     }
 
-    /// Every `each`th vertex inside.
+    /// Returns every `each`th interior vertex.
     pub(crate) fn some(&self, each: usize) -> impl Iterator<Item = u32> + '_ {
         let (around, all) = (self.hole.len(), self.mesh.points.len());
         (around as u32..(all - around) as u32).step_by(each)
     }
 }
 
-/// The point at this share of the way around, and this share of the way from the hole to the outside.
+/// Returns the point at two fractions: `around` of a full turn, and `outward` of the way from the hole to the square.
 fn at(around: f64, outward: f64) -> [f64; 2] {
     let angle = std::f64::consts::TAU * around;
     let direction = [angle.cos(), angle.sin()];
-    // The edge of the square in this direction.
+    // Distance from the center to the side of the square in this direction.
     let far = 1.0 / direction[0].abs().max(direction[1].abs());
     let radius = 0.35 + (far - 0.35) * outward;
     direction.map(|x| radius * x)
 }
 
-/// Numbers from -1 to 1 that look random.
+/// Pseudorandom numbers from -1 to 1.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {

@@ -1,17 +1,17 @@
-//! The mesh on the device, everything that is bound to it, and its frames.
+//! The mesh on the device, with all bound resources and the frames.
 
 use gpu_smooth::{Gpu, Method, Options, SmoothError, Stopping, gpu::{BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer}, wgpu::{BufferUsages as Usage, self}};
 
 use crate::plate::{Plate, Random};
 
-/// The device time for sweeps in a frame, in microseconds, and the most sweeps, each with its correction.
+/// Device time for sweeps in a frame, in microseconds, and the largest number of corrected sweeps.
 const BUDGET: (u64, u32) = (5000, 6);
-/// A drag makes no triangle worse than this inverse mean ratio.
+/// Largest inverse mean ratio that a drag may cause.
 const WORST: f64 = 8.0;
-/// The offset of the share of a drag in the buffer of numbers, in bytes. Objectives come before it.
+/// Byte offset of a drag's completed fraction in the buffer of numbers. Objectives precede the fraction.
 const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
 
-/// The objectives and vertices of the last frame that has arrived.
+/// Objectives and vertices of the latest frame read back.
 pub(crate) type Seen<'a> = (ObjectiveValues, &'a [[f32; 2]]);
 
 pub(crate) struct Scene {
@@ -22,7 +22,7 @@ pub(crate) struct Scene {
     budget: Budget,
     objective: BoundObjective,
     drag: BoundMove,
-    /// How far the user has taken the hole, while it is held.
+    /// Displacement of the hole during a drag; `None` if the user holds nothing.
     held: Option<[f32; 2]>,
     home: Vec<[f32; 2]>,
     vertices: wgpu::Buffer,
@@ -33,8 +33,8 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// Makes everything that frames need, and compiles the kernels. Errors occur here, not in frames. Async, as a browser makes
-    /// corrected sweeps only so.
+    /// Makes all resources of frames, and compiles the kernels. Errors occur here, not in frames. The function is async
+    /// because a browser can create corrected sweeps only asynchronously.
     pub(crate) async fn new(gpu: &Gpu, plate: &Plate) -> Result<Self, SmoothError> {
         let mesh = &plate.mesh;
         let options = Options { method: Method::Multilevel, stopping: Stopping::Tolerance(1e-5), ..Options::default() };
@@ -58,7 +58,7 @@ impl Scene {
 
         let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, 8))?;
         let sweeps = Sweeps::until_converged_async(&device_mesh, &options).await?;
-        // Browsers round timestamps to a tenth of a millisecond or so.
+        // Browsers round timestamps to approximately a tenth of a millisecond.
         let budget = Budget::micros(BUDGET.0).at_most(BUDGET.1);
         let budget = match gpu.device().features().contains(Gpu::optional_features()) {
             true => budget.timed_by(gpu)?,
@@ -83,7 +83,7 @@ impl Scene {
         })
     }
 
-    /// Encodes and submits a frame without waiting; the browser executes it when it can.
+    /// Encodes and submits a frame without waiting for the device.
     pub(crate) fn frame(&mut self) {
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -104,12 +104,12 @@ impl Scene {
         self.frames += 1;
     }
 
-    /// Sets how far the user takes the hole from its first place; `None` lets it go.
+    /// Sets the displacement of the hole from its original position; `None` releases the hole.
     pub(crate) fn hold(&mut self, by: Option<[f32; 2]>) {
         self.held = by;
     }
 
-    /// Throws every ninth vertex far from its place, as a kernel of the application might do.
+    /// Displaces every ninth interior vertex, as a kernel of an application might do.
     pub(crate) fn tear(&mut self, plate: &Plate) {
         let mut random = Random(2);
         for v in plate.some(9) {
@@ -120,14 +120,14 @@ impl Scene {
         }
     }
 
-    /// Returns the objectives and vertices of the last frame that has arrived. `None` until the first has.
+    /// Returns objectives and vertices of the latest frame read back; `None` before the first.
     pub(crate) fn seen(&mut self) -> Result<Option<Seen<'_>>, SmoothError> {
         let values = self.values.latest()?.map(|values| values[0]);
         let positions = self.positions.latest()?;
         Ok(values.zip(positions))
     }
 
-    /// How many sweeps the next frame has time for.
+    /// Returns the number of sweeps that the budget allows in the next frame.
     pub(crate) fn sweeps(&self) -> u32 {
         self.budget.sweeps()
     }
@@ -136,7 +136,7 @@ impl Scene {
         self.frames
     }
 
-    /// The number of frames that are submitted and have not arrived.
+    /// Returns the number of submitted frames that have not been read back.
     pub(crate) fn behind(&self) -> u32 {
         self.values.age().map_or(self.frames, |age| age as u32)
     }

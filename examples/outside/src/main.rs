@@ -1,12 +1,12 @@
-//! An application that uses gpu-smooth as docs/embedding.md describes it, for many frames. It drags a hole, pins vertices,
-//! turns the mesh inside out and lets it recover, replaces the mesh by one prepared on another thread, and continues after
-//! the loss of its device.
+//! An application that uses gpu-smooth for many frames, in the way that docs/embedding.md describes. It drags a hole,
+//! pins vertices, turns the mesh inside out and restores it, replaces the mesh by one prepared on another thread, and
+//! continues after losing its device.
 //!
 //! ```text
 //! cargo run --release --example outside -- [MESH]
 //! ```
 //!
-//! It has no window. It prints the results of each act.
+//! The application has no window, and prints the results of each act.
 #![allow(clippy::print_stdout)]
 
 mod scene;
@@ -32,21 +32,21 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The result of an act: a number of frames.
+/// The result of an act, which consists of several frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Told {
     pub(crate) frames: u32,
     pub(crate) sweeps: u32,
-    /// The largest number of inverted triangles in any frame.
+    /// Largest number of inverted triangles in a frame.
     pub(crate) inverted: u32,
-    /// The worst inverse mean ratio after the last frame.
+    /// Worst inverse mean ratio after the last frame.
     pub(crate) worst_imr: f32,
     pub(crate) has_converged: bool,
-    /// The least share of the way that a drag went in a frame.
+    /// Smallest fraction of a step that a drag made in a frame.
     pub(crate) least_share: f32,
 }
 
-/// Does all acts, and returns their results with their names.
+/// Performs all acts. Returns the name and result of each.
 pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
     let mut acts = Vec::new();
     let gpu = open(mesh)?;
@@ -63,14 +63,14 @@ pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
     scene.device_mesh.unpin(&pinned)?;
     acts.push(("settle with them unpinned", settle(&mut scene)?));
 
-    // Kernels of the application may move vertices anywhere, and so does this act.
+    // Kernels of an application may move vertices to any positions; this act does so from the host.
     let free = Topology::new(mesh)?.free().to_vec();
     let torn: Vec<u32> =
         (0..).zip(free).filter(|&(v, free)| free && v % 10 == 0).map(|(v, _)| v).collect();
     acts.push(("recover from being torn inside out", tear(&mut scene, &torn)?));
     acts.push(("settle what was torn", settle(&mut scene)?));
 
-    // A finer mesh is prepared on another thread, while frames go on.
+    // Another thread prepares a finer mesh while frames continue.
     let (worker_gpu, finer) = (gpu.clone(), refined(mesh));
     let worker = std::thread::spawn(move || Scene::new(&worker_gpu, &finer));
     let mut meanwhile = Told { least_share: 1.0, ..Told::default() };
@@ -82,7 +82,7 @@ pub(crate) fn acts(mesh: &Mesh) -> Result<Vec<(&'static str, Told)>> {
     let mut scene = worker.join().map_err(|_| "the worker panicked")??;
     acts.push(("settle the finer mesh", settle(&mut scene)?));
 
-    // The device is lost: the last vertices that were read back continue on another device.
+    // After the device is lost, a new device continues with the vertices that were read back last.
     let last = scene.last_mesh()?;
     gpu.device().destroy();
     let error = loop {
@@ -110,7 +110,7 @@ impl Told {
     }
 }
 
-/// Does frames until the sweeps have converged.
+/// Executes frames until the sweeps converge.
 fn settle(scene: &mut Scene) -> Result<Told> {
     let mut told = Told { least_share: 1.0, ..Told::default() };
     while told.frames < 5000 && !told.has_converged {
@@ -119,7 +119,8 @@ fn settle(scene: &mut Scene) -> Result<Told> {
     Ok(told)
 }
 
-/// Moves vertices far to one side, as a kernel of the application might do. Then does frames until no triangle is inverted.
+/// Moves vertices to one side by half a unit, as a kernel of an application might do. Then executes frames until no
+/// triangle is inverted.
 fn tear(scene: &mut Scene, vertices: &[u32]) -> Result<Told> {
     let to: Vec<[f32; 2]> = scene.places(vertices)?.iter().map(|&[x, y]| [x + 0.5, y]).collect();
     scene.write(vertices, &to);
@@ -131,7 +132,7 @@ fn tear(scene: &mut Scene, vertices: &[u32]) -> Result<Told> {
     Ok(told)
 }
 
-/// Drags vertices, a step in each frame, to their first places plus `by`.
+/// Drags vertices by `by` from their original positions, one step per frame.
 fn drag(scene: &mut Scene, vertices: &[u32], by: [f32; 2]) -> Result<Told> {
     const FRAMES: usize = 30;
     let drag = scene.take_hold(vertices)?;
@@ -148,7 +149,7 @@ fn drag(scene: &mut Scene, vertices: &[u32], by: [f32; 2]) -> Result<Told> {
     Ok(told)
 }
 
-/// Opens a device for a mesh four times as large as this one, with timestamps if it has them.
+/// Opens a device for a mesh four times as large, with timestamps if available.
 fn open(mesh: &Mesh) -> Result<Gpu> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
@@ -168,15 +169,15 @@ fn open(mesh: &Mesh) -> Result<Gpu> {
     Ok(gpu)
 }
 
-/// The vertices of a hole.
+/// Returns the vertices of the first hole.
 fn hole(mesh: &Mesh) -> Result<Vec<u32>> {
     let mut loops = Topology::new(mesh)?.boundary_loops();
-    // The outer boundary is counterclockwise, a hole clockwise.
+    // The outer boundary is a counterclockwise loop, each hole a clockwise one.
     loops.retain(|vertices| signed_area(&mesh.points, vertices) < 0.0);
     loops.into_iter().next().ok_or("the mesh has no hole".into())
 }
 
-/// The mesh with each triangle cut into four.
+/// Returns a mesh in which each triangle is cut into four.
 fn refined(mesh: &Mesh) -> Mesh {
     let mut points = mesh.points.clone();
     let mut middles = std::collections::HashMap::new();

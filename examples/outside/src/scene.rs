@@ -1,4 +1,4 @@
-//! A mesh on the device and everything that is bound to it: made for a mesh, and dropped with it.
+//! A mesh on the device with all bound resources, created and dropped together.
 
 use gpu_smooth::{
     Gpu, GpuError, Mesh, Method, Options, Stopping,
@@ -11,13 +11,13 @@ use gpu_smooth::{
 
 use super::Result;
 
-/// What the application stores of each vertex: x, y and two numbers of its own.
+/// Vertex of the application: x, y and two numbers that the smoother ignores.
 type Vertex = [f32; 4];
 pub(crate) const STRIDE: u64 = size_of::<Vertex>() as u64;
-/// The offset of the share of a drag in the buffer of numbers, in bytes. Objectives come before it.
+/// Byte offset of a drag's completed fraction in the buffer of numbers. Objectives precede the fraction.
 const SHARE: u64 = size_of::<ObjectiveValues>() as u64;
 
-/// The largest inverse mean ratio that a drag gives a triangle.
+/// Largest inverse mean ratio that a drag may cause.
 const WORST: f64 = 8.0;
 
 pub(crate) struct Scene {
@@ -37,15 +37,15 @@ pub(crate) struct Scene {
     positions: Readback<Vertex>,
 }
 
-/// What is known after a frame: its sweeps, and the results of the last frame that has arrived.
+/// Results of a frame: sweep count, objectives, and the completed fraction of the drag.
 pub(crate) struct Seen {
     pub(crate) sweeps: u32,
     pub(crate) values: ObjectiveValues,
     pub(crate) share: f32,
 }
 
-/// How the mesh is smoothed. A correction from coarser levels follows each sweep, so a frame has time for fewer sweeps, but a
-/// dragged mesh converges within a few frames.
+/// Returns the options of all sweeps. A correction from coarser levels follows each sweep. A frame then has time for
+/// fewer sweeps, but a dragged mesh converges within a few frames.
 pub(crate) fn options() -> Options {
     Options {
         method: Method::Multilevel,
@@ -55,7 +55,7 @@ pub(crate) fn options() -> Options {
 }
 
 impl Scene {
-    /// Makes everything that frames need. Errors occur here, not in frames. May be called on another thread than the frames.
+    /// Makes all resources of frames. Errors occur here, not in frames. Any thread may call this function.
     pub(crate) fn new(gpu: &Gpu, mesh: &Mesh) -> Result<Self> {
         let device_mesh = DeviceMesh::new(gpu, mesh)?;
         let buffer = |label, size, usage| {
@@ -103,7 +103,8 @@ impl Scene {
         })
     }
 
-    /// Does a frame: imports vertices, moves what the user drags, untangles, sweeps while there is time, and exports the vertices.
+    /// Executes a frame: imports vertices, moves dragged vertices, untangles, sweeps within the budget, and exports the
+    /// vertices.
     pub(crate) fn frame(&mut self, drag: Option<(&BoundMove, &[[f32; 2]])>) -> Result<Seen> {
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -115,19 +116,19 @@ impl Scene {
         self.untangling.encode_untangle(&mut encoder, 3);
         let sweeps = self.sweeps.encode_within(&mut encoder, &mut self.budget);
         {
-            // A pass of the application, which may have kernels of its own before and after.
+            // A compute pass of the application, which may contain further kernels.
             let mut pass = encoder.begin_compute_pass(&Default::default());
             self.objective.encode_objective(&mut pass);
             self.bound.encode_export(&mut pass);
         }
-        // Here the application draws.
+        // An application would encode its drawing here.
         self.values.encode_readback(&mut encoder);
         if drag.is_some() {
             self.share.encode_readback(&mut encoder);
         }
         self.positions.encode_readback(&mut encoder);
         queue.submit([encoder.finish()]);
-        // This example waits for the device. An application with a window goes on to its next frame.
+        // This example waits for the device. An application with a window would continue with the next frame.
         let _ = device.poll(wgpu::PollType::wait_indefinitely());
 
         let values = self.values.latest()?.map_or_else(Default::default, |values| values[0]);
@@ -135,7 +136,7 @@ impl Scene {
         Ok(Seen { sweeps, values, share: if drag.is_some() { share } else { 1.0 } })
     }
 
-    /// Evaluates the mesh with the vertices as the application has written them, without sweeps.
+    /// Evaluates the vertices that the application has written, without sweeps.
     pub(crate) fn look(&mut self) -> Result<Seen> {
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -148,7 +149,7 @@ impl Scene {
         Ok(Seen { sweeps: 0, values, share: 1.0 })
     }
 
-    /// Writes vertices into the vertex buffer, without regard to triangles.
+    /// Writes positions to the vertex buffer, even if they invert triangles.
     pub(crate) fn write(&self, vertices: &[u32], to: &[[f32; 2]]) {
         for (&v, place) in vertices.iter().zip(to) {
             let at = u64::from(v) * STRIDE;
@@ -156,24 +157,24 @@ impl Scene {
         }
     }
 
-    /// Binds a move of these vertices, for a drag.
+    /// Binds a move of `vertices` for a drag.
     pub(crate) fn take_hold(&self, vertices: &[u32]) -> Result<BoundMove> {
         let targets = VertexBuffer::new(&self.targets, 8);
         Ok(self.device_mesh.bind_move(vertices, &targets, WORST, (&self.numbers, SHARE))?)
     }
 
-    /// The first places of these vertices, as the mesh had them.
+    /// Returns the original positions of some vertices, as given by the mesh.
     pub(crate) fn home(&self, vertices: &[u32]) -> Vec<[f32; 2]> {
         vertices.iter().map(|&v| self.mesh.points[v as usize].map(|x| x as f32)).collect()
     }
 
-    /// The places of these vertices in the last frame that was read back.
+    /// Returns the positions of some vertices in the latest frame read back.
     pub(crate) fn places(&mut self, vertices: &[u32]) -> Result<Vec<[f32; 2]>> {
         let positions = self.positions.latest()?.ok_or("no frame has arrived")?;
         Ok(vertices.iter().map(|&v| positions[v as usize]).map(|[x, y, ..]| [x, y]).collect())
     }
 
-    /// The mesh with the vertices of the last frame that was read back.
+    /// Returns the mesh with the vertices of the latest frame read back.
     pub(crate) fn last_mesh(&mut self) -> std::result::Result<Mesh, GpuError> {
         let mut mesh = self.mesh.clone();
         if let Some(positions) = self.positions.latest()? {

@@ -1,4 +1,4 @@
-//! `gpu-smooth MESH... --out-dir DIR`: many meshes in one call.
+//! The command `gpu-smooth MESH... --out-dir DIR`, which smooths many meshes.
 
 use crate::commands::batch::{listing, table, workers};
 use crate::error::{CliError, ErrorKind};
@@ -24,10 +24,10 @@ use crate::terminal::interrupt;
 use crate::terminal::progress::{Stage, Tally};
 use crate::terminal::tell;
 
-/// Output settings of each run: it prints nothing, as other runs go on beside it.
+/// Verbosity of each run: silent, because other runs are active at the same time.
 const SILENT: Verbosity = Verbosity { quiet: true, verbose: false };
 
-/// Smooths all meshes. Returns an error at the end if one of them failed.
+/// Smooths all meshes of a batch. After the last mesh, returns an error if any mesh failed.
 pub(crate) fn run(
     request: &SmoothRequest,
     batch: &Batch,
@@ -42,7 +42,8 @@ pub(crate) fn run(
     }
     outputs.check_disk()?;
     interrupt::watch(verbosity.quiet);
-    // The first signal is left to the runs. Runs under way are then given up, and finished ones are reported.
+    // The first signal lets runs under way be canceled and finished ones be reported, instead of ending the
+    // process.
     interrupt::has_result();
     make(&batch.directory)?;
     let is_done = |mesh: &Listed| batch.skips_done && mesh.is_done();
@@ -88,7 +89,7 @@ pub(crate) fn run(
     }
 }
 
-/// Makes the directory if it does not exist.
+/// Creates the output directory if necessary.
 fn make(directory: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(directory).map_err(|error| {
         CliError::output(format!("{}: the directory cannot be made: {error}", directory.display()))
@@ -96,7 +97,7 @@ fn make(directory: &Path) -> Result<(), CliError> {
     })
 }
 
-/// Shows how far the call is, and keeps how each mesh ended.
+/// Observer of a batch: shows the progress, and collects the results.
 struct Watched<'a> {
     list: &'a [Listed],
     verbosity: Verbosity,
@@ -122,7 +123,7 @@ impl Watch for Watched<'_> {
     }
 }
 
-/// Smooths one of the meshes.
+/// Smooths one mesh of the batch.
 fn smooth(request: &SmoothRequest, engines: &Engines<'_>, mesh: &Listed) -> Told {
     let (input, out) = (&mesh.input, &mesh.out);
     let task = Task { request, verbosity: SILENT, input, out, resumed: None };
@@ -135,7 +136,7 @@ fn smooth(request: &SmoothRequest, engines: &Engines<'_>, mesh: &Listed) -> Told
     }
 }
 
-/// Keeps the remarks on a mesh.
+/// Observer of one mesh: collects remarks, and checks output files.
 struct Followed<'a> {
     mesh: &'a Listed,
     request: &'a SmoothRequest,
@@ -147,7 +148,7 @@ impl Follow for Followed<'_> {
         if interrupt::is_requested() {
             return Err(CliError::run("interrupted"));
         }
-        // A file may have two names, which the list could not tell.
+        // A file may have two names, which the check of the list could not detect.
         let written = streams::destinations(file, &self.mesh.out)?;
         let SmoothRequest { outputs, reading, .. } = self.request;
         outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
@@ -175,7 +176,7 @@ impl Follow for Followed<'_> {
     }
 }
 
-/// Writes the report on all meshes if it was asked for.
+/// Writes the report on all meshes if requested.
 fn write_report(outputs: &Outputs, entries: &[Entry], seconds: f64) -> Result<(), CliError> {
     let Some(path) = &outputs.report else { return Ok(()) };
     let text = table::report(entries, seconds)?;

@@ -1,4 +1,4 @@
-//! How the smoothing of one of many meshes ended.
+//! The result for one mesh of a batch.
 
 use std::path::PathBuf;
 
@@ -6,30 +6,30 @@ use crate::report::Failure;
 use crate::report::Report;
 use crate::terminal::numbers::five;
 
-/// A mesh, and how its smoothing ended.
+/// A mesh of a batch and its result.
 pub(crate) struct Entry {
     pub(crate) input: PathBuf,
     pub(crate) out: PathBuf,
-    /// The files that are the mesh.
+    /// The existing files of the mesh.
     pub(crate) files: Vec<PathBuf>,
     pub(crate) told: Told,
 }
 
-/// How the smoothing of a mesh ended.
+/// The result of smoothing one mesh.
 pub(crate) enum Told {
     Smoothed {
         report: Box<Report>,
         remarks: Vec<String>,
     },
-    /// The mesh was smoothed by an earlier call.
+    /// An earlier command has smoothed the mesh.
     Skipped,
     Failed(Failure),
-    /// The user ended the call before the mesh was done.
+    /// A signal ended the command before the mesh was finished.
     Interrupted,
 }
 
 impl Told {
-    /// Returns the end in one word.
+    /// Returns the result in one word.
     pub(crate) fn status(&self) -> &'static str {
         match self {
             Self::Smoothed { .. } => "smoothed",
@@ -46,12 +46,13 @@ impl Told {
         }
     }
 
-    /// Whether the run neither converged nor reached its goal.
+    /// Returns whether the run neither converged nor reached its goal. False for meshes without a
+    /// run.
     pub(crate) fn fell_short(&self) -> bool {
         self.report().is_some_and(|report| report.fell_short().is_some())
     }
 
-    /// Describes the end in one line.
+    /// Describes the result in one line.
     pub(crate) fn text(&self) -> String {
         match (self.report(), self.problem()) {
             (Some(report), _) => {
@@ -68,7 +69,7 @@ impl Told {
         }
     }
 
-    /// Returns the error without its list, if the mesh failed.
+    /// Returns the error of a failed mesh without details; `None` for other results.
     pub(crate) fn problem(&self) -> Option<String> {
         match self {
             Self::Failed(failure) => Some(failure.error.headline()),

@@ -1,4 +1,4 @@
-//! Lists the meshes that are to be smoothed, and the files that they are written to.
+//! The list of meshes in a batch, with the input and output files of each mesh.
 
 use std::collections::HashMap;
 use std::fs;
@@ -10,14 +10,14 @@ use mesh_io::{Format, atomic};
 use crate::error::CliError;
 use crate::load::streams::is_standard;
 
-/// A mesh that is to be smoothed.
+/// A mesh to smooth.
 pub(crate) struct Listed {
-    /// The path as it was given first, if the mesh was given several times.
+    /// Path of the mesh as first given on the command line.
     pub(crate) input: PathBuf,
     pub(crate) out: PathBuf,
-    /// The files of the mesh that exist.
+    /// The existing files of the mesh.
     pub(crate) inputs: Vec<PathBuf>,
-    /// The files that the smoothed mesh is written to.
+    /// The files to which the smoothed mesh is written.
     pub(crate) outputs: Vec<PathBuf>,
 }
 
@@ -40,14 +40,14 @@ impl Listed {
         Ok(Self { input: input.to_owned(), out, inputs, outputs })
     }
 
-    /// Returns the size of the mesh's files, in bytes.
+    /// Returns the total size of the mesh's files in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let sizes = self.inputs.iter().filter_map(|part| Some(fs::metadata(part).ok()?.len()));
         sizes.sum()
     }
 
-    /// Whether all output files exist and are newer than all input files. A file that exists is complete, as files are
-    /// replaced whole.
+    /// Returns whether all output files exist and are newer than all input files. Existing output files are complete,
+    /// because files are replaced as a whole.
     pub(crate) fn is_done(&self) -> bool {
         let time = |path: &PathBuf| fs::metadata(path).and_then(|found| found.modified()).ok();
         let times = |paths: &[PathBuf]| paths.iter().map(time).collect::<Option<Vec<SystemTime>>>();
@@ -61,19 +61,20 @@ impl Listed {
     }
 }
 
-/// Returns the path without its ending if it names a file of a Triangle mesh.
+/// Returns the path without its extension if the path names a file of a Triangle mesh; `None` otherwise.
 fn stem(path: &Path) -> Option<PathBuf> {
     let ending = path.extension()?.to_str()?.to_lowercase();
     matches!(&*ending, "node" | "ele" | "poly").then(|| path.with_extension(""))
 }
 
-/// Whether files of this name may have numbers in files beside them, which are called after them.
+/// Returns whether a path is an XDMF file. Numbers of XDMF meshes may be in companion files, which are named after the
+/// XDMF file.
 fn is_xdmf(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     matches!(&*ending, "xdmf" | "xmf" | "xdmf3")
 }
 
-/// What meshes have in common of which some files would be written to the same place.
+/// Key for collisions: two meshes with equal keys would write a file at the same path.
 fn key_of(out: &Path) -> PathBuf {
     match stem(out) {
         Some(stem) => stem,
@@ -82,16 +83,16 @@ fn key_of(out: &Path) -> PathBuf {
     }
 }
 
-/// Lists the files of the mesh that a path names, as far as they exist and their names tell.
+/// Returns the existing files of the mesh at `path`, as far as file names determine them.
 fn parts(path: &Path) -> Vec<PathBuf> {
     let mut parts = Format::files_of(path);
     parts.retain(|part| part.is_file());
     parts
 }
 
-/// Lists the meshes that some paths name, each once, with the files in `directory` that they are written to.
+/// Lists the meshes at `paths`, each mesh once, with the output files in `directory`.
 ///
-/// Returns an error if two meshes would be written to the same file.
+/// Returns an error if two meshes would write the same file.
 pub(crate) fn list<'p>(
     paths: impl Iterator<Item = &'p PathBuf>,
     directory: &Path,
@@ -99,7 +100,7 @@ pub(crate) fn list<'p>(
     let mut listed: Vec<Listed> = Vec::new();
     let mut by_out: HashMap<PathBuf, usize> = HashMap::new();
     for path in paths {
-        // A mesh of Triangle may be named without an ending.
+        // A Triangle mesh may be given without an extension.
         let mesh = match is_stem(path) {
             true => Listed::new(&appended(path, ".node"), directory)?,
             false => Listed::new(path, directory)?,
@@ -107,7 +108,7 @@ pub(crate) fn list<'p>(
         let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
             Some(known) if is_same(known, &mesh) => {
-                // The mesh is named by its `.node` or `.ele`, not by its `.poly`.
+                // A Triangle mesh is listed by its `.node` or `.ele` if given, not by its `.poly`.
                 if known.input.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly")) {
                     *known = mesh;
                 }
@@ -130,7 +131,7 @@ pub(crate) fn list<'p>(
     Ok(listed)
 }
 
-/// Whether a path is the name of a Triangle mesh without its ending.
+/// Returns whether a path is that of a Triangle mesh without its extension.
 fn is_stem(path: &Path) -> bool {
     !path.exists() && appended(path, ".node").is_file()
 }
@@ -145,10 +146,10 @@ fn is_any(path: &Path, others: &[PathBuf]) -> bool {
     others.iter().any(|other| atomic::same_file(other, path))
 }
 
-/// Whether two meshes have a file in common.
+/// Returns whether two meshes share a file.
 fn is_same(a: &Listed, b: &Listed) -> bool {
     let (mine, theirs) = match is_xdmf(&a.input) {
-        // Several may have their numbers in one file.
+        // XDMF files may share an HDF5 file, so only the main files are compared.
         true => (&a.inputs[..1], &b.inputs[..1]),
         false => (&a.inputs[..], &b.inputs[..]),
     };
@@ -188,7 +189,7 @@ mod tests {
             of(&folder, &["a.1.poly", "a.1.ele"]).unwrap()[0].input.extension().unwrap(),
             "ele"
         );
-        // Two meshes, each given twice: one also without its ending.
+        // Two meshes, each listed twice: one of the paths lacks its extension.
         assert_eq!(of(&folder, &["a.1", "a.1.node", "b.msh", "b.msh"]).unwrap().len(), 2);
     }
 
@@ -209,7 +210,7 @@ mod tests {
         }
     }
 
-    /// The files beside both would be called after them.
+    /// Companion files of both would get equal names.
     #[test]
     fn files_beside_an_xdmf_are_its_own() {
         let folder = folder(&["a.xdmf", "a.xmf", "a.h5", "b.xdmf"]);

@@ -1,4 +1,4 @@
-//! `gpu-smooth MESH... --out-dir DIR`: smooths many meshes.
+//! The command `gpu-smooth MESH... --out-dir DIR`, which smooths many meshes.
 
 mod command;
 mod entry;

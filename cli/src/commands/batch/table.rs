@@ -1,4 +1,4 @@
-//! Writes how many meshes ended: as a table, as CSV and as JSON.
+//! The results of a batch as text, CSV and JSON.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -12,10 +12,10 @@ use crate::render::columns::{left, quoted, right, shortened};
 use crate::report::Report;
 use crate::terminal::numbers::five;
 
-/// The widths of the columns of numbers. The first two columns are left out on a narrow terminal.
+/// Widths of the columns of numbers. A narrow terminal does not show the first two.
 const WIDTHS: [usize; 7] = [9, 7, 10, 10, 10, 8, 8];
 
-/// The width of the column of names, and which columns of numbers are shown.
+/// Width of the name column, and whether the terminal is narrow.
 struct Widths {
     name: usize,
     is_narrow: bool,
@@ -42,13 +42,13 @@ impl Widths {
     }
 }
 
-/// Returns the name of a mesh's file. No two meshes of a call have the same.
+/// Returns the file name of a mesh, which is unique in a batch.
 fn name(entry: &Entry) -> String {
     entry.input.file_name().unwrap_or_default().display().to_string()
 }
 
-/// Writes a line for each mesh, and one for all of them. `terminal` is the number of columns of the terminal, if there
-/// is one.
+/// Returns a table with one row per mesh, and a last line on all meshes. `terminal` is the width of the terminal in
+/// columns; `None` without a terminal.
 pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> String {
     let widths = Widths::new(entries, terminal);
     let base = entries.iter().find_map(|entry| entry.told.report()).map_or("imr", Report::base);
@@ -77,7 +77,7 @@ pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> 
     text
 }
 
-/// Formats the columns of a mesh that was smoothed.
+/// Formats the numbers in the row of a smoothed mesh.
 fn numbers(report: &Report) -> [String; WIDTHS.len()] {
     let (before, after) = (&report.before, &report.after);
     let base = report.base();
@@ -93,7 +93,7 @@ fn numbers(report: &Report) -> [String; WIDTHS.len()] {
     ]
 }
 
-/// Counts the meshes by how they ended.
+/// Counts the meshes by status.
 fn counts(entries: &[Entry]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for status in ["smoothed", "skipped", "failed", "interrupted"] {
@@ -111,13 +111,13 @@ fn counted(meshes: usize) -> String {
     if meshes == 1 { "1 mesh".into() } else { format!("{meshes} meshes") }
 }
 
-/// Lists the meshes that failed with their reasons, if any did.
+/// Returns an error that lists the failed meshes with their problems; `None` without failures.
 pub(crate) fn failures(entries: &[Entry]) -> Option<CliError> {
     let failed = || entries.iter().filter_map(|entry| Some((entry, entry.told.problem()?)));
     let count = failed().count();
     let line = |(entry, problem): (&Entry, String)| {
         let input = entry.input.display().to_string();
-        // Most reasons start with the name of a file of the mesh.
+        // Most problems begin with the path of a file of the mesh.
         let named = |path: &PathBuf| problem.starts_with(&*path.to_string_lossy());
         match entry.files.iter().any(named) || problem.starts_with(&input) {
             true => problem,
@@ -128,7 +128,7 @@ pub(crate) fn failures(entries: &[Entry]) -> Option<CliError> {
     (count > 0).then(|| CliError::run(text).with_details(failed().map(line).collect()))
 }
 
-/// The columns of CSV and keys of JSON.
+/// Columns of CSV, and keys of JSON.
 const KEYS: [&str; 18] = [
     "mesh",
     "out",
@@ -181,7 +181,7 @@ fn values(entry: &Entry) -> [Value; KEYS.len()] {
     std::array::from_fn(|_| all.next().unwrap_or_default())
 }
 
-/// Writes a header and a row for each mesh.
+/// Returns CSV: a header, then one row per mesh.
 pub(crate) fn csv(entries: &[Entry]) -> String {
     let mut text = KEYS.join(",");
     for entry in entries {
@@ -195,7 +195,7 @@ pub(crate) fn csv(entries: &[Entry]) -> String {
     text
 }
 
-/// Writes a list with an object for each mesh.
+/// Returns a JSON array with one object per mesh.
 pub(crate) fn json(entries: &[Entry]) -> Result<String, CliError> {
     let object =
         |entry| Value::Object(KEYS.map(str::to_owned).into_iter().zip(values(entry)).collect());
@@ -203,7 +203,7 @@ pub(crate) fn json(entries: &[Entry]) -> Result<String, CliError> {
     Ok(serde_json::to_string_pretty(&list)?)
 }
 
-/// Writes the report on all meshes. It has, for each smoothed mesh, the report that a single run writes.
+/// Returns the JSON report on all meshes. Each smoothed mesh has the report of a single run.
 pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, CliError> {
     let mut meshes = Vec::new();
     for Entry { input, out, told: what, .. } in entries {

@@ -1,5 +1,5 @@
-//! Distributes meshes over threads: large ones one after the other on all cores, small ones side by side, each on one
-//! thread.
+//! Distribution of meshes over threads: large meshes are smoothed one after another on all cores, small ones
+//! concurrently with one thread each.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -9,26 +9,27 @@ use crate::commands::batch::entry::Told;
 use crate::commands::batch::listing::Listed;
 use crate::terminal::interrupt;
 
-/// Files of more bytes than this are large, some 100,000 vertices as text. Smaller meshes do not keep all cores busy.
+/// Size in bytes above which a mesh counts as large, some 100,000 vertices as text. Smaller meshes do not occupy all
+/// cores.
 const LARGE: u64 = 10 << 20;
 
-/// Small meshes under way for each core. While one waits for the disk, another takes the core.
+/// Small meshes per core under way. While one worker waits for the disk, another uses the core.
 const PER_CORE: usize = 2;
 
-/// How often an interrupt is looked for.
+/// Interval between two checks for signals.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Is told how the work on many meshes goes.
+/// Observer of the work on many meshes.
 pub(crate) trait Watch {
-    /// Is told that a mesh of the list is done, by its index.
+    /// Receives the result of a finished mesh, by its index in the list.
     fn done(&mut self, mesh: usize, told: Told);
-    /// Is told that nothing has happened for a while.
+    /// Called at intervals without results.
     fn waits(&mut self);
-    /// Is told that the user ends the call. No mesh is begun after that.
+    /// Called once after a signal, which keeps further meshes from being started.
     fn interrupted(&mut self);
 }
 
-/// Calls `work` for each of the `open` meshes of a list (indices), and tells `watch` of each on this thread.
+/// Calls `work` for the meshes of a list at the indices `open`. Reports each result to `watch` on the calling thread.
 pub(crate) fn run(
     list: &[Listed],
     open: &[usize],
@@ -36,7 +37,7 @@ pub(crate) fn run(
     watch: &mut dyn Watch,
 ) {
     let mut sized: Vec<(u64, usize)> = open.iter().map(|&i| (list[i].bytes(), i)).collect();
-    // The largest meshes come first, so that no core is left with a large one at the end.
+    // Large meshes come first, so that the last cores do not wait for one large mesh.
     sized.sort_by_key(|&(bytes, i)| (std::cmp::Reverse(bytes), i));
     let large = sized.partition_point(|&(bytes, _)| bytes > LARGE);
     let order: Vec<usize> = sized.into_iter().map(|(_, i)| i).collect();
@@ -63,8 +64,8 @@ pub(crate) fn run(
     });
 }
 
-/// Calls `work` for some meshes (indices) on threads of their own, which share the cores. `work` returns whether to go
-/// on.
+/// Calls `work` for the meshes at some indices on worker threads that share the cores. A worker stops if `work`
+/// returns false.
 fn side_by_side(meshes: &[usize], work: &(dyn Fn(usize) -> bool + Sync)) {
     let cores = rayon::current_num_threads();
     let workers = (PER_CORE * cores).min(meshes.len());
@@ -78,7 +79,7 @@ fn side_by_side(meshes: &[usize], work: &(dyn Fn(usize) -> bool + Sync)) {
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
-                // A run that uses all threads uses those of this pool.
+                // A run uses the rayon pool of its worker, which bounds the run's threads.
                 let threads = (cores / workers).max(1);
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
                 let _pool = pool.use_current_thread().build();

@@ -1,4 +1,4 @@
-//! Earlier measurements, which new ones are compared with.
+//! Earlier measurements, with which new measurements are compared.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::commands::bench::report::Row;
 use crate::error::CliError;
 
-/// The JSON that an earlier `bench --json` has printed.
+/// The parsed output of an earlier `bench --json`.
 pub(super) struct Baseline {
     rows: Vec<Known>,
 }
@@ -32,8 +32,8 @@ impl Baseline {
         Ok(Self { rows })
     }
 
-    /// Returns the seconds of a sweep in the earlier measurements, if they have one of the same engine, scheme and mesh
-    /// size.
+    /// Returns the seconds per sweep of the first earlier row with equal engine, scheme and mesh size; `None` without
+    /// such a row.
     pub(super) fn seconds(&self, row: &Row) -> Option<f64> {
         let is_same = |known: &&Known| {
             (&known.engine, &known.scheme) == (&row.engine, &row.scheme)

@@ -1,4 +1,4 @@
-//! `gpu-smooth bench`: measures how fast this machine smooths.
+//! The command `gpu-smooth bench`, which measures the speed of sweeps on this machine.
 
 use gpu_smooth::{
     Mesh, Options, SmoothError, Stopping,
@@ -18,7 +18,7 @@ use crate::load::streams::read;
 use crate::run::engine;
 use crate::terminal::tell;
 
-/// A function that words an error in the user's terms.
+/// Converts an error of the library to the user's terms.
 type Explain<'a> = dyn Fn(SmoothError) -> CliError + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
@@ -76,7 +76,7 @@ fn measure_all(
                 count += 1;
                 measured(row);
             }
-            // If one adapter fails, the others are still measured.
+            // The failure of one adapter does not stop the measurements on others.
             Err(SmoothError::Gpu(error)) if places.len() > 1 || count > 0 => {
                 tell::note(false, &format!("{}: {error}", place.name));
             }
@@ -140,7 +140,8 @@ fn measure(
     })
 }
 
-/// Opens the engines to measure: those asked for, or all there are.
+/// Opens the engines to measure: those selected by options, by default the CPU and the best
+/// adapter.
 fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, CliError> {
     let mut places = Vec::new();
     if args.engine != EngineChoice::Gpu && args.adapter.is_none() {

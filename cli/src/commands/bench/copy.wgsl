@@ -1,4 +1,4 @@
-// Reads and writes each element once: the rate nothing can be faster than.
+// Copies each element once. The rate is an upper bound for kernels that read and write memory.
 
 @group(0) @binding(0) var<storage, read> source: array<vec4<u32>>;
 @group(0) @binding(1) var<storage, read_write> copied: array<vec4<u32>>;

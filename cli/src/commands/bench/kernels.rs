@@ -1,4 +1,4 @@
-//! Measures the time of each kernel by the device's own clock.
+//! Times of GPU kernels, measured with the device's timestamps.
 
 use gpu_smooth::{
     Gpu, Mesh, Options, SmoothError,
@@ -6,21 +6,21 @@ use gpu_smooth::{
     wgpu,
 };
 
-/// Sweeps before the clock starts, so that the timed ones run warm.
+/// Number of sweeps before timing starts, to warm up the device.
 const BEFORE: u32 = 6;
-/// Sweeps that are timed.
+/// Number of timed sweeps.
 const TIMED: u32 = 5;
 
-/// The time of one kernel in a sweep.
+/// Time of a kernel per sweep.
 pub(crate) struct KernelTime {
     pub(crate) kernel: Kernel,
-    /// How many times the kernel is dispatched in a sweep.
+    /// Number of dispatches of the kernel per sweep.
     pub(crate) passes: u32,
     pub(crate) seconds: f64,
 }
 
-/// Times the kernels of a sweep and of the objective after it, in the order in which they run. `None` if the device has
-/// no clock.
+/// Times the kernels of a sweep and of the objective, in the order of execution. `None` if the device has no
+/// timestamps.
 pub(crate) fn time(
     gpu: &Gpu,
     mesh: &Mesh,

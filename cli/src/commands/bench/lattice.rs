@@ -1,11 +1,12 @@
-//! Meshes to measure on, of any size, which are made within seconds.
+//! Lattice meshes for measurements, of any size and generated within seconds.
 
 use gpu_smooth::Mesh;
 
-/// How far vertices are moved off the lattice, in edge lengths. Below a quarter no triangle is inverted.
+/// Largest displacement of a vertex along each axis, in edge lengths. Below a quarter, no triangle is inverted.
 const SHIFT: f64 = 0.2;
 
-/// Makes a square lattice of about this many vertices. Diagonals and positions are random, and the same in each run.
+/// Makes a square lattice of approximately `vertices` vertices, at least 9. Diagonals and displacements are
+/// pseudorandom with a fixed seed.
 pub(crate) fn lattice(vertices: usize) -> Mesh {
     let side = ((vertices as f64).sqrt().round() as u32).max(3);
     let mut random = Random(1);
@@ -29,11 +30,11 @@ pub(crate) fn lattice(vertices: usize) -> Mesh {
     Mesh { points, triangles, fixed: Vec::new() }
 }
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
+/// The generator SplitMix64 (Steele, Lea, Flood 2014).
 struct Random(u64);
 
 impl Random {
-    /// Returns the next random number, from 0 to 1.
+    /// Returns the next pseudorandom number, from 0 inclusive to 1 exclusive.
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

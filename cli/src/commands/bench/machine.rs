@@ -1,14 +1,15 @@
-//! The machine and the version that a measurement depends on.
+//! The machine and the version, on which measurements depend.
 
 use gpu_smooth::Gpu;
-/// An engine to measure, and how many bytes a second it reads and writes when it only copies.
+/// An engine to measure. `copy_rate` is the bytes per second that the engine reads and writes in a
+/// pure copy.
 pub(super) struct Place {
     pub(super) gpu: Option<Gpu>,
     pub(super) name: String,
     pub(super) copy_rate: f64,
 }
 
-/// Returns the name of the processor, as far as the system tells it.
+/// Returns the name of the processor, or the architecture if the system does not reveal the name.
 fn processor() -> String {
     let of_linux = || {
         let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
@@ -25,7 +26,8 @@ pub(super) fn machine() -> String {
     format!("{}, {threads} threads, {system} {}", processor(), std::env::consts::ARCH)
 }
 
-/// Returns the name and version of the program, and how it was compiled if that makes it slow.
+/// Returns the name and version of the program. Builds with debug assertions are marked as not
+/// optimized.
 pub(super) fn version() -> String {
     let slow = if cfg!(debug_assertions) { ", not optimized: measure with --release" } else { "" };
     format!("gpu-smooth {}{slow}", env!("CARGO_PKG_VERSION"))

@@ -1,4 +1,4 @@
-//! `gpu-smooth bench`: measures how fast this machine smooths.
+//! The command `gpu-smooth bench`, which measures the speed of sweeps on this machine.
 
 mod baseline;
 mod command;

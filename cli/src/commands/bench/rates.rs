@@ -1,18 +1,18 @@
-//! Measures how fast memory is copied, the rate that sweeps are compared with.
+//! Rates of memory copies, with which sweeps are compared.
 
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{Gpu, wgpu};
 use rayon::prelude::*;
 
-/// Bytes copied at once, more than caches hold.
+/// Bytes per copy, more than caches hold.
 const BYTES: u64 = 128 << 20;
-/// How many times copying is timed; the fastest time counts.
+/// Number of repetitions after the first timed call. The fastest call counts.
 const REPEATS: u32 = 5;
-/// How many copies are in one submission to a GPU.
+/// Copies encoded into one submission to a GPU.
 const SUBMITTED: u32 = 4;
 
-/// Returns the bytes that all cores together read and write per second when they copy.
+/// Returns the bytes per second that all cores together read and write in a copy.
 pub(crate) fn on_cpu() -> f64 {
     let from = vec![1u8; BYTES as usize];
     let mut to = vec![2u8; BYTES as usize];
@@ -23,7 +23,7 @@ pub(crate) fn on_cpu() -> f64 {
     })
 }
 
-/// Returns the bytes that a kernel reads and writes per second when it only copies.
+/// Returns the bytes per second that a kernel reads and writes in a copy.
 pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
     let device = gpu.device();
     let bound = device.limits().max_storage_buffer_binding_size;
@@ -66,13 +66,14 @@ pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
             pass.dispatch_workgroups(groups, 1, 1);
         }
         gpu.queue().submit([encoder.finish()]);
-        // A device that is lost copies nothing; the measurements after this one report it.
+        // On a lost device, nothing is copied; the following measurements report the loss.
         device.poll(wgpu::PollType::wait_indefinitely()).ok();
     };
     fastest(SUBMITTED, copy) * bytes as f64 / BYTES as f64
 }
 
-/// Returns the bytes read and written per second by the fastest of several calls, each of which makes `copies` copies.
+/// Returns the bytes read and written per second in the fastest of several calls. Each call makes `copies` copies of
+/// [`BYTES`] bytes.
 fn fastest(copies: u32, mut copy: impl FnMut()) -> f64 {
     let time = || {
         let start = Instant::now();

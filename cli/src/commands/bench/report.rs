@@ -1,4 +1,4 @@
-//! The tables that `gpu-smooth bench` prints.
+//! The tables of `gpu-smooth bench`.
 
 use serde::Serialize;
 
@@ -8,33 +8,33 @@ use crate::commands::bench::machine::{self, Place};
 use crate::render::columns::right;
 use crate::terminal::tell;
 
-/// The measurements of one mesh on one engine.
+/// Measurements of one mesh on one engine.
 #[derive(Serialize)]
 pub(super) struct Row {
     pub(super) version: String,
     pub(super) machine: String,
     pub(super) engine: String,
-    /// Whether the engine is an adapter whose driver computes on the CPU.
+    /// Whether the engine is a software adapter, whose driver computes on the CPU.
     pub(super) software: bool,
     pub(super) scheme: String,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) free: usize,
     pub(super) colors: usize,
-    /// The time of a sweep with the objective after it. All rates of the row follow from it.
+    /// Seconds per sweep, including the objective. The row's rates are derived from this time.
     pub(super) seconds_per_sweep: f64,
-    /// The time of a sweep in the measurements of `--baseline`, if they have this row.
+    /// Seconds per sweep in the baseline; `None` if `--baseline` is not given or lacks this row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) baseline_seconds_per_sweep: Option<f64>,
     pub(super) vertex_updates_per_second: f64,
-    /// The least bytes that a sweep and the objective have to read and write, divided by their time.
+    /// Smallest number of bytes that a sweep and the objective can transfer, divided by their time.
     pub(super) bytes_per_second: f64,
     pub(super) share_of_copy_rate: f64,
-    /// The time of each kernel by the device's clock, if the device has one.
+    /// Time of each kernel by the device's timestamps; `None` on devices without timestamps.
     pub(super) kernels: Option<Vec<KernelRow>>,
 }
 
-/// The time of one kernel in a sweep.
+/// Time of a kernel per sweep.
 #[derive(Serialize)]
 pub(super) struct KernelRow {
     kernel: String,
@@ -45,8 +45,8 @@ pub(super) struct KernelRow {
 }
 
 impl KernelRow {
-    /// Makes the row of a kernel. `bytes` is the least that it has to read and write, given only for kernels that read
-    /// much.
+    /// Makes the row of a kernel. `bytes` is the smallest number of bytes that the kernel can transfer; `None` for
+    /// kernels that transfer little.
     pub(super) fn new(time: &KernelTime, bytes: Option<u64>, copy_rate: f64) -> Self {
         let rate = bytes.map(|bytes| bytes as f64 / time.seconds);
         Self {
@@ -59,12 +59,12 @@ impl KernelRow {
     }
 }
 
-/// The columns of the table before the engine. `baseline` and `change` are left out without `--baseline`.
+/// Columns of the table before the engine. Without `--baseline`, the columns `baseline` and `change` are omitted.
 const COLUMNS: [&str; 7] =
     ["vertices", "ms/sweep", "baseline", "change", "M updates/s", "GB/s", "of copying"];
 const WIDTHS: [usize; 7] = [10, 10, 10, 9, 12, 8, 11];
 
-/// How the table is written.
+/// The form of the table: Markdown or plain text, with or without a baseline.
 #[derive(Clone, Copy)]
 pub(super) struct Form {
     markdown: bool,
@@ -76,7 +76,7 @@ impl Form {
         Self { markdown: args.markdown, compared: args.baseline.is_some() }
     }
 
-    /// Writes the machine, the engines and the head of the table.
+    /// Returns the lines on version, machine and engines, and the head of the table.
     pub(super) fn head(self, args: &BenchArgs, places: &[Place]) -> String {
         let mark = if self.markdown { "- " } else { "" };
         let mut text = format!("{mark}{}\n{mark}{}\n", machine::version(), machine::machine());
@@ -120,7 +120,7 @@ impl Form {
         }
     }
 
-    /// Writes a row of the table.
+    /// Formats a row of the table.
     pub(super) fn row(self, row: &Row) -> String {
         let seconds = row.seconds_per_sweep;
         let milliseconds = |seconds: f64| format!("{:.3}", seconds * 1e3);
@@ -138,7 +138,7 @@ impl Form {
         self.line(columns, &row.engine)
     }
 
-    /// Writes a row of the table of kernels.
+    /// Formats a row of the table of kernels.
     fn kernel(self, fields: [&str; 5]) -> String {
         let [name, passes, time, rate, share] = fields;
         match self.markdown {
@@ -147,7 +147,7 @@ impl Form {
         }
     }
 
-    /// Writes the tables of kernels, one for each measurement that has them.
+    /// Returns the tables of kernels, one for each measurement with timestamps.
     pub(super) fn kernels(self, rows: &[Row]) -> String {
         let timed = rows.iter().filter_map(|row| Some((row, row.kernels.as_ref()?)));
         let mut text = String::new();

@@ -1,4 +1,4 @@
-//! Times whole sweeps, and counts the least bytes that each has to read and write.
+//! Times of whole sweeps, and the smallest number of bytes that a sweep can transfer.
 
 use std::time::{Duration, Instant};
 
@@ -7,30 +7,31 @@ use gpu_smooth::{
     internal::{Problem, Stepwise},
 };
 
-/// Sweeps before the clock starts. After these, kernels are compiled, caches are warm and sweeps are over-relaxed.
+/// Sweeps before timing starts. Afterwards, kernels are compiled, caches are warm and sweeps are over-relaxed.
 const BEFORE: u32 = 6;
-/// About how long a batch of sweeps takes. The sweeps of a batch are timed together.
+/// Intended duration of a batch. The sweeps of a batch are timed together.
 const BATCH: Duration = Duration::from_millis(100);
-/// The most batches, whose median counts. There are fewer if the seconds that the user gives end before.
+/// Largest number of batches, of which the median counts. The time limit of the user may end the measurement
+/// earlier.
 const BATCHES: usize = 15;
 
-/// Bytes of a position: two coordinates in double precision, or as two floats each.
+/// Bytes of a position: two coordinates, each in double precision or as a pair of floats.
 const POSITION: u64 = 16;
 
-/// Counts the bytes that a sweep reads and writes if it touches everything once: all positions, the one-rings of the
-/// free vertices, and the vertices that moved.
+/// Counts the bytes that a sweep transfers if it touches all data once: positions, one-rings of free vertices, and
+/// moved vertices.
 pub(crate) fn sweep_bytes(problem: &Problem) -> u64 {
     let (vertices, free) = (problem.positions().len() as u64, problem.free_count() as u64);
     let rings = 4 * (problem.ring().len() as u64 + free);
     POSITION * (vertices + free) + rings
 }
 
-/// Counts the bytes that the objective reads if it reads everything once: all positions and triangles.
+/// Counts the bytes that the objective transfers if it reads all positions and triangles once.
 pub(crate) fn objective_bytes(problem: &Problem) -> u64 {
     POSITION * problem.positions().len() as u64 + 12 * problem.triangles().len() as u64
 }
 
-/// Measures the median time of a sweep with the objective after it, in seconds.
+/// Returns the median duration of a sweep with the objective after it, in seconds.
 pub(crate) fn time(engine: &mut dyn Stepwise, seconds: f64) -> Result<f64, SmoothError> {
     engine.advance(BEFORE)?;
     let mut timed = |sweeps: u32| -> Result<f64, SmoothError> {

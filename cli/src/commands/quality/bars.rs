@@ -7,18 +7,18 @@ use crate::render::columns;
 use crate::report::Histogram;
 use crate::terminal::numbers::five;
 
-/// How to draw on this terminal.
+/// Drawing style for the terminal.
 pub(crate) struct Style {
-    /// Whether to use ASCII only, also for signs that need no terminal, such as the degree sign.
+    /// Whether output is restricted to ASCII, including signs such as the degree sign.
     pub(crate) plain: bool,
-    /// Whether bars are drawn by block characters.
+    /// Whether bars consist of block characters instead of `#`.
     blocks: bool,
-    /// The width in columns.
+    /// Width of the output in columns.
     pub(crate) width: usize,
 }
 
 impl Style {
-    /// Chooses the style by the standard output and the environment. `ascii` asks for ASCII only.
+    /// Chooses the style from the type of standard output and the environment. `ascii` requests ASCII only.
     pub(crate) fn of_terminal(ascii: bool) -> Self {
         let is_terminal = std::io::stdout().is_terminal();
         let plain = ascii || is_terminal && !shows_unicode();
@@ -27,7 +27,8 @@ impl Style {
     }
 }
 
-/// Whether the terminal is expected to show more than ASCII: it is not a dumb one, and the locale is UTF-8.
+/// Returns whether the terminal probably displays Unicode: its type is not `dumb`, and the locale is UTF-8
+/// or unset.
 fn shows_unicode() -> bool {
     let set = |name| std::env::var(name).ok().filter(|value| !value.is_empty());
     if set("TERM").is_some_and(|term| term == "dumb") {
@@ -37,7 +38,7 @@ fn shows_unicode() -> bool {
     locale.is_none_or(|locale| locale.to_lowercase().contains("utf"))
 }
 
-/// Draws a histogram with a line for each bin, from the first that is not empty to the last.
+/// Draws a histogram with one line per bin, from the first to the last nonempty bin.
 pub(crate) fn text(histogram: &Histogram, name: &str, style: &Style) -> String {
     let Histogram { edges, counts, .. } = histogram;
     let total: usize = counts.iter().sum();
@@ -64,7 +65,7 @@ pub(crate) fn text(histogram: &Histogram, name: &str, style: &Style) -> String {
     text
 }
 
-/// Formats an edge of a bin, without zeros at its end.
+/// Formats an edge of a bin without trailing zeros.
 fn edge(x: f64) -> String {
     let text = five(x);
     match text.contains('.') && !text.contains('e') {
@@ -81,7 +82,8 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// Draws a bar of this many columns, exact to an eighth with block characters. A bar above 0 is never empty.
+/// Draws a bar with a length of `columns` columns. Block characters resolve an eighth of a column. A
+/// positive length always draws a mark.
 fn bar(columns: f64, blocks: bool) -> String {
     if !blocks {
         let whole = "#".repeat(columns.round() as usize);

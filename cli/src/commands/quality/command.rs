@@ -1,4 +1,4 @@
-//! `gpu-smooth quality MESH...`: measures meshes.
+//! The command `gpu-smooth quality MESH...`, which measures meshes.
 
 use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
@@ -9,7 +9,8 @@ use crate::error::CliError;
 use crate::request::Outputs;
 use crate::terminal::tell;
 
-/// Prints how good meshes are. Returns an error if a mesh cannot be read, or if a triangle passes a threshold.
+/// Prints the quality of meshes. Returns an error if a mesh cannot be read, or if triangles violate a
+/// threshold.
 pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     let outputs = Outputs::of_picture(&args.picture)?;
     outputs.check(&args.meshes, &[])?;
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     }
 }
 
-/// Words a sentence for each threshold that triangles of a mesh have passed.
+/// Returns a sentence for each threshold that triangles of a mesh violate.
 fn violations(sheet: &Sheet, style: &Style) -> impl Iterator<Item = String> {
     sheet.violations.iter().filter_map(move |violation| {
         let (place, value) = violation.worst.as_ref()?;

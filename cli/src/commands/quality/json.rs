@@ -1,4 +1,4 @@
-//! Writes the quality of meshes as JSON and as CSV.
+//! The quality of meshes as JSON and CSV.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ use crate::error::CliError;
 use crate::render::columns::quoted;
 use crate::report::Histogram;
 
-/// Returns an object for one mesh, or a list of objects for several.
+/// Returns an object for a single mesh, or an array of objects for several meshes.
 pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, CliError> {
     let one = |sheet| object(sheet).map_err(CliError::from);
     match sheets {
@@ -62,13 +62,13 @@ fn measures(statistics: &[Statistics]) -> Value {
     Value::Object(statistics.iter().map(one).collect())
 }
 
-/// Writes a histogram. The last edge is null if the last bin takes all the rest.
+/// Converts a histogram to JSON. The last edge is null if the last bin is unbounded.
 fn histogram(histogram: &Histogram) -> Value {
     let Histogram { measure, edges, counts } = histogram;
     json!({ "measure": measure.name(), "edges": edges, "counts": counts })
 }
 
-/// Writes a triangle, under `key`, and its place in the file.
+/// Returns an object with a triangle's number or tag under `key`, and its location in the file.
 fn placed(key: &str, place: &SourceLocation) -> Map<String, Value> {
     let mut object = Map::new();
     object.insert(key.to_owned(), place.id.into());
@@ -100,12 +100,13 @@ fn violation(violation: &Violation) -> Value {
     json!({ "threshold": threshold.to_string(), "triangles": count, "worst": worst })
 }
 
-/// Returns the groups of a region, spelled as options name them.
+/// Returns the group names of a region, in the spelling that options accept.
 fn spellings(region: &Region) -> Vec<&str> {
     region.groups.iter().map(|group| &*group.spelling).collect()
 }
 
-/// Writes the statistics, a row for each measure of each file, and of each region if asked for.
+/// Returns a table in CSV with a row for each measure of each file. With regions, further rows
+/// follow for each region.
 pub(crate) fn csv(sheets: &[Sheet]) -> String {
     let mut text = String::from("file,region,measure,triangles,min,mean,max,sd");
     for share in QUANTILES {

@@ -1,4 +1,4 @@
-//! `gpu-smooth quality MESH...`: measures meshes.
+//! The command `gpu-smooth quality MESH...`, which measures meshes.
 
 mod bars;
 mod command;

@@ -1,4 +1,4 @@
-//! All numbers that are shown of a mesh.
+//! Measurements of a mesh for `gpu-smooth quality`.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -22,7 +22,7 @@ use crate::render::picture::{self, PictureSubject, Shot};
 use crate::report::{Histogram, QualityReport, histogram};
 use crate::request::PictureRequest;
 
-/// All numbers that are shown of one mesh. The mesh itself is not kept, so that many can be shown side by side.
+/// Measurements of one mesh. The mesh is not stored, so that many meshes can be shown side by side.
 pub(crate) struct Sheet {
     pub(crate) path: PathBuf,
     pub(crate) format: String,
@@ -30,18 +30,18 @@ pub(crate) struct Sheet {
     pub(crate) vertices: usize,
     pub(crate) free: usize,
     pub(crate) triangles: usize,
-    /// The quality, as in the report of a run.
+    /// Quality with the fields of a run's report.
     pub(crate) report: QualityReport,
-    /// Where the triangle of the largest inverse mean ratio is in the file.
+    /// Location of the triangle with the largest inverse mean ratio.
     pub(crate) worst_place: SourceLocation,
-    /// Statistics of every measure.
+    /// Statistics of all measures, in the order of `Measure::ALL`.
     pub(crate) statistics: Vec<Statistics>,
     pub(crate) regions: Vec<Region>,
     pub(crate) histograms: Vec<Histogram>,
-    /// The worst triangles by the first measure that was asked for.
+    /// The worst triangles by the first measure of `--measure`, worst first.
     pub(crate) worst: Vec<Worst>,
     pub(crate) violations: Vec<Violation>,
-    /// Inverted and flat triangles: all of them for JSON, else the first ones, which are listed.
+    /// Inverted and flat triangles: all for JSON, otherwise the first [`explain::TOLD`].
     pub(crate) bad: Vec<BadTriangleReport>,
     pub(crate) flat: usize,
     pub(crate) hanging_nodes: usize,
@@ -49,50 +49,50 @@ pub(crate) struct Sheet {
     pub(crate) unused_vertices: usize,
 }
 
-/// Triangles that the file puts into one region.
+/// A region of the file: a class of triangles.
 pub(crate) struct Region {
-    /// Where the first triangle of the region is in the file.
+    /// Location of the region's first triangle.
     pub(crate) first: SourceLocation,
-    /// The groups of the file that the region's triangles belong to. Groups with a name come first.
+    /// The groups that contain the region's triangles, named groups first.
     pub(crate) groups: Vec<Named>,
-    /// The statistics of every measure in the region.
+    /// Statistics of all measures in the region, in the order of `Measure::ALL`.
     pub(crate) statistics: Vec<Statistics>,
 }
 
-/// A group of the file, with its names.
+/// Names of a group of the file.
 pub(crate) struct Named {
-    /// The group as options name it.
+    /// The name in the spelling that options accept.
     pub(crate) spelling: String,
-    /// What kind of group it is, with its name or tag.
+    /// Full designation: the group's kind, followed by the name or tag.
     pub(crate) full: String,
-    /// Its name, or else its tag with the kind of group.
+    /// Short designation: the group's name, or kind and tag for groups without a name.
     pub(crate) short: String,
 }
 
-/// A triangle in the terms of its file.
+/// One of the worst triangles, in the terms of its file.
 pub(crate) struct Worst {
     pub(crate) place: SourceLocation,
-    /// The file's numbers or tags for its vertices.
+    /// Numbers or tags of the vertices in the file.
     pub(crate) vertices: [u64; 3],
-    /// Its vertices as the file has them, even where longitudes are continued, and its centroid.
+    /// Corners in coordinates of the file, without continued longitudes. `at` is the centroid.
     pub(crate) corners: [[f64; 2]; 3],
     pub(crate) at: [f64; 2],
-    /// The values of the measures that were asked for.
+    /// Values of the measures of `--measure`, in the given order.
     pub(crate) values: Vec<(Measure, f64)>,
-    /// Whether one of its vertices is free to move.
+    /// Whether the triangle has a free vertex.
     pub(crate) can_move: bool,
 }
 
-/// The triangles that pass a threshold.
+/// The triangles that violate a threshold.
 pub(crate) struct Violation {
     pub(crate) threshold: Threshold,
     pub(crate) count: usize,
-    /// The worst of these triangles and its value; `None` if there is none.
+    /// Location and value of the worst violating triangle; `None` without violations.
     pub(crate) worst: Option<(SourceLocation, f64)>,
 }
 
 impl Sheet {
-    /// Reads a mesh, measures it, and draws the picture that was asked for.
+    /// Reads and measures a mesh, and draws the requested picture.
     pub(crate) fn of(
         path: &Path,
         args: &QualityArgs,
@@ -144,7 +144,8 @@ impl Sheet {
     }
 }
 
-/// How many vertices of the file no triangle uses. On the sphere, triangles at a pole and where the globe is cut have copies of theirs.
+/// Counts the vertices of the file that no triangle uses. On the sphere, triangles at a pole or at a cut of the globe
+/// use copies of vertices, so the triangles of the file are searched.
 fn unused(file: &LoadedMesh, measured: &Measured<'_>) -> usize {
     let unused = measured.unused_vertices();
     if file.chart().is_none() {
@@ -181,9 +182,10 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, Cl
     Ok(first.iter().zip(statistics).zip(named).map(region).collect())
 }
 
-/// The groups that have each of these triangles; those that have a name first. All triangles of a region are of the same groups.
+/// Returns the groups of each triangle in `triangles`, named groups first. All triangles of a region belong to equal
+/// groups, so one triangle represents its region.
 fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
-    // Each group is gone through once, as there may be as many regions as groups.
+    // One pass over each group's triangles suffices, though the mesh may have as many regions as groups.
     let asked: HashMap<u32, usize> = triangles.iter().map(|&t| t as u32).zip(0..).collect();
     let mut found: Vec<Vec<(&Group, String)>> = vec![Vec::new(); triangles.len()];
     for (group, spelling) in groups.iter().zip(groups.unique_names()) {
@@ -194,7 +196,7 @@ fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
     let named = |(group, spelling): (&Group, String)| {
         let tag = group.tag.map(|tag| tag.to_string());
         let short = match group.name.clone().or(tag).unwrap_or_default() {
-            // A number alone would be taken for the number of a region.
+            // A name that is only a number would be mistaken for the number of a region.
             number if number.parse::<f64>().is_ok() => format!("{} {number}", group.kind),
             name => name,
         };
@@ -241,7 +243,7 @@ fn violation(file: &LoadedMesh, measured: &Measured<'_>, threshold: &Threshold) 
     Violation { threshold: threshold.clone(), count, worst }
 }
 
-/// Returns the line or byte of a place, with its key in JSON; `None` if it is not known.
+/// Returns the line or byte of a location together with its key in JSON; `None` if the location is unknown.
 pub(crate) fn location(place: &SourceLocation) -> Option<(&'static str, usize)> {
     match place.location {
         Location::Line(line) => Some(("line", line)),

@@ -1,4 +1,4 @@
-//! Writes the quality of meshes as text.
+//! The quality of meshes as text.
 
 use std::fmt::Write;
 
@@ -13,14 +13,14 @@ use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
 use crate::terminal::numbers::{five, six};
 
-/// The width of a table's first column.
+/// Width of a table's first column, in characters.
 const NAME: usize = 17;
 
-/// The columns of numbers. The usual terminal has room for seven.
+/// Columns of numbers. A terminal of 80 columns shows all seven.
 const COLUMNS: [&str; 7] = ["min", "5 %", "median", "mean", "95 %", "max", "sd"];
 const COLUMN: usize = 9;
 
-/// Chooses the columns that fit a terminal. The most important are chosen first.
+/// Selects the columns that fit the terminal, the most important first.
 fn shown(style: &Style) -> [bool; COLUMNS.len()] {
     let fit = style.width.saturating_sub(NAME) / COLUMN;
     let mut shown = [false; COLUMNS.len()];
@@ -28,7 +28,7 @@ fn shown(style: &Style) -> [bool; COLUMNS.len()] {
     shown
 }
 
-/// Writes all that is shown of some meshes.
+/// Writes the measurements of one or more meshes.
 pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
     let mut text = String::new();
     for sheet in sheets {
@@ -48,7 +48,8 @@ pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
     text.trim_end().to_owned()
 }
 
-/// Writes the statistics of every measure: a row for each measure, or for each measure and file.
+/// Writes a table with the statistics of all measures: one row per measure, or one row per measure
+/// and file.
 fn table(sheets: &[Sheet], style: &Style) -> String {
     let mut text = head(style);
     for (i, measure) in Measure::ALL.iter().enumerate() {
@@ -94,7 +95,7 @@ fn named(measure: Measure, style: &Style) -> String {
     }
 }
 
-/// Writes all that is shown of one mesh besides the statistics of its measures.
+/// Writes histograms, regions, worst triangles, objectives and counts of one mesh.
 fn details(sheet: &Sheet, style: &Style) -> String {
     let mut text = String::new();
     for histogram in &sheet.histograms {
@@ -134,7 +135,7 @@ fn details(sheet: &Sheet, style: &Style) -> String {
     text
 }
 
-/// Writes the statistics of the measures that were asked for, region by region.
+/// Writes a table by region for each measure of `--measure`, then the list of regions.
 fn by_region(sheet: &Sheet, style: &Style) -> String {
     let mut text = String::new();
     for histogram in sheet.histograms.iter().filter(|_| !sheet.regions.is_empty()) {
@@ -164,7 +165,7 @@ fn by_region(sheet: &Sheet, style: &Style) -> String {
     text
 }
 
-/// Writes where a triangle is, how bad it is, and whether smoothing can help.
+/// Writes the location of a triangle, its values, and whether smoothing can improve the triangle.
 fn worst_line(worst: &Worst, style: &Style) -> String {
     let Worst { place, at: [x, y], values, can_move, .. } = worst;
     let values: Vec<String> =
@@ -174,7 +175,7 @@ fn worst_line(worst: &Worst, style: &Style) -> String {
     format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", six(*x), six(*y))
 }
 
-/// Writes a value after the name of its measure.
+/// Formats a value with the name and unit of its measure.
 pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
     match (measure.definition().unit, style.plain) {
         ("°", true) => format!("{measure} {} deg", five(value)),

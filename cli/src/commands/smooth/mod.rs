@@ -1,4 +1,4 @@
-//! `gpu-smooth IN OUT`: a run on one mesh.
+//! The command `gpu-smooth IN OUT`, which smooths one mesh.
 
 mod single;
 

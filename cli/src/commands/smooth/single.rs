@@ -1,4 +1,4 @@
-//! Smooths one mesh and shows the run to the user.
+//! The run on one mesh, with progress and results on the terminal.
 
 use crate::error::{CliError, ErrorKind};
 use crate::load::LoadedMesh;
@@ -34,7 +34,7 @@ pub(crate) fn run(
     out: &PathBuf,
     verbosity: Verbosity,
 ) -> Result<(), CliError> {
-    // From here on, a signal leaves no temporary file of a check or of a write.
+    // From here on, a signal leaves no temporary file behind, neither of a check nor of a write.
     interrupt::watch(verbosity.quiet);
     request.outputs.check(slice::from_ref(input), slice::from_ref(out))?;
     let resumed = checkpoint::resumed(request.continue_from.as_deref())?;
@@ -42,8 +42,8 @@ pub(crate) fn run(
     let task = Task { request, verbosity, input, out, resumed };
     let display = Display::new(verbosity, request.estimated_end(), request.max_sweeps());
     let mut follow = Shown { request, verbosity, input, out, display: &display };
-    // The driver starts while the mesh is read. If the size of the mesh decides on the engine, it starts while the mesh
-    // is prepared.
+    // The driver starts while the mesh is read. If the size of the mesh determines the engine, the driver starts while
+    // the mesh is prepared.
     let done = std::thread::scope(|scope| {
         let opening = scope.spawn(|| engine::open(&request.engine));
         let engine = move |size| {
@@ -62,7 +62,7 @@ pub(crate) fn run(
     done.map_err(|failure| told_with_report(&request.outputs, failure))
 }
 
-/// Shows a run on the terminal.
+/// Observer that shows a run on the terminal and checks its output files.
 struct Shown<'a> {
     request: &'a SmoothRequest,
     verbosity: Verbosity,
@@ -113,7 +113,7 @@ impl Follow for Shown<'_> {
     }
 }
 
-/// Writes and prints the results of a run that were asked for.
+/// Writes and prints the requested results of a run.
 fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
     let Task { request, verbosity, out, .. } = *task;
     let outputs = &request.outputs;
@@ -145,7 +145,7 @@ fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
     }
 }
 
-/// Writes a line for each sweep.
+/// Formats a line for each sweep.
 fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
     report.history.iter().map(|sweep| {
         let metric = sweep.metric.unwrap_or("-");
@@ -153,8 +153,8 @@ fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
     })
 }
 
-/// Returns the error why a mesh is not smoothed. If triangles are inverted or flat, also lists all of them in the
-/// report that was asked for.
+/// Returns the error of a mesh that cannot be smoothed. If inverted or flat triangles are the cause, lists all of them
+/// in the requested report.
 fn told_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) -> CliError {
     if triangles.is_empty() {
         return error;
@@ -165,7 +165,7 @@ fn told_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) ->
     }
 }
 
-/// Draws the mesh before and after the run, if a picture was asked for.
+/// Draws the mesh before and after the run if a picture is requested.
 fn draw(
     task: &Task<'_>,
     file: &LoadedMesh,

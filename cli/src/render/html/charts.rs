@@ -1,11 +1,11 @@
-//! Charts as SVG, whose colors are those of the page.
+//! Charts in SVG, in the colors of the page.
 
 use std::fmt::Write;
 
 use crate::render::html::page::escape;
 use crate::terminal::numbers::five;
 
-/// Width and height in pixels of the chart, which is scaled to the window.
+/// Width and height of a chart in pixels, before the page scales the chart to the window.
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 250.0;
 /// Space around the plot for numbers and names: left, right, top, bottom.
@@ -16,13 +16,13 @@ struct Axis {
     low: f64,
     high: f64,
     log: bool,
-    /// The two ends of the axis in pixels.
+    /// Pixel coordinates of `low` and `high`.
     from: f64,
     to: f64,
 }
 
 impl Axis {
-    /// Makes an axis that covers these numbers. On a logarithmic axis only numbers above 0 count.
+    /// Makes an axis that covers the finite numbers. A logarithmic axis ignores numbers up to 0.
     fn new(numbers: impl Iterator<Item = f64>, log: bool, from: f64, to: f64) -> Self {
         let usable = numbers.filter(|x| x.is_finite() && (!log || *x > 0.0));
         let (mut low, mut high) = usable
@@ -43,8 +43,8 @@ impl Axis {
         self.from + share * (self.to - self.from)
     }
 
-    /// Returns round numbers on the axis: powers of ten if the axis covers enough of them, their multiples by 1, 2 and
-    /// 5 if it covers few, else even steps.
+    /// Returns round numbers on the axis. A linear or short logarithmic axis has even steps, a longer one multiples of
+    /// powers of ten by 1, 2 and 5, and one over more than three decades powers of ten.
     fn ticks(&self) -> Vec<f64> {
         if self.log && (6.0..1500.0).contains(&(self.high / self.low)) {
             let (first, last) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
@@ -80,7 +80,7 @@ fn x_axis(from: f64, to: f64) -> [f64; 2] {
     [from + MARGIN[0], to - MARGIN[1]]
 }
 
-/// Draws a tick under the plot, with its number.
+/// Draws a tick with a label below the plot.
 fn below(text: &mut String, x: f64, name: &str) {
     let bottom = HEIGHT - MARGIN[3];
     let _ = write!(
@@ -92,7 +92,7 @@ fn below(text: &mut String, x: f64, name: &str) {
     );
 }
 
-/// Draws a grid line across the plot, with its number on the left.
+/// Draws a grid line across the plot, with a label on the left.
 fn across(text: &mut String, y: f64, name: &str) {
     let [left, right] = x_axis(0.0, WIDTH);
     let _ = write!(
@@ -104,7 +104,7 @@ fn across(text: &mut String, y: f64, name: &str) {
     );
 }
 
-/// Formats a number beside an axis.
+/// Formats the number at a tick.
 fn tick(x: f64) -> String {
     let text = match x.abs() {
         a if a != 0.0 && !(1e-3..1e5).contains(&a) => return format!("{x:e}"),
@@ -116,9 +116,10 @@ fn tick(x: f64) -> String {
     }
 }
 
-/// Draws a line through points, with a mark on each if they are few. `log` says which of the two axes are logarithmic.
+/// Draws a polyline through points, with a mark at each point if there are at most 60. `log` selects a logarithmic x
+/// and y axis.
 ///
-/// A logarithmic axis has no place for `x` = 0, so that point is drawn at half the least `x` above 0.
+/// A logarithmic axis cannot show `x` = 0, so that point is drawn at half the smallest positive `x`.
 pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]) -> String {
     let least =
         points.iter().map(|point| point[0]).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
@@ -141,7 +142,7 @@ pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]
     let x = Axis::new(shown().map(|point| point[0]), log[0], left, right);
     let y = Axis::new(shown().map(|point| point[1]), log[1], bottom, top);
     y.ticks().into_iter().for_each(|value| across(&mut text, y.place(value), &tick(value)));
-    // The state before the first sweep, at `x` = 0.
+    // The state before the first sweep has `x` = 0.
     let has_zero = log[0] && x.low == zero;
     if has_zero {
         below(&mut text, x.place(zero), "0");
@@ -173,7 +174,7 @@ pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]
     text + "</svg></figure>"
 }
 
-/// Draws two bars for each bin: before and after.
+/// Draws two bars for each bin: the percentages of triangles before and after.
 pub(crate) fn bars(title: &str, edges: &[f64], counts: [&[usize]; 2]) -> String {
     let mut text = open(title);
     let [left, right] = x_axis(0.0, WIDTH);
@@ -193,7 +194,7 @@ pub(crate) fn bars(title: &str, edges: &[f64], counts: [&[usize]; 2]) -> String 
             let count = counts[state][i];
             let top = y.place(percent(count));
             let start = left + (i as f64 + 0.08 + 0.42 * state as f64) * width;
-            // A bin with few triangles among many is still seen.
+            // A nonempty bin is at least 1 pixel high, to remain visible.
             let height = (bottom - top).max(if count > 0 { 1.0 } else { 0.0 });
             let _ = write!(
                 text,

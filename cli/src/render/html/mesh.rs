@@ -1,5 +1,4 @@
-//! The data by which the script of the page draws the mesh: all of it, or a picture with the triangles around the worst
-//! ones.
+//! The mesh data for the page's script: the whole mesh, or a picture and the triangles around the worst ones.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -16,28 +15,28 @@ use serde_json::{Value, json};
 use crate::render::html::worst::Spot;
 use crate::render::picture::{Extent, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks};
 
-/// The measures that the mesh can be colored by. The picture of a large mesh is colored by the first.
+/// The measures by which the page can color the mesh. The picture of a large mesh uses the first one.
 const SHOWN: [Measure; 4] =
     [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
 
 /// Limits on the size of a page.
 pub(crate) struct Bounds {
-    /// Meshes of more triangles are shown as a picture and by parts.
+    /// Largest number of triangles that the page contains completely. Larger meshes are shown by a picture and parts.
     most: usize,
-    /// The longer side of that picture, in pixels.
+    /// Longer side of the picture, in pixels.
     pixels: u32,
 }
 
-/// With these limits, a page has up to some 15 MB.
+/// The default limits, with which a page has at most some 15 MB.
 pub(crate) const BOUNDS: Bounds = Bounds { most: 250_000, pixels: 2000 };
 
-/// How many triangles around each of the worst ones are shown of a larger mesh.
+/// Number of triangles shown around each of the worst triangles of a larger mesh.
 const AROUND: usize = 1500;
 
-/// The most edges of the boundary, and of lines between regions, that are shown of a larger mesh.
+/// Largest number of boundary edges shown of a larger mesh; also that of edges between regions.
 const MOST_EDGES: usize = 200_000;
 
-/// Says in a sentence or two how a mesh of this many triangles is shown.
+/// Describes in one or two sentences how the page shows a mesh.
 pub(crate) fn caption(triangles: usize) -> String {
     match triangles > BOUNDS.most {
         false => format!("All {triangles} triangles."),
@@ -48,7 +47,7 @@ pub(crate) fn caption(triangles: usize) -> String {
     }
 }
 
-/// Collects all data that the script needs.
+/// Returns the JSON that the page's script reads.
 pub(crate) fn data(
     file: &LoadedMesh,
     states: [&Measured<'_>; 2],
@@ -89,7 +88,7 @@ pub(crate) fn data(
         let definition = measure.definition();
         json!({
             "name": measure.name(), "unit": definition.unit, "ideal": definition.ideal,
-            // Null if the scale is logarithmic, and so has no bad end.
+            // Null for logarithmic scales, which have no bad end.
             "bad": bad_end(measure),
             "ticks": ticks(measure).into_iter()
                 .map(|(value, name)| json!([goodness(measure, value), name])).collect::<Vec<_>>(),
@@ -128,7 +127,7 @@ pub(crate) fn data(
     }))
 }
 
-/// Encodes numbers, given as little-endian bytes, in Base64.
+/// Encodes a sequence of little-endian numbers in Base64.
 fn encoded<const N: usize>(numbers: impl Iterator<Item = [u8; N]>) -> String {
     BASE64_STANDARD.encode(numbers.flatten().collect::<Vec<u8>>())
 }
@@ -137,8 +136,8 @@ fn indices(numbers: &[u32]) -> String {
     encoded(numbers.iter().map(|number| number.to_le_bytes()))
 }
 
-/// Returns the codes of the shown triangles for each measure: 0 if a triangle is inverted or flat, else from 1 (bad) to
-/// 65534 (ideal).
+/// Returns a Base64 string for each measure with the 16-bit codes of the shown triangles: 0 for inverted or flat
+/// triangles, otherwise from 1 (bad) to 65534 (ideal).
 fn codes(
     topology: &Topology<'_>,
     state: &Measured<'_>,
@@ -158,7 +157,7 @@ fn codes(
     Ok(SHOWN.map(of).to_vec())
 }
 
-/// Draws the whole mesh as pixels, colored by the first measure.
+/// Draws the whole mesh colored by the first measure. Returns a PNG as a data URL.
 fn picture(
     topology: &Topology<'_>,
     state: &Measured<'_>,
@@ -169,7 +168,8 @@ fn picture(
     Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(bytes)))
 }
 
-/// Returns the triangles around each spot, ascending and each once. The triangles nearest to a spot are taken first.
+/// Returns the triangles around each spot, ascending and without repeats. Triangles are added in order of their
+/// distance from the spot, counted in rings.
 fn around(topology: &Topology<'_>, spots: &[Spot]) -> Vec<usize> {
     let mut all = HashSet::new();
     for spot in spots {
@@ -189,11 +189,11 @@ fn around(topology: &Topology<'_>, spots: &[Spot]) -> Vec<usize> {
     all
 }
 
-/// The vertices that are shown, in new numbers.
+/// The shown vertices, renumbered from 0.
 struct Part {
-    /// The new number of each vertex, or `u32::MAX` if it has none.
+    /// The new number of each vertex, `u32::MAX` for vertices without one.
     number: Vec<u32>,
-    /// The old number of each vertex that is shown.
+    /// The original number of each shown vertex.
     vertices: Vec<u32>,
 }
 
@@ -202,7 +202,7 @@ impl Part {
         Self { number: vec![u32::MAX; vertices], vertices: Vec::new() }
     }
 
-    /// Returns the new number of a vertex, after giving it one if it has none.
+    /// Returns the new number of a vertex. If the vertex has no new number, assigns the next free number.
     fn number(&mut self, vertex: u32) -> u32 {
         let number = &mut self.number[vertex as usize];
         if *number == u32::MAX {
@@ -212,7 +212,7 @@ impl Part {
         *number
     }
 
-    /// Encodes the coordinates of the vertices that are shown.
+    /// Encodes the coordinates of the shown vertices in Base64.
     fn points(&self, points: &[[f64; 2]]) -> String {
         let coordinates = self.vertices.iter().flat_map(|&v| points[v as usize]);
         encoded(coordinates.map(f64::to_le_bytes))
@@ -226,7 +226,7 @@ mod tests {
     use mesh_io::MeshFile;
     use std::path::Path;
 
-    /// Makes a mesh of 80 by 80 squares, each cut in two, with one vertex far from its place.
+    /// Makes a mesh of 80 by 80 squares, each cut into two triangles, with one displaced vertex.
     fn file() -> LoadedMesh {
         let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6561\n".to_owned();
         for i in 0..6561 {
@@ -264,10 +264,10 @@ mod tests {
             let picture = parts["states"][state]["picture"].as_str().unwrap();
             let png = picture.strip_prefix("data:image/png;base64,").unwrap();
             let png = BASE64_STANDARD.decode(png).unwrap();
-            // Width and height of the picture.
+            // Bytes of the PNG header with the width and height of the picture.
             assert_eq!(png[16..24], [0, 0, 1, 44, 0, 0, 1, 44]);
         }
-        // The worst triangles are those at the vertex out of place, and are shown in both forms.
+        // The worst triangles touch the displaced vertex, and both forms show them.
         for data in [&whole, &parts] {
             let first = &data["spots"][0];
             assert!(first["triangle"].is_u64(), "{first}");

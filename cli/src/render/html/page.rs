@@ -18,7 +18,7 @@ impl Page {
         Self { title, body, data: String::new() }
     }
 
-    /// Adds a sentence at the top.
+    /// Adds a paragraph at the top of the page.
     pub(crate) fn lead(&mut self, text: &str) {
         self.body += &format!("<p class=\"lead\">{}</p>\n", escape(text));
     }
@@ -28,7 +28,7 @@ impl Page {
         self.body += &format!("<section><h2>{}</h2>\n{content}\n</section>\n", escape(title));
     }
 
-    /// Adds the section that shows the mesh; `data` is what the script draws.
+    /// Adds the section with the mesh viewer. `data` is the JSON that the script draws.
     pub(crate) fn mesh(&mut self, caption: &str, data: &serde_json::Value) {
         let content = VIEWER.replace("{caption}", &escape(caption));
         self.body += &format!("<section id=\"mesh\"><h2>Mesh</h2>\n{content}</section>\n");

@@ -1,4 +1,4 @@
-//! The section on the run: the command, versions, the engine, and what was checked on the result.
+//! The section on the run: command, versions, engine, and the checks of the result.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use crate::render::picture::slid;
 use crate::report::{Done, Task};
 use crate::terminal::numbers::six;
 
-/// Writes the command, versions, the engine, and the certificate.
+/// Writes the command, the versions, the engine, and the certificate as HTML.
 pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {
     let command: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
     let engine = &done.report.engine;
@@ -44,7 +44,7 @@ pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> 
     Ok(text)
 }
 
-/// Writes what was checked on the coordinates as they were written.
+/// Writes the checks of the final coordinates as HTML.
 fn certificate(done: &Done<'_>) -> Result<String, CliError> {
     let topology = done.smoother.topology();
     let (old, new) = (&done.file.mesh().points, &done.outcome.points);
@@ -52,7 +52,7 @@ fn certificate(done: &Done<'_>) -> Result<String, CliError> {
     let bits = |point: &[f64; 2]| point.map(f64::to_bits);
     let moved: Vec<usize> = (0..old.len()).filter(|&v| bits(&old[v]) != bits(&new[v])).collect();
     let held = topology.free().iter().filter(|free| !**free).count();
-    // Where vertices may slide, those that slid are told of in a sentence of their own.
+    // Vertices that slid have a sentence of their own, so the counts of held vertices exclude them.
     let off = slid(topology, old, new).len();
     let held = if done.report.slid.is_some() { held - off } else { held };
     let kept = if done.report.slid.is_some() { held } else { held - off };
@@ -75,7 +75,7 @@ fn certificate(done: &Done<'_>) -> Result<String, CliError> {
     ))
 }
 
-/// Formats day and time, given in seconds since 1970.
+/// Formats date and time in UTC, given in seconds since 1970.
 fn date(seconds: u64) -> String {
     let (mut days, minutes) = (seconds / 86_400, seconds % 86_400 / 60);
     let is_leap = |year: u64| {

@@ -8,7 +8,7 @@ use crate::render::html::page::escape;
 use crate::report::{Report, Seconds};
 use crate::terminal::numbers::{five, six};
 
-/// Writes the summary of the terminal: what was smoothed, and its quality before and after.
+/// Writes the summary of the terminal as HTML: subject, and table of values before and after.
 pub(crate) fn summary(report: &Report) -> String {
     let mut text = format!(
         "{}<div class=\"wide\"><table><thead><tr><th></th><th>before</th><th>after</th></tr></thead><tbody>",
@@ -26,7 +26,7 @@ pub(crate) fn summary(report: &Report) -> String {
     text + "</tbody></table></div>"
 }
 
-/// Writes the statistics of every measure, before and after.
+/// Writes a table with the statistics of all measures, in pairs of rows before and after a run.
 pub(crate) fn statistics(states: [&Measured<'_>; 2]) -> String {
     let [before, after] = states.map(|state| state.statistics(Measure::ALL));
     let mut text = String::from(
@@ -56,7 +56,7 @@ fn row(text: &mut String, state: &str, statistics: &Statistics) {
     *text += "</tr>";
 }
 
-/// Writes the share that each part of the run has of its time.
+/// Writes the duration of the run's stages as a bar with percentages.
 pub(crate) fn time(seconds: &Seconds) -> String {
     let Seconds { read, prepare, smooth, write, total } = *seconds;
     let parts = [("read", read), ("prepare", prepare), ("smooth", smooth), ("write", write)];

@@ -1,4 +1,4 @@
-//! Lists of the worst triangles before and after, with links that show each in the mesh.
+//! Lists of the worst triangles before and after a run, with links that show each triangle in the mesh.
 
 use crate::load::LoadedMesh;
 use std::fmt::Write;
@@ -9,40 +9,41 @@ use crate::load::as_in_file;
 use crate::render::html::page::escape;
 use crate::terminal::numbers::five;
 
-/// How many triangles a list has.
+/// Largest number of triangles in a list.
 const LISTED: usize = 8;
 
-/// How many of the worst triangles are searched for those that can move.
+/// Number of the worst triangles among which movable ones are searched.
 const CANDIDATES: usize = 10_000;
 
-/// The lists: title, state (0 before, 1 after), and whether it lists only triangles that can move.
+/// The lists: title, state (0 before the run, 1 after), and whether only movable triangles are listed.
 const LISTS: [(&str, usize, bool); 3] = [
     ("The worst before the run", 0, false),
     ("The worst after the run", 1, false),
     ("The worst after the run of those that can move", 1, true),
 ];
 
-/// A bad triangle of the mesh before or after the run.
+/// A triangle in one of the lists, measured before or after the run.
 pub(crate) struct Spot {
-    /// The index of the triangle in the mesh.
+    /// Index of the triangle in the mesh.
     pub(crate) triangle: usize,
     list: usize,
-    /// 0 if the triangle is one of the worst before the run, 1 after it.
+    /// State of the list: 0 before the run, 1 after.
     pub(crate) state: usize,
-    /// The file's number or tag for the triangle, and its place in the file.
+    /// The file's number or tag for the triangle. `place` is the triangle's location in the file.
     label: u64,
     place: String,
-    /// The centroid of the triangle where it is drawn and as the file has it, and its longest edge, in units of the mesh.
+    /// Centroid of the triangle in the drawn mesh, in `at_in_file` in coordinates of the file. `size` is the longest
+    /// edge, in units of the mesh.
     pub(crate) at: [f64; 2],
     at_in_file: [f64; 2],
     pub(crate) size: f64,
-    /// Shape and smallest angle (degrees), before and after.
+    /// Shape and smallest angle in degrees, before and after the run.
     values: [[f64; 2]; 2],
     can_move: bool,
 }
 
-/// Finds the worst triangles by shape. Triangles that can move have a list of their own only if others are among the
-/// worst.
+/// Finds the worst triangles by shape. Movable triangles have a list of their own if the overall list also has fixed
+/// ones.
 pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> {
     let topology = states[0].topology();
     let corners = |t: usize| topology.triangles()[t];
@@ -83,7 +84,7 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> 
     all.map(|(list, triangle)| spot(list, triangle)).collect()
 }
 
-/// Writes the lists as tables.
+/// Writes the lists as HTML tables.
 pub(crate) fn lists(spots: &[Spot]) -> String {
     let mut text = String::from("<div class=\"lists\">");
     for (list, (title, ..)) in LISTS.iter().enumerate() {

@@ -15,7 +15,7 @@ use crate::report::{Histogram, histogram};
 /// The measures with a histogram.
 const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
 
-/// Writes the page of a run, if it was asked for.
+/// Writes the page of a run to `path`; does nothing if `path` is `None`.
 pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
     let Some(path) = path else { return Ok(()) };
     let failed = |error: CliError| error.within("the page was not written");
@@ -48,7 +48,7 @@ fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {
     Ok(page.finish())
 }
 
-/// Draws the histograms before and after, side by side.
+/// Draws a histogram for each measure in `HISTOGRAMS`, with paired bars before and after a run.
 fn histograms(states: [&Measured<'_>; 2]) -> String {
     let mut text = String::from("<div class=\"charts\">");
     for measure in HISTOGRAMS {
@@ -59,7 +59,7 @@ fn histograms(states: [&Measured<'_>; 2]) -> String {
     text + "</div>"
 }
 
-/// Draws f against sweeps and against time, and its distance from its least value.
+/// Draws f by sweep, f by time, and the distance of f from its smallest value by sweep.
 fn convergence(done: &Done<'_>) -> String {
     let f: Vec<f64> = done.report.history.iter().map(|sweep| sweep.f).collect();
     let by_sweep: Vec<[f64; 2]> = f.iter().enumerate().map(|(i, &f)| [i as f64, f]).collect();

@@ -1,15 +1,15 @@
-//! Arrows from where vertices were to where they are.
+//! Arrows from the old to the new positions of vertices.
 
 use std::collections::HashSet;
 
 use crate::render::picture::canvas::{Canvas, Point};
 use crate::render::picture::color::{BLACK, WHITE};
 
-/// Moves shorter than this, in pixels, have no arrow.
+/// Length in pixels of the shortest move that gets an arrow.
 const SHORTEST: f32 = 2.0;
 
-/// Draws the moves of vertices, each given by its start and its end. Of the arrows that start in one small square only
-/// the first is drawn, so that the mesh below stays visible.
+/// Draws arrows for the moves of vertices, each given by start and end. In each small square, only the first arrow is
+/// drawn, so that the mesh below remains visible.
 pub(super) fn draw(ways: impl Iterator<Item = [Point; 2]>, text: f32, canvas: &mut dyn Canvas) {
     let mut taken = HashSet::new();
     let square = |at: Point| at.map(|x| (x / (0.6 * text)) as i32);
@@ -20,13 +20,13 @@ pub(super) fn draw(ways: impl Iterator<Item = [Point; 2]>, text: f32, canvas: &m
     canvas.lines(&segments, (text / 14.0).max(1.2), BLACK, 1.0);
 }
 
-/// Returns the shaft of an arrow and the two strokes of its head.
+/// Returns the segments of an arrow: the shaft and two strokes of the head.
 fn arrow([from, to]: [Point; 2], text: f32) -> [[Point; 2]; 3] {
     let way = [to[0] - from[0], to[1] - from[1]];
     let length = way[0].hypot(way[1]);
     let head = (0.35 * length).min(0.4 * text);
     let [x, y] = way.map(|along| along / length * head);
-    // A stroke goes back along the shaft, and half as far to one side.
+    // Each stroke goes back along the shaft, and half that distance sideways.
     let stroke = |side: f32| [to, [to[0] - x - side * y, to[1] - y + side * x]];
     [[from, to], stroke(0.5), stroke(-0.5)]
 }

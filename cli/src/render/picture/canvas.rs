@@ -1,4 +1,4 @@
-//! The surface that a picture is drawn on.
+//! The drawing interface of pictures.
 
 use crate::error::CliError;
 use crate::render::picture::color::Color;
@@ -6,7 +6,7 @@ use crate::render::picture::color::Color;
 /// A point in pixels, from the upper left corner.
 pub(crate) type Point = [f32; 2];
 
-/// Which part of a text is at the point where it is drawn.
+/// Horizontal alignment of a text relative to the point at which the text is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -14,9 +14,10 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// Draws a picture for one kind of file.
+/// Drawing surface for one file format.
 pub(crate) trait Canvas {
-    /// Draws triangles, colored by their goodness, in the rectangle between two corners.
+    /// Draws triangles, each with its goodness, in the rectangle between two corners. `count` is
+    /// the number of all triangles.
     fn faces(
         &mut self,
         corners: [Point; 2],
@@ -28,12 +29,12 @@ pub(crate) trait Canvas {
     /// Draws a filled disc.
     fn disc(&mut self, center: Point, radius: f32, fill: Color);
     fn ring(&mut self, center: Point, radius: f32, width: f32, color: Color);
-    /// Draws a text. `at` is on its base line.
+    /// Draws a text. `at` lies on the base line.
     fn text(&mut self, at: Point, size: f32, anchor: Anchor, text: &str);
-    /// Limits drawing to a rectangle, until it is called with `None`.
+    /// Clips all drawing to a rectangle, until a call with `None`.
     fn clip(&mut self, corners: Option<[Point; 2]>);
     /// Returns the width of a text, in pixels.
     fn width(&self, size: f32, text: &str) -> f32;
-    /// Returns the bytes of the file.
+    /// Returns the bytes of the picture file.
     fn finish(self: Box<Self>) -> Result<Vec<u8>, CliError>;
 }

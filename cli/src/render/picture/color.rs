@@ -6,12 +6,12 @@ pub(crate) type Color = [u8; 3];
 
 pub(crate) const BLACK: Color = [0, 0, 0];
 pub(crate) const WHITE: Color = [255, 255, 255];
-/// The color of inverted and flat triangles. It is not on the scale, and any eye sees it lighter or darker than its
-/// neighbors there.
+/// Color of inverted and flat triangles. The color is not on the scale, and differs in lightness from neighboring
+/// colors.
 pub(crate) const BAD: Color = [230, 25, 75];
 
-/// The color map Viridis (Smith & van der Walt, 2015), from bad to good. Its steps look even to the eye, to the
-/// color-blind, and in gray.
+/// The color map Viridis (Smith & van der Walt, 2015), from bad to good. Its steps appear equal to normal and
+/// color-blind vision, and in gray.
 pub(crate) const VIRIDIS: [Color; 10] = [
     [68, 1, 84],
     [72, 40, 120],
@@ -25,7 +25,7 @@ pub(crate) const VIRIDIS: [Color; 10] = [
     [253, 231, 37],
 ];
 
-/// Returns the color of a goodness: 0 is bad, 1 is ideal, below 0 is an inverted or flat triangle.
+/// Returns the color for a goodness from 0 (bad) to 1 (ideal), and [`BAD`] for a negative one (inverted or flat).
 pub(crate) fn of_goodness(goodness: f32) -> Color {
     if goodness < 0.0 {
         return BAD;
@@ -39,11 +39,11 @@ pub(crate) fn of_goodness(goodness: f32) -> Color {
     [0, 1, 2].map(|i: usize| mix(from[i], to[i]))
 }
 
-/// A ratio this far above its ideal is shown as the worst.
+/// Distance of a ratio above its ideal at the bad end of the scale.
 const WORST_ABOVE: f64 = 9.0;
 
-/// Rates a value from 0 (bad) to 1 (ideal). The scale depends on the measure alone, so that pictures can be compared.
-/// It goes from one end of the measure's range to the other, or, if that has no end, logarithmically to 9 above the
+/// Rates a value from 0 (bad) to 1 (ideal). The scale depends only on the measure, so that pictures are comparable. A
+/// bounded measure has a linear scale over its range; an unbounded one has a logarithmic scale up to 9 above the
 /// ideal.
 pub(crate) fn goodness(measure: Measure, value: f64) -> f32 {
     let definition = measure.definition();
@@ -51,12 +51,12 @@ pub(crate) fn goodness(measure: Measure, value: f64) -> f32 {
         Some(bad) => (value - bad) / (definition.ideal - bad),
         None => 1.0 - (1.0 + (value - definition.ideal).abs()).ln() / (1.0 + WORST_ABOVE).ln(),
     };
-    // Clamped, as NaN would be drawn black. No measure gives it.
+    // Clamping also maps NaN, which no measure returns, to a defined color.
     share.clamp(0.0, 1.0) as f32
 }
 
-/// Returns the bad end of a measure's scale, if it has one. A scaled Jacobian below 0 belongs to an inverted triangle,
-/// so that scale ends at 0.
+/// Returns the bad end of a measure's scale; `None` for unbounded measures. The scale of the scaled Jacobian ends at
+/// 0, because lower values belong to inverted triangles.
 pub(crate) fn bad_end(measure: Measure) -> Option<f64> {
     let definition = measure.definition();
     let bad = match definition.better {
@@ -66,7 +66,7 @@ pub(crate) fn bad_end(measure: Measure) -> Option<f64> {
     bad.is_finite().then_some(bad)
 }
 
-/// Returns the values to be marked beside a scale, from bad to good, with their names.
+/// Returns the labeled values beside a scale, from bad to good.
 pub(crate) fn ticks(measure: Measure) -> Vec<(f64, String)> {
     let definition = measure.definition();
     let Some(bad) = bad_end(measure) else {
@@ -85,7 +85,7 @@ pub(crate) fn ticks(measure: Measure) -> Vec<(f64, String)> {
         .collect()
 }
 
-/// Writes a number in the digits of single precision, so that rounding in double precision does not show.
+/// Formats a number with the digits of single precision, which hides rounding errors of double precision.
 pub(crate) fn short(number: f64) -> String {
     (number as f32).to_string()
 }
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(ticks(Measure::MinAngle)[1].1, "10°");
     }
 
-    /// Each step of the scale is lighter in gray than the one before it.
+    /// Each step up the scale must be lighter in gray.
     #[test]
     fn better_is_lighter() {
         let gray = |goodness: f32| {

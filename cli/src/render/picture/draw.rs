@@ -1,4 +1,4 @@
-//! `--picture`: a mesh colored by its quality, before and after a run.
+//! The picture of `--picture`: a mesh colored by quality, before and after a run.
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -19,25 +19,26 @@ use mesh_io::atomic;
 
 use crate::terminal::numbers::five;
 
-/// How many of the worst triangles are searched for some that lie apart from each other.
+/// Number of the worst triangles from which the marked triangles, with disjoint marks, are selected.
 const CANDIDATES: usize = 1000;
 
-/// The mesh of a picture.
+/// The mesh drawn in a picture.
 #[derive(Clone, Copy)]
 pub(crate) struct PictureSubject<'a> {
     pub(crate) file: &'a LoadedMesh,
     pub(crate) topology: &'a Topology<'a>,
-    /// What the coordinates are.
+    /// The surface on which coordinates lie.
     pub(crate) surface: Surface,
 }
 
-/// The vertices of a mesh at some time.
+/// The vertex positions of a mesh before or after a run.
 pub(crate) struct Shot<'a> {
     pub(crate) title: String,
     pub(crate) points: &'a [[f64; 2]],
 }
 
-/// Draws the picture that was asked for: one panel for each shot, all on one color scale.
+/// Draws and writes the requested picture, with one panel for each shot and a common color scale. Does nothing
+/// without a request.
 pub(crate) fn write(
     request: Option<&PictureRequest>,
     mesh: PictureSubject<'_>,
@@ -79,8 +80,8 @@ pub(crate) fn write(
     atomic::write(&request.path, &bytes).map_err(|error| failed(error.into()))
 }
 
-/// Draws the triangles alone as a PNG without background, colored by a measure. The longer side of the picture is
-/// `longest` pixels, and it ends where the extent does.
+/// Draws only triangles, colored by a measure, as a PNG with transparent background. The picture covers the
+/// extent, and its longer side has `longest` pixels.
 pub(crate) fn picture_of(
     topology: &Topology<'_>,
     state: &Measured<'_>,
@@ -100,7 +101,7 @@ pub(crate) fn picture_of(
     png::encode(&raster)
 }
 
-/// Rates each triangle from 0 to 1, or below 0 if it is inverted or flat.
+/// Rates each triangle from 0 (bad) to 1 (ideal); inverted and flat triangles get -1.
 fn goodness_of(
     topology: &Topology<'_>,
     state: &Measured<'_>,

@@ -1,8 +1,8 @@
-//! Where the parts of a picture are.
+//! Positions of the parts of a picture.
 
 use crate::render::picture::canvas::Point;
 
-/// The rectangle of the plane that a mesh takes.
+/// Bounding box of a mesh in the plane.
 #[derive(Clone, Copy)]
 pub(crate) struct Extent {
     pub(crate) low: [f64; 2],
@@ -10,8 +10,8 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// Returns the rectangle around the vertices of some triangles, at all of several positions. Vertices that are not
-    /// finite are left out.
+    /// Returns the bounding box of the vertices of `triangles` at all given sets of positions. Points that are not
+    /// finite are ignored.
     pub(crate) fn of(triangles: &[[u32; 3]], all: &[&[[f64; 2]]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for points in all {
@@ -25,7 +25,7 @@ impl Extent {
         Self { low, high }
     }
 
-    /// Returns width and height. Neither is less than a thousandth of the other.
+    /// Returns width and height. A smaller side than a thousandth of the larger side is enlarged to a thousandth.
     pub(crate) fn size(&self) -> [f64; 2] {
         let size = [0, 1].map(|axis| self.high[axis] - self.low[axis]);
         let least = 1e-3 * size[0].max(size[1]).max(f64::MIN_POSITIVE);
@@ -33,20 +33,20 @@ impl Extent {
     }
 }
 
-/// Maps points of the plane into a rectangle of the picture, upright and with equal axes.
+/// Map from the plane to a rectangle of the picture, with y upward and equal axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame {
-    /// Upper left and lower right corner of the mapped rectangle, in pixels.
+    /// Upper left and lower right corners of the rectangle, in pixels.
     pub(crate) corners: [Point; 2],
     middle: [f64; 2],
-    /// Where `middle` lies in the picture, in pixels.
+    /// Pixel coordinates of `middle`.
     center: [f64; 2],
-    /// Pixels per unit of the plane.
+    /// Pixels per unit of the plane, equal for both axes.
     pub(crate) scale: f64,
 }
 
 impl Frame {
-    /// Makes a frame in which the extent is as large as fits into the given corners.
+    /// Makes a frame that centers the extent in a rectangle, as large as possible.
     pub(crate) fn new(extent: Extent, [[left, top], [right, bottom]]: [[f64; 2]; 2]) -> Self {
         let [width, height] = extent.size();
         let scale = ((right - left) / width).min((bottom - top) / height);
@@ -57,7 +57,7 @@ impl Frame {
         Self { corners: [corner(-1.0), corner(1.0)], middle, center, scale }
     }
 
-    /// Makes a frame for a rectangle of the picture, with a point of the plane in its middle.
+    /// Makes a frame for a rectangle of the picture, centered at a point of the plane.
     pub(crate) fn around(middle: [f64; 2], scale: f64, corners: [Point; 2]) -> Self {
         let center = [0, 1].map(|axis| f64::from(corners[0][axis] + corners[1][axis]) / 2.0);
         Self { corners, middle, center, scale }
@@ -71,36 +71,37 @@ impl Frame {
     }
 }
 
-/// Where a mesh, its title and its insets lie.
+/// Positions of a mesh, its title and its insets.
 pub(crate) struct Place {
     pub(crate) frame: Frame,
-    /// Where the first line of the title starts, on its base line.
+    /// Start of the title's first line, on the base line.
     pub(crate) title: Point,
     /// Rectangles for enlarged parts of the mesh; empty without insets.
     pub(crate) insets: Vec<[Point; 2]>,
 }
 
-/// Where the parts of a picture are, all in pixels.
+/// Positions of a picture's parts, in pixels.
 pub(crate) struct Layout {
     pub(crate) size: [u32; 2],
-    /// The height of text.
+    /// Height of text in pixels.
     pub(crate) text: f32,
     pub(crate) panels: Vec<Place>,
-    /// The upper left corner of the legend, and its width.
+    /// Upper left corner and width of the legend.
     pub(crate) legend: (Point, f32),
 }
 
-/// The most height of a mesh, as a multiple of the width of the picture.
+/// Largest height of a mesh in a panel, relative to the width of the picture.
 const HIGHEST: f64 = 1.2;
 
-/// Meshes whose height is less than this times their width stand one above the other, others side by side.
+/// Aspect ratio (height by width) below which panels are stacked vertically instead of placed in a row.
 const WIDE: f64 = 0.4;
 
-/// The height of an inset, as a multiple of its width.
+/// Height of an inset, relative to its width.
 const INSET: f64 = 0.65;
 
 impl Layout {
-    /// Lays out `count` panels of one extent, each with a row of `insets` insets, in a picture of this width.
+    /// Lays out `count` panels with a common extent, each with a row of `insets` insets. `width` is the width of the
+    /// picture in pixels.
     pub(crate) fn new(extent: Extent, count: usize, insets: usize, width: u32) -> Self {
         let full = f64::from(width);
         let text = (full / 62.0).max(11.0);

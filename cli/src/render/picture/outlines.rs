@@ -1,22 +1,22 @@
-//! The lines of a mesh: edges inside it, its boundary, edges between regions, and vertices that are held.
+//! The lines and marked vertices of a mesh: boundary, edges between regions, held and slid vertices.
 
 use gpu_smooth::Topology;
 
-/// Lines and vertices that are drawn on the triangles, by vertex indices. They are the same before and after a run.
+/// Lines and vertices that are drawn above triangles, by vertex index. All panels of a picture share them.
 pub(crate) struct Outlines {
-    /// Edges that belong to one triangle.
+    /// Boundary edges, which belong to one triangle each.
     pub(crate) boundary: Vec<[u32; 2]>,
     /// Edges between triangles of different regions.
     pub(crate) between_regions: Vec<[u32; 2]>,
-    /// Vertices inside the mesh that did not move and must not.
+    /// Fixed vertices inside the mesh that have not slid, ascending.
     pub(crate) held: Vec<u32>,
-    /// Vertices on lines that slid along their line.
+    /// Vertices that slid along lines, ascending.
     pub(crate) slid: Vec<u32>,
 }
 
 impl Outlines {
-    /// Collects the lines of a mesh from its fixed vertices, the region of each triangle (if there are several), and
-    /// its vertices before and after a run.
+    /// Collects the lines of a mesh from its fixed vertices, the region of each triangle, and its points before and
+    /// after a run. `regions` is `None` for a single region.
     pub(crate) fn of(
         topology: &Topology<'_>,
         fixed: &[u32],
@@ -36,7 +36,7 @@ impl Outlines {
     }
 }
 
-/// Returns the vertices that are not free and have moved all the same, ascending. These slid.
+/// Returns the vertices that moved although they are not free, ascending: vertices that slid along lines.
 pub(crate) fn slid(topology: &Topology<'_>, before: &[[f64; 2]], after: &[[f64; 2]]) -> Vec<u32> {
     let states = before.iter().zip(after).zip(topology.free());
     let slid = states.map(|((was, is), is_free)| !is_free && was != is);
@@ -60,9 +60,9 @@ fn between(topology: &Topology<'_>, regions: &[u32]) -> Vec<[u32; 2]> {
         .collect()
 }
 
-/// Returns each edge inside a mesh once, with one of its triangles, and some edges of the boundary.
+/// Returns each edge inside a mesh once, together with one of its triangles. Some boundary edges are included.
 pub(crate) fn inner_edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = (usize, [u32; 2])> + '_ {
     let edges = |(t, &[a, b, c]): (usize, &[u32; 3])| [(t, [a, b]), (t, [b, c]), (t, [c, a])];
-    // With consistent windings, the two triangles of an edge run along it in opposite directions.
+    // With consistent windings, an inner edge runs in opposite directions in its two triangles, so one has a < b.
     triangles.iter().enumerate().flat_map(edges).filter(|(_, [a, b])| a < b)
 }

@@ -38,12 +38,12 @@ fn paint(color: Color, opacity: f32) -> Paint<'static> {
     paint
 }
 
-/// The error if no memory can be had for a picture of this size.
+/// Returns the error for a picture too large for memory.
 pub(super) fn too_large() -> CliError {
     CliError::run("the picture is too large: give a smaller --picture-size")
 }
 
-/// Encodes the triangles of a raster as a PNG without background.
+/// Encodes the triangles of a raster as a PNG with transparent background.
 pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, CliError> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(|_| too_large());
     let (width, height) = (size(raster.width)?, size(raster.height)?);
@@ -79,7 +79,7 @@ impl Canvas for Png {
     }
 
     fn lines(&mut self, segments: &[[Point; 2]], width: f32, color: Color, opacity: f32) {
-        // The lines are drawn in pieces, as the time for one path grows faster than its length.
+        // Segments are drawn in pieces, because the time for a path grows faster than its length.
         for piece in segments.chunks(4096) {
             let mut path = PathBuilder::new();
             for [from, to] in piece {

@@ -1,20 +1,20 @@
-//! Draws any number of triangles as pixels.
+//! Rasterization of triangles, for meshes of any size.
 
 use crate::render::picture::canvas::Point;
 use crate::render::picture::color::of_goodness;
 
-/// The goodness of each pixel of a rectangle. A pixel with several triangles shows the worst of them.
+/// The goodness of each pixel in a rectangle. A pixel covered by several triangles keeps the lowest value.
 pub(crate) struct Raster {
     pub(crate) left: i32,
     pub(crate) top: i32,
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// The goodness row by row; infinite where there is no triangle.
+    /// Goodness row by row; infinite at pixels without a triangle.
     goodness: Vec<f32>,
 }
 
 impl Raster {
-    /// Makes a raster of all pixels that a rectangle touches.
+    /// Makes a raster of all pixels that the rectangle touches.
     pub(crate) fn new([[left, top], [right, bottom]]: [Point; 2]) -> Self {
         let (left, top) = (left.floor() as i32, top.floor() as i32);
         let size = |from: i32, to: f32| (to.ceil() as i32 - from).max(1) as usize;
@@ -22,12 +22,13 @@ impl Raster {
         Self { left, top, width, height, goodness: vec![f32::INFINITY; width * height] }
     }
 
-    /// Fills the pixels whose centers are in a triangle. If there is none, fills the pixel at the triangle's centroid.
+    /// Fills the pixels whose centers lie in a triangle. If the triangle contains no center, the pixel at its centroid
+    /// is filled.
     pub(crate) fn fill(&mut self, corners: [Point; 3], goodness: f32) {
         let [p, q, r] = corners.map(|[x, y]| [x - self.left as f32, y - self.top as f32]);
         let least = |axis: usize| p[axis].min(q[axis]).min(r[axis]);
         let most = |axis: usize| p[axis].max(q[axis]).max(r[axis]);
-        // Rows whose centers lie between the lowest and the highest corner.
+        // Rows whose center lines lie between the lowest and the highest corner.
         let first = (least(1) - 0.5).ceil().max(0.0) as usize;
         let end = ((most(1) - 0.5).floor() + 1.0).clamp(0.0, self.height as f32) as usize;
         let mut met = false;
@@ -62,7 +63,7 @@ impl Raster {
         }
     }
 
-    /// Returns the pixels row by row, as red, green, blue and opacity.
+    /// Returns the pixels row by row, each as red, green, blue and opacity.
     pub(crate) fn pixels(&self) -> impl Iterator<Item = [u8; 4]> + '_ {
         self.goodness.iter().map(|&goodness| match goodness.is_finite() {
             true => {

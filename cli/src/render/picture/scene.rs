@@ -1,4 +1,4 @@
-//! Draws meshes with their legend on a canvas.
+//! Drawing of meshes and their legend on a canvas.
 
 use std::collections::HashSet;
 
@@ -11,36 +11,36 @@ use crate::render::picture::layout::{Extent, Frame, Layout, Place};
 use crate::render::picture::outlines::{Outlines, inner_edges};
 use crate::terminal::numbers::five;
 
-/// A mesh at one set of positions, with the numbers that its colors show.
+/// A mesh at one set of positions, with the goodness shown by colors.
 pub(crate) struct Panel<'a> {
-    /// The two lines above the mesh.
+    /// Two lines of text above the mesh.
     pub(crate) title: [String; 2],
     pub(crate) points: &'a [[f64; 2]],
-    /// For each triangle: from 0 to 1, or below 0 if it is inverted or flat.
+    /// Goodness of each triangle from 0 to 1, negative if inverted or flat.
     pub(crate) goodness: Vec<f32>,
-    /// Bad triangles with their values, the worst first.
+    /// The worst triangles with their values, worst first.
     pub(crate) worst: Vec<(usize, f64)>,
 }
 
-/// Panels of one mesh.
+/// The content of a picture: panels of one mesh, with outlines and legend.
 pub(crate) struct Scene<'a> {
     pub(crate) measure: Measure,
     pub(crate) triangles: &'a [[u32; 3]],
-    /// Whether the panels after the first show how far vertices have moved since the first.
+    /// Whether panels show, by arrows, how far vertices have moved since the first panel.
     pub(crate) with_arrows: bool,
     pub(crate) outlines: Outlines,
     pub(crate) panels: Vec<Panel<'a>>,
 }
 
-/// Triangles whose height is less than this, in pixels, have no edges. Edges are darker at twice and at four times this
-/// height.
+/// Smallest altitude, in pixels, of triangles whose edges are drawn. Edges are darker from twice and from four times
+/// this altitude.
 const LEAST_HEIGHT: f32 = 3.0;
 
-/// How many of the worst triangles are marked, and enlarged.
+/// Number of worst triangles that are marked and enlarged.
 const MARKED: usize = 3;
 
 impl Scene<'_> {
-    /// Lays out the panels, with insets if a marked triangle is too small to be seen without.
+    /// Lays out the panels, with insets if a marked triangle is too small to be visible without.
     pub(crate) fn layout(&self, width: u32) -> Layout {
         let all: Vec<&[[f64; 2]]> = self.panels.iter().map(|panel| panel.points).collect();
         let extent = Extent::of(self.triangles, &all);
@@ -64,7 +64,7 @@ impl Scene<'_> {
             for (number, &(t, _)) in (1..).zip(&spots) {
                 let at = place.frame.place(self.middle(panel, t));
                 worst(at, text, canvas);
-                // The number stands on the left of a mark near the right end of the picture.
+                // Near the right end of the picture, the number is placed left of the mark.
                 let is_last = at[0] + 2.0 * text > layout.size[0] as f32;
                 let (aside, anchor) = match is_last {
                     true => (-0.85 * text, Anchor::End),
@@ -75,7 +75,7 @@ impl Scene<'_> {
             }
             for (i, (&corners, &(t, value))) in place.insets.iter().zip(&spots).enumerate() {
                 let [[left, top], [right, _]] = corners;
-                // Some seven triangles fit across an inset, and it is larger than the picture of the whole.
+                // An inset shows some seven triangles across, and is larger in scale than the whole mesh.
                 let scale = f64::from(right - left) / (7.0 * self.longest_edge(panel, t));
                 let scale = if scale.is_finite() { scale } else { place.frame.scale };
                 let scale = scale.max(2.5 * place.frame.scale);
@@ -100,7 +100,7 @@ impl Scene<'_> {
         self.draw_legend(layout, canvas);
     }
 
-    /// Returns the worst triangles whose marks do not touch.
+    /// Returns the worst triangles whose marks do not overlap.
     fn spots(&self, panel: &Panel<'_>, frame: &Frame, text: f32) -> Vec<(usize, f64)> {
         let mut spots: Vec<(usize, f64, Point)> = Vec::new();
         for &(t, value) in &panel.worst {
@@ -152,7 +152,7 @@ impl Scene<'_> {
         };
         between_regions(&placed(&self.outlines.between_regions), text, canvas);
         canvas.lines(&placed(&self.outlines.boundary), boundary_width(text), BLACK, 1.0);
-        // One mark in each small square, so that dense marks do not hide what lies under them.
+        // At most one mark per small square, so that dense marks do not hide the mesh below.
         let mut taken = HashSet::new();
         if self.with_arrows {
             let before = self.panels[0].points.iter().map(|&point| frame.place(point));
@@ -180,7 +180,7 @@ impl Scene<'_> {
         for step in 0..steps {
             let [from, to] = [step, step + 1].map(|i| left + bar * i as f32 / steps as f32);
             let color = color::of_goodness((step as f32 + 0.5) / steps as f32);
-            // Each step is a little longer, so that no seam is left.
+            // Steps overlap by a pixel to leave no seams.
             let to = if step + 1 < steps { to + 1.0 } else { to };
             canvas.rectangle([[from, upper], [to, upper + high]], color);
         }
@@ -199,7 +199,7 @@ impl Scene<'_> {
         self.draw_signs(layout, [left + bar + 2.0 * text, upper], canvas);
     }
 
-    /// Explains the lines and marks that occur, in two columns beside the scale.
+    /// Draws the legend of lines and marks that occur, in two columns beside the scale.
     fn draw_signs(&self, layout: &Layout, [left, top]: Point, canvas: &mut dyn Canvas) {
         let (text, small) = (layout.text, 0.8 * layout.text);
         type Sign = fn(Point, f32, &mut dyn Canvas);
@@ -262,7 +262,7 @@ fn around([[left, top], [right, bottom]]: [Point; 2], text: f32, canvas: &mut dy
     canvas.lines(&sides, text / 16.0, BLACK, 1.0);
 }
 
-/// Whether these points, or the lines between them, may be visible in a rectangle.
+/// Returns whether points, or segments between them, may be visible in a rectangle, with a margin of `text` pixels.
 fn is_shown(points: &[Point], corners: [Point; 2], text: f32) -> bool {
     let beyond = |axis: usize| {
         points.iter().all(|point| point[axis] < corners[0][axis] - text)
@@ -271,7 +271,7 @@ fn is_shown(points: &[Point], corners: [Point; 2], text: f32) -> bool {
     !beyond(0) && !beyond(1)
 }
 
-/// Draws the arrow of a vertex that has moved, for the legend.
+/// Draws an example of a displacement arrow for the legend.
 fn moved([x, y]: Point, text: f32, canvas: &mut dyn Canvas) {
     arrows::draw(std::iter::once([[x - 0.7 * text, y], [x + 0.7 * text, y]]), text, canvas);
 }
@@ -294,7 +294,7 @@ fn worst(at: Point, text: f32, canvas: &mut dyn Canvas) {
     canvas.ring(at, 0.6 * text, text / 10.0, BLACK);
 }
 
-/// Returns the least height of a triangle.
+/// Returns the smallest altitude of a triangle.
 fn least_height([p, q, r]: [Point; 3]) -> f32 {
     let to = |p: Point, q: Point| [q[0] - p[0], q[1] - p[1]];
     let (a, b, c) = (to(p, q), to(p, r), to(q, r));

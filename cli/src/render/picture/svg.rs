@@ -1,5 +1,4 @@
-//! Pictures as SVG. Triangles and lines are shapes, except that the triangles of large meshes are an embedded picture
-//! of pixels.
+//! Pictures in SVG, drawn as shapes. Triangles of large meshes are embedded as a raster image.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,10 +13,10 @@ use crate::render::picture::font::Font;
 use crate::render::picture::png;
 use crate::render::picture::raster::Raster;
 
-/// The most triangles of a panel that are drawn as shapes, which take some megabytes.
+/// Largest number of triangles drawn as shapes, which take some megabytes of text.
 const MOST_TRIANGLES: usize = 50_000;
 
-/// The number of steps that colors of triangles are rounded to.
+/// Number of steps to which the colors of triangles are rounded.
 const COLORS: f32 = 128.0;
 
 pub(crate) struct Svg {
@@ -46,7 +45,7 @@ fn hex([r, g, b]: Color) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Formats a coordinate with a digit or two after the point, as no eye can see more.
+/// Formats a coordinate with at most two decimals: finer positions are invisible.
 fn short(x: f32) -> String {
     let text = format!("{x:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -95,7 +94,7 @@ impl Canvas for Svg {
         }
         for (color, path) in paths {
             let color = hex(of_goodness(color as f32 / COLORS));
-            // The stroke closes the seam that shows between two antialiased edges.
+            // The stroke covers the seam between antialiased edges of adjacent triangles.
             self.add(format_args!(
                 "<path fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.5\" d=\"{path}\"/>"
             ));

@@ -1,4 +1,4 @@
-//! Chooses how progress is shown.
+//! Choice between a progress bar, lines of text, and silence.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -8,17 +8,17 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use crate::terminal::Verbosity;
 use crate::terminal::tell;
 
-/// Runs shorter than this show no progress.
+/// Time before progress is shown. Shorter runs show none.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(700);
 
-/// How progress is shown.
+/// Display of progress on standard error.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Form {
-    /// Not at all.
+    /// No display.
     None,
-    /// As a bar on the last line of a terminal.
+    /// A progress bar on the terminal's last line.
     Bar,
-    /// As a line on standard error now and then.
+    /// A line of text after each interval.
     Lines(Duration),
 }
 

@@ -1,23 +1,23 @@
-//! Estimates the time that is left.
+//! Estimates of the remaining time.
 
 use crate::terminal::progress::stage::Stage;
 
-/// Bytes of text that two cores read in a second, and write (`docs/performance.md`).
+/// Bytes of text per second that two cores read, and write (`docs/performance.md`).
 const READ: f64 = 400e6;
 const WRITE: f64 = 450e6;
-/// Vertices that two cores prepare in a second.
+/// Vertices per second that two cores prepare.
 const PREPARE: f64 = 4e6;
 
-/// Estimates how long stages take, assuming that the machine is as fast as it was in earlier stages.
+/// Estimator of the duration of stages. The relative speed of the machine is learned from earlier stages.
 #[derive(Default)]
 pub(crate) struct Pace {
-    /// Seconds that earlier stages were expected to take, and that they took.
+    /// Expected and actual seconds of the earlier stages.
     expected: f64,
     took: f64,
 }
 
 impl Pace {
-    /// Records how many seconds a stage took.
+    /// Records the duration of a stage.
     pub(crate) fn learn(&mut self, stage: Stage, seconds: f64) {
         if let Some(expected) = usual(stage) {
             self.expected += expected;
@@ -25,16 +25,16 @@ impl Pace {
         }
     }
 
-    /// Estimates how many seconds a stage takes as a whole. `None` for untangling and sweeps, and if the size of the
-    /// file or mesh is not known.
+    /// Estimates the duration of a whole stage in seconds. `None` for untangling and sweeps, and for files or meshes
+    /// of unknown size.
     pub(crate) fn whole(&self, stage: Stage) -> Option<f64> {
-        // A fraction of a second tells little of the machine.
+        // Durations below 0.2 s say little about the speed of the machine.
         let slower = if self.took > 0.2 { self.took / self.expected } else { 1.0 };
         usual(stage).map(|seconds| seconds * slower)
     }
 }
 
-/// Returns the seconds that a stage takes on the machine that was measured.
+/// Returns the duration of a stage, in seconds, on the machine of the measurements. `None` as for [`Pace::whole`].
 fn usual(stage: Stage) -> Option<f64> {
     let seconds = match stage {
         Stage::Reading { bytes } => bytes as f64 / READ,
@@ -45,12 +45,12 @@ fn usual(stage: Stage) -> Option<f64> {
     (seconds > 0.0).then_some(seconds)
 }
 
-/// Estimates when a run by sweeps ends.
+/// Estimator of the number of remaining sweeps.
 pub(crate) struct Decay {
-    /// The share of f that may be left to gain; `None` if the run has another goal.
+    /// The fraction of f that may remain to be gained; `None` if the run has another goal.
     tolerance: Option<f64>,
     max_sweeps: u32,
-    /// The last three pairs of a sweep and f after it.
+    /// The last three recorded sweeps, each with f after the sweep.
     known: Vec<(u32, f64)>,
 }
 
@@ -59,7 +59,7 @@ impl Decay {
         Self { tolerance, max_sweeps, known: Vec::new() }
     }
 
-    /// Records f after this sweep.
+    /// Records f after a sweep. If the sweep's number does not exceed the last recorded number, a new series starts.
     pub(crate) fn learn(&mut self, sweep: u32, f: f64) {
         if self.known.last().is_some_and(|last| last.0 >= sweep) {
             self.known.clear();
@@ -70,8 +70,9 @@ impl Decay {
         self.known.push((sweep, f));
     }
 
-    /// Estimates how many sweeps are left: until the gains, if they decay geometrically, are within the tolerance, or
-    /// until the most that are allowed.
+    /// Estimates the number of remaining sweeps: until geometrically decaying gains are within the tolerance, at most
+    /// until `max_sweeps`. `None` without a tolerance or before three records, and if f does not decay, unless the
+    /// tolerance is 0.
     pub(crate) fn sweeps_left(&self) -> Option<f64> {
         let &(last, f) = self.known.last()?;
         let most = f64::from(self.max_sweeps.saturating_sub(last));
@@ -82,15 +83,15 @@ impl Decay {
         let Some(decay) = decay(before / now, b - a, c - b).filter(|_| now > 0.0) else {
             return Some(most).filter(|_| tolerance == 0.0);
         };
-        // The gain that is left, doubled as in the stop rule.
+        // The remaining gain, doubled as in the stop rule.
         let remaining = 2.0 * now / (decay * (c - b)).exp_m1();
         let sweeps = (remaining / (tolerance * f).max(f64::MIN_POSITIVE)).ln() / decay;
         Some(sweeps.clamp(0.0, most))
     }
 }
 
-/// Returns the rate λ at which the distance from the limit falls as exp(−λ) per sweep, if the gain of `before` sweeps
-/// is `ratio` times that of the `after` sweeps that followed. `None` if it does not fall.
+/// Returns the rate λ at which the distance from the limit falls as exp(−λ) per sweep. `ratio` is the gain of
+/// `before` sweeps divided by that of the next `after` sweeps. `None` if the distance does not fall.
 fn decay(ratio: f64, before: f64, after: f64) -> Option<f64> {
     let of = |decay: f64| (decay * before).exp_m1() / -(-decay * after).exp_m1();
     let (mut low, mut high) = (1e-9, 40.0);
@@ -104,7 +105,7 @@ fn decay(ratio: f64, before: f64, after: f64) -> Option<f64> {
     Some(high)
 }
 
-/// Formats a time as seconds, minutes and seconds, or hours and minutes.
+/// Formats a duration as seconds, minutes and seconds, or hours and minutes.
 pub(crate) fn told(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {

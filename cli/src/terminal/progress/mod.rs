@@ -1,4 +1,4 @@
-//! Shows how far a run is: by a bar on a terminal, else by a line now and then.
+//! Progress of runs on standard error: a bar on a terminal, otherwise a line of text at intervals.
 
 mod form;
 mod left;

@@ -1,4 +1,4 @@
-//! Shows how far a run on one mesh is.
+//! Progress of a run on one mesh.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -13,10 +13,10 @@ use crate::terminal::progress::left::{Decay, Pace, told};
 use crate::terminal::progress::stage::Stage;
 use crate::terminal::tell;
 
-/// How often a bar is drawn again.
+/// Interval between two drawings of a bar.
 const FRAME: Duration = Duration::from_millis(200);
 
-/// Shows the stages of a run on standard error, if the run takes long enough.
+/// Display of a run's stages on standard error, for runs longer than [`PATIENCE`].
 pub(crate) struct Display {
     shared: Arc<Shared>,
 }
@@ -40,24 +40,24 @@ struct State {
     next_line: Instant,
 }
 
-/// How far the sweeps are.
+/// The latest sweep of a run, with its times.
 struct Swept {
     progress: Progress,
-    /// When the phase of these sweeps began, and when its progress was last told.
+    /// Start of the current phase of sweeps.
     began: Instant,
     told: Instant,
 }
 
 impl Swept {
-    /// Returns the mean seconds of a sweep in this phase.
+    /// Returns the mean duration of a sweep in this phase, in seconds.
     fn seconds(&self) -> f64 {
         (self.told - self.began).as_secs_f64() / f64::from(self.progress.sweep.max(1))
     }
 }
 
 impl Display {
-    /// Makes a display for a run that ends within `tolerance` of the limit of f (`None` if it has another goal) or
-    /// after `max_sweeps`.
+    /// Makes a display for a run that ends within `tolerance` of the limit of f, or after `max_sweeps`.
+    /// `tolerance` is `None` if the run has another goal.
     pub(crate) fn new(show: Verbosity, tolerance: Option<f64>, max_sweeps: u32) -> Self {
         let (form, now) = (Form::new(show), Instant::now());
         let wait = match form {
@@ -79,8 +79,7 @@ impl Display {
         };
         let shared = Arc::new(Shared { state: Mutex::new(state), ended: Condvar::new() });
         if form != Form::None {
-            // The stages of reading, preparing and writing do not tell how far they are, so a clock redraws the
-            // display.
+            // A clock redraws the display, because reading, preparing and writing do not report their progress.
             let of_clock = Arc::clone(&shared);
             let clock = std::thread::Builder::new().name("progress".into());
             let _ = clock.spawn(move || of_clock.tick());
@@ -88,7 +87,7 @@ impl Display {
         Self { shared }
     }
 
-    /// Begins another stage.
+    /// Ends the current stage, whose duration is recorded, and begins `stage`.
     pub(crate) fn stage(&self, stage: Stage) {
         let mut state = self.shared.lock();
         let seconds = state.stage_began.elapsed().as_secs_f64();
@@ -101,7 +100,7 @@ impl Display {
         }
     }
 
-    /// Shows that sweeps were done.
+    /// Records the progress of sweeps and updates the display.
     pub(crate) fn sweep(&self, progress: &Progress) {
         let mut state = self.shared.lock();
         let told = Instant::now();
@@ -117,13 +116,13 @@ impl Display {
         state.show();
     }
 
-    /// Calls `print` while the bar is hidden.
+    /// Hides the bar during a call of `print`.
     pub(crate) fn aside(&self, print: impl FnOnce()) {
         let state = self.shared.lock();
         state.bar.suspend(print);
     }
 
-    /// Removes the bar, and shows no more.
+    /// Removes the bar and ends the display.
     pub(crate) fn clear(&self) {
         let mut state = self.shared.lock();
         state.has_ended = true;
@@ -170,7 +169,7 @@ impl State {
             Form::Bar => {
                 let (text, left) = (self.text(), self.left());
                 let seconds = self.stage_began.elapsed().as_secs_f64();
-                // A narrow terminal has no room for a bar beside the text.
+                // A narrow terminal has no space for a bar beside the text.
                 let template = match left {
                     Some(_) => "{bar:16} {wide_msg}",
                     None => "{wide_msg}",
@@ -201,7 +200,7 @@ impl State {
         tell::event(event);
     }
 
-    /// Says what is under way, for how long, and how long it will take.
+    /// Describes the current stage, its elapsed time and its estimated remaining time.
     fn text(&self) -> String {
         let mut text = match (self.stage, &self.sweeps) {
             (Stage::Smoothing, Some(swept)) => {
@@ -227,7 +226,7 @@ impl State {
         text
     }
 
-    /// Estimates how many more seconds the stage takes, if that can be told.
+    /// Estimates the remaining seconds of the stage; `None` for stages without an estimate.
     fn left(&self) -> Option<f64> {
         let seconds = self.stage_began.elapsed().as_secs_f64();
         match (self.stage, &self.sweeps) {
@@ -236,7 +235,7 @@ impl State {
                 Some((self.decay.sweeps_left()? * swept.seconds() - since).max(0.0))
             }
             (Stage::Smoothing, _) => None,
-            // A stage that takes longer than expected has no known end.
+            // A stage that exceeds its estimate has no known end.
             (stage, _) => {
                 self.pace.whole(stage).map(|whole| whole - seconds).filter(|left| *left > 0.0)
             }

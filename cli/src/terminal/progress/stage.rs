@@ -1,22 +1,22 @@
-//! The stages of a run.
+//! The stages of a run, as progress displays name them.
 
-/// A stage of a run, as it is named to the user.
+/// A stage of a run, as progress displays name it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stage {
-    /// A file of so many bytes is read; 0 if that is not known.
+    /// Reading a file of `bytes` bytes; 0 if the size is unknown.
     Reading { bytes: u64 },
-    /// A mesh of so many vertices is made ready.
+    /// Preparing a mesh of `vertices` vertices for sweeps.
     Preparing { vertices: usize },
-    /// Inverted triangles are turned back.
+    /// Untangling: turning inverted triangles back.
     Untangling,
-    /// Sweeps are done.
+    /// Sweeps.
     Smoothing,
-    /// A file of about so many bytes is written.
+    /// Writing a file of approximately `bytes` bytes.
     Writing { bytes: u64 },
 }
 
 impl Stage {
-    /// Returns the name in one word.
+    /// Returns the name of the stage, one word.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Reading { .. } => "reading",
@@ -27,7 +27,7 @@ impl Stage {
         }
     }
 
-    /// Returns the name with the size of the file or mesh.
+    /// Returns the name of the stage with the size of the file or mesh.
     pub(crate) fn text(self) -> String {
         match self {
             Self::Reading { bytes } | Self::Writing { bytes } if bytes >= 1 << 20 => {

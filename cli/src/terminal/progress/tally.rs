@@ -1,4 +1,4 @@
-//! Shows how many of several meshes are done.
+//! Progress of a run on many meshes.
 
 use std::path::Path;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use crate::terminal::progress::form::Form;
 use crate::terminal::progress::left::told;
 use crate::terminal::tell;
 
-/// Shows how many of several meshes are done.
+/// Display of the number of finished meshes, on standard error.
 pub(crate) struct Tally {
     form: Form,
     bar: ProgressBar,
@@ -44,7 +44,8 @@ impl Tally {
         }
     }
 
-    /// Counts another mesh, done or failed for the reason `problem`. `text` describes its end in a line.
+    /// Counts another mesh. `problem` is the reason of a failure, `None` for a success; `text` describes
+    /// the result in one line.
     pub(crate) fn add(&mut self, mesh: &Path, problem: Option<&str>, text: &str) {
         self.done += 1;
         self.failed += usize::from(problem.is_some());
@@ -63,7 +64,7 @@ impl Tally {
         self.waits();
     }
 
-    /// Shows how long the call has taken, and how long it will take.
+    /// Updates the elapsed and the estimated remaining time of the whole command.
     pub(crate) fn waits(&mut self) {
         match self.form {
             Form::Bar => self.bar.set_message(self.text()),
@@ -77,7 +78,7 @@ impl Tally {
         }
     }
 
-    /// Estimates how many seconds are left until all meshes are done, once one is.
+    /// Estimates the seconds until all meshes are finished; `None` before the first mesh is finished.
     fn left(&self) -> Option<f64> {
         let took = self.started.elapsed().as_secs_f64();
         let left = took / self.done as f64 * (self.meshes - self.done) as f64;
