@@ -7,6 +7,7 @@ use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::Mesh;
 use crate::metric::{AnyFormulas, Dual, Smoothing};
+use crate::parallel::map_parts;
 use crate::patch::{
     Circle, Direction, Fan, FanPatch, MetricObjective, Objective, SearchRule, step_alone,
 };
@@ -22,6 +23,8 @@ use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
 const SWEEPS: u32 = 3;
 /// Number of times that a period visits the held vertices, which are at their bound.
 const VISITS: u32 = 3;
+/// Number of vertices at their bound that one task visits.
+const CHUNK: usize = 256;
 /// Largest number of halvings of a period's move, until the move lowers f and keeps triangles sound.
 const HALVED: u32 = 5;
 /// Distance from the start at which a vertex is held, as a share of the bound.
@@ -122,12 +125,23 @@ impl<'s> MoveLimitStage<'s> {
     fn visit_held(&self, host: &mut Host<'_>, step: &Step) {
         let Step { metric, sharpness, shape_guard, .. } = *step;
         let (formulas, smoothing) = (metric.formulas(), Smoothing::of(sharpness));
-        for v in (0..host.held.len()).filter(|&v| host.held[v]) {
-            let patch = &self.fans[v].patch(&host.problem, &host.positions, 0.0);
-            let metric = MetricObjective { patch, formulas, smoothing, shape_guard };
-            let objective = BoundObjective { metric, bound: self.bound(v) };
-            let here = host.positions[v].to_array();
-            host.positions[v] = step_alone(&objective, here, &SearchRule::BOUND).0.into();
+        // Vertices of a color are not neighbors, so no step reads a position that another step of the color changes.
+        for color in self.problem.colors() {
+            let held: Vec<usize> =
+                color.clone().map(|v| v as usize).filter(|&v| host.held[v]).collect();
+            let Host { problem, positions, .. } = &*host;
+            let stepped = |&v: &usize| -> DVec2 {
+                let patch = &self.fans[v].patch(problem, positions, 0.0);
+                let metric = MetricObjective { patch, formulas, smoothing, shape_guard };
+                let objective = BoundObjective { metric, bound: self.bound(v) };
+                step_alone(&objective, positions[v].to_array(), &SearchRule::BOUND).0.into()
+            };
+            let moved = map_parts(held.chunks(CHUNK), |_, chunk| {
+                chunk.iter().map(stepped).collect::<Vec<_>>()
+            });
+            for (v, to) in held.iter().zip(moved.into_iter().flatten()) {
+                host.positions[*v] = to;
+            }
         }
     }
 }
