@@ -81,15 +81,15 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
     let topology = smoother.topology();
     let bad = topology::infeasible(&outcome.points, topology.triangles()).unwrap();
     assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
-    // Without lines to slide along, `astray` lists fixed vertices that have moved.
+    // Without lines to slide along, `misplaced` lists fixed vertices that have moved.
     let slide = slide.unwrap_or_else(|| {
         let held = (0..mesh.points.len() as u32).collect();
         Slide { held, ..Slide::default() }
     });
-    let astray = slide.astray(topology, &mesh.points, &outcome.points, options.stored);
+    let misplaced = slide.misplaced(topology, &mesh.points, &outcome.points, options.stored);
     // Where edges are as short as some roundings of coordinates, rounding alone can move vertices past one another.
     let is_told = options.stored == Precision::Double || !slide.held.is_empty();
-    assert!(astray.is_empty() || !is_told, "vertices {astray:?} have left their lines");
+    assert!(misplaced.is_empty() || !is_told, "vertices {misplaced:?} have left their lines");
     let f = |points: &[[f64; 2]]| smoother.f(options.scheme.base(), points).unwrap();
     let (start, end) = (f(&mesh.points), f(&outcome.points));
     let rises = options.improve_worst.is_some();

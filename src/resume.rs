@@ -6,7 +6,7 @@ use crate::error::SmoothError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
 use crate::options::Options;
-use crate::run::{About, Checkpoint, PeriodState};
+use crate::run::{Checkpoint, PeriodState, RunFingerprint};
 
 /// Returns the description of a run that its checkpoints carry: a hash of the mesh, of the target maps of its vertices
 /// and of `more` data that the run depends on, and the options as lines of text.
@@ -15,14 +15,19 @@ pub(crate) fn about(
     targets: Option<&[[f32; 3]]>,
     more: &[u64],
     options: &Options,
-) -> About {
-    About { mesh: hash(mesh, targets, more), options: options.lines(), goal: None, opened: None }
+) -> RunFingerprint {
+    RunFingerprint {
+        mesh: hash(mesh, targets, more),
+        options: options.lines(),
+        goal: None,
+        opened: None,
+    }
 }
 
 /// Checks that a checkpoint comes from a run with equal options on the same mesh, whose layout is `problem`. Fails with
 /// [`SmoothError::Checkpoint`].
 pub(crate) fn check(
-    own: &About,
+    own: &RunFingerprint,
     checkpoint: &Checkpoint,
     problem: &Problem,
 ) -> Result<(), SmoothError> {

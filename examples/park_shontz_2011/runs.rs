@@ -209,7 +209,7 @@ fn plain(scheme: Scheme) -> Plan {
     Plan {
         scheme,
         omega: [1.0; Metric::ALL.len()],
-        plain_sweeps: 4,
+        unrelaxed_sweeps: 4,
         inner: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
         sharpness: PNormExponent::FIXED,

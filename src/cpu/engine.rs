@@ -14,7 +14,9 @@ use crate::layout::Problem;
 use crate::metric::{Metric, Smoothing, TargetMap};
 use crate::parallel::{collect, for_each_chunk};
 use crate::run::multilevel::Hierarchy;
-use crate::run::{CPU, Engine, EngineState, History, LEFT_OUT, Objectives, Plan, Proposal, Step};
+use crate::run::{
+    CPU, EXCLUSION_PASSES, Engine, EngineState, History, Objectives, Plan, Proposal, Step,
+};
 
 /// Number of vertices that one task handles.
 const CHUNK: usize = 1 << 12;
@@ -25,7 +27,7 @@ pub(crate) struct CpuEngine {
     base: Metric,
     tracked: Vec<Metric>,
     /// The step of the base metric. Corrections use its shape guard, and its exponent and penalty, which
-    /// [`Engine::propose`] updates for each correction.
+    /// [`Engine::sweep_and_propose`] updates for each correction.
     step: Step,
     positions: Vec<DVec2>,
     /// Positions and objective of the best state so far. `None` if every sweep of the plan lowers f, so that the last
@@ -69,7 +71,7 @@ impl CpuEngine {
 
     /// Evaluates the tracked objectives. Copies the positions if the objective of the base metric is the lowest so far.
     fn objectives_now(&mut self) -> Objectives {
-        let mut values = Objectives::untracked();
+        let mut values = Objectives::empty();
         for &metric in &self.tracked {
             let excess = mean_excess(metric, &self.problem, &self.positions);
             values.set(metric, metric.ideal_squared() + excess);
@@ -217,7 +219,7 @@ impl Engine for CpuEngine {
         Ok(sweep::stiffness_roots(self.base, &self.problem, &self.positions, smoothing))
     }
 
-    async fn propose(
+    async fn sweep_and_propose(
         &mut self,
         step: &Step,
         length: f64,
@@ -244,13 +246,13 @@ impl Engine for CpuEngine {
         self.secants = None;
     }
 
-    async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
+    async fn exclude_broken(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
         if anew {
             self.leave_out_broken(length);
             let Self { hierarchy, problem, held, gradient, .. } = self;
             self.direction = correction(hierarchy.as_ref(), problem, held, gradient);
         }
-        for _ in 0..LEFT_OUT {
+        for _ in 0..EXCLUSION_PASSES {
             self.leave_out_broken(length);
         }
         Ok(self.proposal(length))

@@ -20,14 +20,14 @@ const COPY: usize = 1 << 14;
 
 /// The value that a visit writes for a vertex. [`DVec2`] is the new position; [`Vec2`] is the gradient, or the root of
 /// the stiffness in both components.
-trait Found: Send {
+trait VisitOutput: Send {
     /// Whether the visit takes Newton steps. The type decides at compile time, so that loops over derivatives contain
     /// no code of Newton steps.
     const STEPS: bool;
     fn new(found: [f64; 2]) -> Self;
 }
 
-impl Found for DVec2 {
+impl VisitOutput for DVec2 {
     const STEPS: bool = true;
     #[inline(always)]
     fn new(found: [f64; 2]) -> Self {
@@ -35,7 +35,7 @@ impl Found for DVec2 {
     }
 }
 
-impl Found for Vec2 {
+impl VisitOutput for Vec2 {
     const STEPS: bool = false;
     #[inline(always)]
     fn new(found: [f64; 2]) -> Self {
@@ -45,7 +45,7 @@ impl Found for Vec2 {
 
 /// The quantity that a visit without Newton steps computes, from the derivatives of Σ q² over the patch of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Sought {
+enum VertexQuantity {
     Gradient,
     /// The square root of the stiffness, in both components; see [`stiffness_roots`].
     StiffnessRoot,
@@ -65,7 +65,7 @@ pub(crate) fn sweep(
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of equal color are not neighbors, so no visit reads a position that another visit of the color
         // changes.
-        visit(problem, positions, first, step, Sought::Gradient, moved);
+        visit(problem, positions, first, step, VertexQuantity::Gradient, moved);
         let held = held.get(first..first + color.len()).unwrap_or_default();
         for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
             let moved = &moved[at..][..to.len()];
@@ -90,7 +90,7 @@ pub(crate) fn gradient(
     smoothing: Smoothing,
     found: &mut Vec<Vec2>,
 ) {
-    find(Sought::Gradient, metric, problem, positions, smoothing, found);
+    find(VertexQuantity::Gradient, metric, problem, positions, smoothing, found);
 }
 
 /// Returns the square root of the stiffness at each free vertex. The stiffness is the mean absolute eigenvalue of the
@@ -103,12 +103,12 @@ pub(crate) fn stiffness_roots(
     smoothing: Smoothing,
 ) -> Vec<f32> {
     let mut found = Vec::new();
-    find(Sought::StiffnessRoot, metric, problem, positions, smoothing, &mut found);
+    find(VertexQuantity::StiffnessRoot, metric, problem, positions, smoothing, &mut found);
     found.into_iter().map(|root| root.x).collect()
 }
 
 fn find(
-    sought: Sought,
+    sought: VertexQuantity,
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
@@ -152,7 +152,7 @@ pub(crate) fn held_back(
         let first = color.start as usize;
         for (moved, step) in [(&mut guarded, step), (&mut unguarded, &free)] {
             moved.resize(color.len(), DVec2::ZERO);
-            visit(problem, positions, first, step, Sought::Gradient, moved);
+            visit(problem, positions, first, step, VertexQuantity::Gradient, moved);
         }
         let is_held = |&(v, (kept, wanted)): &(u32, (&DVec2, &DVec2))| {
             let edge = positions[problem.ring_of(v)[0] as usize] - positions[v as usize];
@@ -165,12 +165,12 @@ pub(crate) fn held_back(
 }
 
 /// Visits the vertices from `first` on, in parallel, and writes a result for each to `found`.
-fn visit<T: Found>(
+fn visit<T: VisitOutput>(
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
     step: &Step,
-    sought: Sought,
+    sought: VertexQuantity,
     found: &mut [T],
 ) {
     for_each_chunk(found, CHUNK, |at, found| {
@@ -184,14 +184,14 @@ fn visit<T: Found>(
 /// Visits the vertices from `first` on, and writes their new positions, or the quantity `sought`, to `found`.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
+fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
     simd: S,
     formulas: impl Formulas,
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
     step: &Step,
-    sought: Sought,
+    sought: VertexQuantity,
     found: &mut [T],
 ) {
     let mut scratch = Scratch::new();
@@ -216,8 +216,8 @@ fn visit_all<S: Simd, T: Found, const MAPPED: bool>(
                 let objective = MetricObjective { patch: &rings, formulas, smoothing, shape_guard };
                 let sum = objective.expansion(at);
                 match sought {
-                    Sought::Gradient => sum.gradient,
-                    Sought::StiffnessRoot => {
+                    VertexQuantity::Gradient => sum.gradient,
+                    VertexQuantity::StiffnessRoot => {
                         let sum = match rings.inverse_map() {
                             Some(inverse) if MAPPED => inverse.shape().pull_back(sum),
                             _ => sum,

@@ -1,7 +1,7 @@
 //! Interpolation of vertex data of one mesh at arbitrary points.
 
 use super::interpolation::linear;
-use super::locate::{Found, Locator};
+use super::locate::{LocatedPoint, Locator};
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::parallel::map_ranges;
@@ -20,7 +20,7 @@ pub(crate) struct Background {
 
 /// A located point: the triangle of a background that contains the point, or the nearest point of a triangle.
 pub(crate) struct Spot {
-    found: Found,
+    found: LocatedPoint,
     /// Distance of the point from the mesh, 0 inside.
     pub(crate) outside: f64,
 }
@@ -74,7 +74,7 @@ impl Background {
 
     /// Locates a point by walks from nearby vertices. If the boundary blocks every walk, searches all triangles for the
     /// nearest.
-    fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<Found> {
+    fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<LocatedPoint> {
         let starts = self.seeds.around(place).filter_map(|v| self.topology.star(v).first());
         if let Some(triangle) = starts.take(TRIED).find_map(|&t| locator.walk(t, place)) {
             return Some(locator.within(triangle, place));

@@ -1,6 +1,6 @@
 //! Interpolation of vertex data after vertices have moved.
 
-use super::locate::{Found, Locator};
+use super::locate::{LocatedPoint, Locator};
 use crate::error::MeshError;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
@@ -32,7 +32,7 @@ use crate::topology::Topology;
 pub struct Interpolation {
     vertices: usize,
     /// Each moved vertex, ascending, with its location in the old mesh.
-    moved: Vec<(u32, Found)>,
+    moved: Vec<(u32, LocatedPoint)>,
 }
 
 impl Interpolation {

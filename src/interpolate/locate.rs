@@ -20,7 +20,7 @@ pub(super) struct Locator<'a> {
 
 /// A located point, in a triangle with corners a, b, c: a + (b - a) `weights[0]` + (c - a) `weights[1]`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct LocatedPoint {
     pub(super) corners: [u32; 3],
     pub(super) weights: [f64; 2],
 }
@@ -28,7 +28,7 @@ pub(super) struct Found {
 impl Locator<'_> {
     /// Locates a point. The search starts from the triangles of `vertex` and crosses shared edges. For a point outside
     /// of the mesh, returns the nearest point of the visited triangles. `None` if the vertex has no triangle.
-    pub(super) fn find(&self, vertex: u32, place: [f64; 2]) -> Option<Found> {
+    pub(super) fn find(&self, vertex: u32, place: [f64; 2]) -> Option<LocatedPoint> {
         let star = self.topology.star(vertex);
         let first = *star.first()?;
         Some(match self.walk(first, place) {
@@ -65,7 +65,7 @@ impl Locator<'_> {
     }
 
     /// Searches from the triangles of `star` in all directions, triangles near the point first.
-    fn spread(&self, star: &[u32], place: [f64; 2]) -> Found {
+    fn spread(&self, star: &[u32], place: [f64; 2]) -> LocatedPoint {
         let candidate = |&triangle: &u32| {
             let (distance, nearest) = self.nearest(triangle, place);
             Candidate { distance, triangle, nearest }
@@ -96,7 +96,7 @@ impl Locator<'_> {
     }
 
     /// Returns the weights of a point in a triangle. If rounding has put the point outside, it is moved to the edge.
-    pub(super) fn within(&self, triangle: u32, place: [f64; 2]) -> Found {
+    pub(super) fn within(&self, triangle: u32, place: [f64; 2]) -> LocatedPoint {
         let corners = self.corners(triangle);
         let [a, b, c] = corners.map(|vertex| self.points[vertex as usize]);
         let area = |corners: [[f64; 2]; 3]| orientation(&corners, &[0, 1, 2]);
@@ -106,7 +106,7 @@ impl Locator<'_> {
         if sum > 1.0 {
             weights = weights.map(|weight| weight / sum);
         }
-        Found { corners, weights }
+        LocatedPoint { corners, weights }
     }
 
     fn corners(&self, triangle: u32) -> [u32; 3] {

@@ -86,20 +86,20 @@ impl Coloring {
 }
 
 /// Marker for vertices without a place: fixed and boundary vertices.
-const NOWHERE: u32 = u32::MAX;
+const NO_PLACE: u32 = u32::MAX;
 
 /// Places of the free vertices on a curve. A place is a 0-based index in `curve`.
 struct Places<'a> {
     topology: &'a Topology<'a>,
     curve: &'a [u32],
-    /// Place of each free vertex on the curve, [`NOWHERE`] for all other vertices of the mesh.
+    /// Place of each free vertex on the curve, [`NO_PLACE`] for all other vertices of the mesh.
     of: Vec<u32>,
 }
 
 impl<'a> Places<'a> {
     fn new(topology: &'a Topology<'a>, curve: &'a [u32]) -> Self {
         let free = topology.free();
-        let of = atomics(free.len(), NOWHERE);
+        let of = atomics(free.len(), NO_PLACE);
         const CHUNK: usize = 1 << 12;
         for_each_part(curve.chunks(CHUNK), |chunk, vertices| {
             for (&v, place) in vertices.iter().zip(chunk * CHUNK..) {
@@ -118,7 +118,7 @@ impl<'a> Places<'a> {
     /// Returns the places of the free neighbors of the free vertex at `place`, counter-clockwise.
     fn neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
         let ring = self.topology.ring_of(self.curve[place as usize]);
-        ring.map(|v| self.of[v as usize]).filter(|&place| place != NOWHERE)
+        ring.map(|v| self.of[v as usize]).filter(|&place| place != NO_PLACE)
     }
 
     /// Returns the places of the free neighbors, in ascending order of the triangles that follow them around the
@@ -128,7 +128,7 @@ impl<'a> Places<'a> {
         let mut ring: Vec<(u32, u32)> =
             self.topology.star(vertex).iter().copied().zip(self.topology.ring_of(vertex)).collect();
         ring.sort_unstable();
-        ring.into_iter().map(|(_, v)| self.of[v as usize]).filter(|&place| place != NOWHERE)
+        ring.into_iter().map(|(_, v)| self.of[v as usize]).filter(|&place| place != NO_PLACE)
     }
 
     /// Colors the vertices between blocks, then the inner vertices of each block in parallel. Returns the colors,

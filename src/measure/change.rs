@@ -9,10 +9,10 @@ use crate::topology::Topology;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
     /// Displacement of vertices, divided by the mean length of their edges before.
-    pub moved: Spread,
+    pub moved: Distribution,
     /// Factor by which the element size at a vertex grew or shrank, always 1 or more. The element size is the square
     /// root of the geometric mean of the areas of the triangles at the vertex.
-    pub size: Spread,
+    pub size: Distribution,
     /// Least triangle altitude before and after, in the unit of the points. The altitude bounds the time step of
     /// explicit solvers.
     pub least_altitude: [f64; 2],
@@ -20,11 +20,11 @@ pub struct Change {
 
 /// Distribution of a number over vertices. Without vertices, all fields are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spread {
+pub struct Distribution {
     /// Median over the vertices.
     pub median: f64,
     /// 95th percentile over the vertices.
-    pub most_of_twenty: f64,
+    pub p95: f64,
     /// Largest value of a vertex.
     pub most: f64,
 }
@@ -126,10 +126,10 @@ fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
     (around, least)
 }
 
-fn spread(mut numbers: Vec<f64>) -> Spread {
-    let Some(last) = numbers.len().checked_sub(1) else { return Spread::default() };
+fn spread(mut numbers: Vec<f64>) -> Distribution {
+    let Some(last) = numbers.len().checked_sub(1) else { return Distribution::default() };
     let mut at = |rank: usize| *numbers.select_nth_unstable_by(rank, f64::total_cmp).1;
-    Spread { median: at(last / 2), most_of_twenty: at(last * 19 / 20), most: at(last) }
+    Distribution { median: at(last / 2), p95: at(last * 19 / 20), most: at(last) }
 }
 
 #[cfg(test)]
@@ -148,10 +148,7 @@ mod tests {
         after[4] = [0.5, 0.0];
         let change = Change::between(&topology, &mesh.points, &after).unwrap();
         assert!((change.moved.most - 0.5 / 2f64.sqrt()).abs() < 1e-15, "{change:?}");
-        assert_eq!(
-            (change.moved.median, change.moved.most_of_twenty),
-            (change.moved.most, change.moved.most)
-        );
+        assert_eq!((change.moved.median, change.moved.p95), (change.moved.most, change.moved.most));
         // Areas of 1 become 1, 1, 0.5 and 1.5.
         assert!((change.size.most - 0.75f64.powf(-0.125)).abs() < 1e-15, "{change:?}");
         assert_eq!(change.least_altitude, [1.0, 0.5]);

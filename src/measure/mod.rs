@@ -14,7 +14,7 @@ mod vertices;
 
 pub(crate) use altitude::altitude;
 pub(crate) use change::mean_edges;
-pub use change::{Change, Spread};
+pub use change::{Change, Distribution};
 pub use measured::Measured;
 pub use statistics::{QUANTILES, Statistics};
 pub use table::{Better, Definition, Measure, UnknownMeasure};

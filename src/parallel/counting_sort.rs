@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::parallel::tasks::{collect, for_each, for_each_part, map_parts};
 
 /// Upper limit of parts counted in parallel. Memory grows with the parts, as each has a counter per group.
-const MOST_PARTS: usize = 8;
+const MAX_PARTS: usize = 8;
 
 /// Items that justify a part of their own. Fewer items are not worth another thread.
 const SMALL: usize = 1 << 14;
@@ -68,7 +68,7 @@ pub(crate) fn place<const N: usize>(
     keys: impl Fn(usize) -> [u32; N] + Sync,
     put: impl Fn(usize, usize) + Sync,
 ) -> Vec<u32> {
-    let parts = rayon::current_num_threads().min(MOST_PARTS).min(items.div_ceil(SMALL)).max(1);
+    let parts = rayon::current_num_threads().min(MAX_PARTS).min(items.div_ceil(SMALL)).max(1);
     let part = |part: usize| part * items / parts..(part + 1) * items / parts;
     // The counters of a group, one for each part, are adjacent, so that their running sum is the index where each part
     // writes. No two parts share a counter. Counters are atomic only because the counters of one part are scattered in

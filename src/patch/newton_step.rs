@@ -3,7 +3,7 @@
 use crate::metric::{Dual, Real};
 use crate::patch::direction::{Direction, newton_direction};
 use crate::patch::numbers::{Mask, Numbers};
-use crate::patch::search_rule::{FLAT_EXPONENT, FLAT_RATIO, LEAST_FLAT, LEAST_MOVE, SearchRule};
+use crate::patch::search_rule::{FLAT_EXPONENT, FLAT_RATIO, MIN_FLAT_SUM, MIN_MOVE, SearchRule};
 
 /// A function of the position of one vertex, or of one vertex in each lane, that a Newton step lowers.
 pub(crate) trait Objective<T: Numbers> {
@@ -121,13 +121,13 @@ fn lengthened<T: Numbers>(
 ) -> T {
     let Direction { vector: [dx, dy], slope, .. } = *direction;
     let share = slope.negative() / squares;
-    let flat = share.constant(FLAT_RATIO).lt(share) & squares.constant(LEAST_FLAT).lt(squares);
+    let flat = share.constant(FLAT_RATIO).lt(share) & squares.constant(MIN_FLAT_SUM).lt(squares);
     let rest = Real::max(
         share.constant(1.0) - share * FLAT_EXPONENT,
         share.constant(1.0 / max_lengthening),
     );
     // A triangle may be as flat as positions are coarse. A step shorter than `coarse` would be rounded away.
-    let coarse = Real::max(at[0].abs(), at[1].abs()) * LEAST_MOVE;
+    let coarse = Real::max(at[0].abs(), at[1].abs()) * MIN_MOVE;
     let far = Real::max(length / rest, coarse / Real::sqrt(dx * dx + dy * dy));
     T::select(flat, far, length)
 }

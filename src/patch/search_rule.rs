@@ -69,8 +69,8 @@ pub(crate) const FLAT_EXPONENT: f64 = 1.4;
 pub(crate) const FLAT_RATIO: f64 = 0.6;
 /// Sum of q² over a patch above which steps are lengthened: a triangle then has an inverse mean ratio of about a
 /// thousand. Less flat triangles open in a few steps of Newton's own length.
-pub(crate) const LEAST_FLAT: f64 = 1e6;
+pub(crate) const MIN_FLAT_SUM: f64 = 1e6;
 /// Length of the shortest first trial next to a nearly flat triangle, on the CPU alone: 2⁻⁴⁶ of the larger coordinate,
 /// which is 64 to 128 units in its last place. Shorter moves would be rounded away. Devices never sweep triangles of
 /// this flatness.
-pub(crate) const LEAST_MOVE: f64 = 1.0 / (1u64 << 46) as f64;
+pub(crate) const MIN_MOVE: f64 = 1.0 / (1u64 << 46) as f64;

@@ -1,7 +1,7 @@
 //! Checkpoints: the state of a run as bytes, from which the run can continue later.
 
 use crate::run::checksum::crc32;
-use crate::run::opening::Opened;
+use crate::run::opening::DoublePrelude;
 use crate::run::records::{Reader, Writer};
 use crate::run::saved::{CPU, EngineState, PeriodState, Saved};
 
@@ -12,7 +12,7 @@ use crate::run::saved::{CPU, EngineState, PeriodState, Saved};
 /// from a checkpoint, with an equal mesh and equal options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
-    pub(crate) about: About,
+    pub(crate) about: RunFingerprint,
     pub(crate) saved: Saved,
     /// State of the stages. `None` for a run without stages.
     pub(crate) period: Option<PeriodState>,
@@ -20,7 +20,7 @@ pub struct Checkpoint {
 
 /// The run of a checkpoint, as matched on resumption: mesh, options, goal, and opening sweeps on the CPU.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct About {
+pub(crate) struct RunFingerprint {
     /// Hash of the mesh, its targets, and the curves of sliding vertices.
     pub(crate) mesh: u64,
     /// Options of the run, one option on each line.
@@ -28,7 +28,7 @@ pub(crate) struct About {
     /// Desired objective and its origin. `None` for a run without a goal.
     pub(crate) goal: Option<(f64, String)>,
     /// Result of the sweeps on the CPU before the device began. `None` for a run without such sweeps.
-    pub(crate) opened: Option<Opened>,
+    pub(crate) opened: Option<DoublePrelude>,
 }
 
 impl Checkpoint {
@@ -39,7 +39,7 @@ impl Checkpoint {
 
     /// Returns the number of sweeps before the checkpoint, opening sweeps included.
     pub fn sweeps(&self) -> u32 {
-        let opened = self.about.opened.as_ref().map_or(0, Opened::sweeps);
+        let opened = self.about.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         opened + self.saved.sweeps()
     }
 
@@ -64,7 +64,7 @@ impl Checkpoint {
                 out.text(origin);
             });
         }
-        if let Some(Opened { log, least, positions, best }) = &about.opened {
+        if let Some(DoublePrelude { log, least, positions, best }) = &about.opened {
             out.record("opening", |out| {
                 out.log(log);
                 out.real(*least);
@@ -116,13 +116,13 @@ impl Checkpoint {
         }
         let content = content.strip_prefix(Self::MAGIC)?.strip_prefix(Self::VERSION)?;
         let mut records = Reader(content).records()?;
-        let about = About {
+        let about = RunFingerprint {
             mesh: records.read("mesh", Reader::number)?,
             options: records.read("options", Reader::text)?,
             goal: records.read_if_any("goal", |from| Some((from.real()?, from.text()?)))?,
             opened: records.read_if_any("opening", |from| {
                 let (log, least) = (from.log()?, from.real()?);
-                Some(Opened { log, least, positions: from.points()?, best: from.points()? })
+                Some(DoublePrelude { log, least, positions: from.points()?, best: from.points()? })
             })?,
         };
         let (log, remaining) =
@@ -189,8 +189,12 @@ mod tests {
             own: Vec::new(),
         };
         engine.add("words", &[1_u32, 2, 3]);
-        let opened =
-            Opened { log: log.clone(), least: 1.25, positions: points.clone(), best: points };
+        let opened = DoublePrelude {
+            log: log.clone(),
+            least: 1.25,
+            positions: points.clone(),
+            best: points,
+        };
         let stages = vec![("slide".to_owned(), vec![1, 2, 3]), ("move limit".to_owned(), vec![])];
         let period = PeriodState {
             began: 2,
@@ -202,7 +206,7 @@ mod tests {
         };
         Checkpoint {
             period: Some(period),
-            about: About {
+            about: RunFingerprint {
                 mesh: 17,
                 options: "max_sweeps: 3".to_owned(),
                 goal: Some((1.5, "given".to_owned())),

@@ -5,7 +5,7 @@ use std::time::Duration;
 use web_time::Instant;
 
 use crate::error::GpuError;
-use crate::run::checkpoint::{About, Checkpoint};
+use crate::run::checkpoint::{Checkpoint, RunFingerprint};
 use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::saved::{PeriodState, Saved};
@@ -74,7 +74,7 @@ const SHARE: u32 = 50;
 pub(crate) struct Checkpointer<'k> {
     pub(crate) policy: &'k mut dyn CheckpointPolicy,
     /// Data of checkpoints besides the state. `None` for a run without checkpoints.
-    pub(crate) about: Option<About>,
+    pub(crate) about: Option<RunFingerprint>,
     /// Latest saved state, to which the run returns after a failure.
     pub(crate) last: Option<Saved>,
     /// Time of the next save. `None` for no further saves.

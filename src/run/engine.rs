@@ -68,7 +68,7 @@ pub(crate) trait Engine: Send {
     /// Sweeps once, then computes the correction from the coarser levels and evaluates it at `length`. If
     /// `accelerated`, the correction also uses secant pairs, the changes of the gradient since earlier accelerated
     /// corrections; see [`secant`](crate::run::secant). If not, the engine drops its pairs.
-    fn propose(
+    fn sweep_and_propose(
         &mut self,
         step: &Step,
         length: f64,
@@ -79,10 +79,10 @@ pub(crate) trait Engine: Send {
     fn forget(&mut self);
 
     /// Excludes vertices from the last correction, and evaluates the rest of the correction at `length`. Excluded are
-    /// the vertices of triangles that a move by `length` would invert or push over the shape guard. [`LEFT_OUT`] passes
+    /// the vertices of triangles that a move by `length` would invert or push over the shape guard. [`EXCLUSION_PASSES`] passes
     /// exclude vertices, as further triangles may break next to excluded ones. If `anew`, the engine first computes the
     /// correction again without the gradients of the excluded vertices.
-    fn leave_out(
+    fn exclude_broken(
         &mut self,
         length: f64,
         anew: bool,
@@ -110,7 +110,7 @@ pub(crate) trait Engine: Send {
 
 /// Number of passes that exclude vertices from a correction. On meshes of 2,000 vertices, some triangles were still
 /// broken after one pass, and none after two.
-pub(crate) const LEFT_OUT: usize = 2;
+pub(crate) const EXCLUSION_PASSES: usize = 2;
 
 /// A proposed correction: the objective along it, before any vertex moves. Objectives are mean excesses, f - ideal² of
 /// the base metric. EDGE is replaced by the p-norm with the step's smoothing.

@@ -25,13 +25,13 @@ mod sweeps;
 
 mod yielding;
 
-pub(crate) use checkpoint::About;
 pub use checkpoint::Checkpoint;
+pub(crate) use checkpoint::RunFingerprint;
 pub use checkpoint_policy::CheckpointPolicy;
 pub(crate) use checkpoint_policy::{Checkpointer, NoCheckpoints, PeriodSource};
 pub(crate) use drive::{Counts, DriveError, Leg, Session, steps};
 pub use drive::{Observer, Phase, Progress};
-pub(crate) use engine::{Engine, LEFT_OUT, Proposal};
+pub(crate) use engine::{EXCLUSION_PASSES, Engine, Proposal};
 pub(crate) use history::History;
 pub use objectives::Objectives;
 
@@ -39,7 +39,7 @@ pub use plan::Plan;
 pub(crate) use saved::{CPU, EngineState, PeriodState, Saved};
 pub(crate) use shape_guard::set_guards;
 pub use step::Step;
-pub(crate) use stop::{JITTER, LEAST_SCALE, NOISE, ROUNDING};
+pub(crate) use stop::{JITTER, MIN_SCALE, NOISE, ROUNDING};
 pub use stop::{Stop, StopRule};
 pub use sweeps::Stepwise;
 pub(crate) use sweeps::StepwiseRun;

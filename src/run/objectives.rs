@@ -8,7 +8,7 @@ pub struct Objectives([f64; Metric::ALL.len()]);
 
 impl Objectives {
     /// Returns objectives without a value by any metric.
-    pub(crate) fn untracked() -> Self {
+    pub(crate) fn empty() -> Self {
         Self([f64::NAN; Metric::ALL.len()])
     }
 

@@ -29,11 +29,11 @@ const TOO_COARSE: f64 = 1e-4;
 const PAIR_ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// Number of sweeps after which opening fails.
-const MOST_SWEEPS: u32 = 120;
+const MAX_SWEEPS: u32 = 120;
 
 /// The state after sweeps in double precision, from which a device can continue.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Opened {
+pub(crate) struct DoublePrelude {
     /// Tracked objectives before the first sweep and after each sweep.
     pub(crate) log: Vec<Objectives>,
     /// Smallest base objective in `log`.
@@ -86,10 +86,10 @@ pub(crate) async fn open(
     problem: &Problem,
     mut engine: impl Engine,
     plan: &Plan,
-) -> Result<Option<Opened>, GpuError> {
+) -> Result<Option<DoublePrelude>, GpuError> {
     let period = plan.scheme.period();
     let mut history = History::new(plan);
-    for _ in 0..MOST_SWEEPS.div_ceil(period) {
+    for _ in 0..MAX_SWEEPS.div_ceil(period) {
         sweeps::advance(&mut engine, plan, &mut history, period).await?;
         if history.stop().is_some() {
             return Ok(None);
@@ -97,14 +97,14 @@ pub(crate) async fn open(
         if obstacle(problem, &engine.positions().await?) == Obstacle::None {
             let positions = engine.positions().await?.into_owned();
             let (least, best) = (history.least(), engine.best_positions().await?);
-            return Ok(Some(Opened { log: history.into_log(), least, positions, best }));
+            return Ok(Some(DoublePrelude { log: history.into_log(), least, positions, best }));
         }
         yield_now().await;
     }
     Ok(None)
 }
 
-impl Opened {
+impl DoublePrelude {
     /// Returns the number of completed sweeps.
     pub(crate) fn sweeps(&self) -> u32 {
         (self.log.len() as u32).saturating_sub(1)

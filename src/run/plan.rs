@@ -14,7 +14,7 @@ pub struct Plan {
     /// Over-relaxation factor by metric, in the order of [`Metric::ALL`].
     pub omega: [f64; Metric::ALL.len()],
     /// Number of sweeps before over-relaxation starts.
-    pub plain_sweeps: u32,
+    pub unrelaxed_sweeps: u32,
     /// Largest number of Newton steps in one visit of a vertex.
     pub inner: u32,
     /// Method of differentiation by metric, in the order of [`Metric::ALL`].
@@ -75,7 +75,7 @@ impl Plan {
         Self {
             scheme: options.scheme.clone(),
             omega,
-            plain_sweeps: relaxed.unrelaxed_sweeps,
+            unrelaxed_sweeps: relaxed.unrelaxed_sweeps,
             inner: newton_steps.max(1),
             derivatives: [derivatives; Metric::ALL.len()],
             sharpness,
@@ -91,7 +91,7 @@ impl Plan {
     /// Returns the step of a sweep. Sweeps count from 1.
     pub fn step(&self, sweep: u32) -> Step {
         let metric = self.scheme.metric(sweep);
-        let omega = if sweep <= self.plain_sweeps { 1.0 } else { self.omega[metric as usize] };
+        let omega = if sweep <= self.unrelaxed_sweeps { 1.0 } else { self.omega[metric as usize] };
         self.step_with(metric, omega, self.sharpness.of(sweep))
     }
 

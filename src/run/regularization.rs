@@ -4,12 +4,12 @@
 //! ACM Transactions on Graphics 40 (2021).
 
 /// `least` in the formula: the square of ε on a mesh without inverted triangles.
-pub(crate) const LEAST_SQUARE: f64 = 1e-12;
+pub(crate) const MIN_SQUARE: f64 = 1e-12;
 /// `share` in the formula: the factor on the square of the smallest area.
 pub(crate) const SQUARE_SHARE: f64 = 0.04;
 
 /// Returns ε for the next sweep, given the smallest area relative to its target area.
 pub(crate) fn epsilon(least: f64) -> f64 {
     let least = least.min(0.0);
-    (LEAST_SQUARE + SQUARE_SHARE * least * least).sqrt()
+    (MIN_SQUARE + SQUARE_SHARE * least * least).sqrt()
 }

@@ -10,7 +10,7 @@
 
 /// Smallest change of the slope along a pair's step, relative to the slope before, with which the pair is used. A
 /// smaller change is rounding.
-pub(crate) const LEAST_CURVATURE: f64 = 1e-3;
+pub(crate) const MIN_CURVATURE: f64 = 1e-3;
 
 /// Inner products of two secant pairs and the gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,12 +24,12 @@ pub(crate) struct Products {
 }
 
 impl Products {
-    /// Creates the products of two pairs. If the new pair fails the test of [`LEAST_CURVATURE`], its curvature is set
+    /// Creates the products of two pairs. If the new pair fails the test of [`MIN_CURVATURE`], its curvature is set
     /// to 0. The curvature of the old pair is 0 if the pair does not exist or is unused.
     pub(crate) fn new(along: [f64; 2], curvature: [f64; 2], across: f64) -> Self {
         let [new, old] = curvature;
         let slope_before = along[0] - new;
-        let counts = new > LEAST_CURVATURE * slope_before.abs() && new.is_finite();
+        let counts = new > MIN_CURVATURE * slope_before.abs() && new.is_finite();
         Self { along, curvature: [if counts { new } else { 0.0 }, old], across }
     }
 

@@ -59,7 +59,7 @@ pub(crate) const NOISE: f64 = 1e-9;
 pub(crate) const JITTER: f64 = 1e-6;
 /// Smallest value of f relative to which shares of f are computed. By some metrics, such as AREA, f may go to 0, where
 /// rounding alone determines its last digits.
-pub(crate) const LEAST_SCALE: f64 = 1e-6;
+pub(crate) const MIN_SCALE: f64 = 1e-6;
 /// Absolute decrease of f that counts as rounding. If f should be 0, as by AREA, rounding leaves the mean square of
 /// relative errors of some 1e-16.
 pub(crate) const ROUNDING: f64 = 1e-28;
@@ -82,7 +82,7 @@ impl StopRule {
             return Some(Stop::Reached);
         }
         if last >= window.saturating_mul(2) && (self.target.is_some() || self.tolerance > 0.0) {
-            let scale = f.max(LEAST_SCALE);
+            let scale = f.max(MIN_SCALE);
             let still = (history[last - window] - f).abs() <= NOISE * scale;
             if still || last.saturating_sub(best) >= 2 * window {
                 // f no longer changes, or no longer improves. Without a goal, a constant f is convergence.
@@ -109,7 +109,7 @@ impl StopRule {
         let gain = |from: usize, to: usize| history[from] - history[to];
         let remaining =
             |w: usize| remaining_gain(gain(last - 2 * w, last - w), gain(last - w, last));
-        let scale = history[last].max(LEAST_SCALE);
+        let scale = history[last].max(MIN_SCALE);
         let left = 2.0 * remaining(window).max(remaining(window.div_ceil(2))) / scale;
         Some(left).filter(|left| left.is_finite())
     }

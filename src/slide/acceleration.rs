@@ -6,10 +6,10 @@ use crate::run::records::{Reader, Writer};
 use crate::slide::params::{Params, read_params, write_params};
 
 /// Largest number of stored periods.
-const MOST: usize = 6;
+const MAX_PERIODS: usize = 6;
 /// Tikhonov term of Anderson's least squares, relative to the diagonal of the normal equations. Without the term,
 /// similar residuals would make the equations singular.
-const LEAST: f64 = 1e-10;
+const TIKHONOV: f64 = 1e-10;
 
 /// Results of the latest periods, for Anderson's acceleration (D. G. Anderson, J. ACM 12, 1965) of the map from one
 /// period to the next. A combination of the results makes their changes along the curves cancel as far as possible.
@@ -55,7 +55,7 @@ impl Acceleration {
                 && positions.iter().all(|point| point.is_finite());
             (fits && is_finite).then_some(Past { change, params, positions })
         })?;
-        (past.len() <= MOST).then_some(Self(past))
+        (past.len() <= MAX_PERIODS).then_some(Self(past))
     }
 
     /// Stores a period and returns the combined parameters and positions, from which the next period may begin. The
@@ -66,7 +66,7 @@ impl Acceleration {
         params: &Params,
         positions: &[DVec2],
     ) -> Option<(Params, Vec<DVec2>)> {
-        if self.0.len() == MOST {
+        if self.0.len() == MAX_PERIODS {
             self.0.remove(0);
         }
         let (params, positions) = (params.clone(), positions.to_vec());
@@ -100,7 +100,7 @@ fn least_squares(columns: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
     // The normal equations, solved by Gaussian elimination. Their raised diagonal makes them positive definite.
     let row = |i: usize| {
         let mut row: Vec<f64> = columns.iter().map(|column| dot(&columns[i], column)).collect();
-        row[i] *= 1.0 + LEAST;
+        row[i] *= 1.0 + TIKHONOV;
         row.push(-dot(&columns[i], start));
         row
     };

@@ -6,7 +6,7 @@ use crate::slide::chains::Chain;
 use crate::slide::options::Slide;
 
 /// The maximum of u (1 - u)² over u from 0 to 1.
-const MOST: f64 = 4.0 / 27.0;
+const MAX_CUBIC: f64 = 4.0 / 27.0;
 
 /// A curve through given vertices, in the unit of the mesh. The parameter at a vertex is the summed length of the lines
 /// between the given vertices before. On a closed curve, parameters that differ by the period identify the same point.
@@ -74,7 +74,7 @@ impl Curve {
             let start = start.or(end.map(|end| -end)).unwrap_or(0.0);
             let end = end.unwrap_or(-start);
             let length = lines[piece].length();
-            let height = MOST * length * (start.abs() + end.abs());
+            let height = MAX_CUBIC * length * (start.abs() + end.abs());
             let shorter = (slide.bound(length) / height).min(1.0);
             if height > 0.0 { [start * shorter, end * shorter] } else { [0.0; 2] }
         };

@@ -9,10 +9,10 @@ use crate::patch::{
 };
 use crate::run::Step;
 use crate::slide::curve::{Curve, Place};
-use crate::slide::side::Side;
+use crate::slide::side::BoundaryCurve;
 
 /// Limit of a step, as a share of the parameter distance to the neighboring vertex on the curve.
-const NEAREST: f64 = 0.8;
+const MAX_STEP_SHARE: f64 = 0.8;
 
 /// Curve parameters of a vertex (`at`) and of its neighbors before (`low`) and after (`high`).
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Window {
 #[derive(Clone, Copy)]
 pub(crate) struct Visited<'a> {
     /// The curve of the vertex. If the vertex has a partner, the second side is the curve of the partner.
-    pub(crate) sides: &'a [Side],
+    pub(crate) sides: &'a [BoundaryCurve],
     /// Index of the vertex in its track.
     pub(crate) k: usize,
     pub(crate) window: Window,
@@ -97,7 +97,7 @@ pub(crate) fn visit(
 
 /// The visited vertex or its partner, with its curve and patch.
 struct OnCurve<'a> {
-    side: &'a Side,
+    side: &'a BoundaryCurve,
     /// Present position of the vertex, normalized.
     here: DVec2,
     patch: FanPatch,
@@ -142,7 +142,7 @@ impl Objective<f64> for CurveObjective<'_> {
         let Window { low, at, high } = self.window;
         let ([slope, _], [curvature, ..]) = (here.gradient, here.hessian);
         let newton = -slope / curvature.abs();
-        let way = newton.clamp(NEAREST * (low - at), NEAREST * (high - at));
+        let way = newton.clamp(MAX_STEP_SHARE * (low - at), MAX_STEP_SHARE * (high - at));
         let way = self.reach.shortened(way, at);
         Direction { vector: [way, 0.0], slope: slope * way, descends: newton.is_finite() }
     }

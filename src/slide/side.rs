@@ -10,14 +10,14 @@ use crate::topology::Topology;
 /// A curve and its vertices, in order along the curve. Only vertices with a fan slide: all vertices of a closed curve,
 /// and all but the two ends of an open curve.
 #[derive(Clone, Debug)]
-pub(crate) struct Side {
+pub(crate) struct BoundaryCurve {
     pub(crate) curve: Curve,
     /// Indices of the vertices in the mesh.
     pub(crate) vertices: Vec<u32>,
     pub(crate) fans: Vec<Option<Fan>>,
 }
 
-impl Side {
+impl BoundaryCurve {
     /// Returns the curve of a chain. If the chain has partners, a second side follows: the curve of the partners, with
     /// equal parameters.
     pub(crate) fn of(

@@ -9,7 +9,7 @@ use crate::slide::chains::chains;
 use crate::slide::newton::{self, Reach, Rule, Visited, Window};
 use crate::slide::options::Slide;
 use crate::slide::params::Params;
-use crate::slide::side::Side;
+use crate::slide::side::BoundaryCurve;
 use crate::topology::Topology;
 
 impl Slide {
@@ -17,7 +17,7 @@ impl Slide {
     /// curve, passes no neighbor, and matches the move of the partner. `before` has the given positions and `after` the
     /// present ones, rounded to `stored`. Vertices missing in a list are not returned. If a list is incomplete, every
     /// fixed vertex that moved is returned.
-    pub fn astray(
+    pub fn misplaced(
         &self,
         topology: &Topology<'_>,
         before: &[[f64; 2]],
@@ -38,14 +38,14 @@ impl Slide {
         }
         let size =
             moved.iter().flat_map(|&v| before[v as usize]).fold(0.0, |m: f64, x| m.max(x.abs()));
-        Sliding::new(before, topology, self).astray(&moved, after, 8.0 * stored.error(size))
+        Sliding::new(before, topology, self).misplaced(&moved, after, 8.0 * stored.error(size))
     }
 }
 
 /// Largest number of rounds that reset vertices of a curve, as each reset may put a neighbor out of order.
-const GIVE_WAY: u32 = 5;
+const RESET_PASSES: u32 = 5;
 /// Largest difference between the curve parameters of partners, in units of the rounding error of a coordinate.
-const TOGETHER: f64 = 4.0;
+const PARTNER_TOLERANCE: f64 = 4.0;
 
 /// All curves of a mesh on which vertices slide, alone or in pairs.
 #[derive(Clone, Debug)]
@@ -58,14 +58,14 @@ pub(crate) struct Sliding {
 /// A curve on which vertices slide. If the vertices have partners, the second side is the curve of the partners.
 #[derive(Clone, Debug)]
 struct Track {
-    sides: Vec<Side>,
+    sides: Vec<BoundaryCurve>,
 }
 
 impl Sliding {
     /// Finds the curves of a mesh with its vertices at `points`.
     pub(crate) fn new(points: &[[f64; 2]], topology: &Topology<'_>, slide: &Slide) -> Self {
         let (chains, unlike) = chains(points, topology, slide);
-        let track = |chain| Track { sides: Side::of(points, topology, slide, chain) };
+        let track = |chain| Track { sides: BoundaryCurve::of(points, topology, slide, chain) };
         Self { tracks: chains.into_iter().map(track).collect(), unlike }
     }
 
@@ -112,7 +112,7 @@ impl Sliding {
     /// Returns the vertices whose parameter differs from the given one: index in the mesh, and position in the unit of
     /// the mesh.
     pub(crate) fn moved(&self, params: &Params) -> Vec<(u32, [f64; 2])> {
-        let of_side = |(side, params): (&Side, &[f64])| {
+        let of_side = |(side, params): (&BoundaryCurve, &[f64])| {
             let all = side.vertices.iter().zip(params).zip(side.curve.params());
             let moved = all.filter(|((_, now), was)| now != was);
             moved.map(|((&v, &now), _)| (v, side.curve.at(now).point.into())).collect::<Vec<_>>()
@@ -121,7 +121,10 @@ impl Sliding {
     }
 
     /// Iterates over all curves, partner curves included, with the parameters of their vertices.
-    fn sides<'a>(&'a self, params: &'a Params) -> impl Iterator<Item = (&'a Side, &'a [f64])> {
+    fn sides<'a>(
+        &'a self,
+        params: &'a Params,
+    ) -> impl Iterator<Item = (&'a BoundaryCurve, &'a [f64])> {
         let all = self.tracks.iter().zip(params);
         all.flat_map(|(track, params)| track.sides.iter().map(move |side| (side, &params[..])))
     }
@@ -150,7 +153,7 @@ impl Sliding {
         self.tracks.iter().zip(before).zip(after).flat_map(of_track).collect()
     }
 
-    /// Writes the curve points of the parameters `params` to `positions`. Before, at most [`GIVE_WAY`] rounds reset
+    /// Writes the curve points of the parameters `params` to `positions`. Before, at most [`RESET_PASSES`] rounds reset
     /// vertices to their parameter in `safe`: each vertex that would pass a neighbor, leave the tolerance of the given
     /// lines, or exceed its reach. Returns false if some vertex still does.
     pub(crate) fn place(
@@ -166,13 +169,13 @@ impl Sliding {
             let sliding = || (0..track.count()).filter(|&k| track.slides(k));
             let is_sound = |params: &[f64], k: usize| {
                 let Window { low, at, high } = track.window(params, k);
-                let is_sound = |side: &Side| {
+                let is_sound = |side: &BoundaryCurve| {
                     side.curve.is_near([low, at, high])
                         && track.reach(reach, k).allows(&side.curve, at)
                 };
                 low < at && at < high && track.sides.iter().all(is_sound)
             };
-            for _ in 0..GIVE_WAY {
+            for _ in 0..RESET_PASSES {
                 let bad: Vec<usize> = sliding().filter(|&k| !is_sound(params, k)).collect();
                 if bad.is_empty() {
                     break;
@@ -240,10 +243,15 @@ impl Sliding {
     /// Returns the vertices of the list that left their curve, passed a neighbor, or left their partner's parameter.
     /// `vertices` are ascending indices in the mesh, `points` the positions of all vertices of the mesh. `rounding`
     /// bounds the error of a coordinate.
-    pub(crate) fn astray(&self, vertices: &[u32], points: &[[f64; 2]], rounding: f64) -> Vec<u32> {
-        let mut astray = vertices.to_vec();
+    pub(crate) fn misplaced(
+        &self,
+        vertices: &[u32],
+        points: &[[f64; 2]],
+        rounding: f64,
+    ) -> Vec<u32> {
+        let mut misplaced = vertices.to_vec();
         for track in &self.tracks {
-            let found_on = |side: &Side| {
+            let found_on = |side: &BoundaryCurve| {
                 let own = |(k, &v): (usize, &u32)| {
                     let at = DVec2::from(points[v as usize]);
                     let has_moved = vertices.binary_search(&v).is_ok();
@@ -268,7 +276,10 @@ impl Sliding {
                     _ => return true,
                 };
                 let apart = |(a, b): (f64, f64)| (a - b).abs();
-                first.zip(second).map(apart).is_some_and(|apart| apart <= TOGETHER * rounding)
+                first
+                    .zip(second)
+                    .map(apart)
+                    .is_some_and(|apart| apart <= PARTNER_TOLERANCE * rounding)
             };
             let good = |k: &usize| {
                 track.slides(*k) && found.iter().all(|found| is_between(found, *k)) && together(*k)
@@ -277,9 +288,9 @@ impl Sliding {
             let own = |k: usize| track.sides.iter().map(move |side| side.vertices[k]);
             let mut good: Vec<u32> = good.flat_map(own).collect();
             good.sort_unstable();
-            astray.retain(|v| good.binary_search(v).is_err());
+            misplaced.retain(|v| good.binary_search(v).is_err());
         }
-        astray
+        misplaced
     }
 
     /// Moves vertices back to their given positions if their partner has its given position. `before` and `points` are

@@ -9,14 +9,14 @@ use crate::outcome::GoalOutcome;
 use crate::run::{
     CheckpointPolicy, Checkpointer, NOISE, Observer, Phase, Plan, ROUNDING, Stop, set_guards,
 };
-use crate::whole::{Device, Ended, Live, Spec, drive};
+use crate::whole::{Device, Live, RunEnd, Spec, drive};
 
 use super::prepared::Smoother;
 
 impl Smoother<'_> {
     /// Returns the desired objective of a goal. If the goal has none, runs to convergence determine the objective.
     /// `None` if the observer ended a search run.
-    pub(super) async fn aim(
+    pub(super) async fn resolve_goal(
         &self,
         goal: Goal,
         options: &Options,
@@ -41,7 +41,7 @@ impl Smoother<'_> {
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { stopping: Stopping::Tolerance(1e-6), ..full(Metric::Imr) };
-            let after_imr = self.refer(&imr, start, device, policy, observe).await?;
+            let after_imr = self.search_reference(&imr, start, device, policy, observe).await?;
             if after_imr.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -50,7 +50,7 @@ impl Smoother<'_> {
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
-            let end = self.refer(&full(base), &start, device, policy, observe).await?;
+            let end = self.search_reference(&full(base), &start, device, policy, observe).await?;
             if end.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -69,14 +69,14 @@ impl Smoother<'_> {
     }
 
     /// Runs to convergence from the given positions, with progress reported as [`Phase::Reference`].
-    async fn refer(
+    async fn search_reference(
         &self,
         options: &Options,
         start: &[DVec2],
         device: Option<Device<'_>>,
         policy: &mut dyn CheckpointPolicy,
         observe: &mut dyn Observer,
-    ) -> Result<Ended, SmoothError> {
+    ) -> Result<RunEnd, SmoothError> {
         let problem = &self.problem;
         let mut plan = Plan::toward(options, None);
         set_guards(&mut plan, options.guard, problem, start);

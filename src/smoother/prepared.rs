@@ -12,7 +12,7 @@ use crate::layout::{Problem, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::slide::{Slide, Sliding};
-use crate::targets::{Outside, TargetField, Targets};
+use crate::targets::{OutsideReport, TargetField, Targets};
 use crate::topology::{Topology, certify};
 use crate::whole::set_targets_of;
 
@@ -96,7 +96,7 @@ impl<'a> Smoother<'a> {
     ///
     /// # Errors
     /// [`MeshError::NotFinite`] if a coordinate of a vertex is infinite or NaN.
-    pub fn set_target_field(&mut self, field: TargetField) -> Result<Outside, MeshError> {
+    pub fn set_target_field(&mut self, field: TargetField) -> Result<OutsideReport, MeshError> {
         let (targets, outside) = field.at(&self.mesh.points)?;
         self.set_targets(&targets)?;
         self.field = Some(field);

@@ -12,12 +12,12 @@ use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::quality::Quality;
 use crate::resume;
 use crate::run::{
-    About, Checkpoint, CheckpointPolicy, Checkpointer, JITTER, LEAST_SCALE, NOISE, Objectives,
-    Observer, Phase, Plan, ROUNDING, Stop, set_guards,
+    Checkpoint, CheckpointPolicy, Checkpointer, JITTER, MIN_SCALE, NOISE, Objectives, Observer,
+    Phase, Plan, ROUNDING, RunFingerprint, Stop, set_guards,
 };
 use crate::slide::{Slide, Sliding};
 use crate::targets::TargetField;
-use crate::whole::{Device, Ended, Improving, Live, Spec, altitude, drive};
+use crate::whole::{Device, Improvement, Live, RunEnd, Spec, altitude, drive};
 
 use super::prepared::Smoother;
 use super::stages::Stages;
@@ -53,10 +53,12 @@ impl Smoother<'_> {
             (Some(Goal { fraction, .. }), Some((desired, origin))) => {
                 Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
             }
-            (Some(goal), None) => match self.aim(goal, options, device, policy, observe).await? {
-                Some(aimed) => Some(aimed),
-                None => return Ok(self.unchanged(base, initial, began)),
-            },
+            (Some(goal), None) => {
+                match self.resolve_goal(goal, options, device, policy, observe).await? {
+                    Some(aimed) => Some(aimed),
+                    None => return Ok(self.unchanged(base, initial, began)),
+                }
+            }
             (None, _) => None,
         };
         let target = goal.as_ref().map(|goal| match goal.desired < initial {
@@ -88,7 +90,7 @@ impl Smoother<'_> {
     }
 
     /// Returns the description of a run with these options that its checkpoints carry.
-    fn about(&self, options: &Options) -> About {
+    fn about(&self, options: &Options) -> RunFingerprint {
         let of_slide = self.slide.as_ref().map(Slide::words);
         let of_field = self.field.as_ref().map(TargetField::words);
         let more: Vec<u64> = of_slide.into_iter().chain(of_field).flatten().collect();
@@ -146,7 +148,7 @@ impl Smoother<'_> {
         options: &Options,
         initial: f64,
         goal: Option<GoalOutcome>,
-        mut ended: Ended,
+        mut ended: RunEnd,
         stages: Stages<'_>,
         observe: &mut dyn Observer,
     ) -> Result<Outcome, SmoothError> {
@@ -160,7 +162,7 @@ impl Smoother<'_> {
         let swept = f(best_sweep);
         let mut problem = self.problem.clone();
         stages.set_targets_at(&mut problem, &ended.positions)?;
-        let improving = Improving::after(&mut ended, options, &problem, stages.bounds(), observe);
+        let improving = Improvement::after(&mut ended, options, &problem, stages.bounds(), observe);
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
         let mut points = self.problem.denormalize(&self.mesh, &ended.positions);
         stages.slide_into(&mut points);
@@ -191,7 +193,7 @@ impl Smoother<'_> {
         }
         let slid = stages.slid(gains, &points);
         let best = if gains { written } else { initial };
-        let possible = (best - base.ideal_squared()).max(0.0) / best.max(LEAST_SCALE);
+        let possible = (best - base.ideal_squared()).max(0.0) / best.max(MIN_SCALE);
         let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
         let improved = improving.map(|improving| {
             let positions = if gains { &judged } else { self.problem.positions() };
@@ -227,7 +229,7 @@ impl Smoother<'_> {
 
     /// Returns the outcome of a run that was canceled before its first sweep.
     fn unchanged(&self, base: Metric, f: f64, start: Instant) -> Outcome {
-        let mut objectives = Objectives::untracked();
+        let mut objectives = Objectives::empty();
         objectives.set(base, f);
         Outcome {
             points: self.mesh.points.clone(),

@@ -37,7 +37,7 @@ const TURN: f64 = 360.0;
 
 /// Summary of the points that are outside of the mesh of a [`TargetField`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Outside {
+pub struct OutsideReport {
     /// Number of points outside, not counting points that rounding may have moved there.
     pub count: usize,
     /// Largest distance of a point from the mesh, in the unit of the mesh.
@@ -123,7 +123,7 @@ impl TargetField {
     /// # Errors
     /// [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the index of the
     /// point in `places`.
-    pub fn at(&self, places: &[[f64; 2]]) -> Result<(Targets, Outside), MeshError> {
+    pub fn at(&self, places: &[[f64; 2]]) -> Result<(Targets, OutsideReport), MeshError> {
         let spots = self.find(places)?;
         let map = |i: usize| {
             let value =
@@ -137,7 +137,7 @@ impl TargetField {
         let maps = collect(spots.len(), map);
         let rounding = self.rounding();
         let far = spots.iter().map(|spot| spot.outside).filter(|outside| *outside > rounding);
-        let outside = far.fold(Outside::default(), |all, outside| Outside {
+        let outside = far.fold(OutsideReport::default(), |all, outside| OutsideReport {
             count: all.count + 1,
             most: all.most.max(outside),
         });

@@ -7,7 +7,7 @@ mod tensor;
 
 use crate::error::MeshError;
 use crate::topology::Topology;
-pub use field::{Outside, TargetField};
+pub use field::{OutsideReport, TargetField};
 pub use surface::Surface;
 pub(crate) use tensor::Tensor;
 

@@ -5,7 +5,7 @@ use crate::topology::stars::others_at_edge;
 
 /// An edge of a triangle, from the vertex at `corner` to the vertex at the next corner.
 #[derive(Clone, Copy)]
-struct Side {
+struct BoundaryEdge {
     triangle: u32,
     corner: usize,
 }
@@ -18,20 +18,20 @@ impl Topology<'_> {
     }
 
     /// Returns the boundary edges as sides of triangles.
-    fn boundary_sides(&self) -> impl Iterator<Item = Side> + '_ {
-        let sides = |triangle| (0..3).map(move |corner| Side { triangle, corner });
+    fn boundary_sides(&self) -> impl Iterator<Item = BoundaryEdge> + '_ {
+        let sides = |triangle| (0..3).map(move |corner| BoundaryEdge { triangle, corner });
         let all = (0..self.triangles().len() as u32).flat_map(sides);
         all.filter(|&side| self.across(side).is_none())
     }
 
     /// Returns the vertices at which an edge starts and ends, with its triangle on the left.
-    fn ends(&self, Side { triangle, corner }: Side) -> [u32; 2] {
+    fn ends(&self, BoundaryEdge { triangle, corner }: BoundaryEdge) -> [u32; 2] {
         let corners = self.triangles()[triangle as usize];
         [corners[corner], corners[(corner + 1) % 3]]
     }
 
     /// Returns the neighboring triangle across an edge, `None` for a boundary edge.
-    fn across(&self, side: Side) -> Option<u32> {
+    fn across(&self, side: BoundaryEdge) -> Option<u32> {
         others_at_edge(self.triangles(), self.stars(), side.triangle, self.ends(side)).next()
     }
 
@@ -42,7 +42,7 @@ impl Topology<'_> {
     /// them apart. No loop passes a vertex twice: parts or holes that touch in a vertex have separate loops. Each loop
     /// starts at its least vertex, and loops are sorted by that vertex.
     pub fn boundary_loops(&self) -> Vec<Vec<u32>> {
-        let mut edges: Vec<([u32; 2], Side)> =
+        let mut edges: Vec<([u32; 2], BoundaryEdge)> =
             self.boundary_sides().map(|side| (self.ends(side), side)).collect();
         edges.sort_unstable_by_key(|&(ends, _)| ends);
         let mut loops = Vec::new();
@@ -93,7 +93,7 @@ impl Topology<'_> {
             let mut is_closed = true;
             while let Some(triangle) = part.pop() {
                 for corner in 0..3 {
-                    match self.across(Side { triangle, corner }) {
+                    match self.across(BoundaryEdge { triangle, corner }) {
                         None => is_closed = false,
                         Some(other) if !seen[other as usize] => {
                             seen[other as usize] = true;
@@ -113,7 +113,7 @@ impl Topology<'_> {
     /// Returns the boundary edge that follows `side`. The search turns around the end vertex of `side`, from triangle
     /// to triangle, until it reaches the last edge of the fan. The fans of a vertex share no triangle, so each triangle
     /// is visited once per corner.
-    fn next_on_boundary(&self, side: Side) -> Option<Side> {
+    fn next_on_boundary(&self, side: BoundaryEdge) -> Option<BoundaryEdge> {
         let [mut before, pivot] = self.ends(side);
         let mut triangle = side.triangle;
         loop {
@@ -124,7 +124,7 @@ impl Topology<'_> {
             if corners[(corner + 2) % 3] != before {
                 return None;
             }
-            let side = Side { triangle, corner };
+            let side = BoundaryEdge { triangle, corner };
             match self.across(side) {
                 Some(next) => (triangle, before) = (next, corners[(corner + 1) % 3]),
                 None => return Some(side),

@@ -62,7 +62,7 @@ impl Topology<'_> {
             return Err(MeshError::NotFinite { vertex });
         }
 
-        let ways = Ways::new(points, moves);
+        let ways = Paths::new(points, moves);
         let mut triangles: Vec<u32> =
             ways.0.iter().flat_map(|way| self.star(way.vertex)).copied().collect();
         triangles.sort_unstable();
@@ -100,22 +100,22 @@ impl Topology<'_> {
 }
 
 /// The straight path of a vertex, from its position to its new position.
-struct Way {
+struct Path {
     vertex: u32,
     from: [f64; 2],
     to: [f64; 2],
 }
 
 /// Paths of all moved vertices, one per vertex, in ascending order of vertices.
-struct Ways(Vec<Way>);
+struct Paths(Vec<Path>);
 
-impl Ways {
+impl Paths {
     fn new(points: &[[f64; 2]], moves: &[(u32, [f64; 2])]) -> Self {
         let way = |&(vertex, to): &(u32, [f64; 2])| {
             let from = points[vertex as usize];
-            Way { vertex, from, to }
+            Path { vertex, from, to }
         };
-        let mut ways: Vec<Way> = moves.iter().rev().map(way).collect();
+        let mut ways: Vec<Path> = moves.iter().rev().map(way).collect();
         ways.sort_by_key(|way| way.vertex);
         ways.dedup_by_key(|way| way.vertex);
         Self(ways)
@@ -123,7 +123,7 @@ impl Ways {
 
     /// Sets each vertex to the point at `share` of its path. At share 1 the vertex gets the bits of its new position.
     fn go(&self, points: &mut [[f64; 2]], share: f64) {
-        for &Way { vertex, from, to } in &self.0 {
+        for &Path { vertex, from, to } in &self.0 {
             let between = |i: usize| from[i] + share * (to[i] - from[i]);
             points[vertex as usize] = if share == 1.0 { to } else { [between(0), between(1)] };
         }

@@ -20,10 +20,10 @@ pub struct HangingNode {
 
 /// Largest distance of a node from an edge, as a share of the distance along the edge; compared as an angle in radians.
 /// Files store few digits, so nodes on edges that are not parallel to an axis are rarely on them exactly.
-const OFF: f64 = 1e-3;
+const MAX_ANGLE: f64 = 1e-3;
 /// Largest number of edges of nearly equal direction that are tested at a vertex. Only overlapping triangles have
 /// several such edges.
-const MOST: usize = 64;
+const MAX_TESTED: usize = 64;
 
 impl Topology<'_> {
     /// Returns the hanging nodes of a mesh with its vertices at `points`, ascending, each once. Hanging nodes never
@@ -106,14 +106,14 @@ impl<'p> Seam<'p> {
         let wanted = direction(self.points, from, to);
         let all = &self.edges[own.clone()];
         // Directions wrap around from π to -π.
-        let least = wanted - OFF;
+        let least = wanted - MAX_ANGLE;
         let least = if least < -PI { least + TAU } else { least };
         let first = all.partition_point(|edge| edge.1 < least);
-        let around = (0..all.len().min(MOST)).map(|k| own.start + (first + k) % all.len());
+        let around = (0..all.len().min(MAX_TESTED)).map(|k| own.start + (first + k) % all.len());
         around.into_iter().find(|&edge| {
             let (_, direction, end) = self.edges[edge];
             let turn = (direction - wanted).abs();
-            turn.min(TAU - turn) <= OFF && (end == to || self.is_before(from, end, to))
+            turn.min(TAU - turn) <= MAX_ANGLE && (end == to || self.is_before(from, end, to))
         })
     }
 

@@ -84,37 +84,37 @@ fn outer_edges(triangles: &[[u32; 3]], star: &[u32], vertex: u32, edges: &mut Ve
 fn chain(edges: &mut [OuterEdge]) -> bool {
     match edges.len() {
         0..3 => false,
-        3..=FEW => chain_few(edges),
+        3..=MAX_PAIRWISE => chain_few(edges),
         _ => chain_many(edges),
     }
 }
 
 /// Largest number of edges for which [`chain_few`] compares all pairs.
-const FEW: usize = 8;
+const MAX_PAIRWISE: usize = 8;
 
-/// Sorts at most [`FEW`] edges into a cycle; see [`chain`].
+/// Sorts at most [`MAX_PAIRWISE`] edges into a cycle; see [`chain`].
 fn chain_few(edges: &mut [OuterEdge]) -> bool {
     // Unused entries hold a number that no vertex has.
-    let mut from = [u32::MAX; FEW];
+    let mut from = [u32::MAX; MAX_PAIRWISE];
     for (from, edge) in from.iter_mut().zip(&*edges) {
         *from = edge.from;
     }
-    // For the edges that start where `edge` ends: `FEW` times their number, plus the sum of their indices.
+    // For the edges that start where `edge` ends: `MAX_PAIRWISE` times their number, plus the sum of their indices.
     let after = |edge: &OuterEdge| {
-        let found = |k: usize| if from[k] == edge.to { FEW + k } else { 0 };
-        (0..FEW).map(|k| found(k) as u32).sum::<u32>()
+        let found = |k: usize| if from[k] == edge.to { MAX_PAIRWISE + k } else { 0 };
+        (0..MAX_PAIRWISE).map(|k| found(k) as u32).sum::<u32>()
     };
-    let mut next = [0; FEW];
+    let mut next = [0; MAX_PAIRWISE];
     let mut single = true;
     for (next, edge) in next.iter_mut().zip(&*edges) {
         let after = after(edge);
-        single &= after / FEW as u32 == 1;
-        *next = after as usize % FEW;
+        single &= after / MAX_PAIRWISE as u32 == 1;
+        *next = after as usize % MAX_PAIRWISE;
     }
     if !single {
         return false;
     }
-    let mut sorted = [OuterEdge::default(); FEW];
+    let mut sorted = [OuterEdge::default(); MAX_PAIRWISE];
     let mut at = 0;
     for (i, to) in sorted[..edges.len()].iter_mut().enumerate() {
         // The path has returned to the first edge before all edges were visited.
@@ -155,7 +155,7 @@ fn chain_many(edges: &mut [OuterEdge]) -> bool {
 
 /// Returns whether all edges have different start vertices and different end vertices.
 fn are_different(edges: &[OuterEdge]) -> bool {
-    if edges.len() <= FEW {
+    if edges.len() <= MAX_PAIRWISE {
         let alike = |a: &OuterEdge, b: &OuterEdge| a.from == b.from || a.to == b.to;
         return edges.iter().enumerate().all(|(i, a)| edges[i + 1..].iter().all(|b| !alike(a, b)));
     }

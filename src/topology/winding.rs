@@ -11,8 +11,8 @@ use crate::topology::stars::others_at_edge;
 /// Index in place of a neighbor across a boundary edge, where there is no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Returns for each triangle the triangles across its three edges: entry i is across the edge from corner i to corner i
-/// + 1. [`NONE`] stands for a boundary edge. Fails with [`MeshError::EdgeOfThree`] if more than two triangles share an
+/// Returns for each triangle the triangles across its three edges: entry i is across the edge between the corners i and
+/// i + 1. [`NONE`] stands for a boundary edge. Fails with [`MeshError::EdgeOfThree`] if more than two triangles share an
 /// edge.
 pub(crate) fn neighbors(
     triangles: &[[u32; 3]],

@@ -35,10 +35,10 @@ const SHARE: f64 = 0.7;
 const FEWEST: usize = 8;
 /// Largest number of boundaries of a piece that is cut. A piece with more boundaries has many fixed vertices inside,
 /// and each fixed vertex is a boundary.
-const MOST_BOUNDARIES: usize = 256;
+const MAX_BOUNDARIES: usize = 256;
 /// Upper limit of the triangles of all pieces that are cut, in units of the triangles of the mesh. The limit keeps the
 /// time of cuts below the time of the sweeps.
-const MOST_WORK: usize = 256;
+const MAX_WORK: usize = 256;
 
 /// How candidate lines between two boundaries are ranked, smallest rating first. No ranking leads to the least
 /// distorted mesh in all cases.
@@ -67,7 +67,7 @@ pub(super) struct Cuts {
 pub(super) fn cut(problem: &Problem, areas: &[f64], positions: &[DVec2], short: Short) -> Cuts {
     let mut cutter = Cutter::new(problem, areas, positions.to_vec(), short);
     let mut open = cutter.pieces.all();
-    let mut work = MOST_WORK * problem.triangles().len();
+    let mut work = MAX_WORK * problem.triangles().len();
     while let Some(piece) = open.pop() {
         if piece.len() > FEWEST && piece.len() <= work && cutter.cut(&piece) {
             work -= piece.len();
@@ -117,7 +117,7 @@ impl<'p> Cutter<'p> {
         let ends = match &boundaries[..] {
             [] => None,
             [boundary] => self.within(boundary),
-            all if all.len() > MOST_BOUNDARIES => None,
+            all if all.len() > MAX_BOUNDARIES => None,
             all => self.between(all),
         };
         let Some(ends) = ends else { return false };

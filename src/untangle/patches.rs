@@ -17,10 +17,10 @@ const FOURS: usize = 256;
 const TRIANGLES: usize = 1 << 12;
 
 /// Four free vertices with equally many neighbors. Lanes beyond the last vertex of a group repeat the last vertex.
-pub(super) type Four = [u32; LANES];
+pub(super) type VertexBatch = [u32; LANES];
 
 /// Returns vertices in groups of four, in the given order. Consecutive vertices of equal degree form the groups.
-pub(super) fn fours(problem: &Problem, vertices: impl Iterator<Item = u32>) -> Vec<Four> {
+pub(super) fn fours(problem: &Problem, vertices: impl Iterator<Item = u32>) -> Vec<VertexBatch> {
     let vertices: Vec<u32> = vertices.collect();
     let alike = vertices.chunk_by(|&v, &k| problem.ring_of(v).len() == problem.ring_of(k).len());
     let fours = alike.flat_map(|alike| alike.chunks(LANES));
@@ -39,17 +39,21 @@ pub(super) struct Tangle<'a> {
 impl Tangle<'_> {
     /// Returns the position of each vertex after a Newton step with a line search. No two of the vertices may be
     /// neighbors.
-    pub(super) fn steps(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
+    pub(super) fn steps(&self, fours: &[VertexBatch], epsilon: f64) -> Vec<[DVec2; LANES]> {
         self.visits::<true>(fours, epsilon)
     }
 
     /// Returns the gradient of the energy by the position of each vertex.
-    pub(super) fn gradients(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
+    pub(super) fn gradients(&self, fours: &[VertexBatch], epsilon: f64) -> Vec<[DVec2; LANES]> {
         self.visits::<false>(fours, epsilon)
     }
 
     /// Returns positions after steps if `STEPS`, and gradients otherwise.
-    fn visits<const STEPS: bool>(&self, fours: &[Four], epsilon: f64) -> Vec<[DVec2; LANES]> {
+    fn visits<const STEPS: bool>(
+        &self,
+        fours: &[VertexBatch],
+        epsilon: f64,
+    ) -> Vec<[DVec2; LANES]> {
         let mut found = vec![[DVec2::ZERO; LANES]; fours.len()];
         for_each_chunk(&mut found, FOURS, |first, found| {
             with_instructions!(Level::new(), simd => {
@@ -146,7 +150,7 @@ impl<'r, S: Simd> EnergyRings<'r, S> {
     fn gather(
         simd: S,
         tangle: &Tangle<'_>,
-        four: Four,
+        four: VertexBatch,
         epsilon: f64,
         scratch: &'r mut Vec<(Points<S>, Lanes<S>)>,
     ) -> Self {

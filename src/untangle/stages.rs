@@ -48,7 +48,7 @@ pub(super) enum Start {
 }
 
 /// The conditions that end the sweeps of a stage.
-pub(super) struct Patience {
+pub(super) struct StageBudget {
     /// Number of sweeps from which on an insufficient gain ends the stage.
     pub(super) fewest: u32,
     /// Largest number of sweeps of the stage.
@@ -67,23 +67,23 @@ impl Stage {
     /// the inverted area of the most inverted triangle. From the nearest result, up to 1,000 sweeps follow, while 100
     /// sweeps lower the inverted area by a quarter or the bad triangles by a tenth. Large meshes take hundreds of
     /// sweeps.
-    pub(super) fn patience(&self) -> Patience {
+    pub(super) fn patience(&self) -> StageBudget {
         let sweeps = self.sweeps;
         match self.start {
             Start::Near(_) | Start::Means => {
-                Patience { fewest: sweeps, most: sweeps, often: sweeps, area: 0.0, bad: 0.0 }
+                StageBudget { fewest: sweeps, most: sweeps, often: sweeps, area: 0.0, bad: 0.0 }
             }
             Start::Cut(_) => {
-                Patience { fewest: sweeps, most: 4 * sweeps, often: 50, area: 0.5, bad: 0.0 }
+                StageBudget { fewest: sweeps, most: 4 * sweeps, often: 50, area: 0.5, bad: 0.0 }
             }
             Start::Nearest => {
-                Patience { fewest: 0, most: sweeps, often: 100, area: 0.75, bad: 0.9 }
+                StageBudget { fewest: 0, most: sweeps, often: 100, area: 0.75, bad: 0.9 }
             }
         }
     }
 }
 
-impl Patience {
+impl StageBudget {
     /// Returns whether sweeps have gained enough to continue. Sweeps cannot improve a mesh in which no triangle is
     /// inverted but some triangles wind twice around a vertex.
     pub(super) fn goes_on(&self, before: Assessment, now: Assessment) -> bool {

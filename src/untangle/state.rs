@@ -7,7 +7,7 @@ use crate::layout::Problem;
 use crate::parallel::{collect, for_each_chunk, map_parts, map_ranges};
 use crate::run::multilevel::{Hierarchy, Search};
 use crate::untangle::cuts::{Short, cut};
-use crate::untangle::patches::{Four, Tangle, fours};
+use crate::untangle::patches::{Tangle, VertexBatch, fours};
 
 /// Number of vertices or triangles in one parallel task.
 const CHUNK: usize = 1 << 12;
@@ -48,7 +48,7 @@ impl Assessment {
 /// The vertices of a sweep, and all triangles whose shape the sweep changes.
 pub(crate) struct Region {
     /// Vertices by color, in groups of four.
-    vertices: Vec<Vec<Four>>,
+    vertices: Vec<Vec<VertexBatch>>,
     /// Indices of the triangles in the problem.
     triangles: Vec<u32>,
 }

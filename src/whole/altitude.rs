@@ -12,14 +12,14 @@ use crate::run::Stop;
 use crate::run::records::{Reader, Writer};
 use crate::topology::Topology;
 use crate::whole::host::Host;
-use crate::whole::stage::{Judged, Period, Stage, Worked};
+use crate::whole::stage::{Judgment, Period, Stage, Worked};
 
 /// Number of sweeps in a period, while the stage still moves vertices back.
 const SWEEPS: u32 = 2;
 /// Largest number of periods, after which the run ends.
 const PERIODS: u32 = 60;
 /// Number of halvings of the moves of vertices, before the moves are undone.
-const HALVED: u32 = 3;
+const MAX_HALVINGS: u32 = 3;
 
 /// Returns the smallest altitude of the given triangles.
 fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
@@ -119,7 +119,7 @@ impl Stage for AltitudeStage<'_> {
     ) -> Result<Worked, MeshError> {
         self.count = self.count.saturating_add(1);
         let Host { problem, before, positions, held, .. } = host;
-        let returned = bring_back(problem.triangles(), before, positions, self.least, HALVED);
+        let returned = bring_back(problem.triangles(), before, positions, self.least, MAX_HALVINGS);
         let mut is_settled = true;
         for v in returned {
             if let Some(held) = held.get_mut(v as usize) {
@@ -134,7 +134,7 @@ impl Stage for AltitudeStage<'_> {
         least(self.problem.triangles(), |v| positions[v as usize]) >= self.least
     }
 
-    fn judge(&mut self, period: &Period) -> Judged {
+    fn judge(&mut self, period: &Period) -> Judgment {
         let has_rounds_left = self.count < PERIODS;
         let stop = match period.swept {
             _ if period.all_held => Some(Stop::Converged),
@@ -144,7 +144,7 @@ impl Stage for AltitudeStage<'_> {
             }
             _ => period.is_last.then_some(Stop::MaxSweeps),
         };
-        Judged { stop, remaining: period.remaining }
+        Judgment { stop, remaining: period.remaining }
     }
 
     fn save(&self, out: &mut Writer) {

@@ -76,21 +76,21 @@ impl Engine for AnyEngine<'_> {
         on!(self, engine => engine.stiffness_roots(smoothing).await)
     }
 
-    async fn propose(
+    async fn sweep_and_propose(
         &mut self,
         step: &Step,
         length: f64,
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
-        on!(self, engine => engine.propose(step, length, accelerated).await)
+        on!(self, engine => engine.sweep_and_propose(step, length, accelerated).await)
     }
 
     fn forget(&mut self) {
         on!(self, engine => engine.forget());
     }
 
-    async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
-        on!(self, engine => engine.leave_out(length, anew).await)
+    async fn exclude_broken(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
+        on!(self, engine => engine.exclude_broken(length, anew).await)
     }
 
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {

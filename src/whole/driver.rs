@@ -5,8 +5,8 @@ use crate::resume;
 use crate::run::records::{Reader, Writer};
 use crate::run::{Checkpointer, Observer, PeriodState, Stop};
 use crate::whole::host::{Host, objectives};
-use crate::whole::live::{Ended, Live, Moved};
-use crate::whole::stage::{Judged, Period, Stage};
+use crate::whole::live::{Live, Moved, RunEnd};
+use crate::whole::stage::{Judgment, Period, Stage};
 
 /// Sweeps until the run ends. After each period, all stages work, in order. The last stage decides whether the run
 /// ends.
@@ -16,7 +16,7 @@ pub(crate) async fn drive(
     checkpointer: &mut Checkpointer<'_>,
     observe: &mut dyn Observer,
     resumed: Option<&PeriodState>,
-) -> Result<Ended, SmoothError> {
+) -> Result<RunEnd, SmoothError> {
     let max_sweeps = live.plan.stop.max_sweeps;
     if stages.is_empty() || max_sweeps == 0 {
         // Without stages, the engine ends the run. With stages, the host does.
@@ -72,11 +72,12 @@ pub(crate) async fn drive(
             is_last: live.sweeps() >= max_sweeps,
         };
         let judged = stages.last_mut().map(|stage| stage.judge(&period));
-        let Judged { stop, remaining } = judged.unwrap_or(Judged { stop: None, remaining: None });
+        let Judgment { stop, remaining } =
+            judged.unwrap_or(Judgment { stop: None, remaining: None });
         let stop = if swept == Some(Stop::Canceled) { swept } else { stop };
         if let Some(stop) = stop {
             let ended = live.end(host.positions, stop);
-            return Ok(Ended { remaining, ..ended });
+            return Ok(RunEnd { remaining, ..ended });
         }
         host.begin_period(f);
         began = live.sweeps();

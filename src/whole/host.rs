@@ -74,7 +74,7 @@ fn f(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> f64 {
 
 /// Returns the objectives that a plan tracks.
 pub(crate) fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
-    let mut objectives = Objectives::untracked();
+    let mut objectives = Objectives::empty();
     for metric in plan.tracked() {
         let excess = mean_excess(metric, problem, positions);
         objectives.set(metric, metric.ideal_squared() + excess);

@@ -8,14 +8,14 @@ use crate::options::{Options, WorstBy};
 use crate::outcome::Improved;
 use crate::run::{NOISE, Observer, Phase, Plan, Progress, Stop};
 use crate::whole::altitude;
-use crate::whole::live::Ended;
-use crate::worst::{Badness, Rules, improve, stuck, worst_movable};
+use crate::whole::live::RunEnd;
+use crate::worst::{Badness, MoveConstraints, improve, stuck, worst_movable};
 
 /// Share by which rounding may raise the worst inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
 
 /// The result of the stage that improves the worst triangles, evaluated at the coordinates as they are written.
-pub(crate) struct Improving {
+pub(crate) struct Improvement {
     badness: Badness,
     /// Number of vertices that the stage moved.
     vertices: usize,
@@ -25,12 +25,12 @@ pub(crate) struct Improving {
     pub(crate) f: [f64; 2],
 }
 
-impl Improving {
+impl Improvement {
     /// Improves the worst triangles of a mesh after a run. `None` if [`Options::improve_worst`] is `None`, or if the
     /// run was canceled or failed. `bounds` limit the distance of each free vertex from the start of the run. If the
     /// observer ends the stage, the run counts as canceled.
     pub(crate) fn after(
-        ended: &mut Ended,
+        ended: &mut RunEnd,
         options: &Options,
         problem: &Problem,
         bounds: Option<&[f64]>,
@@ -43,11 +43,11 @@ impl Improving {
         let base = options.scheme.base();
         let f = |positions: &[DVec2]| base.ideal_squared() + mean_excess(base, problem, positions);
         let sweep = ended.history.len() as u32 - 1;
-        let Ended { positions, stop, .. } = ended;
+        let RunEnd { positions, stop, .. } = ended;
         let before = f(positions);
         let worst_before = worst_movable(problem, badness, positions);
         let worst_shape = worst_movable(problem, Badness(WorstBy::Imr), positions);
-        let rules = Rules {
+        let rules = MoveConstraints {
             badness,
             step: Plan::new(options).base_step(1.0),
             shape: worst_shape.sqrt() * (1.0 + ROUNDING),

@@ -12,7 +12,7 @@ use crate::metric::Metric;
 use crate::options::{Guard, Method, Options};
 use crate::outcome::DeviceFault;
 use crate::resume;
-use crate::run::opening::{self, Obstacle, Opened};
+use crate::run::opening::{self, DoublePrelude, Obstacle};
 use crate::run::{
     CPU, Checkpoint, Checkpointer, Counts, DriveError, Engine, History, Leg, Objectives, Observer,
     PeriodSource, Phase, Plan, Saved, Session, Stop, steps,
@@ -23,7 +23,7 @@ use crate::whole::host::objectives;
 
 /// Largest sum of q² - ideal² with which a device begins. The limit is far below the largest f32, 3e38, as metrics of
 /// size multiply powers of their arguments.
-const MOST_ON_DEVICE: f64 = 1e15;
+const MAX_SUM_ON_DEVICE: f64 = 1e15;
 
 /// The mesh, device and options of a run.
 #[derive(Clone, Copy)]
@@ -57,7 +57,7 @@ pub(crate) struct Live<'s> {
     /// State at the start of the run, or at the end of the latest stage that moved vertices.
     last: Point,
     held: Vec<bool>,
-    opened: Option<Opened>,
+    opened: Option<DoublePrelude>,
     /// Number of sweeps before the CPU replaced a device for which triangles are too flat or too small. `None` without
     /// such a change.
     on_cpu_from: Option<u32>,
@@ -65,7 +65,7 @@ pub(crate) struct Live<'s> {
 }
 
 /// The result of a run's sweeps: positions, history, counts, and the reason of the end.
-pub(crate) struct Ended {
+pub(crate) struct RunEnd {
     pub(crate) history: Vec<Objectives>,
     pub(crate) positions: Vec<DVec2>,
     pub(crate) counts: Counts,
@@ -96,7 +96,7 @@ impl<'s> Live<'s> {
             about.opened.clone_from(&opened);
         }
         checkpointer.last = resumed.map(|resumed| resumed.saved.clone());
-        let opening_sweeps = opened.as_ref().map_or(0, Opened::sweeps);
+        let opening_sweeps = opened.as_ref().map_or(0, DoublePrelude::sweeps);
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
         let positions = opened.as_ref().map_or(from, |opened| &opened.positions).to_vec();
         let is_refused = spec.device.is_some() && device.is_none() && resumed.is_none();
@@ -188,7 +188,7 @@ impl<'s> Live<'s> {
             Some(session) => session,
             None => self.begun(checkpointer.last.clone())?,
         };
-        let done = self.opened.as_ref().map_or(0, Opened::sweeps);
+        let done = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         let requires_levels = self.spec.options.method == Method::Multilevel;
         let leg = Leg { until, requires_levels, phase: self.spec.phase, done, period };
         let stop = session.advance(leg, checkpointer, observe).await?;
@@ -229,7 +229,7 @@ impl<'s> Live<'s> {
         checkpointer: &mut Checkpointer<'_>,
     ) -> Result<(), SmoothError> {
         let last = (self.last.log.len() as u32).saturating_sub(1);
-        let done = self.opened.as_ref().map_or(0, Opened::sweeps);
+        let done = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         let sweep = checkpointer.last.as_ref().map_or(last, Saved::sweeps) + done;
         if self.device.is_none() || !checkpointer.policy.falls_back_to_cpu(&error, sweep) {
             return Err(error.into());
@@ -301,7 +301,7 @@ impl<'s> Live<'s> {
     }
 
     /// Ends the run for the reason `stop`, with the vertices at `positions`.
-    pub(crate) fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> Ended {
+    pub(crate) fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> RunEnd {
         let Self { plan, problem, last, session, .. } = self;
         let none = Counts { alternated: 0, corrections: 0, levels_left_out: false };
         let (counts, remaining, history) = match session {
@@ -323,13 +323,13 @@ impl<'s> Live<'s> {
                 stop = Stop::HeldBack;
             }
         }
-        let opened = self.opened.as_ref().map_or(0, Opened::sweeps);
+        let opened = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         let on_cpu = self.on_cpu_from.map_or(0, |from| history.sweeps() - from);
         let (history, positions) = match self.opened {
             Some(opened) => opened.followed_by(history, positions),
             None => (history.into_log(), positions),
         };
-        Ended {
+        RunEnd {
             history,
             positions,
             counts: Counts { alternated: opened + counts.alternated, ..counts },
@@ -362,7 +362,7 @@ async fn opened<'s>(
     spec: &Spec<'s>,
     plan: &Plan,
     from: &[DVec2],
-) -> Result<(Option<Device<'s>>, Option<Opened>), SmoothError> {
+) -> Result<(Option<Device<'s>>, Option<DoublePrelude>), SmoothError> {
     let &Spec { problem, device, .. } = spec;
     if device.is_none() {
         return Ok((None, None));
@@ -373,7 +373,7 @@ async fn opened<'s>(
     let is_huge = |metric: &Metric| {
         let is_ratio = metric.properties().is_inverse_mean_ratio;
         // A sum of NaN counts as too large.
-        !is_ratio && sum(metric).partial_cmp(&MOST_ON_DEVICE) != Some(Ordering::Less)
+        !is_ratio && sum(metric).partial_cmp(&MAX_SUM_ON_DEVICE) != Some(Ordering::Less)
     };
     if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {
         return Ok((None, None));

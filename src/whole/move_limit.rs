@@ -17,7 +17,7 @@ use crate::run::{Step, StopRule};
 use crate::slide::{Params, Sliding};
 use crate::topology::Topology;
 use crate::whole::host::Host;
-use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
+use crate::whole::stage::{Judgment, Period, PeriodRule, Stage, Worked};
 
 /// Number of sweeps in a period.
 const SWEEPS: u32 = 3;
@@ -26,7 +26,7 @@ const VISITS: u32 = 3;
 /// Number of vertices at their bound that one task visits.
 const CHUNK: usize = 256;
 /// Largest number of halvings of a period's move, until the move lowers f and keeps triangles sound.
-const HALVED: u32 = 5;
+const MAX_HALVINGS: u32 = 5;
 /// Distance from the start at which a vertex is held, as a share of the bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
 
@@ -96,11 +96,11 @@ impl<'s> MoveLimitStage<'s> {
     }
 
     /// Moves each vertex to its swept position, or to its bound if the position is beyond. Halves the moves until f
-    /// falls and triangles stay sound. After [`HALVED`] halvings without success, the vertices return, and vertices
+    /// falls and triangles stay sound. After [`MAX_HALVINGS`] halvings without success, the vertices return, and vertices
     /// swept beyond their bounds are held. Returns whether the vertices moved.
     fn take(&self, host: &mut Host<'_>) -> bool {
         let mut share = 1.0;
-        for _ in 0..=HALVED {
+        for _ in 0..=MAX_HALVINGS {
             let mut there = host.before.clone();
             let moved = there[..self.bounds.len()].iter_mut().zip(&host.positions);
             for (v, (place, to)) in moved.enumerate() {
@@ -226,7 +226,7 @@ impl Stage for MoveLimitStage<'_> {
         }
     }
 
-    fn judge(&mut self, period: &Period) -> Judged {
+    fn judge(&mut self, period: &Period) -> Judgment {
         self.rule.judge(period)
     }
 

@@ -11,7 +11,7 @@ use crate::slide::{Acceleration, Params, Rule, Sliding, read_params, write_param
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 use crate::whole::host::Host;
-use crate::whole::stage::{Judged, Period, PeriodRule, Stage, Worked};
+use crate::whole::stage::{Judgment, Period, PeriodRule, Stage, Worked};
 
 /// Number of sweeps in a period. With two sweeps, a run takes more periods and as many sweeps; with four, more sweeps.
 const SWEEPS: u32 = 3;
@@ -129,7 +129,7 @@ impl Stage for SlideStage<'_> {
         Ok(worked)
     }
 
-    fn judge(&mut self, period: &Period) -> Judged {
+    fn judge(&mut self, period: &Period) -> Judgment {
         self.rule.judge(period)
     }
 

@@ -35,7 +35,7 @@ pub(crate) trait Stage: Send + Sync {
     fn follow(&mut self, _host: &mut Host<'_>) {}
 
     /// Decides whether the run ends. The driver asks only the last stage of a run.
-    fn judge(&mut self, period: &Period) -> Judged;
+    fn judge(&mut self, period: &Period) -> Judgment;
 
     /// Writes the state of the stage between two periods to a checkpoint.
     fn save(&self, out: &mut Writer);
@@ -71,7 +71,7 @@ pub(crate) struct Period {
 }
 
 /// A decision after a period.
-pub(crate) struct Judged {
+pub(crate) struct Judgment {
     /// Reason why the run ends. `None` if the run continues.
     pub(crate) stop: Option<Stop>,
     /// Estimated remaining gain as a share of f. `None` without an estimate.
@@ -104,7 +104,7 @@ impl PeriodRule {
         Some(())
     }
 
-    pub(crate) fn judge(&mut self, period: &Period) -> Judged {
+    pub(crate) fn judge(&mut self, period: &Period) -> Judgment {
         self.f.push(period.f[1]);
         let judged = self.rule.judge(&self.f, self.f.len() - 1, 1);
         let agrees = judged.is_some() && period.is_settled;
@@ -114,6 +114,6 @@ impl PeriodRule {
             Some(_) if self.estimates >= ESTIMATES => judged,
             _ => period.is_last.then_some(Stop::MaxSweeps),
         };
-        Judged { stop, remaining: self.rule.remaining(&self.f, 1) }
+        Judgment { stop, remaining: self.rule.remaining(&self.f, 1) }
     }
 }

@@ -10,12 +10,12 @@ use crate::run::records::{Reader, Writer};
 use crate::run::{NOISE, Stop};
 use crate::targets::TargetField;
 use crate::whole::host::Host;
-use crate::whole::stage::{Judged, Period, Stage, Worked};
+use crate::whole::stage::{Judgment, Period, Stage, Worked};
 
 /// Number of sweeps in a period.
 const SWEEPS: u32 = 5;
 /// Largest number of times that the stage halves the move of a period, until f falls.
-const HALVED: u32 = 4;
+const MAX_HALVINGS: u32 = 4;
 /// Number of consecutive periods with remaining gains within the tolerance, after which a run ends.
 const SETTLED: u32 = 2;
 /// Largest ratio of the gains of two successive periods that an estimate of the remaining gain assumes.
@@ -84,7 +84,7 @@ impl Stage for TargetFieldStage<'_> {
     }
 
     /// Moves the vertices to their swept positions, and evaluates the targets there. Halves the move until f falls by
-    /// the new targets and no triangle is inverted. After [`HALVED`] halvings without success, the vertices return to
+    /// the new targets and no triangle is inverted. After [`MAX_HALVINGS`] halvings without success, the vertices return to
     /// their former positions.
     fn work(
         &mut self,
@@ -94,7 +94,7 @@ impl Stage for TargetFieldStage<'_> {
         let to = std::mem::take(&mut host.positions);
         let mut share = 1.0;
         self.has_moved = false;
-        for _ in 0..=HALVED {
+        for _ in 0..=MAX_HALVINGS {
             let way = host.before.iter().zip(&to);
             // With a share of 1, the positions equal the given positions exactly.
             let there: Vec<DVec2> = match share == 1.0 {
@@ -116,7 +116,7 @@ impl Stage for TargetFieldStage<'_> {
         Ok(Worked { is_settled: true, has_moved_free: false })
     }
 
-    fn judge(&mut self, period: &Period) -> Judged {
+    fn judge(&mut self, period: &Period) -> Judgment {
         let [before, last] = period.f;
         let gain = before - last;
         let share = match self.gained {
@@ -131,7 +131,7 @@ impl Stage for TargetFieldStage<'_> {
             true => Some(Stop::Converged),
             false => period.is_last.then_some(Stop::MaxSweeps),
         };
-        Judged { stop, remaining: Some(to_come).filter(|left| left.is_finite()) }
+        Judgment { stop, remaining: Some(to_come).filter(|left| left.is_finite()) }
     }
 
     fn save(&self, out: &mut Writer) {

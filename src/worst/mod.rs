@@ -7,5 +7,5 @@ mod regions;
 mod stage;
 
 pub(crate) use badness::Badness;
-pub(crate) use region::Rules;
+pub(crate) use region::MoveConstraints;
 pub(crate) use stage::{improve, stuck, worst_movable};

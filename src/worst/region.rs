@@ -22,7 +22,7 @@ const SETTLED: f64 = 1e-3;
 const RELAXING: u32 = 10;
 
 /// Bounds that every trial position of a vertex must keep, and the measure of the worst triangles.
-pub(crate) struct Rules<'a> {
+pub(crate) struct MoveConstraints<'a> {
     pub(crate) badness: Badness,
     /// The step of the run: metric and exponent that vertices lower to regain f.
     pub(crate) step: Step,
@@ -35,7 +35,7 @@ pub(crate) struct Rules<'a> {
 }
 
 /// A triangle at a vertex: the other two corners, counter-clockwise, and the target map of the triangle.
-struct Side {
+struct PatchTriangle {
     ends: [u32; 2],
     map: Option<TargetMap<f64>>,
 }
@@ -43,11 +43,11 @@ struct Side {
 /// Free vertices that move together, with the triangles around each. Indices within the region begin with the moving
 /// vertices, and their fixed neighbors follow.
 pub(crate) struct Region<'a> {
-    rules: &'a Rules<'a>,
+    rules: &'a MoveConstraints<'a>,
     /// Indices of the moving vertices in the problem.
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
-    stars: Vec<Vec<Side>>,
+    stars: Vec<Vec<PatchTriangle>>,
     /// For each moving vertex, the circle that limits its position.
     bounds: Vec<Circle>,
     mean_area: f64,
@@ -56,7 +56,7 @@ pub(crate) struct Region<'a> {
 impl<'a> Region<'a> {
     pub(crate) fn new(
         problem: &Problem,
-        rules: &'a Rules<'a>,
+        rules: &'a MoveConstraints<'a>,
         positions: &[DVec2],
         vertices: Vec<u32>,
     ) -> Self {
@@ -73,7 +73,7 @@ impl<'a> Region<'a> {
                         places.len() as u32 - 1
                     })
                 });
-                Side { ends, map: problem.target_map(&[v, a, b]) }
+                PatchTriangle { ends, map: problem.target_map(&[v, a, b]) }
             };
             stars.push(ring.iter().zip(next).map(side).collect());
         }
@@ -123,7 +123,7 @@ impl<'a> Region<'a> {
 
     /// Returns the triangles around a vertex, with the positions of their corners.
     fn patch(&self, v: usize) -> FanPatch {
-        let corner = |side: &Side| FanCorner {
+        let corner = |side: &PatchTriangle| FanCorner {
             ends: side.ends.map(|end| self.positions[end as usize]),
             map: side.map,
         };
@@ -214,7 +214,7 @@ impl Objective<f64> for PowerObjective<'_> {
 struct Constrained<'a> {
     objective: &'a dyn Objective<f64>,
     patch: &'a FanPatch,
-    rules: &'a Rules<'a>,
+    rules: &'a MoveConstraints<'a>,
     bound: Circle,
     /// Largest badness that a triangle around the vertex may have; infinite for no limit.
     limit: f64,

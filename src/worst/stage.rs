@@ -6,7 +6,7 @@ use crate::layout::Problem;
 use crate::parallel::{collect, map_parts};
 use crate::patch::FanCorner;
 use crate::worst::badness::Badness;
-use crate::worst::region::{Region, Rules};
+use crate::worst::region::{MoveConstraints, Region};
 use crate::worst::regions::around;
 
 /// Number of triangles of the mesh for each triangle that a pass improves. The worst triangles with a free vertex come
@@ -15,7 +15,7 @@ const SHARE: usize = 1000;
 /// Smallest number of triangles that a pass improves.
 const FEWEST: usize = 10;
 /// Largest number of triangles that a pass improves, so that the stage takes only seconds on the largest meshes.
-const MOST: usize = 1000;
+const MAX_WORST: usize = 1000;
 /// Number of rings of vertices around the worst triangles that move too. With three rings, the worst triangle improves
 /// no further, and f rises more.
 const RINGS: u32 = 2;
@@ -23,10 +23,10 @@ const RINGS: u32 = 2;
 const PASSES: u32 = 10;
 /// Relative drop of the worst badness below which no further pass follows. The inverse mean ratio drops by half this
 /// share, as badness is its square.
-const LEAST_GAIN: f64 = 0.01;
+const MIN_GAIN: f64 = 0.01;
 /// Relative drop of the worst badness below which a pass is undone and the stage ends. For the first pass, 2e-3 is a
 /// thousandth of the measure, whose square is the badness. For later passes, 1e-9 excludes gains by rounding.
-const LEAST_KEPT: [f64; 2] = [2e-3, 1e-9];
+const MIN_KEPT: [f64; 2] = [2e-3, 1e-9];
 
 /// Returns the largest badness among triangles with a free vertex.
 pub(crate) fn worst_movable(problem: &Problem, badness: Badness, positions: &[DVec2]) -> f64 {
@@ -70,13 +70,13 @@ fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
 /// the number of vertices that moved.
 pub(crate) fn improve(
     problem: &Problem,
-    rules: &Rules<'_>,
+    rules: &MoveConstraints<'_>,
     positions: &mut [DVec2],
     mut goes_on: impl FnMut(&[DVec2]) -> bool,
 ) -> usize {
     let free = problem.free_count() as u32;
     let mut has_moved = vec![false; free as usize];
-    let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MOST);
+    let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MAX_WORST);
     let mut badness = all(problem, rules.badness, positions);
     let mut worst = worst_of(problem, &badness);
     for pass in 0..PASSES {
@@ -102,7 +102,7 @@ pub(crate) fn improve(
         moves.iter().for_each(|&(v, to)| positions[v as usize] = to);
         badness = all(problem, rules.badness, positions);
         let last = std::mem::replace(&mut worst, worst_of(problem, &badness));
-        let least = LEAST_KEPT[usize::from(pass > 0)];
+        let least = MIN_KEPT[usize::from(pass > 0)];
         let is_kept = worst < last * (1.0 - least);
         if !is_kept {
             moves.iter().zip(from).for_each(|(&(v, _), from)| positions[v as usize] = from);
@@ -111,7 +111,7 @@ pub(crate) fn improve(
         for (&(v, to), from) in moves.iter().zip(from) {
             has_moved[v as usize] |= from != to;
         }
-        let is_better = worst < last * (1.0 - LEAST_GAIN);
+        let is_better = worst < last * (1.0 - MIN_GAIN);
         if !is_better {
             break;
         }

@@ -22,7 +22,7 @@ fn a_sweep_by_differences_is_a_little_off() {
             let plan = Plan {
                 scheme: metric.into(),
                 omega: [1.0; Metric::ALL.len()],
-                plain_sweeps: 0,
+                unrelaxed_sweeps: 0,
                 inner: 1,
                 derivatives: [derivatives; Metric::ALL.len()],
                 sharpness: PNormExponent::FIXED,

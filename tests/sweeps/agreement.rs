@@ -39,8 +39,8 @@ fn mild() -> Problem {
 fn one_sweep_is_the_same_on_both_engines() {
     let problem = mild();
     for &metric in Metric::ALL {
-        for plain_sweeps in [0, 4] {
-            let plan = Plan { plain_sweeps, ..plan(metric.into(), 1) };
+        for unrelaxed_sweeps in [0, 4] {
+            let plan = Plan { unrelaxed_sweeps, ..plan(metric.into(), 1) };
             let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan.clone(), plan]);
             // In single precision, a step is accurate to 1e-6 of its length; bad shapes and the p-norm of EDGE amplify
             // the error. f is a mean, in which most of the error cancels.
@@ -76,7 +76,7 @@ fn a_penalty_keeps_edge_off_the_shape_guard_on_both_engines_alike() {
 fn every_sweep_of_a_run_is_the_same_on_both_engines() {
     let problem = mild();
     let sharpness = PNormExponent { first: 1, every: 3, last: 4 };
-    let own = |name: &str| Plan { sharpness, plain_sweeps: 3, ..plan(scheme(name), 12) };
+    let own = |name: &str| Plan { sharpness, unrelaxed_sweeps: 3, ..plan(scheme(name), 12) };
     let twice = Plan { inner: 2, ..own("imr") };
     let settled = Plan { inner: 50, ..own("imr") };
     for plan in [own("imr"), own("rms"), own("edge"), own("edge+imr+imr"), twice, settled] {
@@ -138,7 +138,7 @@ fn the_comparison_of_sweeps_fails_for_a_slightly_different_sweep() {
     let problem = mild();
     for &metric in Metric::ALL {
         let plan =
-            Plan { plain_sweeps: 0, omega: [1.0; Metric::ALL.len()], ..plan(metric.into(), 1) };
+            Plan { unrelaxed_sweeps: 0, omega: [1.0; Metric::ALL.len()], ..plan(metric.into(), 1) };
         let longer = Plan { omega: [1.05; Metric::ALL.len()], ..plan.clone() };
         let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan, longer]);
         assert!((gpu / cpu - 1.0).abs() > 1e-5 && moved_apart > 1e-2, "{metric}: {moved_apart:e}");

@@ -85,8 +85,8 @@ fn the_least_altitude_is_kept_where_vertices_slide() {
         let [before, after] = altitudes(&kept.points);
         assert!(after >= before, "{label}: {before} {after}");
         assert!(kept.slid.unwrap().moved > 20, "{label}: {:?}", kept.slid);
-        let astray = slide.astray(smoother.topology(), &mesh.points, &kept.points, stored);
-        assert_eq!(astray, [], "{label}");
+        let misplaced = slide.misplaced(smoother.topology(), &mesh.points, &kept.points, stored);
+        assert_eq!(misplaced, [], "{label}");
         let f = history(&kept, Metric::Imr);
         assert!(f[f.len() - 1] < f[0], "{label}: {f:?}");
         let bad = topology::infeasible(&kept.points, smoother.topology().triangles()).unwrap();

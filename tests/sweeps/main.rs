@@ -120,7 +120,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
             .collect::<Vec<_>>()
             .try_into()
             .unwrap(),
-        plain_sweeps: 4,
+        unrelaxed_sweeps: 4,
         inner: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
         sharpness: PNormExponent::FIXED,

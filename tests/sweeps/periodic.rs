@@ -112,15 +112,16 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
         assert!(f(&outcome.points) < f(&held.points) - 1e-3, "{label}");
         let bad = topology::infeasible(&outcome.points, smoother.topology().triangles()).unwrap();
         assert!(bad.is_empty(), "{label}");
-        let astray =
-            |points: &[[f64; 2]]| slide.astray(&topology, &mesh.points, points, Precision::Double);
-        assert!(astray(&outcome.points).is_empty(), "{label}");
+        let misplaced = |points: &[[f64; 2]]| {
+            slide.misplaced(&topology, &mesh.points, points, Precision::Double)
+        };
+        assert!(misplaced(&outcome.points).is_empty(), "{label}");
         // First, one vertex of a pair has moved on alone; then one has moved back alone.
         let mut spoiled = outcome.points.clone();
         spoiled[at(2, 0) as usize][1] += 1e-4;
-        assert_eq!(astray(&spoiled), [at(2, 0), at(2, COLUMNS)], "{label}");
+        assert_eq!(misplaced(&spoiled), [at(2, 0), at(2, COLUMNS)], "{label}");
         spoiled[at(2, 0) as usize] = mesh.points[at(2, 0) as usize];
-        assert_eq!(astray(&spoiled), [at(2, COLUMNS)], "{label}");
+        assert_eq!(misplaced(&spoiled), [at(2, COLUMNS)], "{label}");
         // If one vertex of a pair is reset, its partner is reset too.
         let mut points = outcome.points.clone();
         points[at(2, 0) as usize] = mesh.points[at(2, 0) as usize];
@@ -170,7 +171,7 @@ fn partners_of_a_rotation_slide_together_along_curved_sides() {
         let moved = |&[a, _]: &[u32; 2]| mesh.points[a as usize] != outcome.points[a as usize];
         assert_eq!(sides().iter().filter(|pair| moved(pair)).count(), inner);
         assert!(
-            slide.astray(&topology, &mesh.points, &outcome.points, Precision::Double).is_empty()
+            slide.misplaced(&topology, &mesh.points, &outcome.points, Precision::Double).is_empty()
         );
         results.push(smoother.f(Metric::Imr, &outcome.points).unwrap());
     }

@@ -90,18 +90,19 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
         let slid = outcome.slid.unwrap();
         assert!(count > 50 && slid.vertices == count && slid.moved > count / 2, "{slid:?}");
         assert!(slid.off > 0.0 && slid.off < 0.02 && slid.area.abs() < 1e-2, "{slid:?}");
-        let astray =
-            |points: &[[f64; 2]]| slide.astray(&topology, &mesh.points, points, Precision::Double);
-        assert!(astray(&outcome.points).is_empty(), "{metric}");
+        let misplaced = |points: &[[f64; 2]]| {
+            slide.misplaced(&topology, &mesh.points, points, Precision::Double)
+        };
+        assert!(misplaced(&outcome.points).is_empty(), "{metric}");
         for &v in &held {
             assert_eq!(mesh.points[v as usize], outcome.points[v as usize]);
         }
-        // `astray` finds vertices off their line or past their neighbors.
+        // `misplaced` finds vertices off their line or past their neighbors.
         let moved = |v: &usize| !topology.free()[*v] && mesh.points[*v] != outcome.points[*v];
         let v = (0..mesh.points.len()).find(moved).unwrap();
         let mut spoiled = outcome.points.clone();
         spoiled[v] = spoiled[v].map(|x| x + 1e-3);
-        assert_eq!(astray(&spoiled), [v as u32]);
+        assert_eq!(misplaced(&spoiled), [v as u32]);
         if metric == Metric::Imr {
             let f = |points| smoother.f(metric, points).unwrap();
             assert!(f(&outcome.points) < f(&still.points) - 1e-3);

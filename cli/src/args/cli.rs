@@ -9,7 +9,7 @@ use mesh_io::{Conversion, Format};
 
 use crate::args::names;
 use crate::args::{
-    BenchArgs, MoveArgs, QualityArgs, ReadArgs, RidingArgs, SlideArgs, SmoothArgs, SurfaceArgs,
+    BenchArgs, FieldArgs, MoveArgs, QualityArgs, ReadArgs, SlideArgs, SmoothArgs, SurfaceArgs,
 };
 
 /// Smooths a 2D triangle mesh: moves interior vertices until element quality is optimal, and never inverts a triangle.
@@ -146,7 +146,7 @@ pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
-    pub(crate) riding: RidingArgs,
+    pub(crate) riding: FieldArgs,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
 }

@@ -20,7 +20,7 @@ pub(crate) use cli::{
     AdaptersArgs, Cli, Command, CompareArgs, CompletionsArgs, ConvertArgs, GroupsArgs, LogForm,
     ManArgs, OutputArgs,
 };
-pub(crate) use fields::RidingArgs;
+pub(crate) use fields::FieldArgs;
 pub(crate) use movable::MoveArgs;
 pub(crate) use parse::Desired;
 pub(crate) use picture::PictureArgs;
@@ -30,6 +30,6 @@ pub(crate) use sliding::SlideArgs;
 pub(crate) use smooth::{
     DerivativesChoice, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice, SmoothArgs,
 };
-pub(crate) use surface::{OnSurface, SurfaceArgs};
+pub(crate) use surface::{SurfaceArg, SurfaceArgs};
 pub(crate) use target::{Owner, Target, TargetArgs};
 pub(crate) use worst::{WorstArgs, WorstChoice};

@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 use gpu_smooth::Scheme;
 
 use crate::args::{
-    Desired, MoveArgs, PictureArgs, ReadArgs, RidingArgs, SlideArgs, TargetArgs, WorstArgs,
+    Desired, FieldArgs, MoveArgs, PictureArgs, ReadArgs, SlideArgs, TargetArgs, WorstArgs,
 };
 use crate::args::{names, parse};
 
@@ -143,7 +143,7 @@ pub(crate) struct SmoothArgs {
     pub(crate) keep_altitude: bool,
 
     #[command(flatten)]
-    pub(crate) riding: RidingArgs,
+    pub(crate) riding: FieldArgs,
 
     /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
     #[arg(long, help_heading = "Untangling")]

@@ -14,11 +14,11 @@ pub(crate) struct SurfaceArgs {
         value_name = "SURFACE",
         help_heading = "Target elements"
     )]
-    pub(crate) surface: OnSurface,
+    pub(crate) surface: SurfaceArg,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OnSurface {
+pub(crate) enum SurfaceArg {
     Plane,
     Sphere,
 }

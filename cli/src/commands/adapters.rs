@@ -4,7 +4,7 @@ use gpu_smooth::{GpuError, gpu::AdapterSummary};
 
 use crate::args::AdaptersArgs;
 use crate::error::CliError;
-use crate::run::driver_probe::{self, Tried};
+use crate::run::driver_probe::{self, Trial};
 use crate::run::engine::{self, INSTALL};
 use crate::terminal::tell::{self, say};
 
@@ -14,7 +14,7 @@ pub(crate) fn run(args: &AdaptersArgs) -> Result<(), CliError> {
         say(&line(gpu.adapter(), Ok(())));
         return Ok(());
     }
-    driver_probe::drivers(Tried::All).map_err(engine::refusal)?;
+    driver_probe::drivers(Trial::All).map_err(engine::refusal)?;
     let adapters = gpu_smooth::gpu::checked_adapters();
     if adapters.is_empty() {
         say(&format!("no GPU adapter was found. {INSTALL}"));

@@ -7,7 +7,7 @@ use gpu_smooth::{Topology, interpolate::Interpolation};
 use mesh_io::PointField;
 
 /// The fields of vertex data that are interpolated at new positions.
-pub(crate) struct Riding {
+pub(crate) struct InterpolatedFields {
     /// The fields named by the user, then dependents: parameters of vertices on surfaces of a model, and centers of
     /// elements.
     fields: Vec<PointField>,
@@ -22,9 +22,14 @@ pub(crate) struct Riding {
 
 impl FieldsRequest {
     /// Finds the fields of a file that `--interpolate` names.
-    pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<Riding, CliError> {
+    pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<InterpolatedFields, CliError> {
         if self.names.is_empty() {
-            return Ok(Riding { fields: Vec::new(), data: 0, asked: false, all: false });
+            return Ok(InterpolatedFields {
+                fields: Vec::new(),
+                data: 0,
+                asked: false,
+                all: false,
+            });
         }
         // A field's name may contain commas.
         let split = |text: &String| match file.source.data_names().contains(text) {
@@ -42,11 +47,11 @@ impl FieldsRequest {
                 field.values().iter().any(|value| Some(value) != first)
             });
         }
-        Ok(Riding { data: fields.len(), fields, asked: true, all })
+        Ok(InterpolatedFields { data: fields.len(), fields, asked: true, all })
     }
 }
 
-impl Riding {
+impl InterpolatedFields {
     pub(crate) fn fields(&self) -> &[PointField] {
         &self.fields
     }
@@ -68,7 +73,7 @@ impl Riding {
     }
 
     /// Returns the remark on fields that are not interpolated; `None` if there are none.
-    pub(crate) fn left_behind(&self, file: &LoadedMesh) -> Option<String> {
+    pub(crate) fn omission_remark(&self, file: &LoadedMesh) -> Option<String> {
         if self.all {
             return None;
         }
@@ -137,7 +142,7 @@ impl Riding {
 
     /// Interpolates the fields at the new points. Returns a remark on the result; `None` without fields and without
     /// `--interpolate`.
-    pub(crate) fn carry(
+    pub(crate) fn interpolate(
         &mut self,
         file: &LoadedMesh,
         topology: &Topology<'_>,
@@ -175,10 +180,10 @@ impl Riding {
     }
 }
 
-impl Riding {
+impl InterpolatedFields {
     /// Lists implausible values in the fields of another file. Values must keep their bits at vertices that have not
     /// moved, and lie within the range of this file's values elsewhere. `moved` is ascending.
-    pub(crate) fn implausible(&self, other: &Riding, moved: &[u32]) -> Vec<String> {
+    pub(crate) fn implausible(&self, other: &InterpolatedFields, moved: &[u32]) -> Vec<String> {
         let mut problems = Vec::new();
         if self.data != other.data {
             problems.push("it does not have the same data of vertices".to_owned());

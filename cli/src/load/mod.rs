@@ -11,7 +11,7 @@ pub(crate) mod streams;
 mod surface;
 mod targets;
 
-pub(crate) use fields::Riding;
+pub(crate) use fields::InterpolatedFields;
 pub(crate) use mesh::LoadedMesh;
-pub(crate) use movable::Choice;
+pub(crate) use movable::MovableSelection;
 pub(crate) use surface::{as_in_file, lay_out};

@@ -7,11 +7,11 @@ use mesh_io::{Group, Groups};
 
 use crate::load::explain;
 use crate::request::{MovableRequest, NearBad};
-use crate::terminal::numbers::six;
+use crate::terminal::numbers::sig6;
 
 /// The effect on a mesh of the options that select movable vertices.
 #[derive(Default)]
-pub(crate) struct Choice {
+pub(crate) struct MovableSelection {
     /// A line for each option, with the number of vertices that the option fixes or frees.
     pub(crate) notes: Vec<String>,
     /// Number of vertices that could move without `--fix…` and `--only…`; 0 if the command line has neither.
@@ -34,16 +34,16 @@ impl MovableRequest {
     }
 
     /// Frees and fixes the vertices of a mesh as requested.
-    pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<Choice, CliError> {
+    pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<MovableSelection, CliError> {
         if self.free_interfaces {
             file.free_interfaces();
         }
-        let mut choice = Choice::default();
+        let mut choice = MovableSelection::default();
         choice.notes.extend(self.free_interfaces.then(|| held_interfaces(file)).flatten());
         if !self.restricts() {
             return Ok(choice);
         }
-        let chooser = Chooser::new(file)?;
+        let chooser = SelectionResolver::new(file)?;
         choice.free_without = chooser.topology.free_count();
         let fixed = chooser.fixed(self, &mut choice)?;
         let movers = chooser.movers(self, &mut choice)?;
@@ -55,7 +55,7 @@ impl MovableRequest {
     }
 }
 
-impl Choice {
+impl MovableSelection {
     /// Returns the error for options that leave no free vertex; `None` if another cause or another error is at hand.
     pub(crate) fn nothing_free(&self, file: &LoadedMesh, error: &MeshError) -> Option<CliError> {
         let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
@@ -81,12 +81,12 @@ fn held_interfaces(file: &LoadedMesh) -> Option<String> {
 }
 
 /// Resolver of the names and numbers in options to vertices of a mesh.
-struct Chooser<'f> {
+struct SelectionResolver<'f> {
     file: &'f LoadedMesh,
     topology: Topology<'f>,
 }
 
-impl<'f> Chooser<'f> {
+impl<'f> SelectionResolver<'f> {
     fn new(file: &'f LoadedMesh) -> Result<Self, CliError> {
         let topology =
             Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
@@ -99,7 +99,11 @@ impl<'f> Chooser<'f> {
     }
 
     /// Returns the vertices that options fix, and adds a note for each option.
-    fn fixed(&self, request: &MovableRequest, choice: &mut Choice) -> Result<Vec<u32>, CliError> {
+    fn fixed(
+        &self,
+        request: &MovableRequest,
+        choice: &mut MovableSelection,
+    ) -> Result<Vec<u32>, CliError> {
         let file = self.file;
         let mut fixed = Vec::new();
         let mut hold = |option: String, mut vertices: Vec<u32>| {
@@ -142,7 +146,7 @@ impl<'f> Chooser<'f> {
     fn movers(
         &self,
         request: &MovableRequest,
-        choice: &mut Choice,
+        choice: &mut MovableSelection,
     ) -> Result<Vec<Vec<u32>>, CliError> {
         let mut lists = Vec::new();
         let of_all = self.topology.free_count();
@@ -167,7 +171,7 @@ impl<'f> Chooser<'f> {
             let points = &self.file.mesh().points;
             let bad = select::triangles_above(points, &self.topology, limit);
             if bad.is_empty() {
-                let worst = six(select::worst(points, &self.topology));
+                let worst = sig6(select::worst(points, &self.topology));
                 let text = format!("no triangle has an imr above {limit}; the worst has {worst}");
                 choice.nothing_to_do = Some(text);
                 return Ok(lists);

@@ -7,7 +7,7 @@ use crate::load::LoadedMesh;
 /// Returns the remarks on a mesh, one line each. If `slides` is true, no remark says that vertices between regions stay
 /// fixed.
 pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
-    let mut remarks: Vec<String> = file.source.remarks().iter().map(worded).collect();
+    let mut remarks: Vec<String> = file.source.remarks().iter().map(with_effect).collect();
     match file.interface_vertices().len() {
         0 => {}
         _ if slides => {}
@@ -22,7 +22,7 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
 }
 
 /// Adds to a remark of the file how a run treats the affected vertices.
-fn worded(remark: &Remark) -> String {
+fn with_effect(remark: &Remark) -> String {
     match remark {
         Remark::OtherElements { count, .. } => {
             let their = if *count == 1 { "its" } else { "their" };

@@ -8,13 +8,13 @@ use gpu_smooth::{
     Mesh, MeshError, Smoother, TargetField, Targets,
     interpolate::Chart,
     precision::Precision,
-    targets::{Outside, Surface},
+    targets::{OutsideReport, Surface},
 };
 use mesh_io::{GmshView, MeditSolution, MeshFile, ReadError};
 
 use crate::load::{explain, lay_out};
 use crate::request::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};
-use crate::terminal::numbers::six;
+use crate::terminal::numbers::sig6;
 
 impl TargetRequest {
     /// Sets the targets of a smoother, for vertices at `points` on a surface. Returns a remark on vertices outside of
@@ -168,8 +168,8 @@ fn field_of_view(path: &Path, surface: Surface) -> Result<TargetField, CliError>
 }
 
 /// Returns the remark on vertices outside of a background; `None` if all vertices are inside.
-fn remark(background: &Path, outside: Outside) -> Option<String> {
-    let Outside { count, most } = outside;
+fn remark(background: &Path, outside: OutsideReport) -> Option<String> {
+    let OutsideReport { count, most } = outside;
     let vertices = match count {
         0 => return None,
         1 => "1 vertex is".to_owned(),
@@ -178,7 +178,7 @@ fn remark(background: &Path, outside: Outside) -> Option<String> {
     Some(format!(
         "{vertices} outside of {}, by up to {}: the target of the nearest point in it is taken there",
         background.display(),
-        six(most)
+        sig6(most)
     ))
 }
 

@@ -3,7 +3,7 @@
 use gpu_smooth::outcome::Improved;
 use serde::Serialize;
 
-use crate::terminal::numbers::six;
+use crate::terminal::numbers::sig6;
 
 /// Smallest relative change of the worst value that the report mentions.
 const TO_SPEAK_OF: f64 = 1e-3;
@@ -40,7 +40,7 @@ impl ImprovedReport {
         };
         let shown = |x: f64| match *measure {
             "min-angle" => format!("{x:.2}°"),
-            _ => six(x),
+            _ => sig6(x),
         };
         let mut text = match vertices {
             0 => {

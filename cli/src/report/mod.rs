@@ -16,4 +16,4 @@ pub(crate) use run::{
     Report, Seconds, SlideReport, UntangleReport, history,
 };
 pub(crate) use target::TargetReport;
-pub(crate) use task::{Done, Failure, Task};
+pub(crate) use task::{Done, Failure, SmoothJob};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use gpu_smooth::{
     Metric, Outcome, Quality, Scheme,
-    measure::{Change, Spread},
+    measure::{Change, Distribution},
     outcome::Slid,
 };
 use serde::Serialize;
@@ -118,24 +118,24 @@ pub(crate) struct MeshReport {
 #[derive(Serialize)]
 pub(crate) struct ChangeReport {
     /// Distances in lengths of an edge at the vertex.
-    pub(crate) moved: SpreadReport,
+    pub(crate) moved: DistributionReport,
     /// Factors by which element sizes grew or shrank, at least 1.
-    pub(crate) size: SpreadReport,
+    pub(crate) size: DistributionReport,
     /// Smallest triangle altitude before and after, in units of the mesh.
     pub(crate) least_altitude: [f64; 2],
 }
 
 #[derive(Serialize)]
-pub(crate) struct SpreadReport {
+pub(crate) struct DistributionReport {
     pub(crate) median: f64,
     /// The 95th percentile: 19 of 20 vertices have values up to this one.
-    pub(crate) most_of_twenty: f64,
+    pub(crate) p95: f64,
     pub(crate) most: f64,
 }
 
-impl From<Spread> for SpreadReport {
-    fn from(Spread { median, most_of_twenty, most }: Spread) -> Self {
-        Self { median, most_of_twenty, most }
+impl From<Distribution> for DistributionReport {
+    fn from(Distribution { median, p95, most }: Distribution) -> Self {
+        Self { median, p95, most }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::report::{
     ChangeReport, FaultReport, MeshReport, Report, Seconds, SlideReport, TargetReport,
     UntangleReport,
 };
-use crate::terminal::numbers::{percent, six};
+use crate::terminal::numbers::{percent, sig6};
 
 /// The message of a run ended by a sweep whose objective was infinite or NaN.
 const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a mistake of this program or of the driver of the GPU; the mesh is of the last good state";
@@ -95,24 +95,24 @@ impl Report {
             metrics.push("imr");
         }
         if let Some(TargetReport { f: [before, after], .. }) = self.target {
-            row("f of targets", six(before), six(after));
+            row("f of targets", sig6(before), sig6(after));
             metrics = vec!["imr"];
         }
         for metric in metrics {
-            row(&format!("f {metric}"), six(self.before.f[metric]), six(self.after.f[metric]));
+            row(&format!("f {metric}"), sig6(self.before.f[metric]), sig6(self.after.f[metric]));
         }
         let angle = |a: f64| format!("{a:.2}°");
         row("min angle", angle(self.before.min_angle), angle(self.after.min_angle));
         row("max angle", angle(self.before.max_angle), angle(self.after.max_angle));
-        row("worst imr", six(self.before.worst_imr), six(self.after.worst_imr));
+        row("worst imr", sig6(self.before.worst_imr), sig6(self.after.worst_imr));
         // The value is 0 if no triangle has a free vertex.
         let movable = self.after.worst_movable_imr;
         if movable > 0.0 && movable < self.after.worst_imr {
             let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
-            row("  of movable", six(before), six(after));
+            row("  of movable", sig6(before), sig6(after));
         }
         let [before, after] = self.change.least_altitude;
-        row("min altitude", six(before), six(after));
+        row("min altitude", sig6(before), sig6(after));
         row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
         rows
     }
@@ -131,7 +131,7 @@ impl Report {
             true => "f is a mean, which may fall as one element gets worse; --guard worst does not let it".to_owned(),
             false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
         };
-        let (before, after) = (six(before), six(after));
+        let (before, after) = (sig6(before), sig6(after));
         Some(format!("worst imr rose from {before} to {after}: {remedy}"))
     }
 
@@ -147,17 +147,17 @@ impl Report {
         };
         // Sizes in a mesh of bad elements are hardly intended.
         let is_sound = self.before.f["imr"] < SOUND;
-        let keeps = match self.target.is_none() && is_sound && size.most_of_twenty > LARGE_CHANGE {
+        let keeps = match self.target.is_none() && is_sound && size.p95 > LARGE_CHANGE {
             true => "; --target keep-size keeps sizes",
             false => "",
         };
         format!(
             "vertices moved {:.2} edges (median), {:.2} (95 %), {:.2} (most); sizes around them changed by {}, {}, {}{keeps}",
             moved.median,
-            moved.most_of_twenty,
+            moved.p95,
             moved.most,
             percent(size.median),
-            percent(size.most_of_twenty),
+            percent(size.p95),
             percent(size.most),
         )
     }
@@ -223,7 +223,7 @@ impl Report {
         };
         let mut text = match (self.stop, &self.goal) {
             (stop, Some(goal)) => {
-                let desired = six(goal.desired);
+                let desired = sig6(goal.desired);
                 let went = match goal.best_fraction {
                     beyond if beyond > 1.0 => format!("beyond f = {desired}"),
                     share => format!("{} % of the way to f = {desired}", percent(share)),

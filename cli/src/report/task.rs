@@ -12,7 +12,7 @@ use crate::request::SmoothRequest;
 use crate::terminal::Verbosity;
 
 /// The task to smooth one mesh.
-pub(crate) struct Task<'a> {
+pub(crate) struct SmoothJob<'a> {
     pub(crate) request: &'a SmoothRequest,
     pub(crate) verbosity: Verbosity,
     pub(crate) input: &'a Path,

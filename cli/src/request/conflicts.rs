@@ -5,8 +5,8 @@ use mesh_io::Format;
 
 use crate::args::names;
 use crate::args::{
-    BenchArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, OnSurface, QualityArgs,
-    SmoothArgs, Target,
+    BenchArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, QualityArgs, SmoothArgs,
+    SurfaceArg, Target,
 };
 use crate::request::smooth::options;
 use crate::request::target::TargetRequest;
@@ -98,7 +98,7 @@ pub(super) const OF_CONVERT: &[Conflict<ConvertArgs>] =
 /// Returns the message for the first conflict in the library's table; `None` if the options of a run are valid.
 pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
     let targets = args.target.target != Target::Equilateral
-        || args.target.surface.surface == OnSurface::Sphere;
+        || args.target.surface.surface == SurfaceArg::Sphere;
     let more = Feature::present([
         (Feature::Slide, args.sliding.slide),
         (Feature::Targets, targets),

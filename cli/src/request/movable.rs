@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::args::{MoveArgs, RidingArgs, SlideArgs};
+use crate::args::{FieldArgs, MoveArgs, SlideArgs};
 
 /// The selection of vertices that may move. By default, vertices on constraints and between regions are fixed.
 pub(crate) struct MovableRequest {
@@ -64,8 +64,8 @@ pub(crate) struct FieldsRequest {
     pub(crate) names: Vec<String>,
 }
 
-impl From<RidingArgs> for FieldsRequest {
-    fn from(args: RidingArgs) -> Self {
+impl From<FieldArgs> for FieldsRequest {
+    fn from(args: FieldArgs) -> Self {
         Self { names: args.interpolate }
     }
 }

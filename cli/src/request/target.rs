@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use gpu_smooth::{Metric, targets::Surface};
 
-use crate::args::{OnSurface, Owner, SurfaceArgs, Target, TargetArgs};
+use crate::args::{Owner, SurfaceArg, SurfaceArgs, Target, TargetArgs};
 
 impl From<&SurfaceArgs> for Surface {
     fn from(args: &SurfaceArgs) -> Self {
         match args.surface {
-            OnSurface::Plane => Surface::Plane,
-            OnSurface::Sphere => Surface::Sphere,
+            SurfaceArg::Plane => Surface::Plane,
+            SurfaceArg::Sphere => Surface::Sphere,
         }
     }
 }

@@ -13,7 +13,7 @@ use mesh_io::atomic;
 use crate::error::CliError;
 use crate::request::{CheckpointPlan, is_checkpoint};
 use crate::run::engine;
-use crate::run::observer::Follow;
+use crate::run::observer::PipelineObserver;
 
 const WITHOUT_CONTINUE: &str = "Without --continue the run starts anew";
 
@@ -41,7 +41,7 @@ pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>
 pub(crate) struct CheckpointSaver<'a, 'f> {
     /// File and interval of checkpoints; `None` if none are saved.
     plan: Option<&'a CheckpointPlan>,
-    follow: &'a Mutex<&'f mut dyn Follow>,
+    follow: &'a Mutex<&'f mut dyn PipelineObserver>,
     /// Time of the next checkpoint; `None` if no checkpoint will be saved.
     due: Option<Instant>,
     /// Whether the file holds a checkpoint of this run.
@@ -52,7 +52,7 @@ pub(crate) struct CheckpointSaver<'a, 'f> {
 impl<'a, 'f> CheckpointSaver<'a, 'f> {
     pub(crate) fn new(
         plan: Option<&'a CheckpointPlan>,
-        follow: &'a Mutex<&'f mut dyn Follow>,
+        follow: &'a Mutex<&'f mut dyn PipelineObserver>,
     ) -> Self {
         let due = plan.and_then(|plan| Instant::now().checked_add(plan.every));
         Self { plan, follow, due, saved: Cell::new(false), told_of_fault: false }
@@ -125,7 +125,7 @@ mod tests {
     #[derive(Default)]
     struct Remarks(Vec<String>);
 
-    impl Follow for Remarks {
+    impl PipelineObserver for Remarks {
         fn stage(&mut self, _: Stage) {}
 
         fn has_read(&mut self, _: &LoadedMesh) -> Result<(), CliError> {
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn the_cpu_takes_over_once_from_a_failed_device_but_not_at_a_start_without_memory() {
         let mut remarks = Remarks::default();
-        let follow: Mutex<&mut dyn Follow> = Mutex::new(&mut remarks);
+        let follow: Mutex<&mut dyn PipelineObserver> = Mutex::new(&mut remarks);
         let mut kept = CheckpointSaver::new(None, &follow);
         assert!(!kept.falls_back_to_cpu(&GpuError::OutOfMemory("full".into()), 0));
         assert!(kept.falls_back_to_cpu(&GpuError::OutOfMemory("full".into()), 7));

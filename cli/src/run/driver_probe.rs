@@ -17,7 +17,7 @@ const MARK: &str = "GPU_SMOOTH_IS_TRIAL";
 
 /// The drivers of a trial.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Tried<'a> {
+pub(crate) enum Trial<'a> {
     /// The drivers of all adapters.
     All,
     /// The driver of the adapter that [`gpu_smooth::Gpu::open`] opens for this name.
@@ -29,16 +29,16 @@ pub(crate) enum Tried<'a> {
 ///
 /// # Errors
 /// Returns [`GpuError::Crashed`] if a driver ended the child process, or did not answer in time.
-pub(crate) fn drivers(tried: Tried<'_>) -> Result<(), GpuError> {
+pub(crate) fn drivers(tried: Trial<'_>) -> Result<(), GpuError> {
     static KNOWN: Mutex<BTreeMap<Option<String>, Result<(), GpuError>>> =
         Mutex::new(BTreeMap::new());
     if std::env::var_os(MARK).is_some() {
         return Ok(());
     }
     let name = match tried {
-        Tried::All => None,
+        Trial::All => None,
         // An empty name matches every adapter, so it denotes the first one.
-        Tried::Adapter(name) => Some(name.unwrap_or_default().to_owned()),
+        Trial::Adapter(name) => Some(name.unwrap_or_default().to_owned()),
     };
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let found = known

@@ -8,21 +8,21 @@ use gpu_smooth::{
 
 use crate::error::CliError;
 use crate::request::{EngineRequest, SmoothRequest};
-use crate::run::driver_probe::{self, Tried};
+use crate::run::driver_probe::{self, Trial};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
 
 /// An open engine. `reason` explains an automatic choice; `None` if the command line determined the engine.
 #[derive(Clone)]
-pub(crate) struct Taken {
+pub(crate) struct OpenEngine {
     pub(crate) backend: Arc<Backend>,
     pub(crate) reason: Option<String>,
     /// Lock that the runs on a shared device hold in turn; `None` for engines without turns.
     turn: Option<Arc<Mutex<()>>>,
 }
 
-impl Taken {
+impl OpenEngine {
     pub(crate) fn new(backend: Backend, reason: Option<String>) -> Self {
         Self { backend: Arc::new(backend), reason, turn: None }
     }
@@ -34,38 +34,38 @@ impl Taken {
 }
 
 /// Opens the requested engine; `None` if the size of the mesh is to determine the engine.
-pub(crate) fn open(engine: &EngineRequest) -> Result<Option<Taken>, CliError> {
+pub(crate) fn open(engine: &EngineRequest) -> Result<Option<OpenEngine>, CliError> {
     let backend = match engine {
         EngineRequest::Auto => return Ok(None),
         EngineRequest::Cpu => Backend::Cpu,
         EngineRequest::Gpu { adapter } => Backend::Gpu(open_adapter(adapter.as_deref())?),
     };
-    Ok(Some(Taken::new(backend, None)))
+    Ok(Some(OpenEngine::new(backend, None)))
 }
 
 /// Chooses an engine for a mesh by its size, and opens the engine.
-pub(crate) fn choose(request: &SmoothRequest, size: MeshSize) -> Taken {
+pub(crate) fn choose(request: &SmoothRequest, size: MeshSize) -> OpenEngine {
     let options = request.options(Precision::Double);
     let (backend, reason) = Backend::auto_tried(size, &options, try_best);
-    Taken::new(backend, Some(worded(&reason)))
+    OpenEngine::new(backend, Some(describe(&reason)))
 }
 
 /// Opens the engine of a checkpoint's last sweep, or the CPU if that engine fails to open.
-pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> Taken {
+pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> OpenEngine {
     let Some(name) = checkpoint.adapter() else {
-        return Taken::new(Backend::Cpu, Some("where the run was left".into()));
+        return OpenEngine::new(Backend::Cpu, Some("where the run was left".into()));
     };
     match tried_and_opened(Some(name)) {
-        Ok(gpu) => Taken::new(Backend::Gpu(gpu), Some("where the run was left".into())),
+        Ok(gpu) => OpenEngine::new(Backend::Gpu(gpu), Some("where the run was left".into())),
         Err(error) => {
             let reason = format!("the run was last on {name}, which cannot be opened: {error}");
-            Taken::new(Backend::Cpu, Some(reason))
+            OpenEngine::new(Backend::Cpu, Some(reason))
         }
     }
 }
 
 /// Describes the reason of a choice, with the option that overrides the choice.
-fn worded(reason: &Reason) -> String {
+fn describe(reason: &Reason) -> String {
     match reason {
         Reason::GpuFails(_) => reason.to_string(),
         Reason::GpuIsFaster { .. } => format!("{reason}; --engine cpu to use the CPU"),
@@ -77,19 +77,19 @@ fn worded(reason: &Reason) -> String {
 pub(crate) struct Engines<'a> {
     request: &'a SmoothRequest,
     /// The engine determined by the command line; `None` if meshes determine it.
-    asked: Option<Taken>,
-    found: Mutex<Found>,
+    asked: Option<OpenEngine>,
+    found: Mutex<EngineChoices>,
 }
 
 /// The results of earlier automatic choices.
 #[derive(Default)]
-struct Found {
+struct EngineChoices {
     /// An open device, and the smallest number of vertices for which the device is faster.
-    gpu: Option<(Taken, usize)>,
+    gpu: Option<(OpenEngine, usize)>,
     /// The CPU, and the largest number of vertices for which the CPU was found faster.
-    small: Option<(Taken, usize)>,
+    small: Option<(OpenEngine, usize)>,
     /// The CPU, and the smallest number of vertices for which no usable GPU was found.
-    large: Option<(Taken, usize)>,
+    large: Option<(OpenEngine, usize)>,
 }
 
 impl<'a> Engines<'a> {
@@ -101,12 +101,12 @@ impl<'a> Engines<'a> {
 
     /// Returns the engine for a mesh of a given size. The choice counts rayon's threads, so the caller must not be on
     /// a thread of a rayon pool.
-    pub(crate) fn take(&self, size: MeshSize) -> Taken {
+    pub(crate) fn take(&self, size: MeshSize) -> OpenEngine {
         if let Some(asked) = &self.asked {
             return asked.clone();
         }
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        let Found { gpu, small, large } = &mut *found;
+        let EngineChoices { gpu, small, large } = &mut *found;
         if let Some((taken, least)) = gpu
             && size.vertices >= *least
             && let Backend::Gpu(gpu) = &*taken.backend
@@ -122,7 +122,7 @@ impl<'a> Engines<'a> {
         }
         let (backend, reason) =
             Backend::auto_tried(size, &self.request.options(Precision::Double), try_best);
-        let taken = in_turns(Taken::new(backend, Some(worded(&reason))));
+        let taken = in_turns(OpenEngine::new(backend, Some(describe(&reason))));
         let known = (taken.clone(), size.vertices);
         match reason {
             Reason::GpuIsFaster { pays_from } => *gpu = Some((taken.clone(), pays_from)),
@@ -139,10 +139,10 @@ impl<'a> Engines<'a> {
 }
 
 /// Makes the runs on a shared device take turns. The CPU needs no turns.
-fn in_turns(taken: Taken) -> Taken {
+fn in_turns(taken: OpenEngine) -> OpenEngine {
     match &*taken.backend {
         Backend::Cpu => taken,
-        Backend::Gpu(_) => Taken { turn: Some(Arc::default()), ..taken },
+        Backend::Gpu(_) => OpenEngine { turn: Some(Arc::default()), ..taken },
     }
 }
 
@@ -154,12 +154,12 @@ pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, CliError> {
 /// Opens an adapter after a trial in a child process. A driver that crashes would otherwise end this process without
 /// a message.
 fn tried_and_opened(name: Option<&str>) -> Result<Gpu, GpuError> {
-    driver_probe::drivers(Tried::Adapter(name)).and_then(|()| Gpu::open(name))
+    driver_probe::drivers(Trial::Adapter(name)).and_then(|()| Gpu::open(name))
 }
 
 /// Tries the default adapter in a child process.
 fn try_best() -> Result<(), GpuError> {
-    driver_probe::drivers(Tried::Adapter(None))
+    driver_probe::drivers(Trial::Adapter(None))
 }
 
 /// Converts the failure to open an adapter to an error with a remedy.

@@ -1,16 +1,16 @@
 //! Input shared by the stages of a run.
 
-use crate::load::{Choice, LoadedMesh};
-use crate::report::Task;
+use crate::load::{LoadedMesh, MovableSelection};
+use crate::report::SmoothJob;
 use crate::request::SmoothRequest;
 use std::time::Instant;
 
 /// A mesh with its task and the selection of movable vertices.
 #[derive(Clone, Copy)]
 pub(super) struct Input<'a> {
-    pub(super) task: &'a Task<'a>,
+    pub(super) task: &'a SmoothJob<'a>,
     pub(super) file: &'a LoadedMesh,
-    pub(super) choice: &'a Choice,
+    pub(super) choice: &'a MovableSelection,
     /// Size of the input file in bytes; 0 if the input is not a file.
     pub(super) bytes: u64,
     /// Start of the run, from which the time limit counts.

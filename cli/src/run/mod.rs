@@ -13,4 +13,4 @@ mod run_report;
 mod sweeps;
 mod untangle;
 
-pub(crate) use pipeline::carry_out;
+pub(crate) use pipeline::run_pipeline;

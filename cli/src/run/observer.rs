@@ -8,7 +8,7 @@ use crate::terminal::progress::Stage;
 
 /// Observer of the pipeline of one mesh. An error from `has_read` or `has_smoothed` stops the
 /// pipeline before the next stage.
-pub(crate) trait Follow: Send {
+pub(crate) trait PipelineObserver: Send {
     /// Called at the start of each stage.
     fn stage(&mut self, stage: Stage);
     /// Called after the mesh has been read. An error stops the pipeline before any work.

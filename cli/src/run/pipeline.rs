@@ -8,11 +8,11 @@ use gpu_smooth::{MeshSize, targets::Surface};
 use crate::error::CliError;
 use crate::load::remarks;
 use crate::load::streams;
-use crate::load::{Choice, LoadedMesh, Riding, lay_out};
-use crate::report::{Done, Failure, Task};
-use crate::run::engine::Taken;
+use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, lay_out};
+use crate::report::{Done, Failure, SmoothJob};
+use crate::run::engine::OpenEngine;
 use crate::run::input::Input;
-use crate::run::observer::Follow;
+use crate::run::observer::PipelineObserver;
 use crate::run::prepare::{Prepared, Subject, open, set_up};
 use crate::run::result::{measure, write};
 use crate::run::run_report;
@@ -22,8 +22,8 @@ use crate::terminal::progress::Stage;
 /// A mesh after reading, with the selection of movable vertices and interpolated fields.
 struct ReadMesh {
     file: LoadedMesh,
-    choice: Choice,
-    riding: Riding,
+    choice: MovableSelection,
+    riding: InterpolatedFields,
     /// Size of the input file in bytes; 0 if the input is not a file.
     bytes: u64,
     /// Time at the end of reading.
@@ -32,10 +32,10 @@ struct ReadMesh {
 
 /// Reads a mesh, smooths it on the engine that `engine` returns for the mesh's size, and writes the result. Then
 /// calls `finish`.
-pub(crate) fn carry_out<T>(
-    task: &Task<'_>,
-    engine: impl FnOnce(MeshSize) -> Result<Taken, CliError> + Send,
-    follow: &mut dyn Follow,
+pub(crate) fn run_pipeline<T>(
+    task: &SmoothJob<'_>,
+    engine: impl FnOnce(MeshSize) -> Result<OpenEngine, CliError> + Send,
+    follow: &mut dyn PipelineObserver,
     finish: impl FnOnce(Done<'_>) -> Result<T, CliError>,
 ) -> Result<T, Failure> {
     let began = Instant::now();
@@ -45,7 +45,7 @@ pub(crate) fn carry_out<T>(
     let mended;
     let subject = match opened.prepared? {
         Prepared::Ready(smoother) => Subject { smoother: *smoother, mended: None },
-        Prepared::Mended(found) => {
+        Prepared::UntangledInput(found) => {
             mended = found;
             Subject::of_mended(&file, &mended)?
         }
@@ -75,7 +75,7 @@ pub(crate) fn carry_out<T>(
 
 /// Reads a mesh, and applies the options that select vertices and fields. Passes remarks on the mesh to the
 /// observer.
-fn read(task: &Task<'_>, follow: &mut dyn Follow) -> Result<ReadMesh, CliError> {
+fn read(task: &SmoothJob<'_>, follow: &mut dyn PipelineObserver) -> Result<ReadMesh, CliError> {
     let request = task.request;
     let bytes = size_of(task.input);
     follow.stage(Stage::Reading { bytes });

@@ -6,38 +6,38 @@ use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
 
 use crate::error::CliError;
 use crate::load::explain;
-use crate::load::{Choice, LoadedMesh, Riding};
+use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection};
 use crate::report::Failure;
 use crate::request::SmoothRequest;
-use crate::run::engine::{self, Taken};
+use crate::run::engine::{self, OpenEngine};
 use crate::run::input::Input;
-use crate::run::observer::Follow;
-use crate::run::untangle::{self, Mended};
+use crate::run::observer::PipelineObserver;
+use crate::run::untangle::{self, UntangledInput};
 use crate::terminal::progress::Stage;
 
 /// A mesh ready for sweeps, either as read or after untangling.
 pub(super) enum Prepared<'a> {
     Ready(Box<Smoother<'a>>),
-    Mended(Mended),
+    UntangledInput(UntangledInput),
 }
 
 /// The prepared mesh and the open engine, or the errors that prevented them.
 pub(super) struct Opened<'a> {
     pub(super) prepared: Result<Prepared<'a>, Failure>,
-    pub(super) taken: Result<Taken, CliError>,
+    pub(super) taken: Result<OpenEngine, CliError>,
 }
 
 /// The smoother of a mesh. `mended` describes the untangling; `None` if the mesh was not untangled.
 pub(super) struct Subject<'a> {
     pub(super) smoother: Smoother<'a>,
-    pub(super) mended: Option<&'a Mended>,
+    pub(super) mended: Option<&'a UntangledInput>,
 }
 
 /// Input of the sweeps.
 pub(super) struct Ready<'a> {
     pub(super) smoother: Smoother<'a>,
-    pub(super) mended: Option<&'a Mended>,
-    pub(super) taken: Taken,
+    pub(super) mended: Option<&'a UntangledInput>,
+    pub(super) taken: OpenEngine,
     /// Quality of the mesh before the run, and before untangling.
     pub(super) before: Quality,
     /// Time at the end of the preparation.
@@ -46,7 +46,10 @@ pub(super) struct Ready<'a> {
 
 impl<'a> Subject<'a> {
     /// Prepares an untangled mesh.
-    pub(super) fn of_mended(file: &LoadedMesh, mended: &'a Mended) -> Result<Self, CliError> {
+    pub(super) fn of_mended(
+        file: &LoadedMesh,
+        mended: &'a UntangledInput,
+    ) -> Result<Self, CliError> {
         let smoother = Smoother::new(&mended.mesh);
         let smoother = smoother.map_err(|error| explain::mesh_error(file, &error))?;
         Ok(Self { smoother, mended: Some(mended) })
@@ -56,9 +59,9 @@ impl<'a> Subject<'a> {
 /// Prepares a mesh while a second thread opens its engine. Untangles the mesh if requested and necessary.
 pub(super) fn open<'a>(
     input: &Input<'a>,
-    riding: &Riding,
-    engine: impl FnOnce(MeshSize) -> Result<Taken, CliError> + Send,
-    follow: &mut dyn Follow,
+    riding: &InterpolatedFields,
+    engine: impl FnOnce(MeshSize) -> Result<OpenEngine, CliError> + Send,
+    follow: &mut dyn PipelineObserver,
 ) -> Opened<'a> {
     let mesh = input.file.mesh();
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
@@ -73,8 +76,8 @@ pub(super) fn open<'a>(
 
 fn prepared<'a>(
     input: &Input<'a>,
-    riding: &Riding,
-    follow: &mut dyn Follow,
+    riding: &InterpolatedFields,
+    follow: &mut dyn PipelineObserver,
 ) -> Result<Prepared<'a>, Failure> {
     let (request, file) = (input.request(), input.file);
     match smoother(request, file) {
@@ -82,7 +85,7 @@ fn prepared<'a>(
             drop(prepared);
             follow.stage(Stage::Untangling);
             riding.check_untangled()?;
-            Ok(Prepared::Mended(untangle::mend(input.task, input.began, file)?))
+            Ok(Prepared::UntangledInput(untangle::untangle_input(input.task, input.began, file)?))
         }
         Err(error) => Err(refusal(request, input.choice, file, &error)),
         Ok(smoother) => Ok(Prepared::Ready(Box::new(smoother))),
@@ -94,14 +97,17 @@ fn prepared<'a>(
 pub(super) fn set_up<'a>(
     input: &Input<'a>,
     subject: Subject<'a>,
-    taken: Taken,
-    follow: &mut dyn Follow,
+    taken: OpenEngine,
+    follow: &mut dyn PipelineObserver,
 ) -> Result<Ready<'a>, CliError> {
     let Subject { mut smoother, mended } = subject;
     let (request, file, mesh) = (input.request(), input.file, input.file.mesh());
     let surface = request.surface;
     let taken = match smoother.topology().free_count() {
-        0 => Taken::new(Backend::Cpu, Some("no vertex is free, and sliding is on the CPU".into())),
+        0 => OpenEngine::new(
+            Backend::Cpu,
+            Some("no vertex is free, and sliding is on the CPU".into()),
+        ),
         _ => taken,
     };
     let points = mended.map_or(&mesh.points, |mended| &mended.mesh.points);
@@ -139,7 +145,7 @@ fn smoother<'f>(request: &SmoothRequest, file: &'f LoadedMesh) -> Result<Smoothe
 /// requested.
 fn refusal(
     request: &SmoothRequest,
-    choice: &Choice,
+    choice: &MovableSelection,
     file: &LoadedMesh,
     error: &MeshError,
 ) -> Failure {

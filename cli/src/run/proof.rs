@@ -6,7 +6,7 @@ use mesh_io::Difference;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 
-use crate::load::Riding;
+use crate::load::InterpolatedFields;
 use crate::report::FileHash;
 
 /// Result of comparing two mesh files. The result depends on the files alone, not on data of a run.
@@ -29,7 +29,7 @@ pub(crate) struct Proof {
 #[derive(Clone, Copy)]
 pub(crate) struct MeshVersion<'a> {
     pub(crate) file: &'a LoadedMesh,
-    pub(crate) fields: &'a Riding,
+    pub(crate) fields: &'a InterpolatedFields,
 }
 
 impl Proof {
@@ -39,7 +39,7 @@ impl Proof {
         after: MeshVersion<'_>,
         slide: Option<&Slide>,
     ) -> Result<Self, MeshError> {
-        let fields = [before.fields, after.fields].map(Riding::fields);
+        let fields = [before.fields, after.fields].map(InterpolatedFields::fields);
         let (before, after) = (before.file, after.file);
         let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
         let (mut slid, mut pairs) = (0, 0);
@@ -52,11 +52,11 @@ impl Proof {
             moved = (0..).zip(old.iter().zip(new)).filter(differ).map(|(v, _)| v).collect();
             held = moved.iter().copied().filter(|&v| !topology.free()[v as usize]).collect();
             if let Some(slide) = slide {
-                let astray = slide.astray(&topology, old, new, after.precision());
-                slid = held.len() - astray.len();
-                held.retain(|v| astray.binary_search(v).is_err());
+                let misplaced = slide.misplaced(&topology, old, new, after.precision());
+                slid = held.len() - misplaced.len();
+                held.retain(|v| misplaced.binary_search(v).is_err());
                 pairs = pairs_among(slide, &held);
-                held = astray;
+                held = misplaced;
             }
             bad = topology.bad_triangles(new)?;
             if !bad.is_empty() {

@@ -5,14 +5,14 @@ use std::time::Instant;
 use gpu_smooth::{Quality, measure::Change};
 
 use crate::error::CliError;
-use crate::load::{Riding, streams};
+use crate::load::{InterpolatedFields, streams};
 use crate::report::{Certificate, FileHash, TargetReport};
 use crate::run::checkpoint;
 use crate::run::input::Input;
-use crate::run::observer::Follow;
+use crate::run::observer::PipelineObserver;
 use crate::run::prepare::Ready;
 use crate::run::proof::{self, MeshVersion, Proof};
-use crate::run::sweeps::Ran;
+use crate::run::sweeps::FinishedRun;
 use crate::terminal::progress::Stage;
 
 /// Measures of a smoothed mesh.
@@ -38,9 +38,9 @@ pub(super) struct Written {
 pub(super) fn measure(
     input: &Input<'_>,
     ready: &Ready<'_>,
-    ran: &Ran,
-    riding: &mut Riding,
-    follow: &mut dyn Follow,
+    ran: &FinishedRun,
+    riding: &mut InterpolatedFields,
+    follow: &mut dyn PipelineObserver,
 ) -> Result<Measures, CliError> {
     let (request, file, outcome) = (input.request(), input.file, &ran.outcome);
     let (topology, old) = (ready.smoother.topology(), &file.mesh().points);
@@ -50,12 +50,12 @@ pub(super) fn measure(
     let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
     let f_after = || Ok(ready.smoother.f(base, &outcome.points)?);
     let target = request.target.report(request.surface, f_before, f_after)?;
-    let interpolated = riding.carry(file, topology, &outcome.points)?;
+    let interpolated = riding.interpolate(file, topology, &outcome.points)?;
     let left_over = riding.add_dependents(file, &outcome.points)?;
     let has_moved = outcome.points != *old;
-    let left_behind = has_moved.then(|| riding.left_behind(file)).flatten();
+    let omission_remark = has_moved.then(|| riding.omission_remark(file)).flatten();
     let left_over = left_over.iter().filter(|_| has_moved);
-    for note in interpolated.iter().chain(&left_behind).chain(left_over) {
+    for note in interpolated.iter().chain(&omission_remark).chain(left_over) {
         follow.remark(note);
     }
     Ok(Measures { after, change, target, interpolated, at: Instant::now() })
@@ -66,9 +66,9 @@ pub(super) fn measure(
 pub(super) fn write(
     input: &Input<'_>,
     ready: &Ready<'_>,
-    ran: &Ran,
-    riding: &Riding,
-    follow: &mut dyn Follow,
+    ran: &FinishedRun,
+    riding: &InterpolatedFields,
+    follow: &mut dyn PipelineObserver,
 ) -> Result<Written, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);
     follow.stage(Stage::Writing { bytes: input.bytes });
@@ -87,7 +87,7 @@ pub(super) fn write(
 fn certificate(
     input: &Input<'_>,
     ready: &Ready<'_>,
-    riding: &Riding,
+    riding: &InterpolatedFields,
     hashes: Vec<FileHash>,
 ) -> Result<Certificate, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);

@@ -9,12 +9,12 @@ use crate::report::{
     self, Certificate, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds,
     UntangleReport,
 };
-use crate::run::engine::Taken;
+use crate::run::engine::OpenEngine;
 use crate::run::input::Input;
 use crate::run::prepare::Ready;
 use crate::run::result::Measures;
-use crate::run::sweeps::Ran;
-use crate::run::untangle::Mended;
+use crate::run::sweeps::FinishedRun;
+use crate::run::untangle::UntangledInput;
 
 /// Times at the start of a run and at the end of each stage.
 pub(super) struct Clock {
@@ -42,7 +42,7 @@ impl Clock {
 pub(super) fn report(
     input: &Input<'_>,
     ready: &Ready<'_>,
-    ran: &Ran,
+    ran: &FinishedRun,
     measured: Measures,
     certificate: Option<Certificate>,
     clock: &Clock,
@@ -82,7 +82,7 @@ pub(super) fn report(
 }
 
 /// Returns the name of the reason why a run ended.
-fn stop(input: &Input<'_>, ran: &Ran) -> &'static str {
+fn stop(input: &Input<'_>, ran: &FinishedRun) -> &'static str {
     match input.choice.nothing_to_do {
         Some(_) => "nothing-to-do",
         None if ran.out_of_time => "time-limit",
@@ -90,11 +90,11 @@ fn stop(input: &Input<'_>, ran: &Ran) -> &'static str {
     }
 }
 
-fn untangle_report(mended: &Mended) -> UntangleReport {
+fn untangle_report(mended: &UntangledInput) -> UntangleReport {
     UntangleReport { bad_before: mended.bad_before, sweeps: mended.sweeps, moved: mended.moved }
 }
 
-fn engine_report(taken: &Taken, outcome: &Outcome) -> EngineReport {
+fn engine_report(taken: &OpenEngine, outcome: &Outcome) -> EngineReport {
     let adapter = match &*taken.backend {
         Backend::Cpu => None,
         Backend::Gpu(gpu) => Some(gpu.adapter()),

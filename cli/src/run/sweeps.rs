@@ -10,20 +10,20 @@ use gpu_smooth::{
 };
 
 use crate::error::CliError;
-use crate::load::{Choice, LoadedMesh, explain};
+use crate::load::{LoadedMesh, MovableSelection, explain};
 use crate::request::{EngineRequest, SmoothRequest};
 use crate::run::checkpoint::CheckpointSaver;
-use crate::run::engine::{self, Taken};
+use crate::run::engine::{self, OpenEngine};
 use crate::run::input::Input;
-use crate::run::observer::Follow;
+use crate::run::observer::PipelineObserver;
 use crate::run::prepare::Ready;
 use crate::terminal::interrupt;
 use crate::terminal::progress::Stage;
 
 /// A finished run with its engine. `times` pairs sweeps with the elapsed seconds after them.
-pub(super) struct Ran {
+pub(super) struct FinishedRun {
     pub(super) outcome: Outcome,
-    pub(super) taken: Taken,
+    pub(super) taken: OpenEngine,
     pub(super) times: Vec<(u32, f64)>,
     /// Whether the time limit ended the run.
     pub(super) out_of_time: bool,
@@ -63,8 +63,8 @@ impl SweepClock<'_> {
 pub(super) fn smooth(
     input: &Input<'_>,
     ready: &Ready<'_>,
-    follow: &mut dyn Follow,
-) -> Result<Ran, CliError> {
+    follow: &mut dyn PipelineObserver,
+) -> Result<FinishedRun, CliError> {
     let request = input.request();
     let options = options(request, input.choice, input.file.precision());
     follow.stage(Stage::Smoothing);
@@ -94,21 +94,21 @@ pub(super) fn smooth(
         && request.engine == EngineRequest::Auto
         && engine::is_too_large(error)
     {
-        taken = Taken::new(Backend::Cpu, Some(error.to_string()));
+        taken = OpenEngine::new(Backend::Cpu, Some(error.to_string()));
         outcome = run(&taken.backend);
     }
-    let outcome = outcome.map_err(|error| worded(request, input.file, error))?;
+    let outcome = outcome.map_err(|error| cli_error(request, input.file, error))?;
     clock.end(&outcome);
     let is_canceled = outcome.stop == Stop::Canceled;
     if is_canceled {
         kept.left();
     }
     let out_of_time = clock.out_of_time && is_canceled && !interrupt::is_requested();
-    Ok(Ran { outcome, taken, times: clock.times, out_of_time })
+    Ok(FinishedRun { outcome, taken, times: clock.times, out_of_time })
 }
 
 /// Converts the error of a run to the terms of the file and the command line.
-fn worded(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> CliError {
+fn cli_error(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> CliError {
     match error {
         SmoothError::Mesh(error) => explain::mesh_error(file, &error),
         SmoothError::Checkpoint(_) => {
@@ -123,7 +123,7 @@ fn worded(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> Cli
 }
 
 /// Returns the options of the run. Without any triangle to improve, the run has no sweeps.
-fn options(request: &SmoothRequest, choice: &Choice, stored: Precision) -> Options {
+fn options(request: &SmoothRequest, choice: &MovableSelection, stored: Precision) -> Options {
     let options = request.options(stored);
     match choice.nothing_to_do {
         Some(_) => {

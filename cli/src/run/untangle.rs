@@ -13,11 +13,11 @@ use gpu_smooth::{
 
 use crate::load::explain;
 use crate::load::streams;
-use crate::report::Task;
+use crate::report::SmoothJob;
 use crate::terminal::interrupt;
 
 /// An untangled mesh, with counts of the work.
-pub(crate) struct Mended {
+pub(crate) struct UntangledInput {
     pub(crate) mesh: Mesh,
     pub(crate) bad_before: usize,
     pub(crate) sweeps: u32,
@@ -30,8 +30,12 @@ pub(crate) struct Mended {
 ///
 /// If triangles stay inverted, returns an error that lists them. With `--keep-going`, the best mesh found is written
 /// before. The time limit counts from `began`.
-pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result<Mended, CliError> {
-    let Task { request, verbosity, out, .. } = *task;
+pub(crate) fn untangle_input(
+    task: &SmoothJob<'_>,
+    began: Instant,
+    file: &LoadedMesh,
+) -> Result<UntangledInput, CliError> {
+    let SmoothJob { request, verbosity, out, .. } = *task;
     let keeps_going = request.untangle.is_some_and(|untangle| untangle.keeps_going);
     let mesh = file.mesh();
     let told = |error: MeshError| explain::mesh_error(file, &error);
@@ -66,7 +70,7 @@ pub(crate) fn mend(task: &Task<'_>, began: Instant, file: &LoadedMesh) -> Result
         None if left.is_empty() => {
             let mesh = Mesh { points, ..mesh.clone() };
             let remark = crossings.map(|crossings| crossings.to_string());
-            return Ok(Mended { mesh, bad_before, sweeps, moved, remark });
+            return Ok(UntangledInput { mesh, bad_before, sweeps, moved, remark });
         }
         Some(vertex) if left.is_empty() => overlaps(file, vertex, sweeps),
         _ => {

@@ -1,7 +1,7 @@
 //! Formats of numbers in text.
 
 /// Formats a number with about six significant digits.
-pub(crate) fn six(x: f64) -> String {
+pub(crate) fn sig6(x: f64) -> String {
     match x.abs() {
         a if a.is_nan() => "NaN".into(),
         a if a.is_infinite() => "infinite".into(),
@@ -19,7 +19,7 @@ pub(crate) fn percent(share: f64) -> String {
 }
 
 /// Formats a number with four or five significant digits, in at most eight characters.
-pub(crate) fn five(x: f64) -> String {
+pub(crate) fn fit8(x: f64) -> String {
     match x.abs() {
         a if a.is_nan() => "NaN".into(),
         a if a.is_infinite() => "infinite".into(),
@@ -52,8 +52,8 @@ mod tests {
             (f64::NAN, "NaN"),
         ];
         for (x, text) in cases {
-            assert_eq!(five(x), text);
+            assert_eq!(fit8(x), text);
         }
-        assert_eq!([f64::NAN, f64::INFINITY].map(six), ["NaN", "infinite"]);
+        assert_eq!([f64::NAN, f64::INFINITY].map(sig6), ["NaN", "infinite"]);
     }
 }

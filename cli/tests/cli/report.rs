@@ -73,7 +73,7 @@ fn report_holds_the_documented_keys() {
         assert_keys(&report["change"], &["moved", "size", "least_altitude"]);
         for spread in ["moved", "size"] {
             let spread = &report["change"][spread];
-            assert_keys(spread, &["median", "most_of_twenty", "most"]);
+            assert_keys(spread, &["median", "p95", "most"]);
             let [half, most] = ["median", "most"].map(|key| spread[key].as_f64().unwrap());
             assert!(0.0 < half && half <= most, "{spread}");
         }

@@ -220,7 +220,7 @@ fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
     let flag = Arc::clone(&reported);
     queue.on_submitted_work_done(move || flag.store(true, Ordering::Relaxed));
     // A poll on another thread may have taken the report, and be about to deliver it.
-    (0..PATIENCE).any(|_| {
+    (0..MAX_POLLS).any(|_| {
         let idle = poll(device, wgpu::PollType::Poll).is_ok_and(|status| status.is_queue_empty());
         let is_own = reported.load(Ordering::Relaxed) || !idle;
         if !is_own {
@@ -231,4 +231,4 @@ fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
 }
 
 /// Number of polls, one each millisecond, before a queue counts as foreign.
-const PATIENCE: u32 = 30;
+const MAX_POLLS: u32 = 30;

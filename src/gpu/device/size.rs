@@ -10,11 +10,11 @@ use crate::mesh::MeshSize;
 struct Need {
     what: &'static str,
     bytes: u64,
-    spread: Spread,
+    spread: BindingRule,
 }
 
 /// The rule by which a buffer larger than a binding is bound.
-enum Spread {
+enum BindingRule {
     /// The buffer is bound whole, or the mesh does not fit.
     No,
     /// Two bindings, with half of the buffer in each.
@@ -34,9 +34,9 @@ pub(crate) const NUMBER: u64 = size_of::<u32>() as u64;
 
 /// Largest number of triangles for the kernels. One-rings have at most one entry for each corner of a triangle, and the
 /// offsets of one-rings must stay below the bit [`HELD`] of a ring start.
-const MOST_TRIANGLES: usize = (HELD as usize - 1) / 3;
+const MAX_TRIANGLES: usize = (HELD as usize - 1) / 3;
 /// Largest number of vertices for the kernels, which number the vertices, and the end of the one-rings, in 32 bits.
-const MOST_VERTICES: usize = u32::MAX as usize - 1;
+const MAX_VERTICES: usize = u32::MAX as usize - 1;
 
 impl MeshSize {
     /// Returns the size of each buffer. For one-rings and best positions, the sizes are upper bounds: one-rings hold
@@ -51,14 +51,14 @@ impl MeshSize {
             .max(size_of::<Control>() as u64);
         let starts = vertices.saturating_add(1).saturating_mul(NUMBER);
         let need = |what, bytes, spread| Need { what, bytes, spread };
-        let round = Spread::Parts { least: objective * TRIANGLE };
+        let round = BindingRule::Parts { least: objective * TRIANGLE };
         [
-            need("the buffer of vertex positions", best.saturating_add(room), Spread::Two),
+            need("the buffer of vertex positions", best.saturating_add(room), BindingRule::Two),
             need("the buffer of triangles", triangles.saturating_mul(TRIANGLE), round),
-            need("the buffer of one-rings", rings, Spread::Parts { least: 0 }),
-            need("the buffer of ring starts", starts, Spread::No),
-            need("the buffer of best positions", best, Spread::Parts { least: 0 }),
-            need("the buffer of sums", sums, Spread::No),
+            need("the buffer of one-rings", rings, BindingRule::Parts { least: 0 }),
+            need("the buffer of ring starts", starts, BindingRule::No),
+            need("the buffer of best positions", best, BindingRule::Parts { least: 0 }),
+            need("the buffer of sums", sums, BindingRule::No),
         ]
     }
 
@@ -79,8 +79,8 @@ impl MeshSize {
     /// if a buffer exceeds the limits even when bound in parts.
     pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {
         let Self { vertices, triangles } = self;
-        if triangles > MOST_TRIANGLES || vertices > MOST_VERTICES {
-            let (most_vertices, most_triangles) = (MOST_VERTICES, MOST_TRIANGLES);
+        if triangles > MAX_TRIANGLES || vertices > MAX_VERTICES {
+            let (most_vertices, most_triangles) = (MAX_VERTICES, MAX_TRIANGLES);
             return Err(GpuError::TooLarge { vertices, triangles, most_vertices, most_triangles });
         }
         let bound = limits.max_storage_buffer_binding_size;
@@ -89,9 +89,11 @@ impl MeshSize {
             let what = || format!("{what} ({vertices} vertices)");
             check_limit("max_buffer_size", limits.max_buffer_size, &what, bytes)?;
             let at_once = match spread {
-                Spread::Two if positions == Positions::InTwo => vertices as u64 * (POSITION / 2),
-                Spread::No | Spread::Two => bytes,
-                Spread::Parts { least } => least,
+                BindingRule::Two if positions == Positions::InTwo => {
+                    vertices as u64 * (POSITION / 2)
+                }
+                BindingRule::No | BindingRule::Two => bytes,
+                BindingRule::Parts { least } => least,
             };
             check_limit("max_storage_buffer_binding_size", bound, &what, at_once)?;
         }

@@ -49,7 +49,7 @@ pub struct Budget {
 /// driver.
 const FRAMES: usize = 6;
 /// Default limit of the sweeps in a frame; see [`Budget::at_most`].
-const MOST: u32 = 100;
+const DEFAULT_MAX_SWEEPS: u32 = 100;
 
 impl Budget {
     /// Creates a budget of `micros` microseconds for each frame.
@@ -59,7 +59,14 @@ impl Budget {
 
     /// Creates a budget of `time` for the sweeps of each frame.
     pub fn new(time: Duration) -> Self {
-        Self { time, most: MOST, measured: [0.0; FRAMES], count: 0, last: 1, clock: None }
+        Self {
+            time,
+            most: DEFAULT_MAX_SWEEPS,
+            measured: [0.0; FRAMES],
+            count: 0,
+            last: 1,
+            clock: None,
+        }
     }
 
     /// Sets the limit of the sweeps in a frame, whatever the budget. The default is 100, and 0 counts as 1.

@@ -29,7 +29,7 @@ use crate::run::{Plan, Step};
 pub struct Sweeps {
     gpu: Gpu,
     run: Run,
-    judged: Option<Judged>,
+    judged: Option<SelfStopping>,
     corrections: Option<EncodedCorrections>,
     done: u32,
 }
@@ -38,7 +38,7 @@ pub struct Sweeps {
 const LABEL: &str = "gpu-smooth sweeps";
 
 /// The additional resources of sweeps that end by the stop rule.
-struct Judged {
+struct SelfStopping {
     reopen: Pipeline,
     resume: Pipeline,
     bind_group: wgpu::BindGroup,
@@ -95,7 +95,7 @@ impl Sweeps {
     /// # Errors
     /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
     pub fn until_converged(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
-        blocking(Self::by(mesh, options, Ending::Judged, Waiting::Block))
+        blocking(Self::by(mesh, options, Ending::SelfStopping, Waiting::Block))
     }
 
     /// Binds options to a mesh like [`until_converged`](Self::until_converged), without blocking. If the sweeps are
@@ -107,7 +107,7 @@ impl Sweeps {
         mesh: &DeviceMesh,
         options: &Options,
     ) -> Result<Self, SmoothError> {
-        Self::by(mesh, options, Ending::Judged, Waiting::Await).await
+        Self::by(mesh, options, Ending::SelfStopping, Waiting::Await).await
     }
 
     async fn by(
@@ -135,11 +135,11 @@ impl Sweeps {
                 let both = dispatches(endless, steps)?;
                 (Arc::clone(&both), both)
             }
-            Ending::Judged => (dispatches(plan, steps)?, dispatches(endless, Vec::new())?),
+            Ending::SelfStopping => (dispatches(plan, steps)?, dispatches(endless, Vec::new())?),
         };
         let (changes, triangles) = (buffers.changes.clone(), problem.triangles().len());
         let run = Run { dispatches, evaluation, changes, triangles };
-        let judged = run.is_judged().then(|| Judged::new(gpu, &run)).transpose()?;
+        let judged = run.is_judged().then(|| SelfStopping::new(gpu, &run)).transpose()?;
         let corrections = match is_corrected {
             true => Some(EncodedCorrections::new(mesh, &run.dispatches, waiting).await?),
             false => None,
@@ -234,10 +234,10 @@ fn between(plan: &Plan) -> Step {
 /// Whether encoded sweeps end by the stop rule.
 enum Ending {
     Never,
-    Judged,
+    SelfStopping,
 }
 
-impl Judged {
+impl SelfStopping {
     fn new(gpu: &Gpu, run: &Run) -> Result<Self, GpuError> {
         let whole = Positions::Whole;
         let bind_group = scoped(&gpu.device, || {

@@ -6,20 +6,20 @@ use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::row::{Composition, Source};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
-    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, LEAST_NORMAL, NO_GUARD, SEARCH_TRIALS,
-    SHARED_STRUCTS, SLOT_VECTORS, SLOTS, WORKGROUP, WORST,
+    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, MIN_NORMAL, NO_GUARD, SEARCH_TRIALS, SHARED_STRUCTS,
+    SLOT_VECTORS, SLOTS, WORKGROUP, WORST,
 };
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
 use crate::options::Derivatives;
 use crate::patch::search_rule::{
-    FLAT_EXPONENT, FLAT_RATIO, LEAST_FLAT, SUFFICIENT_DECREASE, SearchRule,
+    FLAT_EXPONENT, FLAT_RATIO, MIN_FLAT_SUM, SUFFICIENT_DECREASE, SearchRule,
 };
 use crate::run::Stop;
-use crate::run::multilevel::search::{CLOSE, MOST_FIRST};
-use crate::run::multilevel::{LEAST_FIRST, NONE, SMOOTHING};
-use crate::run::secant::LEAST_CURVATURE;
-use crate::run::{JITTER, LEAST_SCALE, NOISE, line_search, regularization};
+use crate::run::multilevel::search::{CLOSE, MAX_FIRST_LENGTH};
+use crate::run::multilevel::{MIN_FIRST_LENGTH, NONE, SMOOTHING};
+use crate::run::secant::MIN_CURVATURE;
+use crate::run::{JITTER, MIN_SCALE, NOISE, line_search, regularization};
 
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
 const POSITIONS_IN_TWO: &str = include_str!("../../../shaders/positions_in_two.wgsl");
@@ -91,7 +91,7 @@ fn constants() -> String {
         ("SLOT_VECTORS", SLOT_VECTORS as u32),
         ("INVERTED", INVERTED),
         ("WORST", WORST),
-        ("LEAST_NORMAL", LEAST_NORMAL),
+        ("LEAST_NORMAL", MIN_NORMAL),
         ("HELD", HELD),
         ("NONE", NONE),
         ("TRIALS", SearchRule::SWEEP.trials),
@@ -110,20 +110,20 @@ fn constants() -> String {
         ("SHORTEN", SearchRule::SWEEP.shorten),
         ("FLAT_EXPONENT", FLAT_EXPONENT),
         ("FLAT_RATIO", FLAT_RATIO),
-        ("LEAST_FLAT", LEAST_FLAT),
+        ("LEAST_FLAT", MIN_FLAT_SUM),
         ("DIFFERENCE", line_search::DIFFERENCE),
         ("SLACK", SearchRule::SWEEP.slack),
         ("PENALTY", PENALTY),
-        ("LEAST_SQUARE", regularization::LEAST_SQUARE),
+        ("LEAST_SQUARE", regularization::MIN_SQUARE),
         ("SQUARE_SHARE", regularization::SQUARE_SHARE),
         ("NOISE", NOISE),
         ("JITTER", JITTER),
-        ("LEAST_SCALE", LEAST_SCALE),
+        ("LEAST_SCALE", MIN_SCALE),
         ("SMOOTHING", SMOOTHING.into()),
-        ("LEAST_CURVATURE", LEAST_CURVATURE),
+        ("LEAST_CURVATURE", MIN_CURVATURE),
         ("NO_GUARD", NO_GUARD),
-        ("LEAST_FIRST", LEAST_FIRST),
-        ("MOST_FIRST", MOST_FIRST),
+        ("LEAST_FIRST", MIN_FIRST_LENGTH),
+        ("MOST_FIRST", MAX_FIRST_LENGTH),
         ("CLOSE", CLOSE),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");

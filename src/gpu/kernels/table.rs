@@ -401,7 +401,7 @@ kernels! {
     }
 
     /// Completes the open secant pair, with partial sums of its products.
-    CloseSecant {
+    CompletePair {
         entry_point: "close_secant",
         layout: Secants,
         width: WORKGROUP,
@@ -441,7 +441,7 @@ kernels! {
     }
 
     /// Completes a correction by the secant pairs, and opens the next pair.
-    OpenSecant {
+    BeginPair {
         entry_point: "open_secant",
         layout: Secants,
         width: WORKGROUP,

@@ -22,7 +22,7 @@ pub(crate) const INVERTED: u32 = Metric::ALL.len() as u32;
 /// Slot of the largest imr² - 1 of a triangle.
 pub(crate) const WORST: u32 = INVERTED + 1;
 /// Bits of the smallest positive normal float.
-pub(crate) const LEAST_NORMAL: u32 = 0x0080_0000;
+pub(crate) const MIN_NORMAL: u32 = 0x0080_0000;
 /// The bit that is set in the ring start of a free vertex that the application holds in place. Ring starts themselves
 /// are smaller.
 pub(crate) const HELD: u32 = 1 << 31;

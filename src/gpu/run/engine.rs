@@ -23,7 +23,7 @@ use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Step, Stop};
 
 /// Least sum of q² - ideal² over a mesh with a triangle whose edges are not finite.
-const LEAST_NOT_FINITE: f64 = 1e38;
+const MIN_NOT_FINITE: f64 = 1e38;
 /// Number of totals along a correction: objective before and after the step, broken triangles, and slope.
 const TOTALS: usize = 4;
 
@@ -140,12 +140,12 @@ impl<'a> GpuEngine<'a> {
 
     /// Returns the objectives of an evaluation, given its sums.
     fn objectives_of(&self, sums: &[[f32; 2]; SLOTS]) -> Objectives {
-        let mut values = Objectives::untracked();
+        let mut values = Objectives::empty();
         for metric in self.dispatches.plan.tracked() {
             let sum = unpair(sums[metric as usize]);
             // A larger sum holds `NOT_FINITE` of objective.wgsl for at least one triangle. Sums of finite triangles on
             // a device are far smaller.
-            let sum = if sum < LEAST_NOT_FINITE { sum } else { f64::NAN };
+            let sum = if sum < MIN_NOT_FINITE { sum } else { f64::NAN };
             let excess = sum / self.problem.triangles().len() as f64;
             values.set(metric, metric.ideal_squared() + excess);
         }
@@ -263,7 +263,7 @@ impl Engine for GpuEngine<'_> {
             .await
     }
 
-    async fn propose(
+    async fn sweep_and_propose(
         &mut self,
         step: &Step,
         length: f64,
@@ -301,7 +301,7 @@ impl Engine for GpuEngine<'_> {
         self.secants = None;
     }
 
-    async fn leave_out(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
+    async fn exclude_broken(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
         let Some(levels) = &self.levels else {
             return Ok(Proposal { here: f64::NAN, slope: 0.0, there: None });
         };

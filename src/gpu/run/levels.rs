@@ -22,7 +22,7 @@ use crate::gpu::run::pages::Pages;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
-use crate::run::LEFT_OUT;
+use crate::run::EXCLUSION_PASSES;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
 /// A hierarchy bound to a mesh on the device. The methods encode corrections and submit nothing.
@@ -491,17 +491,17 @@ impl Levels {
         self.correction.iter().for_each(|step| self.encode(passes, step));
     }
 
-    /// Encodes the exclusion of vertices from the correction, [`LEFT_OUT`] times: the vertices of triangles that the
+    /// Encodes the exclusion of vertices from the correction, [`EXCLUSION_PASSES`] times: the vertices of triangles that the
     /// correction would break. With `anew`, the correction is first recomputed without the gradients of these vertices.
     pub(crate) fn encode_left_out(&self, passes: &mut Passes<'_>, anew: bool) {
-        let leave_out = |passes: &mut Passes<'_>| {
+        let exclude_broken = |passes: &mut Passes<'_>| {
             self.left_out.iter().for_each(|step| self.encode(passes, step));
         };
         if anew {
-            leave_out(passes);
+            exclude_broken(passes);
             self.encode_cycle(passes);
         }
-        (0..LEFT_OUT).for_each(|_| leave_out(passes));
+        (0..EXCLUSION_PASSES).for_each(|_| exclude_broken(passes));
     }
 
     /// Encodes the evaluation of the objective along the correction. `vectors` then begins with the four totals.

@@ -57,11 +57,11 @@ impl Secants {
         }
         let positions = mesh.parts.form();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
-        let close = pipeline(Kernel::CloseSecant)?;
+        let close = pipeline(Kernel::CompletePair)?;
         let sum = pipeline(Kernel::SumSecants)?;
         let bend = pipeline(Kernel::BendGradient)?;
         let multiply = pipeline(Kernel::MultiplyCorrection)?;
-        let open = pipeline(Kernel::OpenSecant)?;
+        let open = pipeline(Kernel::BeginPair)?;
         let partials = objective_invocations(free as usize);
         // The first pair opens in the slot of the older pair.
         let op = SecantOp {

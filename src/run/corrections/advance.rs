@@ -8,11 +8,11 @@ use crate::error::GpuError;
 use crate::metric::Metric;
 use crate::run::engine::{Engine, Proposal};
 use crate::run::history::History;
-use crate::run::multilevel::{LEAST_FIRST, Search};
+use crate::run::multilevel::{MIN_FIRST_LENGTH, Search};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::step::Step;
-use crate::run::stop::{LEAST_SCALE, NOISE};
+use crate::run::stop::{MIN_SCALE, NOISE};
 
 /// Relative decrease of the excess of f over its ideal value by one sweep alone, below which corrections begin.
 /// Earlier, a few bad triangles would force every correction to be short.
@@ -25,10 +25,10 @@ const MANY_SWEEPS: usize = 12;
 /// a tenth of the usual ones: its p-norm is stiffer across its kinks than the levels assume.
 const SHORT: f64 = 0.05;
 const SHORT_FOR_EDGE: f64 = 0.005;
-/// Smallest first trial of a length for EDGE; see [`LEAST_FIRST`] for other metrics.
-const LEAST_FIRST_FOR_EDGE: f64 = 0.1;
+/// Smallest first trial of a length for EDGE; see [`MIN_FIRST_LENGTH`] for other metrics.
+const MIN_FIRST_FOR_EDGE: f64 = 0.1;
 /// Number of consecutive refused corrections after which the run returns to sweeps alone.
-const MOST_REFUSED: u32 = 2;
+const MAX_REFUSED: u32 = 2;
 /// Smallest number of sweeps alone before corrections begin again.
 const SWEEPS_BETWEEN: usize = 5;
 /// Largest number of times that corrections begin. If corrections are refused the last time, sweeps alone end the run.
@@ -162,23 +162,23 @@ impl Corrections {
             return self.sweep_without(engine).await;
         }
         let (short, least_first) = match self.metric().is_smooth() {
-            true => (SHORT, LEAST_FIRST),
-            false => (SHORT_FOR_EDGE, LEAST_FIRST_FOR_EDGE),
+            true => (SHORT, MIN_FIRST_LENGTH),
+            false => (SHORT_FOR_EDGE, MIN_FIRST_FOR_EDGE),
         };
         let mut length = Search::first_length(last_length, least_first);
         let step = self.step(OMEGA_BETWEEN);
-        let mut proposal = engine.propose(&step, length, self.accelerated).await?;
+        let mut proposal = engine.sweep_and_propose(&step, length, self.accelerated).await?;
         // If the correction of all vertices leads uphill, the levels no longer fit the stiffness of the mesh.
         let misleads = proposal.slope > 0.0 && !self.metric().is_smooth();
         let proposed = if misleads { self.drop_levels(engine) } else { proposed + 1 };
         if proposal.slope < 0.0 && proposal.there.is_none() && step.shape_guard.is_finite() {
-            proposal = engine.leave_out(length, !self.accelerated).await?;
+            proposal = engine.exclude_broken(length, !self.accelerated).await?;
         }
         let Proposal { here, slope, there } = proposal;
         // The slope is the squared norm of the gradient, weighted by the levels: about twice the gain left in smooth
         // modes. Sweeps remove the other modes, most of them in a single sweep.
         let ideal = self.metric().ideal_squared();
-        let scale = (here + ideal).max(LEAST_SCALE);
+        let scale = (here + ideal).max(MIN_SCALE);
         let swept = self.lowered.last().map_or(f64::INFINITY, |f| f - ideal - here);
         self.settled = slope.abs() <= NOISE * scale
             && swept <= (SWEPT * self.plan.stop.tolerance).max(NOISE) * scale;
@@ -204,10 +204,10 @@ impl Corrections {
         self.slope = Some(slope);
         self.stage = match refused {
             // With the last exponent, the remaining gain is near the errors of single precision.
-            MOST_REFUSED if self.attempts == ATTEMPTS || self.has_grown() => {
+            MAX_REFUSED if self.attempts == ATTEMPTS || self.has_grown() => {
                 Stage::Without { since: done }
             }
-            MOST_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
+            MAX_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
             _ => Stage::Correcting(Correcting { since, length, proposed, refused }),
         };
         self.lowered.push(ideal + excess);
@@ -215,7 +215,7 @@ impl Corrections {
         if self.plan.track_all || !self.plan.is_monotone() {
             return engine.objectives().await;
         }
-        let mut objectives = Objectives::untracked();
+        let mut objectives = Objectives::empty();
         objectives.set(self.metric(), ideal + excess);
         Ok(objectives)
     }

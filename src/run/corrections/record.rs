@@ -3,7 +3,7 @@
 use super::state::{Correcting, Corrections, ESTIMATES, Stage};
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
-use crate::run::stop::{LEAST_SCALE, NOISE, Stop, StopRule};
+use crate::run::stop::{MIN_SCALE, NOISE, Stop, StopRule};
 
 /// Window longer than any history, which turns off the tests of the stop rule that depend on the decay.
 const NO_ESTIMATE: usize = 1 << 30;
@@ -65,7 +65,7 @@ impl Corrections {
         }
         // f cannot fall below its ideal value, so near the ideal the distance is known without an estimate.
         let f = history.last();
-        let above_ideal = (f - self.metric().ideal_squared()) / f.max(LEAST_SCALE);
+        let above_ideal = (f - self.metric().ideal_squared()) / f.max(MIN_SCALE);
         let asked = history.rule().tolerance;
         let bound = Some(above_ideal.max(NOISE))
             .filter(|&most| asked > 0.0 && most <= asked && f.is_finite());

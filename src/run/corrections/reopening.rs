@@ -21,7 +21,7 @@ const LATEST: u32 = 12;
 /// Smallest number of sweeps, and the largest if triangles stay flat. With half as many, runs take some ten sweeps
 /// more.
 const SWEEPS: u32 = 8;
-const MOST_SWEEPS: u32 = 32;
+const MAX_SWEEPS: u32 = 32;
 /// Relative decrease of the largest inverse mean ratio by a sweep, below which reopening ends without success.
 const OPENS: f64 = 0.02;
 
@@ -40,7 +40,7 @@ impl Corrections {
         let first = *exponents(&self.plan).start();
         let is_late = history.sweeps() == LATEST && self.sharpness == first;
         let is_due = self.sharpness <= LAST && (has_doubled || is_late);
-        let is_left = history.sweeps().saturating_add(MOST_SWEEPS) < history.rule().max_sweeps;
+        let is_left = history.sweeps().saturating_add(MAX_SWEEPS) < history.rule().max_sweeps;
         if self.was_reopened || !is_due || !is_left || history.stop().is_some() {
             return Ok(());
         }
@@ -63,7 +63,7 @@ impl Corrections {
             if worst <= FLAT {
                 break;
             }
-            if worst > last * (1.0 - OPENS) || log.len() == MOST_SWEEPS as usize {
+            if worst > last * (1.0 - OPENS) || log.len() == MAX_SWEEPS as usize {
                 engine.restore(&before)?;
                 return Ok(());
             }

@@ -18,5 +18,5 @@ mod sparse;
 
 pub(crate) use aggregate::NONE;
 pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level, SMOOTHING};
-pub(crate) use search::{LEAST_FIRST, Search};
+pub(crate) use search::{MIN_FIRST_LENGTH, Search};
 pub(crate) use sparse::Sparse;

@@ -10,8 +10,8 @@ pub(crate) const CLOSE: f64 = 0.2;
 
 /// Smallest and largest length of the first trial along a correction by a smooth metric. A single nearly flat triangle
 /// may have made the last accepted length shorter.
-pub(crate) const LEAST_FIRST: f64 = 0.6;
-pub(crate) const MOST_FIRST: f64 = 3.0;
+pub(crate) const MIN_FIRST_LENGTH: f64 = 0.6;
+pub(crate) const MAX_FIRST_LENGTH: f64 = 3.0;
 
 /// A line search that proposes lengths, at which the caller evaluates the objective.
 pub(crate) struct Search {
@@ -24,7 +24,7 @@ pub(crate) struct Search {
 impl Search {
     /// Returns the length of the first trial, from the last accepted length and the smallest first length.
     pub(crate) fn first_length(last_taken: f64, least: f64) -> f64 {
-        last_taken.clamp(least, MOST_FIRST)
+        last_taken.clamp(least, MAX_FIRST_LENGTH)
     }
 
     /// Starts a search from the objective `here`, with the negative derivative `slope`.

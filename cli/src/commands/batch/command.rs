@@ -10,15 +10,15 @@ use std::time::Instant;
 use gpu_smooth::Progress;
 use mesh_io::atomic;
 
-use crate::commands::batch::entry::{Entry, Told};
-use crate::commands::batch::listing::Listed;
+use crate::commands::batch::entry::{BatchStatus, Entry};
+use crate::commands::batch::listing::BatchItem;
 use crate::commands::batch::workers::Watch;
 use crate::render::columns;
-use crate::report::Task;
+use crate::report::SmoothJob;
 use crate::request::{Batch, Outputs, SmoothRequest, TableForm};
-use crate::run::carry_out;
 use crate::run::engine::Engines;
-use crate::run::observer::Follow;
+use crate::run::observer::PipelineObserver;
+use crate::run::run_pipeline;
 use crate::terminal::Verbosity;
 use crate::terminal::interrupt;
 use crate::terminal::progress::{Stage, Tally};
@@ -46,10 +46,10 @@ pub(crate) fn run(
     // process.
     interrupt::has_result();
     make(&batch.directory)?;
-    let is_done = |mesh: &Listed| batch.skips_done && mesh.is_done();
+    let is_done = |mesh: &BatchItem| batch.skips_done && mesh.is_done();
     let (skipped, open): (Vec<_>, Vec<_>) = (0..list.len()).partition(|&i| is_done(&list[i]));
-    let mut told: Vec<Option<Told>> = list.iter().map(|_| None).collect();
-    skipped.iter().for_each(|&i| told[i] = Some(Told::Skipped));
+    let mut told: Vec<Option<BatchStatus>> = list.iter().map(|_| None).collect();
+    skipped.iter().for_each(|&i| told[i] = Some(BatchStatus::Skipped));
     if !open.is_empty() {
         let engines = Engines::new(request)?;
         let tally = Tally::new(verbosity, open.len());
@@ -57,9 +57,9 @@ pub(crate) fn run(
         workers::run(&list, &open, &|mesh| smooth(request, &engines, mesh), &mut watch);
         watch.tally.clear();
     }
-    let entry = |(mesh, told): (Listed, Option<Told>)| {
-        let told = told.unwrap_or(Told::Interrupted);
-        let Listed { input, out, inputs, .. } = mesh;
+    let entry = |(mesh, told): (BatchItem, Option<BatchStatus>)| {
+        let told = told.unwrap_or(BatchStatus::Interrupted);
+        let BatchItem { input, out, inputs, .. } = mesh;
         Entry { input, out, files: inputs, told }
     };
     let entries: Vec<Entry> = list.into_iter().zip(told).map(entry).collect();
@@ -99,14 +99,14 @@ fn make(directory: &Path) -> Result<(), CliError> {
 
 /// Observer of a batch: shows the progress, and collects the results.
 struct Watched<'a> {
-    list: &'a [Listed],
+    list: &'a [BatchItem],
     verbosity: Verbosity,
     tally: Tally,
-    told: &'a mut [Option<Told>],
+    told: &'a mut [Option<BatchStatus>],
 }
 
 impl Watch for Watched<'_> {
-    fn done(&mut self, mesh: usize, told: Told) {
+    fn done(&mut self, mesh: usize, told: BatchStatus) {
         let problem = told.problem();
         self.tally.add(&self.list[mesh].input, problem.as_deref(), &told.text());
         self.told[mesh] = Some(told);
@@ -124,26 +124,26 @@ impl Watch for Watched<'_> {
 }
 
 /// Smooths one mesh of the batch.
-fn smooth(request: &SmoothRequest, engines: &Engines<'_>, mesh: &Listed) -> Told {
+fn smooth(request: &SmoothRequest, engines: &Engines<'_>, mesh: &BatchItem) -> BatchStatus {
     let (input, out) = (&mesh.input, &mesh.out);
-    let task = Task { request, verbosity: SILENT, input, out, resumed: None };
+    let task = SmoothJob { request, verbosity: SILENT, input, out, resumed: None };
     let mut follow = Followed { mesh, request, remarks: Vec::new() };
     let engine = |size| Ok(engines.take(size));
-    match carry_out(&task, engine, &mut follow, |done| Ok(done.report)) {
-        Ok(report) => Told::Smoothed { report: Box::new(report), remarks: follow.remarks },
-        Err(_) if interrupt::is_requested() => Told::Interrupted,
-        Err(failure) => Told::Failed(failure),
+    match run_pipeline(&task, engine, &mut follow, |done| Ok(done.report)) {
+        Ok(report) => BatchStatus::Smoothed { report: Box::new(report), remarks: follow.remarks },
+        Err(_) if interrupt::is_requested() => BatchStatus::Interrupted,
+        Err(failure) => BatchStatus::Failed(failure),
     }
 }
 
 /// Observer of one mesh: collects remarks, and checks output files.
 struct Followed<'a> {
-    mesh: &'a Listed,
+    mesh: &'a BatchItem,
     request: &'a SmoothRequest,
     remarks: Vec<String>,
 }
 
-impl Follow for Followed<'_> {
+impl PipelineObserver for Followed<'_> {
     fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
         if interrupt::is_requested() {
             return Err(CliError::run("interrupted"));

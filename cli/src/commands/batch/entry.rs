@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::report::Failure;
 use crate::report::Report;
-use crate::terminal::numbers::five;
+use crate::terminal::numbers::fit8;
 
 /// A mesh of a batch and its result.
 pub(crate) struct Entry {
@@ -12,11 +12,11 @@ pub(crate) struct Entry {
     pub(crate) out: PathBuf,
     /// The existing files of the mesh.
     pub(crate) files: Vec<PathBuf>,
-    pub(crate) told: Told,
+    pub(crate) told: BatchStatus,
 }
 
 /// The result of smoothing one mesh.
-pub(crate) enum Told {
+pub(crate) enum BatchStatus {
     Smoothed {
         report: Box<Report>,
         remarks: Vec<String>,
@@ -28,7 +28,7 @@ pub(crate) enum Told {
     Interrupted,
 }
 
-impl Told {
+impl BatchStatus {
     /// Returns the result in one word.
     pub(crate) fn status(&self) -> &'static str {
         match self {
@@ -57,7 +57,7 @@ impl Told {
         match (self.report(), self.problem()) {
             (Some(report), _) => {
                 let (base, seconds) = (report.base(), report.seconds.total);
-                let [before, after] = [&report.before, &report.after].map(|q| five(q.f[base]));
+                let [before, after] = [&report.before, &report.after].map(|q| fit8(q.f[base]));
                 let sweeps = report.sweeps;
                 format!(
                     "{}, {sweeps} sweeps, f {base} {before} to {after}, {seconds:.2} s",

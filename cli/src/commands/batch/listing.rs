@@ -11,7 +11,7 @@ use crate::error::CliError;
 use crate::load::streams::is_standard;
 
 /// A mesh to smooth.
-pub(crate) struct Listed {
+pub(crate) struct BatchItem {
     /// Path of the mesh as first given on the command line.
     pub(crate) input: PathBuf,
     pub(crate) out: PathBuf,
@@ -21,7 +21,7 @@ pub(crate) struct Listed {
     pub(crate) outputs: Vec<PathBuf>,
 }
 
-impl Listed {
+impl BatchItem {
     fn new(input: &Path, directory: &Path) -> Result<Self, CliError> {
         let name = input.file_name().filter(|_| !is_standard(input) && !input.is_dir());
         let name = name.ok_or_else(|| {
@@ -96,14 +96,14 @@ fn parts(path: &Path) -> Vec<PathBuf> {
 pub(crate) fn list<'p>(
     paths: impl Iterator<Item = &'p PathBuf>,
     directory: &Path,
-) -> Result<Vec<Listed>, CliError> {
-    let mut listed: Vec<Listed> = Vec::new();
+) -> Result<Vec<BatchItem>, CliError> {
+    let mut listed: Vec<BatchItem> = Vec::new();
     let mut by_out: HashMap<PathBuf, usize> = HashMap::new();
     for path in paths {
         // A Triangle mesh may be given without an extension.
         let mesh = match is_stem(path) {
-            true => Listed::new(&appended(path, ".node"), directory)?,
-            false => Listed::new(path, directory)?,
+            true => BatchItem::new(&appended(path, ".node"), directory)?,
+            false => BatchItem::new(path, directory)?,
         };
         let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
@@ -147,7 +147,7 @@ fn is_any(path: &Path, others: &[PathBuf]) -> bool {
 }
 
 /// Returns whether two meshes share a file.
-fn is_same(a: &Listed, b: &Listed) -> bool {
+fn is_same(a: &BatchItem, b: &BatchItem) -> bool {
     let (mine, theirs) = match is_xdmf(&a.input) {
         // XDMF files may share an HDF5 file, so only the main files are compared.
         true => (&a.inputs[..1], &b.inputs[..1]),
@@ -170,7 +170,7 @@ mod tests {
         folder
     }
 
-    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<Listed>, CliError> {
+    fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<BatchItem>, CliError> {
         let paths: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
         list(paths.iter(), &folder.path().join("out"))
     }

@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
-use crate::commands::batch::entry::{Entry, Told};
+use crate::commands::batch::entry::{BatchStatus, Entry};
 use crate::error::CliError;
 use crate::render::columns::{left, quoted, right, shortened};
 use crate::report::Report;
-use crate::terminal::numbers::five;
+use crate::terminal::numbers::fit8;
 
 /// Widths of the columns of numbers. A narrow terminal does not show the first two.
 const WIDTHS: [usize; 7] = [9, 7, 10, 10, 10, 8, 8];
@@ -85,8 +85,8 @@ fn numbers(report: &Report) -> [String; WIDTHS.len()] {
     [
         report.mesh.vertices.to_string(),
         report.sweeps.to_string(),
-        five(before.f[base]),
-        five(after.f[base]),
+        fit8(before.f[base]),
+        fit8(after.f[base]),
         angle(before.min_angle),
         angle(after.min_angle),
         format!("{:.3}", report.seconds.total),
@@ -211,15 +211,15 @@ pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, CliError
             "mesh": input.display().to_string(), "out": out.display().to_string(), "status": what.status(),
         });
         match what {
-            Told::Smoothed { report, remarks } => {
+            BatchStatus::Smoothed { report, remarks } => {
                 object["remarks"] = json!(remarks);
                 object["report"] = serde_json::to_value(report)?;
             }
-            Told::Failed(failure) => {
+            BatchStatus::Failed(failure) => {
                 object["error"] = json!(what.problem());
                 object["triangles"] = serde_json::to_value(&failure.triangles)?;
             }
-            Told::Skipped | Told::Interrupted => {}
+            BatchStatus::Skipped | BatchStatus::Interrupted => {}
         }
         meshes.push(object);
     }
@@ -234,7 +234,12 @@ mod tests {
 
     fn entry(name: &str) -> Entry {
         let path = PathBuf::from(name);
-        Entry { input: path.clone(), out: path.clone(), files: vec![path], told: Told::Skipped }
+        Entry {
+            input: path.clone(),
+            out: path.clone(),
+            files: vec![path],
+            told: BatchStatus::Skipped,
+        }
     }
 
     #[test]

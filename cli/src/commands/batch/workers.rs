@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Duration;
 
-use crate::commands::batch::entry::Told;
-use crate::commands::batch::listing::Listed;
+use crate::commands::batch::entry::BatchStatus;
+use crate::commands::batch::listing::BatchItem;
 use crate::terminal::interrupt;
 
 /// Size in bytes above which a mesh counts as large, some 100,000 vertices as text. Smaller meshes do not occupy all
@@ -22,7 +22,7 @@ const INTERVAL: Duration = Duration::from_millis(50);
 /// Observer of the work on many meshes.
 pub(crate) trait Watch {
     /// Receives the result of a finished mesh, by its index in the list.
-    fn done(&mut self, mesh: usize, told: Told);
+    fn done(&mut self, mesh: usize, told: BatchStatus);
     /// Called at intervals without results.
     fn waits(&mut self);
     /// Called once after a signal, which keeps further meshes from being started.
@@ -31,9 +31,9 @@ pub(crate) trait Watch {
 
 /// Calls `work` for the meshes of a list at the indices `open`. Reports each result to `watch` on the calling thread.
 pub(crate) fn run(
-    list: &[Listed],
+    list: &[BatchItem],
     open: &[usize],
-    work: &(dyn Fn(&Listed) -> Told + Sync),
+    work: &(dyn Fn(&BatchItem) -> BatchStatus + Sync),
     watch: &mut dyn Watch,
 ) {
     let mut sized: Vec<(u64, usize)> = open.iter().map(|&i| (list[i].bytes(), i)).collect();

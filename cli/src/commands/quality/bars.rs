@@ -5,7 +5,7 @@ use std::io::IsTerminal;
 
 use crate::render::columns;
 use crate::report::Histogram;
-use crate::terminal::numbers::five;
+use crate::terminal::numbers::fit8;
 
 /// Drawing style for the terminal.
 pub(crate) struct Style {
@@ -67,7 +67,7 @@ pub(crate) fn text(histogram: &Histogram, name: &str, style: &Style) -> String {
 
 /// Formats an edge of a bin without trailing zeros.
 fn edge(x: f64) -> String {
-    let text = five(x);
+    let text = fit8(x);
     match text.contains('.') && !text.contains('e') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,

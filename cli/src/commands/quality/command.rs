@@ -2,7 +2,7 @@
 
 use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
-use crate::commands::quality::sheet::Sheet;
+use crate::commands::quality::sheet::MeshQuality;
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
 
@@ -15,7 +15,8 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     let outputs = Outputs::of_picture(&args.picture)?;
     outputs.check(&args.meshes, &[])?;
     let style = Style::of_terminal(args.ascii);
-    let sheets = args.meshes.iter().map(|path| Sheet::of(path, args, outputs.picture.as_ref()));
+    let sheets =
+        args.meshes.iter().map(|path| MeshQuality::of(path, args, outputs.picture.as_ref()));
     let sheets = sheets.collect::<Result<Vec<_>, _>>()?;
     if args.json {
         tell::say(&format!("{:#}", json::json(&sheets)?));
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
 }
 
 /// Returns a sentence for each threshold that triangles of a mesh violate.
-fn violations(sheet: &Sheet, style: &Style) -> impl Iterator<Item = String> {
+fn violations(sheet: &MeshQuality, style: &Style) -> impl Iterator<Item = String> {
     sheet.violations.iter().filter_map(move |violation| {
         let (place, value) = violation.worst.as_ref()?;
         let (path, threshold) = (sheet.path.display(), &violation.threshold);

@@ -6,13 +6,13 @@ use gpu_smooth::measure::{QUANTILES, Statistics};
 use mesh_io::SourceLocation;
 use serde_json::{Map, Value, json};
 
-use crate::commands::quality::sheet::{Region, Sheet, Violation, Worst, location};
+use crate::commands::quality::sheet::{MeshQuality, Region, Violation, Worst, location};
 use crate::error::CliError;
 use crate::render::columns::quoted;
 use crate::report::Histogram;
 
 /// Returns an object for a single mesh, or an array of objects for several meshes.
-pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, CliError> {
+pub(crate) fn json(sheets: &[MeshQuality]) -> Result<Value, CliError> {
     let one = |sheet| object(sheet).map_err(CliError::from);
     match sheets {
         [only] => one(only),
@@ -20,7 +20,7 @@ pub(crate) fn json(sheets: &[Sheet]) -> Result<Value, CliError> {
     }
 }
 
-fn object(sheet: &Sheet) -> Result<Value, serde_json::Error> {
+fn object(sheet: &MeshQuality) -> Result<Value, serde_json::Error> {
     let mut value = serde_json::to_value(&sheet.report)?;
     value["file"] = sheet.path.display().to_string().into();
     value["format"] = sheet.format.clone().into();
@@ -107,7 +107,7 @@ fn spellings(region: &Region) -> Vec<&str> {
 
 /// Returns a table in CSV with a row for each measure of each file. With regions, further rows
 /// follow for each region.
-pub(crate) fn csv(sheets: &[Sheet]) -> String {
+pub(crate) fn csv(sheets: &[MeshQuality]) -> String {
     let mut text = String::from("file,region,measure,triangles,min,mean,max,sd");
     for share in QUANTILES {
         let _ = write!(text, ",p{:.0}", 100.0 * share);

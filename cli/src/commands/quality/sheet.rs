@@ -18,12 +18,12 @@ use crate::load::explain::{self, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
 use crate::load::{as_in_file, lay_out};
-use crate::render::picture::{self, PictureSubject, Shot};
+use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::{Histogram, QualityReport, histogram};
 use crate::request::PictureRequest;
 
 /// Measurements of one mesh. The mesh is not stored, so that many meshes can be shown side by side.
-pub(crate) struct Sheet {
+pub(crate) struct MeshQuality {
     pub(crate) path: PathBuf,
     pub(crate) format: String,
     pub(crate) remarks: Vec<String>,
@@ -54,13 +54,13 @@ pub(crate) struct Region {
     /// Location of the region's first triangle.
     pub(crate) first: SourceLocation,
     /// The groups that contain the region's triangles, named groups first.
-    pub(crate) groups: Vec<Named>,
+    pub(crate) groups: Vec<GroupNames>,
     /// Statistics of all measures in the region, in the order of `Measure::ALL`.
     pub(crate) statistics: Vec<Statistics>,
 }
 
 /// Names of a group of the file.
-pub(crate) struct Named {
+pub(crate) struct GroupNames {
     /// The name in the spelling that options accept.
     pub(crate) spelling: String,
     /// Full designation: the group's kind, followed by the name or tag.
@@ -91,7 +91,7 @@ pub(crate) struct Violation {
     pub(crate) worst: Option<(SourceLocation, f64)>,
 }
 
-impl Sheet {
+impl MeshQuality {
     /// Reads and measures a mesh, and draws the requested picture.
     pub(crate) fn of(
         path: &Path,
@@ -110,7 +110,7 @@ impl Sheet {
         let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
-        let shot = Shot { title, points: &mesh.points };
+        let shot = MeshState { title, points: &mesh.points };
         picture::write(
             picture,
             PictureSubject { file: &file, topology: &topology, surface },
@@ -173,10 +173,8 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, Cl
     let places = file.source.triangle_locations(first.iter().copied());
     let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
     let groups = file.source.groups()?;
-    let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<Named>)| Region {
-        first: places[first].clone(),
-        groups,
-        statistics,
+    let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<GroupNames>)| {
+        Region { first: places[first].clone(), groups, statistics }
     };
     let named = groups_of(&first, &groups);
     Ok(first.iter().zip(statistics).zip(named).map(region).collect())
@@ -184,7 +182,7 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, Cl
 
 /// Returns the groups of each triangle in `triangles`, named groups first. All triangles of a region belong to equal
 /// groups, so one triangle represents its region.
-fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
+fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<GroupNames>> {
     // One pass over each group's triangles suffices, though the mesh may have as many regions as groups.
     let asked: HashMap<u32, usize> = triangles.iter().map(|&t| t as u32).zip(0..).collect();
     let mut found: Vec<Vec<(&Group, String)>> = vec![Vec::new(); triangles.len()];
@@ -200,7 +198,7 @@ fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<Named>> {
             number if number.parse::<f64>().is_ok() => format!("{} {number}", group.kind),
             name => name,
         };
-        Named { spelling, full: group.to_string(), short }
+        GroupNames { spelling, full: group.to_string(), short }
     };
     let told = |mut found: Vec<(&Group, String)>| {
         found.sort_by_key(|(group, _)| group.name.is_none());

@@ -8,10 +8,10 @@ use gpu_smooth::{
 };
 
 use crate::commands::quality::bars::{self, Style};
-use crate::commands::quality::sheet::{Region, Sheet, Worst};
+use crate::commands::quality::sheet::{MeshQuality, Region, Worst};
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
-use crate::terminal::numbers::{five, six};
+use crate::terminal::numbers::{fit8, sig6};
 
 /// Width of a table's first column, in characters.
 const NAME: usize = 17;
@@ -29,10 +29,10 @@ fn shown(style: &Style) -> [bool; COLUMNS.len()] {
 }
 
 /// Writes the measurements of one or more meshes.
-pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
+pub(crate) fn text(sheets: &[MeshQuality], style: &Style) -> String {
     let mut text = String::new();
     for sheet in sheets {
-        let Sheet { path, format, vertices, free, triangles, remarks, .. } = sheet;
+        let MeshQuality { path, format, vertices, free, triangles, remarks, .. } = sheet;
         let _ = writeln!(text, "{}: {format}", path.display());
         remarks.iter().for_each(|remark| text.push_str(&format!("{remark}\n")));
         let _ = writeln!(text, "{vertices} vertices ({free} free), {triangles} triangles\n");
@@ -50,7 +50,7 @@ pub(crate) fn text(sheets: &[Sheet], style: &Style) -> String {
 
 /// Writes a table with the statistics of all measures: one row per measure, or one row per measure
 /// and file.
-fn table(sheets: &[Sheet], style: &Style) -> String {
+fn table(sheets: &[MeshQuality], style: &Style) -> String {
     let mut text = head(style);
     for (i, measure) in Measure::ALL.iter().enumerate() {
         match sheets {
@@ -73,7 +73,7 @@ fn head(style: &Style) -> String {
 
 fn row(name: &str, statistics: &Statistics, style: &Style) -> String {
     let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
-    line(name, [min, low, median, mean, high, max, deviation].map(|number| five(*number)), style)
+    line(name, [min, low, median, mean, high, max, deviation].map(|number| fit8(*number)), style)
 }
 
 fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
@@ -96,7 +96,7 @@ fn named(measure: Measure, style: &Style) -> String {
 }
 
 /// Writes histograms, regions, worst triangles, objectives and counts of one mesh.
-fn details(sheet: &Sheet, style: &Style) -> String {
+fn details(sheet: &MeshQuality, style: &Style) -> String {
     let mut text = String::new();
     for histogram in &sheet.histograms {
         text.push_str(&bars::text(histogram, &named(histogram.measure, style), style));
@@ -111,13 +111,14 @@ fn details(sheet: &Sheet, style: &Style) -> String {
     }
     let report = &sheet.report;
     for metric in Metric::ALL {
-        let _ = writeln!(text, "{:<22}{:>12}", format!("f {metric}"), six(report.f[metric.name()]));
+        let _ =
+            writeln!(text, "{:<22}{:>12}", format!("f {metric}"), sig6(report.f[metric.name()]));
     }
-    let (worst, place) = (six(report.worst_imr), &sheet.worst_place);
+    let (worst, place) = (sig6(report.worst_imr), &sheet.worst_place);
     let at = format!("  triangle {} ({place})", place.id);
     let _ = writeln!(text, "{:<22}{worst:>12}{at}", "worst imr");
     if sheet.free > 0 && report.worst_movable_imr < report.worst_imr {
-        let movable = six(report.worst_movable_imr);
+        let movable = sig6(report.worst_movable_imr);
         let among = "among triangles with a free vertex";
         let _ = writeln!(text, "{:<22}{movable:>12}  {among}", "worst imr movable");
     }
@@ -136,7 +137,7 @@ fn details(sheet: &Sheet, style: &Style) -> String {
 }
 
 /// Writes a table by region for each measure of `--measure`, then the list of regions.
-fn by_region(sheet: &Sheet, style: &Style) -> String {
+fn by_region(sheet: &MeshQuality, style: &Style) -> String {
     let mut text = String::new();
     for histogram in sheet.histograms.iter().filter(|_| !sheet.regions.is_empty()) {
         let measure = histogram.measure;
@@ -172,14 +173,14 @@ fn worst_line(worst: &Worst, style: &Style) -> String {
         values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();
     let movable = if *can_move { "can move" } else { "all its vertices are fixed" };
     let (label, values) = (place.id, values.join(", "));
-    format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", six(*x), six(*y))
+    format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", sig6(*x), sig6(*y))
 }
 
 /// Formats a value with the name and unit of its measure.
 pub(crate) fn valued(measure: Measure, value: f64, style: &Style) -> String {
     match (measure.definition().unit, style.plain) {
-        ("°", true) => format!("{measure} {} deg", five(value)),
-        (unit, _) => format!("{measure} {}{unit}", five(value)),
+        ("°", true) => format!("{measure} {} deg", fit8(value)),
+        (unit, _) => format!("{measure} {}{unit}", fit8(value)),
     }
 }
 

@@ -13,15 +13,15 @@ use serde_json::json;
 use crate::load::overwrite::{self, Likeness};
 use crate::load::streams;
 use crate::render::html;
-use crate::render::picture::{self, PictureSubject, Shot};
+use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::Failure;
-use crate::report::{Done, Task};
+use crate::report::{Done, SmoothJob};
 use crate::report::{Refusal, Report};
 use crate::request::{Outputs, SmoothRequest};
-use crate::run::carry_out;
 use crate::run::checkpoint;
 use crate::run::engine;
-use crate::run::observer::Follow;
+use crate::run::observer::PipelineObserver;
+use crate::run::run_pipeline;
 use crate::terminal::Verbosity;
 use crate::terminal::interrupt;
 use crate::terminal::progress::{Display, Stage};
@@ -39,7 +39,7 @@ pub(crate) fn run(
     request.outputs.check(slice::from_ref(input), slice::from_ref(out))?;
     let resumed = checkpoint::resumed(request.continue_from.as_deref())?;
     let resumed = resumed.as_ref();
-    let task = Task { request, verbosity, input, out, resumed };
+    let task = SmoothJob { request, verbosity, input, out, resumed };
     let display = Display::new(verbosity, request.estimated_end(), request.max_sweeps());
     let mut follow = Shown { request, verbosity, input, out, display: &display };
     // The driver starts while the mesh is read. If the size of the mesh determines the engine, the driver starts while
@@ -53,7 +53,7 @@ pub(crate) fn run(
                 None => engine::choose(request, size),
             }))
         };
-        carry_out(&task, engine, &mut follow, |done| {
+        run_pipeline(&task, engine, &mut follow, |done| {
             display.clear();
             finish(&task, &done)
         })
@@ -71,7 +71,7 @@ struct Shown<'a> {
     display: &'a Display,
 }
 
-impl Follow for Shown<'_> {
+impl PipelineObserver for Shown<'_> {
     fn stage(&mut self, stage: Stage) {
         self.display.stage(stage);
     }
@@ -114,8 +114,8 @@ impl Follow for Shown<'_> {
 }
 
 /// Writes and prints the requested results of a run.
-fn finish(task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
-    let Task { request, verbosity, out, .. } = *task;
+fn finish(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<(), CliError> {
+    let SmoothJob { request, verbosity, out, .. } = *task;
     let outputs = &request.outputs;
     let Done { file, smoother, outcome, report, .. } = done;
     write_report(outputs, report)
@@ -167,12 +167,12 @@ fn told_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) ->
 
 /// Draws the mesh before and after the run if a picture is requested.
 fn draw(
-    task: &Task<'_>,
+    task: &SmoothJob<'_>,
     file: &LoadedMesh,
     smoother: &Smoother<'_>,
     outcome: &Outcome,
 ) -> Result<(), CliError> {
-    let shot = |title: &str, points| Shot { title: title.to_owned(), points };
+    let shot = |title: &str, points| MeshState { title: title.to_owned(), points };
     let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
     let SmoothRequest { outputs, surface, .. } = task.request;
     let mesh = PictureSubject { file, topology: smoother.topology(), surface: *surface };

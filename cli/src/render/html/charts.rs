@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::render::html::page::escape;
-use crate::terminal::numbers::five;
+use crate::terminal::numbers::fit8;
 
 /// Width and height of a chart in pixels, before the page scales the chart to the window.
 const WIDTH: f64 = 420.0;
@@ -108,7 +108,7 @@ fn across(text: &mut String, y: f64, name: &str) {
 fn tick(x: f64) -> String {
     let text = match x.abs() {
         a if a != 0.0 && !(1e-3..1e5).contains(&a) => return format!("{x:e}"),
-        _ => five(x),
+        _ => fit8(x),
     };
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),

@@ -12,7 +12,7 @@ use gpu_smooth::{
 };
 use serde_json::{Value, json};
 
-use crate::render::html::worst::Spot;
+use crate::render::html::worst::WorstTriangle;
 use crate::render::picture::{Extent, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks};
 
 /// The measures by which the page can color the mesh. The picture of a large mesh uses the first one.
@@ -51,7 +51,7 @@ pub(crate) fn caption(triangles: usize) -> String {
 pub(crate) fn data(
     file: &LoadedMesh,
     states: [&Measured<'_>; 2],
-    spots: &[Spot],
+    spots: &[WorstTriangle],
     bounds: &Bounds,
 ) -> Result<Value, CliError> {
     let topology = states[0].topology();
@@ -170,7 +170,7 @@ fn picture(
 
 /// Returns the triangles around each spot, ascending and without repeats. Triangles are added in order of their
 /// distance from the spot, counted in rings.
-fn around(topology: &Topology<'_>, spots: &[Spot]) -> Vec<usize> {
+fn around(topology: &Topology<'_>, spots: &[WorstTriangle]) -> Vec<usize> {
     let mut all = HashSet::new();
     for spot in spots {
         let (mut met, mut queue) = (HashSet::from([spot.triangle]), vec![spot.triangle]);

@@ -7,11 +7,11 @@ use std::time::SystemTime;
 use crate::error::CliError;
 use crate::render::html::page::escape;
 use crate::render::picture::slid;
-use crate::report::{Done, Task};
-use crate::terminal::numbers::six;
+use crate::report::{Done, SmoothJob};
+use crate::terminal::numbers::sig6;
 
 /// Writes the command, the versions, the engine, and the certificate as HTML.
-pub(crate) fn run(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {
+pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliError> {
     let command: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
     let engine = &done.report.engine;
     let on = match (&engine.adapter, &engine.driver) {
@@ -70,7 +70,7 @@ fn certificate(done: &Done<'_>) -> Result<String, CliError> {
         topology.triangles().len(),
         moved.len(),
         old.len(),
-        six(farthest),
+        sig6(farthest),
         done.outcome.returned
     ))
 }

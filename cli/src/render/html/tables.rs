@@ -6,7 +6,7 @@ use gpu_smooth::measure::{Measure, Measured, Statistics};
 
 use crate::render::html::page::escape;
 use crate::report::{Report, Seconds};
-use crate::terminal::numbers::{five, six};
+use crate::terminal::numbers::{fit8, sig6};
 
 /// Writes the summary of the terminal as HTML: subject, and table of values before and after.
 pub(crate) fn summary(report: &Report) -> String {
@@ -51,7 +51,7 @@ fn row(text: &mut String, state: &str, statistics: &Statistics) {
     let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
     let _ = write!(text, "<td class=\"state\">{state}</td>");
     for number in [min, low, median, mean, high, max, deviation] {
-        let _ = write!(text, "<td>{}</td>", escape(&five(*number)));
+        let _ = write!(text, "<td>{}</td>", escape(&fit8(*number)));
     }
     *text += "</tr>";
 }
@@ -67,12 +67,12 @@ pub(crate) fn time(seconds: &Seconds) -> String {
         let _ = write!(
             names,
             "<li><span class=\"{name} key\"></span>{name} {} s ({share:.1} %)</li>",
-            six(seconds)
+            sig6(seconds)
         );
     }
     format!(
         "<div class=\"parts\">{bar}</div><ul class=\"keys\">{names}<li>total {} s</li></ul>",
-        six(total)
+        sig6(total)
     )
 }
 

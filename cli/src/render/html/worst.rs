@@ -7,7 +7,7 @@ use gpu_smooth::measure::{Measure, Measured};
 
 use crate::load::as_in_file;
 use crate::render::html::page::escape;
-use crate::terminal::numbers::five;
+use crate::terminal::numbers::fit8;
 
 /// Largest number of triangles in a list.
 const LISTED: usize = 8;
@@ -23,7 +23,7 @@ const LISTS: [(&str, usize, bool); 3] = [
 ];
 
 /// A triangle in one of the lists, measured before or after the run.
-pub(crate) struct Spot {
+pub(crate) struct WorstTriangle {
     /// Index of the triangle in the mesh.
     pub(crate) triangle: usize,
     list: usize,
@@ -44,7 +44,7 @@ pub(crate) struct Spot {
 
 /// Finds the worst triangles by shape. Movable triangles have a list of their own if the overall list also has fixed
 /// ones.
-pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> {
+pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<WorstTriangle> {
     let topology = states[0].topology();
     let corners = |t: usize| topology.triangles()[t];
     let mut listed = Vec::new();
@@ -67,7 +67,7 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> 
         let measures = [Measure::Shape, Measure::MinAngle];
         let place = &places[&triangle];
         let at = [0, 1].map(|axis| p[axis] / 3.0 + q[axis] / 3.0 + r[axis] / 3.0);
-        Spot {
+        WorstTriangle {
             triangle,
             list,
             state,
@@ -85,7 +85,7 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<Spot> 
 }
 
 /// Writes the lists as HTML tables.
-pub(crate) fn lists(spots: &[Spot]) -> String {
+pub(crate) fn lists(spots: &[WorstTriangle]) -> String {
     let mut text = String::from("<div class=\"lists\">");
     for (list, (title, ..)) in LISTS.iter().enumerate() {
         let of_list = || spots.iter().enumerate().filter(|(_, spot)| spot.list == list);
@@ -98,17 +98,17 @@ pub(crate) fn lists(spots: &[Spot]) -> String {
              <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>"
         );
         for (i, spot) in of_list() {
-            let Spot { label, place, at_in_file: [x, y], can_move, .. } = spot;
+            let WorstTriangle { label, place, at_in_file: [x, y], can_move, .. } = spot;
             let [before, after] = spot.values;
             let held = if *can_move { "" } else { " (fixed)" };
             let _ = write!(
                 text,
                 "<tr><td><a href=\"#spot-{i}\" title=\"{}\">{label}</a>{held}</td><td>{}</td><td>→ {}</td><td>{}°</td><td>→ {}°</td><td>{}</td><td>{}</td></tr>",
                 escape(place),
-                five(before[0]),
-                five(after[0]),
-                five(before[1]),
-                five(after[1]),
+                fit8(before[0]),
+                fit8(after[0]),
+                fit8(before[1]),
+                fit8(after[1]),
                 coordinate(*x),
                 coordinate(*y),
             );

@@ -9,21 +9,25 @@ use crate::error::CliError;
 use crate::render::html::page::{Page, escape};
 use crate::render::html::tables::measure_name;
 use crate::render::html::{charts, mesh, run, tables, worst};
-use crate::report::{Done, Task};
+use crate::report::{Done, SmoothJob};
 use crate::report::{Histogram, histogram};
 
 /// The measures with a histogram.
 const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
 
 /// Writes the page of a run to `path`; does nothing if `path` is `None`.
-pub(crate) fn write(path: Option<&Path>, task: &Task<'_>, done: &Done<'_>) -> Result<(), CliError> {
+pub(crate) fn write(
+    path: Option<&Path>,
+    task: &SmoothJob<'_>,
+    done: &Done<'_>,
+) -> Result<(), CliError> {
     let Some(path) = path else { return Ok(()) };
     let failed = |error: CliError| error.within("the page was not written");
     let text = page(task, done).map_err(failed)?;
     atomic::write(path, text.as_bytes()).map_err(|error| failed(error.into()))
 }
 
-fn page(task: &Task<'_>, done: &Done<'_>) -> Result<String, CliError> {
+fn page(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliError> {
     let topology = done.smoother.topology();
     let surface = task.request.surface;
     let before = Measured::on(surface, &done.file.mesh().points, topology)?;

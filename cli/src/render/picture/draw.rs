@@ -17,7 +17,7 @@ use gpu_smooth::{
 };
 use mesh_io::atomic;
 
-use crate::terminal::numbers::five;
+use crate::terminal::numbers::fit8;
 
 /// Number of the worst triangles from which the marked triangles, with disjoint marks, are selected.
 const CANDIDATES: usize = 1000;
@@ -32,7 +32,7 @@ pub(crate) struct PictureSubject<'a> {
 }
 
 /// The vertex positions of a mesh before or after a run.
-pub(crate) struct Shot<'a> {
+pub(crate) struct MeshState<'a> {
     pub(crate) title: String,
     pub(crate) points: &'a [[f64; 2]],
 }
@@ -42,7 +42,7 @@ pub(crate) struct Shot<'a> {
 pub(crate) fn write(
     request: Option<&PictureRequest>,
     mesh: PictureSubject<'_>,
-    shots: &[Shot<'_>],
+    shots: &[MeshState<'_>],
 ) -> Result<(), CliError> {
     let Some(request) = request else { return Ok(()) };
     let failed = |error: CliError| error.within("the picture was not written");
@@ -118,14 +118,14 @@ fn goodness_of(
 fn panel<'a>(
     measure: Measure,
     mesh: PictureSubject<'_>,
-    shot: &Shot<'a>,
+    shot: &MeshState<'a>,
 ) -> Result<Panel<'a>, MeshError> {
     let measured = Measured::on(mesh.surface, shot.points, mesh.topology)?;
     let goodness = goodness_of(mesh.topology, &measured, measure)?;
     let unit = measure.definition().unit;
     let statistics = measured.statistics(&[measure]);
     let numbers = statistics.first().map_or(String::new(), |s| {
-        let [min, mean, max] = [s.min, s.mean, s.max].map(five);
+        let [min, mean, max] = [s.min, s.mean, s.max].map(fit8);
         format!("{} triangles; {measure} {min}{unit} to {max}{unit}, mean {mean}{unit}", s.count)
     });
     let worst = measured.worst(measure, CANDIDATES);

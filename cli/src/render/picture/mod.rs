@@ -13,6 +13,6 @@ mod scene;
 mod svg;
 
 pub(crate) use color::{VIRIDIS, bad_end, goodness, ticks};
-pub(crate) use draw::{PictureSubject, Shot, picture_of, write};
+pub(crate) use draw::{MeshState, PictureSubject, picture_of, write};
 pub(crate) use layout::Extent;
 pub(crate) use outlines::{Outlines, slid};

@@ -9,7 +9,7 @@ use crate::render::picture::canvas::{Anchor, Canvas, Point};
 use crate::render::picture::color::{self, BAD, BLACK, WHITE};
 use crate::render::picture::layout::{Extent, Frame, Layout, Place};
 use crate::render::picture::outlines::{Outlines, inner_edges};
-use crate::terminal::numbers::five;
+use crate::terminal::numbers::fit8;
 
 /// A mesh at one set of positions, with the goodness shown by colors.
 pub(crate) struct Panel<'a> {
@@ -85,7 +85,7 @@ impl Scene<'_> {
                 canvas.clip(None);
                 around(corners, text, canvas);
                 let (measure, unit) = (self.measure, self.measure.definition().unit);
-                let name = format!("{}: {measure} {}{unit}", i + 1, five(value));
+                let name = format!("{}: {measure} {}{unit}", i + 1, fit8(value));
                 canvas.text(
                     [left + 0.5 * text, top + 1.2 * text],
                     0.8 * text,

@@ -35,20 +35,20 @@ struct State {
     stage_began: Instant,
     pace: Pace,
     decay: Decay,
-    sweeps: Option<Swept>,
+    sweeps: Option<LatestSweep>,
     max_sweeps: u32,
     next_line: Instant,
 }
 
 /// The latest sweep of a run, with its times.
-struct Swept {
+struct LatestSweep {
     progress: Progress,
     /// Start of the current phase of sweeps.
     began: Instant,
     told: Instant,
 }
 
-impl Swept {
+impl LatestSweep {
     /// Returns the mean duration of a sweep in this phase, in seconds.
     fn seconds(&self) -> f64 {
         (self.told - self.began).as_secs_f64() / f64::from(self.progress.sweep.max(1))
@@ -109,7 +109,7 @@ impl Display {
             Some(_) => told,
             None => state.stage_began,
         };
-        state.sweeps = Some(Swept { progress: *progress, began, told });
+        state.sweeps = Some(LatestSweep { progress: *progress, began, told });
         if progress.phase == Phase::Smoothing {
             state.decay.learn(progress.sweep, progress.f);
         }
@@ -192,7 +192,7 @@ impl State {
             "event": "progress", "stage": self.stage.name(),
             "stage_seconds": self.stage_began.elapsed().as_secs_f64(), "seconds_left": self.left(),
         });
-        if let (Stage::Smoothing, Some(Swept { progress, .. })) = (self.stage, &self.sweeps) {
+        if let (Stage::Smoothing, Some(LatestSweep { progress, .. })) = (self.stage, &self.sweeps) {
             event["sweep"] = progress.sweep.into();
             event["f"] = progress.f.into();
             event["finds_optimum"] = (progress.phase == Phase::Reference).into();
@@ -204,7 +204,7 @@ impl State {
     fn text(&self) -> String {
         let mut text = match (self.stage, &self.sweeps) {
             (Stage::Smoothing, Some(swept)) => {
-                let Swept { progress: Progress { sweep, f, phase }, began, .. } = swept;
+                let LatestSweep { progress: Progress { sweep, f, phase }, began, .. } = swept;
                 let speed = match swept.seconds() {
                     seconds if seconds > 0.5 => format!("{seconds:.1} s/sweep"),
                     seconds => format!("{:.0} sweeps/s", 1.0 / seconds.max(1e-6)),
