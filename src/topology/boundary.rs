@@ -69,6 +69,8 @@ impl Topology<'_> {
                     next.ok().filter(|&edge| left[edge])
                 });
             }
+            // A path that ends without closing a loop leaves its vertices to later paths.
+            path.into_iter().for_each(|v| place[v as usize] = None);
         }
         for vertices in &mut loops {
             let least = (0..vertices.len()).min_by_key(|&i| vertices[i]).unwrap_or(0);
@@ -168,6 +170,48 @@ mod tests {
         ];
         let mesh = Mesh { points, triangles: triangles.to_vec(), fixed: Vec::new() };
         Topology::new(&mesh).unwrap().closed_part()
+    }
+
+    /// Triangles between few vertices, in which each edge has at most two triangles. Many have no consistent windings.
+    #[test]
+    fn loops_follow_edges_of_the_boundary_whatever_the_windings() {
+        let mut state = 1_u64;
+        let mut below = |n: u64| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) % n
+        };
+        let mut has_odd = false;
+        for _ in 0..3000 {
+            let mut uses = std::collections::BTreeMap::new();
+            let mut triangles = Vec::new();
+            for _ in 0..30 {
+                let t = [0; 3].map(|_| below(9) as u32);
+                let edges = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|mut edge| {
+                    edge.sort_unstable();
+                    edge
+                });
+                let is_new = |edge| uses.get(edge).is_none_or(|&count| count < 2);
+                if edges.iter().all(|[a, b]| a != b) && edges.iter().all(is_new) {
+                    edges.into_iter().for_each(|edge| *uses.entry(edge).or_insert(0) += 1);
+                    triangles.push(t);
+                }
+            }
+            let points = (0..9).map(|v| [f64::from(v), f64::from(v * v % 7)]).collect();
+            let mesh = Mesh { points, triangles, fixed: Vec::new() };
+            let Ok(topology) = Topology::new(&mesh) else { continue };
+            let loops = topology.boundary_loops();
+            for vertices in &loops {
+                assert!(vertices.len() > 2, "{:?}: {loops:?}", mesh.triangles);
+                for (i, &v) in vertices.iter().enumerate() {
+                    let mut edge = [v, vertices[(i + 1) % vertices.len()]];
+                    edge.sort_unstable();
+                    assert_eq!(uses.get(&edge), Some(&1), "{:?}: {loops:?}", mesh.triangles);
+                }
+            }
+            let in_loops = loops.iter().map(Vec::len).sum::<usize>();
+            has_odd |= in_loops < uses.values().filter(|&&count| count == 1).count();
+        }
+        assert!(has_odd, "no mesh without consistent windings was tried");
     }
 
     #[test]
