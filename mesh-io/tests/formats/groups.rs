@@ -222,6 +222,20 @@ fn vtk_has_the_cell_data_that_tell_regions() {
             "200 = material surface 200: [0, 0, 2, 0] [0, 1, 2, 4]",
         ],
     );
+    // Unsigned numbers of four bytes, under the name that VTK 9 gives them.
+    let bytes = vtk_binary();
+    let at = |part: &[u8]| bytes.windows(part.len()).position(|own| own == part).unwrap();
+    let (start, end) = (at(b"unsigned_char 1"), at(b"\nPOINT_DATA"));
+    let wide = b"vtktypeuint32 1\nLOOKUP_TABLE default\n".to_vec();
+    let numbers = [4_000_000_000_u32, 4_000_000_000, 1, 1].map(u32::to_be_bytes).concat();
+    assert_groups(
+        "in.vtk",
+        &[&bytes[..start], &wide, &numbers, &bytes[end..]].concat(),
+        &[
+            "1 = material surface 1: [0, 0, 2, 0] [0, 2, 3, 4]",
+            "4000000000 = material surface 4000000000: [0, 0, 2, 0] [0, 1, 2, 4]",
+        ],
+    );
     assert_groups(
         "in.vtu",
         VTU.as_bytes(),

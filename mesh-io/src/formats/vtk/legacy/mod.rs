@@ -62,7 +62,7 @@ impl FormatReader for Vtk {
                 b"POINTS" => {
                     if precision.is_some() {
                         let problem = "this is the second list of POINTS";
-                        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                        return Err(cursor.error(problem, "Save each mesh to a separate file"));
                     }
                     let mut seen = ZValues::new(visitor);
                     precision = Some(points(cursor, binary, &mut seen, visitor)?);

@@ -58,7 +58,7 @@ pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
     match kind.to_ascii_lowercase().as_slice() {
         b"char" | b"unsigned_char" | b"signed_char" => Some(1),
         b"short" | b"unsigned_short" => Some(2),
-        b"int" | b"unsigned_int" | b"float" | b"vtktypeint32" => Some(4),
+        b"int" | b"unsigned_int" | b"float" | b"vtktypeint32" | b"vtktypeuint32" => Some(4),
         b"double" | b"long" | b"unsigned_long" | b"vtkidtype" | b"vtktypeint64"
         | b"vtktypeuint64" => Some(8),
         _ => None,

@@ -103,12 +103,13 @@ impl<'f> Points<'_, 'f> {
             _ => self.binary(file, points, count, precision)?,
         };
         if *self.numbers.get_or_insert((numbers, is_encoded)) != (numbers, is_encoded) {
-            let problem = "the points of this piece are not encoded as those of the pieces before";
+            let problem =
+                "the points of this piece have another encoding than the points of previous pieces";
             return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
         }
         if !is_encoded && start < self.end {
             let problem =
-                "the points of this piece stand in the file before those of the piece before it";
+                "the points of this piece precede the points of the previous piece in the file";
             return Err(cursor.error(problem, "Save the mesh again, or merge its pieces"));
         }
         self.end = start;
