@@ -3,7 +3,7 @@
 use super::File;
 use super::blocks::Block;
 use crate::formats::netcdf_points::{PointData, RecordParts};
-use crate::netcdf::Variable;
+use crate::netcdf::{NumberType, Variable};
 use crate::visit::visitor::MeshVisitor;
 
 impl File<'_> {
@@ -61,7 +61,11 @@ impl File<'_> {
             let of = |block: &Block<'_>| {
                 let name = format!("vals_elem_var{}eb{}", place + 1, block.number);
                 let found = self.header.variable(&name);
-                found.filter(|variable| variable.shape == [block.count])
+                found.filter(|variable| {
+                    // Numbers of other types yield no time step, so their elements must have no entry either.
+                    let is_real = matches!(variable.number, NumberType::Real(_));
+                    is_real && variable.shape == [block.count]
+                })
             };
             let parts: Vec<_> =
                 blocks.iter().filter_map(|block| Some((block, of(block)?))).collect();

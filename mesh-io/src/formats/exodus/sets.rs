@@ -83,7 +83,8 @@ impl File<'_> {
             let nodes = if variable.is_record { None } else { header.integers(variable) };
             let id = self.id(&ids, number);
             for node in nodes.unwrap_or_default() {
-                let index = u32::try_from(node - 1).ok().filter(|&i| (i as usize) < self.nodes);
+                let index = node.checked_sub(1).and_then(|index| u32::try_from(index).ok());
+                let index = index.filter(|&i| (i as usize) < self.nodes);
                 let Some(index) = index else {
                     let cursor = Cursor::at_byte_offset(self.source, header.start_of(variable));
                     let problem = format!("node set {number} has node {node}");
