@@ -66,7 +66,7 @@ pub enum MeshError {
     /// An edge-connected part of the mesh has no boundary: a closed surface in space, which no placement of vertices in
     /// the plane untangles.
     #[error(
-        "the part of the mesh with triangle {triangle} has no boundary, so that it is a closed surface in space"
+        "the part of the mesh with triangle {triangle} has no boundary: a closed surface in space"
     )]
     Closed {
         /// The first triangle of the part.
@@ -126,9 +126,7 @@ pub enum MeshError {
         given: usize,
     },
     /// The bound on the inverse mean ratio given to [`Topology::move_clamped`](crate::Topology::move_clamped) is NaN.
-    #[error(
-        "the bound on the inverse mean ratio is NaN: it must be a number, or infinite for no bound"
-    )]
+    #[error("the bound on the inverse mean ratio is NaN: give a number, or infinity for no bound")]
     BoundNotANumber,
     /// No vertex is free. Every vertex is on the boundary, is listed in [`Mesh::fixed`](crate::Mesh::fixed), is used by
     /// no triangle, or joins two fans of triangles.
@@ -263,7 +261,7 @@ pub enum GpuError {
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
     /// The queue and the device come from different calls of `request_device`.
-    #[error("the queue is not that of the device: both must come from one call of request_device")]
+    #[error("queue and device are no pair: take both from one call of request_device")]
     Queue,
     /// The call would block the thread, and browsers forbid blocking calls.
     #[error(
@@ -275,7 +273,7 @@ pub enum GpuError {
     Refused(String),
     /// A sweep made the objective infinite or NaN, which indicates a bug in this library or in the driver.
     #[error(
-        "sweep {sweep} made the objective infinite or NaN: a mistake of this program or of the driver of the GPU"
+        "sweep {sweep} made the objective infinite or NaN: a defect of this program or of the GPU driver"
     )]
     NotFinite {
         /// Number of the sweep, from 1.

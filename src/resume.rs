@@ -53,7 +53,7 @@ pub(crate) fn check(
         None if own.options == about.options => Ok(()),
         None => Err(foreign()),
         Some((now, then)) => Err(SmoothError::Checkpoint(format!(
-            "it is of a run with {then}, and this run has {now}: continue with the same options"
+            "the run of the checkpoint has {then}, and this run has {now}: continue with the same options"
         ))),
     }
 }
@@ -61,7 +61,7 @@ pub(crate) fn check(
 /// Returns the error for a checkpoint of another mesh.
 pub(crate) fn foreign() -> SmoothError {
     SmoothError::Checkpoint(
-        "it is of another mesh, or other vertices were held, other curves or other targets set: continue with the mesh that the run began with".to_owned(),
+        "mesh, held vertices, curves or targets of the checkpoint differ from this run: continue with the mesh that the run began with".to_owned(),
     )
 }
 

@@ -78,9 +78,7 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
                     let wanted = file_name(&source.path.with_extension("ele"));
                     let remedy = match source.path.exists() {
                         true => format!("Put {wanted} beside it"),
-                        false => {
-                            "Such a mesh is of several files, and is read from them".to_owned()
-                        }
+                        false => "A mesh of this format consists of several files, which are read together".to_owned(),
                     };
                     Err(source.error(problem, remedy))
                 }

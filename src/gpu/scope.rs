@@ -65,9 +65,9 @@ pub(crate) fn scoped_to_buffer<T>(
     calls: impl FnOnce() -> T,
 ) -> Result<T, GpuError> {
     scoped(device, calls).map_err(|error| match error {
-        GpuError::Refused(text) => {
-            GpuError::Buffer(format!("it was destroyed, or is of another device: {text}"))
-        }
+        GpuError::Refused(text) => GpuError::Buffer(format!(
+            "the buffer was destroyed, or belongs to another device: {text}"
+        )),
         other => other,
     })
 }

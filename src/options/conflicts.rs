@@ -22,7 +22,7 @@ const BETWEEN: &str =
 const CHANGING: &str =
     "targets of places change during the run; drop one of the two, or take targets of vertices";
 const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
-const TANGLED: &str = "inverted triangles give no bound; untangle the mesh in a run of its own";
+const TANGLED: &str = "inverted triangles give no bound; untangle the mesh in a separate run";
 
 /// All conflicts. A run with several conflicts reports the first matching row.
 pub(crate) const CONFLICTS: &[Conflict] = &[

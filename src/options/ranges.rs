@@ -34,7 +34,7 @@ impl OptionRange {
     /// [`PNormExponent::first`](crate::options::PNormExponent::first).
     pub const EXPONENT: Self = Self::new(
         "edge norm",
-        "from 0 to 13, the log2 of the exponent, and the last not below the first",
+        "from 0 to 13, the log2 of the exponent, and no decrease from first to last",
         |log2| (0.0..=f64::from(PNormExponent::MAX)).contains(&log2),
     );
     /// Number of metrics in [`Options::scheme`](crate::Options::scheme).

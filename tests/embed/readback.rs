@@ -119,5 +119,5 @@ fn readbacks_of_wrong_buffers_and_ranges_are_refused() {
     refused(&good, 0, usize::MAX, "bytes");
     refused(&good, 2, 1, "must be multiples of 4");
     refused(&good, 0, 0, "must be multiples of 4");
-    refused(&other.buffer(16, usage), 0, 1, "of another device");
+    refused(&other.buffer(16, usage), 0, 1, "belongs to another device");
 }

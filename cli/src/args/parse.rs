@@ -58,7 +58,7 @@ pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 2], String> {
 /// Parses an inverse mean ratio: a finite number from 1.
 pub(crate) fn ratio(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|q| *q >= 1.0 && q.is_finite());
-    number.ok_or_else(|| "it must be a number from 1, which an equilateral triangle has".into())
+    number.ok_or_else(|| "give a number of at least 1, the ratio of an equilateral triangle".into())
 }
 
 /// Parses an angle in degrees.

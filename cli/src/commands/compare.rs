@@ -68,7 +68,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
         );
     }
     if explain::are_across(&after, bad) {
-        list.push("--surface sphere continues longitudes across the line where they start again, as at 180 degrees".to_owned());
+        list.push("--surface sphere continues longitudes across the meridian at which longitudes wrap, such as 180 degrees".to_owned());
     }
     if !problems.is_empty() {
         let text = format!("{}: {}", args.after.display(), problems.join(", "));

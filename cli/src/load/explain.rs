@@ -175,7 +175,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                 return mesh_error(file, &MeshError::Closed { triangle });
             }
             let remedy = if is_across {
-                "They reach from one end of the longitudes to the other: --surface sphere continues longitudes across the line where they start again, as at 180 degrees"
+                "The triangles reach from the smallest longitude to the largest: --surface sphere continues longitudes across the meridian at which longitudes wrap, such as 180 degrees"
             } else if file.source.data_names().iter().any(|name| name == "z") {
                 "Untangle the mesh first: --untangle. But if this is a surface in space that folds over itself in the plane of x and y, it cannot be smoothed"
             } else {

@@ -133,7 +133,7 @@ impl InterpolatedFields {
             if !others.is_empty() {
                 let names = listed(others.iter().map(String::as_str));
                 remarks.push(format!(
-                    "{names}: places of elements that are neither their centers nor circumcenters stay as they are"
+                    "{names}: positions of elements that are neither centers nor circumcenters are not updated"
                 ));
             }
         }
@@ -170,10 +170,10 @@ impl InterpolatedFields {
         let kept = match left {
             0 => String::new(),
             1 => {
-                "; 1 number stays as it was, as a vertex around it has no finite number".to_owned()
+                "; 1 number is not updated, as a neighboring vertex has no finite number".to_owned()
             }
             left => format!(
-                "; {left} numbers stay as they were, as a vertex around them has no finite number"
+                "; {left} numbers are not updated, as a neighboring vertex has no finite number"
             ),
         };
         Ok(Some(format!("interpolated where {moved} moved: {names}{kept}")))

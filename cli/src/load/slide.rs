@@ -59,7 +59,7 @@ impl SlideRequest {
             let sides = [find(a)?.vertices(), find(b)?.vertices()];
             if slide.pair_sides(topology, &file.mesh().points, sides) == 0 {
                 return Err(refusal(
-                    "no translation or rotation takes all vertices of one to those of the other: \
+                    "no translation or rotation maps the vertices of one side to the vertices of the other side: \
                      name two sides of the boundary that match vertex by vertex",
                 ));
             }
@@ -88,7 +88,7 @@ impl SlideRequest {
             n => text += &format!(", {} of them in {n} periodic pairs", 2 * n),
         }
         if has_lost_pairs(file, &slide) {
-            text += "; the boundary stays, as the model is periodic and its pairs are not known: \
+            text += "; the boundary stays fixed, as the model is periodic and the pairs of vertices are unknown: \
                      --periodic MARKER,MARKER names them";
         }
         match unlike {

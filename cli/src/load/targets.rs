@@ -176,7 +176,7 @@ fn remark(background: &Path, outside: OutsideReport) -> Option<String> {
         n => format!("{n} vertices are"),
     };
     Some(format!(
-        "{vertices} outside of {}, by up to {}: the target of the nearest point in it is taken there",
+        "{vertices} outside of {}, by up to {}: these vertices take the target of the nearest point of this mesh",
         background.display(),
         sig6(most)
     ))

@@ -11,7 +11,7 @@ use crate::report::{
 use crate::terminal::numbers::{percent, sig6};
 
 /// The message of a run ended by a sweep whose objective was infinite or NaN.
-const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a mistake of this program or of the driver of the GPU; the mesh is of the last good state";
+const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a defect of this program or of the GPU driver; the mesh is of the last good state";
 
 /// If more than one vertex in twenty changes its size by more than this factor, the summary mentions `--target
 /// keep-size`.
@@ -267,7 +267,7 @@ impl Report {
             }
         };
         if self.sweeps > 0 && self.best_sweep == 0 {
-            text.push_str("; nothing was gained, so the mesh is written as it was");
+            text.push_str("; no gain, so the mesh is written unchanged");
         } else if self.best_sweep != self.sweeps {
             let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
         }

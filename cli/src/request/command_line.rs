@@ -92,7 +92,7 @@ fn misplaced(matches: &ArgMatches) -> Option<String> {
             )
         }
         None => format!(
-            "'{name}' is a command, and no mesh may stand before it; write ./{name} for a file of that name"
+            "'{name}' is a command, and commands precede meshes; write ./{name} for a file of that name"
         ),
     })
 }

@@ -195,7 +195,7 @@ impl Outputs {
         }
         let (shown, input) = (out.display(), input.display());
         let text =
-            format!("{shown}: this file and {input} are of one mesh, which it would replace");
+            format!("{shown}: this file belongs to the mesh of {input}, and would be replaced");
         let remedy = format!(
             "To smooth the mesh in place, name one file twice ({input} {input}), or give OUT another name"
         );
@@ -207,7 +207,7 @@ impl Outputs {
         let path = path.display();
         let (text, remedy) = match self.mesh {
             MeshOutput::Smoothed if self.checkpoint.is_some() => (
-                format!("{path}: a run can only be continued while IN is as it was"),
+                format!("{path}: a checkpoint continues a run only while IN is unchanged"),
                 "With a checkpoint, OUT must be another file",
             ),
             MeshOutput::OfMany => (

@@ -158,9 +158,9 @@ fn refusal(
         {
             let (path, error) = (file.source.path().display(), explain::nothing_free(file));
             CliError::input(format!(
-                "{path}: {error}, and none can slide, as all are corners or held"
+                "{path}: {error}, and no vertex can slide, as all are corners or held"
             ))
-            .with_remedy("Refine the mesh, so that it has vertices between")
+            .with_remedy("Refine the mesh to get vertices between")
         }
         _ => explain::mesh_error(file, error),
     };

@@ -59,8 +59,8 @@ fn values_out_of_range_name_the_range() {
         ("--only -q", &["the name or the tag of a group is needed"]),
         ("--fix-box 0,0,1", &["'0,0,1' for '--fix-box", "four numbers with commas"]),
         ("--fix-box -1,0,1,inf", &["four numbers with commas"]),
-        ("--only-bad 0.5", &["it must be a number from 1"]),
-        ("--only-bad -2", &["'-2' for '--only-bad", "it must be a number from 1"]),
+        ("--only-bad 0.5", &["give a number of at least 1"]),
+        ("--only-bad -2", &["'-2' for '--only-bad", "give a number of at least 1"]),
         ("--only-bad 2 --rings -1", &["'-1' for '--rings"]),
         ("--rings 1", &["--only-bad <Q>"]),
     ];

@@ -82,7 +82,7 @@ fn conversions_that_cannot_work_are_refused() {
     // name.
     folder
         .line("convert in.2dm out.vtk --to su2 --lossy -q")
-        .refused(&["out.vtk: its ending is that of legacy VTK, and not of SU2", ".su2"]);
+        .refused(&["out.vtk: the ending belongs to legacy VTK, not to SU2", ".su2"]);
     assert!(!folder.path("out.vtk").exists());
     folder.line("convert in.2dm out.txt --to su2 --lossy -q").clean();
     folder.line("convert in.2dm out.slf").misused(&["out.slf: its ending names no format"]);

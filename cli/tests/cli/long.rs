@@ -117,11 +117,14 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     );
     refused(
         &format!("{LONG} --continue run.ckpt --omega 1.2"),
-        &["run.ckpt: the checkpoint cannot be used: it is of a run with", "with the same options"],
+        &[
+            "run.ckpt: the checkpoint cannot be used: the run of the checkpoint has",
+            "with the same options",
+        ],
     );
     refused(
         &format!("{LONG} --continue run.ckpt --fix-box 0,0,6,6 -q"),
-        &["run.ckpt: the checkpoint cannot be used: it is of another mesh"],
+        &["run.ckpt: the checkpoint cannot be used: mesh, held vertices"],
     );
     refused(&format!("{LONG} --continue none"), &["none: there is no such file"]);
     fs::write(folder.path("foreign"), "no checkpoint").unwrap();
@@ -136,10 +139,10 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     misused(&format!("{LONG} --checkpoint in.node"), &["in.node: the checkpoint would replace"]);
     misused(&format!("{LONG} --checkpoint out.node"), &["out.node: a checkpoint is no mesh"]);
     let in_place = "in.node in.node --engine cpu --checkpoint new.ckpt";
-    misused(in_place, &["in.node: a run can only be continued while IN is as it was"]);
+    misused(in_place, &["in.node: a checkpoint continues a run only while IN is unchanged"]);
     refused(
         "in in.node --engine cpu --checkpoint new.ckpt",
-        &["in.node: a run can only be continued while IN is as it was"],
+        &["in.node: a checkpoint continues a run only while IN is unchanged"],
     );
     let mut bytes = fs::read(folder.path("run.ckpt")).unwrap();
     bytes[100] ^= 1;

@@ -117,7 +117,7 @@ fn a_file_of_the_mesh_beside_in_is_no_place_for_out() {
     let folder = small();
     let before = folder.content();
     for (input, out) in [("in.node", "in.ele"), ("in.ele", "in.node"), ("in", "./in.ele")] {
-        let file = format!("{out}: this file and {input} are of one mesh");
+        let file = format!("{out}: this file belongs to the mesh of {input}");
         let parts = [&file, "name one file twice", "give OUT another name"];
         folder.line(&format!("{input} {out} --engine cpu --force")).refused(&parts);
         assert!(folder.content() == before, "files have changed");
@@ -143,7 +143,8 @@ fn a_mesh_that_another_program_has_changed_meanwhile_is_not_replaced() {
         run.signal("-INT");
         let (code, out, err) = run.end();
         assert_eq!((code, out.as_str()), (Some(1), ""), "{err}");
-        let problem = format!("error: {name}: another program has changed this file since");
+        let problem =
+            format!("error: {name}: another program has changed this file during the run");
         assert_holds(&err, &[&problem, "Give OUT another name"]);
         assert!(folder.content() == before, "files have changed");
     }

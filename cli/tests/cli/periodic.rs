@@ -178,7 +178,7 @@ fn pairs_that_make_no_sense_stay_and_nothing_else_is_harmed() {
     for broken in ["$Periodic\n1\n1 2 4\n3\n9 1\n$EndPeriodic\n", "$Periodic\nx\n$EndPeriodic\n"] {
         write(&folder, "in.msh", gmsh2(&mesh, broken));
         let run = folder.line("in.msh out.msh --engine cpu --slide");
-        assert_holds(&run.err, &["the boundary stays, as the model is periodic"]);
+        assert_holds(&run.err, &["the boundary stays fixed, as the model is periodic"]);
     }
 }
 
@@ -222,7 +222,7 @@ fn pairs_of_su2_are_found_by_its_motions_or_between_markers() {
         let run = folder.line(&format!("{unknown} out.su2 --engine cpu --slide --force"));
         assert_holds(
             &run.err,
-            &["no vertex can slide", "the boundary stays, as the model is periodic"],
+            &["no vertex can slide", "the boundary stays fixed, as the model is periodic"],
         );
     }
     for (names, told) in [

@@ -151,7 +151,7 @@ fn a_mesh_in_which_nothing_slides_either_is_refused() {
         ["4 2\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n", "2 3\n1 1 2 3\n2 1 3 4\n"].map(str::to_owned);
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
     folder.line("in.node out.node --slide").refused(&[
-        "in.node: none of the 4 vertices is free to move, and none can slide",
+        "in.node: none of the 4 vertices is free to move, and no vertex can slide",
         "Refine the mesh",
     ]);
 }

@@ -86,7 +86,7 @@ fn compressed_meshes_are_smoothed() {
     let (run, through) = piped(&folder, "- - --engine cpu", &packed);
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert!(through == bytes, "what came in compressed goes out so");
-    folder.line("in.msh out.su2.gz --engine cpu").refused(&["its ending is that of SU2"]);
+    folder.line("in.msh out.su2.gz --engine cpu").refused(&["the ending belongs to SU2"]);
     let bomb = {
         let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
         packed.write_all(&vec![b' '; 20 << 20]).unwrap();

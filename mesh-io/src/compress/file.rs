@@ -125,8 +125,8 @@ pub(crate) fn decompress(bytes: &[u8]) -> Result<Option<(Compression, Vec<u8>)>,
         let problem =
             format!("it unpacks to more than {MAX_RATIO} times its size, which no mesh does");
         let remedy = match compression {
-            Compression::Gzip => "If it is one, decompress it first (gunzip)",
-            Compression::Zstd => "If it is one, decompress it first (unzstd)",
+            Compression::Gzip => "If the file is a mesh, decompress the file first (gunzip)",
+            Compression::Zstd => "If the file is a mesh, decompress the file first (unzstd)",
         };
         return Err(DecompressError { problem, remedy });
     }

@@ -116,8 +116,7 @@ impl Conversion {
         if let Some(owner) = detect::format_name_of_extension(path)
             && !family.matches_extension(path)
         {
-            let problem =
-                format!("its ending is that of {owner}, and not of {}", self.target.format);
+            let problem = format!("the ending belongs to {owner}, not to {}", self.target.format);
             return refused(problem, &format!("End the name in {}", family.extensions[0]));
         }
         if packs.is_some() && destinations.len() > 1 {

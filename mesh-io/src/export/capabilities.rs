@@ -197,9 +197,7 @@ impl Capabilities {
             set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| kind(b) == kind(group)))
         });
         if several && self.groups != GroupSupport::None {
-            lost.push(
-                "that elements are of several groups of a kind: the first one is kept".into(),
-            );
+            lost.push("further groups of a kind of an element: the first group is kept".into());
         }
         for (dimension, of) in [(0, "points"), (1, "lines"), (2, "surfaces")] {
             let kinds = content.group_kinds(dimension);

@@ -84,7 +84,7 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
                 _ => "land",
             };
             if kind > 1 {
-                visitor.unsupported("types of boundaries, and what is told of weirs");
+                visitor.unsupported("types of boundaries, and the data of weirs");
             }
             let mut nodes = Vec::new();
             for _ in 0..length {

@@ -211,7 +211,7 @@ impl ChunkGrid {
         chunks.sort_by_key(|chunk| chunk.number);
         let numbers = chunks.iter().map(|chunk| chunk.number);
         if !numbers.eq(0..self.count()) {
-            let problem = "a dataset of which parts were never written, or twice";
+            let problem = "a dataset with chunks that are missing or written twice";
             return Err(Hdf5Error::unread(at, problem));
         }
         self.check(raw, &chunks, filters).ok_or_else(damaged)?;

@@ -144,7 +144,7 @@ impl Dataset {
         let damaged = || Hdf5Error::damaged(*at, "a dataset of the HDF5 file");
         let absent = || Hdf5Error {
             at: *at,
-            problem: "a dataset without its numbers, which were never written".into(),
+            problem: "a dataset whose numbers were never written".into(),
             remedy: "Write the mesh again",
         };
         let size = self.datatype.bytes();

@@ -158,7 +158,7 @@ impl Layout {
     #[cold]
     fn other(bytes: &ByteReader<'_>, class: u8) -> Hdf5Error {
         match class {
-            3 => bytes.unread("a virtual dataset, made of those of other files"),
+            3 => bytes.unread("a virtual dataset, composed of datasets of other files"),
             _ => bytes.damaged(),
         }
     }

@@ -299,7 +299,7 @@ impl MeshFile {
             && !FormatEntry::of(self.format()).matches_extension(path)
         {
             let problem =
-                format!("its ending is that of {owner}, but the mesh is {}", self.format());
+                format!("the ending belongs to {owner}, but the mesh is {}", self.format());
             return refused(
                 problem,
                 format!("The format is kept: end the name in {usual}, or convert the mesh"),

@@ -236,7 +236,7 @@ impl MeshVisitor for MeshBuilder {
         let Err((id, second)) = self.ids.finish() else { return Ok(()) };
         let problem = format!("node {id} is listed a second time");
         let location = cursor.location_of(self.x_offsets.at(second));
-        Err(cursor.source.error_at(location, problem, "Give each node a tag of its own"))
+        Err(cursor.source.error_at(location, problem, "Give each node a different tag"))
     }
 
     fn expect_elements(&mut self, count: usize) {

@@ -71,7 +71,7 @@ fn what_an_input_file_leaves_out_or_makes_is_refused_with_its_place() {
     refused(
         "4, 0., 2.",
         "4, 0.",
-        &["a.inp:5: y of node 4 is left out, which stands for 0. Write the 0"],
+        &["a.inp:5: y of node 4 is left out, which stands for 0. Write the number 0"],
     );
     refused("4, 0., 2.", "4, , 2.", &["a.inp:5: x of node 4 is left out"]);
     refused("4, 0., 2.", "4, 0.,, 2.", &["a.inp:5: y of node 4 is left out"]);
@@ -108,9 +108,9 @@ fn what_an_input_file_leaves_out_or_makes_is_refused_with_its_place() {
         "*NODE, INPUT=n.txt",
         &["a.inp:1: the rows of *NODE are in another file, n.txt"],
     );
-    refused("*NODE", "*NODE PRINT", &["a.inp: it has no *NODE"]);
-    assert_refused("a.inp", "4 2 0 0 0\n1 0 0 0\n", &["a.inp: it has no *NODE"]);
-    assert_refused("a.txt", "** a title\n", &["a.txt: it has no *NODE"]);
+    refused("*NODE", "*NODE PRINT", &["a.inp: the file has no *NODE card"]);
+    assert_refused("a.inp", "4 2 0 0 0\n1 0 0 0\n", &["a.inp: the file has no *NODE card"]);
+    assert_refused("a.txt", "** a title\n", &["a.txt: the file has no *NODE card"]);
     assert_refused("a.inp", NODES, &["5 vertices, but no triangle"]);
     assert_refused("a.inp", &deck().replace('\n', "\r"), &["carriage returns alone"]);
 }
@@ -224,7 +224,7 @@ fn one_part_of_an_assembly_is_a_mesh() {
         ["part Q has elements beside part P, each with numbers of its own", "without parts"];
     assert_refused("a.inp", &two, &parts);
     let of_assembly = text.replace("CONN2D2", "S3");
-    assert_refused("a.inp", &of_assembly, &["an assembly has elements of its own"]);
+    assert_refused("a.inp", &of_assembly, &["an assembly has elements in addition"]);
 }
 
 #[test]

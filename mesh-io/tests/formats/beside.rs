@@ -60,7 +60,7 @@ fn missing_files_beside_a_mesh_are_errors() {
     let with = |to: &str| read(text.replace("dolfin.h5:/Mesh/mesh/geometry", to));
     refused(
         with("gone.h5:/a"),
-        &["dolfin.xdmf:10: its numbers are in gone.h5, which is not there"],
+        &["dolfin.xdmf:10: its numbers are in gone.h5, and this file does not exist"],
     );
     refused(with("dolfin.xdmf:/a"), &["it names itself"]);
     refused(with("dolfin.h5:/Mesh/b"), &["dolfin.xdmf:10: dolfin.h5 has no dataset /Mesh/b"]);

@@ -314,7 +314,7 @@ fn depths_and_other_numbers_need_not_be_finite() {
     let wrong = "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty int n\nend_header\n0 0 nan\n";
     let folder = Folder::new(&[("b.ply", wrong)]);
     let error = MeshFile::read(&folder.path("b.ply")).unwrap_err().to_string();
-    assert!(error.contains("b.ply:8: a whole number of an item is not finite"), "{error}");
+    assert!(error.contains("b.ply:8: an integer of an item is not finite"), "{error}");
 }
 
 /// Real numbers are checked even if integers of an equal name come before them.

@@ -112,7 +112,7 @@ fn gmsh_errors_name_line_and_remedy() {
     v2("$Nodes\n6", "$Nodes\n7", &["a.msh:16: the section ends after 6 of 7 nodes", "Correct"]);
     v2("$Nodes\n6", "$Nodes\n5", &["a.msh:15: $Nodes goes on after the 5 nodes it announces"]);
     v2("$Nodes\n6", "$Nodes\n99999999999", &["a.msh:9: 99999999999 vertices", "4294967295"]);
-    v2("3 1 1 5\n", "4 1 1 5\n", &["a.msh:12: node 4 is listed a second time", "own"]);
+    v2("3 1 1 5\n", "4 1 1 5\n", &["a.msh:12: node 4 is listed a second time", "different tag"]);
     v2("3 1 1 5\n", "3 1 inf 5\n", &["a.msh:12: y of node 3 is `inf`, not a finite number"]);
     v2("3 1 1 5\n", "3 1 1\n", &["a.msh:12: z of node 3 is missing"]);
     v2("3 70 5\n", "3 71 5\n", &["a.msh:23: triangle 5 has node 71, which $Nodes does not list"]);
@@ -193,11 +193,11 @@ fn destinations_that_cannot_work_are_refused_and_left_alone() {
         }
     };
     let converted = "The format is kept: end the name in .node, or convert the mesh";
-    refused("la.1", "out.msh", &["out.msh: ", "that of gmsh", "mesh is Triangle", converted]);
-    refused("la.1", "out.vtk", &["that of legacy VTK", converted]);
+    refused("la.1", "out.msh", &["out.msh: ", "belongs to gmsh", "mesh is Triangle", converted]);
+    refused("la.1", "out.vtk", &["belongs to legacy VTK", converted]);
     refused("la.1", "old.node", &["old.ele: is a directory", "Give the name of a file"]);
     refused("la.1", "", &["not the name of a file", "out.node"]);
-    refused("a.msh", "out.ele", &["that of Triangle", "end the name in .msh"]);
+    refused("a.msh", "out.ele", &["belongs to Triangle", "end the name in .msh"]);
     refused("a.msh", "none/out.msh", &["none: no such directory", "Create the directory first"]);
     refused("a.msh", "locked", &["locked: the file is read-only", "Make it writable"]);
     assert_eq!(folder.text("old.node"), "old");

@@ -309,7 +309,7 @@ fn lists_of_a_binary_medit_that_share_bytes_are_refused() {
     assert_eq!(file(68).map_err(|error| error.to_string()), Ok(3));
     for next in [32, 56, 64] {
         let error = file(next).unwrap_err().to_string();
-        let problem = format!("the next list is announced at byte {next}, which is not behind");
+        let problem = format!("the next list is announced at byte {next}, which does not follow");
         assert!(error.contains(&problem), "{error}");
     }
 }

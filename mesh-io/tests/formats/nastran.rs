@@ -135,7 +135,7 @@ fn what_bulk_data_leave_out_or_make_is_refused_with_its_place() {
         assert_refused("a.bdf", &deck.replacen(from, to, 1), parts);
     };
     let grid = "GRID,4,,0.,2.,0.";
-    let left_out = "is left out at the end of its row, which stands for 0. Write the 0";
+    let left_out = "is left out at the end of its row, which stands for 0. Write the number 0";
     refused(grid, "GRID,4,,0.", &[&format!("a.bdf:5: y of node 4 {left_out}")]);
     refused(grid, "GRID,4", &[&format!("a.bdf:5: x of node 4 {left_out}")]);
     refused(grid, "GRID    4               0.", &[&format!("a.bdf:5: y of node 4 {left_out}")]);
@@ -155,11 +155,7 @@ fn what_bulk_data_leave_out_or_make_is_refused_with_its_place() {
         &["a.bdf:11: INCLUDE names another file", "in one file"],
     );
     refused("ENDDATA", "BEGIN SUPER=1", &["a.bdf:11: a second section of bulk data begins here"]);
-    refused(
-        "ENDDATA",
-        "=,*1,=,*.5,==",
-        &["a.bdf:11: a row repeats the one before it", "without `=`"],
-    );
+    refused("ENDDATA", "=,*1,=,*.5,==", &["a.bdf:11: a row repeats the row above", "without `=`"]);
     let triangle = "CTRIA3,1,7,1,2,5";
     refused(triangle, "CTRIA3,1,7,1,2", &["a.bdf:7: a vertex of triangle 1 is missing. Correct"]);
     refused(triangle, "CTRIA3,1,7,1,2,8", &["a.bdf:7: triangle 1 has node 8, which GRID does not"]);
@@ -176,7 +172,7 @@ fn what_bulk_data_leave_out_or_make_is_refused_with_its_place() {
     assert_refused(
         "a.bdf",
         "BEGIN BULK\n",
-        &["a.bdf: it has no GRID, so it is no mesh of Nastran"],
+        &["a.bdf: the file has no GRID card, so this is no mesh of Nastran"],
     );
     assert_refused("a.nas", NODES, &["5 vertices, but no triangle"]);
     assert_refused("a.bdf", &deck().replace('\n', "\r"), &["carriage returns alone"]);

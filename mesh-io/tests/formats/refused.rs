@@ -108,7 +108,11 @@ fn other_contents_of_known_formats_are_refused() {
     let medit = "MeshVersionFormatted 2\nDimension 4\n";
     assert_refused("a.mesh", medit, &["a.mesh:2: the dimension is 4", "It is 2, or 3"]);
     let two = "MeshVersionFormatted 2\nDimension 2\nVertices 1\n0 0 0\nVertices 1\n0 0 0\n";
-    assert_refused("a.mesh", two, &["a.mesh:5: this is the second list of Vertices", "own"]);
+    assert_refused(
+        "a.mesh",
+        two,
+        &["a.mesh:5: this is the second list of Vertices", "separate file"],
+    );
     assert_refused("a.obj", "v 0 0 0\nf 1 2/x b\n", &["a.obj:2: a vertex is `b`"]);
     assert_refused("a.obj", "v 0 0 0\nf 1 -2 1\n", &["a.obj:2: "]);
     let grid = "bay\n1 1\n1 0 0 0\n1 5 1 1 1 1 1\n";

@@ -141,7 +141,7 @@ fn files_without_one_mesh_of_faces_are_refused_with_a_remedy() {
     bytes[lines] = 2;
     refused(
         &bytes,
-        &["in.nc, byte 0: several meshes: network, bay. Save each in a file of its own"],
+        &["in.nc, byte 0: several meshes: network, bay. Save each mesh to a separate file"],
     );
     bytes[lines] = 1;
     bytes[faces] = 3;

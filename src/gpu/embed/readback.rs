@@ -102,7 +102,7 @@ impl<T: Pod> Readback<T> {
         let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
         if !offset.is_multiple_of(4) || !bytes.is_multiple_of(4) || bytes == 0 {
             return refuse(format!(
-                "{bytes} bytes from byte {offset} on cannot be copied: both must be multiples of 4, and the first above 0"
+                "{bytes} bytes from byte {offset} on cannot be copied: size and offset must be multiples of 4, and the size at least 4"
             ));
         }
         if offset.checked_add(bytes).is_none_or(|end| end > buffer.size()) {

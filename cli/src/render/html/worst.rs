@@ -19,7 +19,7 @@ const CANDIDATES: usize = 10_000;
 const LISTS: [(&str, usize, bool); 3] = [
     ("The worst before the run", 0, false),
     ("The worst after the run", 1, false),
-    ("The worst after the run of those that can move", 1, true),
+    ("The worst after the run that have a free vertex", 1, true),
 ];
 
 /// A triangle in one of the lists, measured before or after the run.

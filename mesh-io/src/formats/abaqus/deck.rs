@@ -168,7 +168,8 @@ fn check(source: &Source, block: &Block<'_>) -> Result<(), ReadError> {
         } else {
             "makes nodes or elements"
         };
-        let problem = format!("*{shown} {what}, so that not all stand where a row says");
+        let problem =
+            format!("*{shown} {what}, so some nodes or elements are not in rows of the file");
         return Err(block.error(
             source,
             problem,

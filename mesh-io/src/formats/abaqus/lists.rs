@@ -45,7 +45,7 @@ pub(super) fn lists<'d, 'a>(
         let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
         if matches!(class(source, block, &of)?, Some(CellKind::Triangle | CellKind::Quadrilateral))
         {
-            let problem = "an assembly has elements of its own beside those of a part";
+            let problem = "an assembly has elements in addition to the elements of a part";
             let remedy = "Write the input file without parts and assemblies";
             return Err(block.error(source, problem, remedy));
         }

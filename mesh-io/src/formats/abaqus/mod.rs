@@ -45,7 +45,7 @@ impl FormatReader for Abaqus {
     ) -> Result<CoordinateStorage, ReadError> {
         let deck = &mut Deck::read(source)?;
         if deck.of_mesh("NODE").next().is_none() {
-            let problem = "it has no *NODE, so it is no mesh of Abaqus or CalculiX";
+            let problem = "the file has no *NODE card, so this is no mesh of Abaqus or CalculiX";
             return Err(source.error(problem, "Save the mesh with its nodes and elements"));
         }
         let numbers = CoordinateEncoding::Text { precision: Precision::Text20 };

@@ -59,9 +59,10 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     for (axis, x) in ['x', 'y'].into_iter().zip(&mut at) {
         if cursor.is_at_end() {
             let problem = format!("{axis} of node {id} is left out, which stands for 0");
-            return Err(
-                cursor.error(problem, "Write the 0, as there is no place for another value")
-            );
+            return Err(cursor.error(
+                problem,
+                "Write the number 0 there, as the field has no room for another value",
+            ));
         }
         let start = cursor.at();
         *x = cursor.coordinate(axis, format_args!("node {id}"))?;

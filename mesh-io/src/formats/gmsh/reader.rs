@@ -158,7 +158,7 @@ fn visit_sections(
         Some(encoding) if nodes && elements => Ok(encoding),
         _ => Err(source.error(
             format!("it has no {missing} section"),
-            "The file is cut off or was saved without its mesh: save it again",
+            "The file is incomplete, or was saved without a mesh: save it again",
         )),
     }
 }
@@ -204,7 +204,7 @@ fn known(cursor: &Cursor<'_>, encoding: Option<FileEncoding>) -> Result<FileEnco
 fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {
     if std::mem::replace(seen, true) {
         let problem = format!("this is the second ${name} section");
-        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+        return Err(cursor.error(problem, "Save each mesh to a separate file"));
     }
     Ok(())
 }

@@ -67,7 +67,7 @@ impl<'a> File<'a> {
             }
             Some(several) => {
                 let problem = format!("a MED file of {} meshes is not read", several.len());
-                return Err(start().error(problem, "Save each mesh to a file of its own"));
+                return Err(start().error(problem, "Save each mesh to a separate file"));
             }
         };
         let whole = |name: &[u8]| hdf5.attribute(mesh, name).and_then(|a| a.whole());

@@ -93,7 +93,7 @@ impl FormatReader for MeditBinary {
                 }
                 VERTICES if vertices_seen => {
                     let problem = "this is the second list of Vertices";
-                    return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                    return Err(cursor.error(problem, "Save each mesh to a separate file"));
                 }
                 VERTICES => {
                     vertices_seen = true;
@@ -153,7 +153,7 @@ impl FormatReader for MeditBinary {
                 }
                 _ => {
                     let problem = format!(
-                        "the next list is announced at byte {next}, which is not behind this one in the file"
+                        "the next list is announced at byte {next}, which does not follow this list in the file"
                     );
                     return Err(list.error(problem, CUT_OFF));
                 }

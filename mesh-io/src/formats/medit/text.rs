@@ -93,7 +93,7 @@ impl FormatReader for Medit {
                 b"Vertices" => {
                     if std::mem::replace(&mut vertices_seen, true) {
                         let problem = "this is the second list of Vertices";
-                        return Err(cursor.error(problem, "Save each mesh to a file of its own"));
+                        return Err(cursor.error(problem, "Save each mesh to a separate file"));
                     }
                     vertices(cursor, dimension, visitor)?;
                     visitor.end_nodes(cursor)?;

@@ -55,8 +55,8 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
     if let Some(first) = others.first() {
         let first = quoted(name_bytes(first));
         visitor.unsupported(&match others.len() - 1 {
-            0 => format!("what {first} says"),
-            more => format!("what {first} and {more} more kinds of cards say"),
+            0 => format!("the contents of {first}"),
+            more => format!("the contents of {first} and of {more} more kinds of cards"),
         });
     }
     send_constrained_nodes(rows, held, visitor)

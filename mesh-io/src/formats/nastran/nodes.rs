@@ -95,7 +95,7 @@ pub(super) fn send(
         Ok(())
     })?;
     if count == 0 {
-        let problem = "it has no GRID, so it is no mesh of Nastran";
+        let problem = "the file has no GRID card, so this is no mesh of Nastran";
         return Err(cursor.source.error(problem, "Save the mesh with its nodes and elements"));
     }
     cursor.check_vertex_count(count)?;
@@ -135,7 +135,7 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
         }
         [b'=', ..] => {
             let problem =
-                "a row repeats the one before it, so that nodes have no place of their own";
+                "a row repeats the row above, so several nodes share one place in the file";
             Err(cursor.error(problem, "Write out all cards, without `=`"))
         }
         _ => Ok(Card::Other),
@@ -167,7 +167,7 @@ fn node(cursor: &Cursor<'_>, line: CardLine<'_>, row: Range<usize>) -> Result<Ca
             let problem = format!(
                 "{axis} of node {id} is left out at the end of its row, which stands for 0"
             );
-            let remedy = "Write the 0, as there is no place for another value";
+            let remedy = "Write the number 0 there, as the field has no room for another value";
             return Err(cursor.error(problem, remedy));
         };
         if axis == 'x' {

@@ -174,7 +174,7 @@ impl Items {
             let value = cursor.real("a number of an item")?;
             // Programs write `nan` for a number that they could not compute.
             if matches!(number, Number::Integer { .. }) && !value.is_finite() {
-                return Err(cursor.error("a whole number of an item is not finite", CORRECT));
+                return Err(cursor.error("an integer of an item is not finite", CORRECT));
             }
             return Ok((value, at));
         };

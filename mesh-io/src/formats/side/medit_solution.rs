@@ -99,7 +99,7 @@ fn bamg(mut cursor: Cursor<'_>) -> Result<MeditSolution, ReadError> {
 }
 
 /// The remedy if more numbers follow than the vertices need.
-const COUNT: &str = "Correct the number of vertices, or remove what is too much";
+const COUNT: &str = "Correct the number of vertices, or remove the excess numbers";
 
 /// Reads the next whole number, on the current row or a later row.
 fn word(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {

@@ -52,7 +52,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         if !left.is_empty() {
             let names: Vec<_> = left.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
             visitor.remark(Remark::Text(format!(
-                "{}: places of edges or faces, which stay as they are",
+                "{}: positions of edges or faces, which are not updated",
                 names.join(", ")
             )));
         }

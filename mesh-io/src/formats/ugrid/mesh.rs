@@ -50,7 +50,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
             _ => {
                 let names: Vec<_> = of_faces.iter().map(|own| quoted(&own.name)).collect();
                 let problem = format!("several meshes: {}", names.join(", "));
-                return Err(start.error(problem, "Save each in a file of its own"));
+                return Err(start.error(problem, "Save each mesh to a separate file"));
             }
         };
         let parts = ["node_coordinates", "face_node_connectivity"];

@@ -243,7 +243,7 @@ fn mixed(words: &mut CellNumbers<'_>, count: &mut u64) -> Result<(u64, u64), Rea
         9 => (types::HEXAHEDRON, 8),
         other => {
             let problem =
-                format!("a cell of the type {other} is not read, as it is not of first order");
+                format!("cells of the type {other} are not read, as only first-order cells are");
             let remedy = "Save a mesh of linear triangles (type 4)";
             return Err(place.error(problem, remedy));
         }

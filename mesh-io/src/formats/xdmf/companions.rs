@@ -52,7 +52,7 @@ pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), 
             Err(_) if !path.exists() => {
                 let place = Location::Line(main.line_of(at.start));
                 let shown = quoted(name.as_bytes());
-                let problem = format!("its numbers are in {shown}, which is not there");
+                let problem = format!("its numbers are in {shown}, and this file does not exist");
                 return Err(main.error_at(place, problem, "Put the file beside it"));
             }
             loaded => loaded?,

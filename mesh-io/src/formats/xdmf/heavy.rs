@@ -84,8 +84,8 @@ impl<'a> HeavyData<'a> {
         };
         let Some(index) = self.file(name) else {
             let problem =
-                format!("its numbers are in {}, which was not read", quoted(name.as_bytes()));
-            return Err(cursor.error(problem, "Put the file companion it"));
+                format!("its numbers are in {}, a file that was not read", quoted(name.as_bytes()));
+            return Err(cursor.error(problem, "Put the file beside it"));
         };
         let (companion, tree) = &self.files[index];
         let source = &companion.source;

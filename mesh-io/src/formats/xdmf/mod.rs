@@ -100,7 +100,7 @@ impl<'a> File<'a> {
             }
             (_, Some(second)) => {
                 let problem = format!("this is the second {section}");
-                let remedy = "Save each mesh to a file of its own, and tags of a mesh too";
+                let remedy = "Save each mesh, and each list of mesh tags, to a separate file";
                 Err(self.cursor(second).error(problem, remedy))
             }
         }
