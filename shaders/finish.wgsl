@@ -29,7 +29,7 @@ fn judge(last: u32) -> u32 {
         return STOP_REACHED;
     }
     if last >= 2u * params.window && (params.has_target != 0u || params.tolerance > 0.0) {
-        let scale = max(sum.x + params.ideal_sum, LEAST_SCALE * f32(params.triangles));
+        let scale = max(sum.x + params.ideal_sum, MIN_SCALE * f32(params.triangles));
         let still = abs(gain(last - params.window, last)) <= NOISE * scale;
         if still || last - control.best_sweep >= 2u * params.window {
             let level = still || pair_difference(sum, control.best_sum) <= JITTER * scale;

@@ -25,7 +25,7 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
 // objective E. `decrease` is gᵀH⁻¹g, and `squares` is E. See src/patch/search_rule.rs.
 fn lengthening(decrease: f32, squares: f32) -> f32 {
     let share = decrease / squares;
-    if part.longest <= 1.0 || squares <= LEAST_FLAT || !(share > FLAT_RATIO) {
+    if part.longest <= 1.0 || squares <= MIN_FLAT_SUM || !(share > FLAT_RATIO) {
         return 1.0;
     }
     return 1.0 / max(1.0 - FLAT_EXPONENT * share, 1.0 / part.longest);

@@ -10,7 +10,7 @@ const NOT_FINITE: f32 = 3.0e38;
 // Returns the number of a triangle as the bits of a normal float. Drivers may change zeros, denormals, infinities and
 // NaNs when they copy floats.
 fn as_float(triangle: u32) -> f32 {
-    return bitcast<f32>(triangle + LEAST_NORMAL);
+    return bitcast<f32>(triangle + MIN_NORMAL);
 }
 
 fn edge_is_finite(edge: vec2<f32>) -> bool {

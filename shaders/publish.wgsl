@@ -27,6 +27,6 @@ fn publish(@builtin(local_invocation_index) slot: u32) {
         let done = max(sweeps.evaluated, 1u) - 1u;
         destination[publish_to.offset + SLOTS + 1u] = select(0u, done, holds);
         let worst = bitcast<u32>(control.history[last + WORST].y);
-        destination[publish_to.offset + SLOTS + 2u] = worst - LEAST_NORMAL;
+        destination[publish_to.offset + SLOTS + 2u] = worst - MIN_NORMAL;
     }
 }

@@ -181,7 +181,7 @@ impl From<WriteError> for CliError {
                 Self::output(format!("{}: {problem}", path.display())).with_remedy(remedy)
             }
             WriteError::Changed { path } => {
-                let problem = "another program has changed this file during the run, so the file is not replaced";
+                let problem = "another program has changed this file after the file was read, so the file is not replaced";
                 Self::output(format!("{}: {problem}", path.display())).with_remedy(
                     "Give OUT another name, or run again to smooth the mesh as it is now",
                 )

@@ -113,7 +113,7 @@ pub enum WriteError {
     },
     /// Another program has changed the file since the mesh was read from it.
     #[error(
-        "{}: another program has changed this file during the run, so the file is not replaced. Write to another name, or read \
+        "{}: another program has changed this file after the file was read, so the file is not replaced. Write to another name, or read \
          the mesh again",
         path.display()
     )]

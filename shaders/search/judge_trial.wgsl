@@ -8,11 +8,11 @@
 fn settle_on(length: f32, last_tried: f32) {
     var first = length;
     if length == 0.0 {
-        first = max(0.5 * last_tried, LEAST_FIRST / 64.0);
-    } else if length < LEAST_FIRST {
-        first = min(4.0 * length, LEAST_FIRST);
+        first = max(0.5 * last_tried, MIN_FIRST_LENGTH / 64.0);
+    } else if length < MIN_FIRST_LENGTH {
+        first = min(4.0 * length, MIN_FIRST_LENGTH);
     }
-    vectors[LENGTHS] = vec2(length, min(first, MOST_FIRST));
+    vectors[LENGTHS] = vec2(length, min(first, MAX_FIRST_LENGTH));
     vectors[PROGRESS] = vec2(1.0, 0.0);
 }
 
@@ -27,7 +27,7 @@ fn judge_trial() {
     let here = vectors[TOTALS];
     let slope = vectors[TOTALS + 3u].x + vectors[TOTALS + 3u].y;
     // An expected decrease below NOISE times this scale is lost in rounding.
-    let scale = max(here.x + params.ideal_sum, LEAST_SCALE * f32(params.triangles));
+    let scale = max(here.x + params.ideal_sum, MIN_SCALE * f32(params.triangles));
     if !is_positive(-slope - NOISE * scale) {
         vectors[LENGTHS] = vec2(0.0, lengths.y);
         vectors[PROGRESS] = vec2(1.0, trial);

@@ -29,7 +29,7 @@ fn share(product: f32, curvature: f32) -> f32 {
 // Computes the factors aᵢ from the products with the gradient.
 fn find_before(along: vec2<f32>, curvature: f32, across: f32) {
     let slope_before = along.x - curvature;
-    let counts = is_positive(curvature - LEAST_CURVATURE * abs(slope_before));
+    let counts = is_positive(curvature - MIN_CURVATURE * abs(slope_before));
     // The newer pair of the last correction is the older pair now.
     let older_curvature = select(0.0, sums[CURVATURES].x, op.pairs > 1u);
     let curvatures = vec2(select(0.0, curvature, counts), older_curvature);

@@ -20,7 +20,7 @@ fn regularize() {
     // Scaled so that no square overflows.
     let unit = max(depth, 1.0);
     let share = depth / unit;
-    tangle.epsilon = unit * sqrt(LEAST_SQUARE / unit / unit + SQUARE_SHARE * share * share);
+    tangle.epsilon = unit * sqrt(MIN_SQUARE / unit / unit + SQUARE_SHARE * share * share);
     tangle.sweep += 1u;
     changes[0] += 1u;
 }

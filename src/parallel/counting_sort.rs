@@ -9,7 +9,7 @@ use crate::parallel::tasks::{collect, for_each, for_each_part, map_parts};
 /// Upper limit of parts counted in parallel. Memory grows with the parts, as each has a counter per group.
 const MAX_PARTS: usize = 8;
 
-/// Items that justify a part of their own. Fewer items are not worth another thread.
+/// Items per part, at most one part with fewer. Fewer items are not worth another thread.
 const SMALL: usize = 1 << 14;
 
 /// Numbers in groups, ascending within each group.

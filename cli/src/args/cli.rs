@@ -146,7 +146,7 @@ pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
-    pub(crate) riding: FieldArgs,
+    pub(crate) fields: FieldArgs,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
 }

@@ -143,7 +143,7 @@ pub(crate) struct SmoothArgs {
     pub(crate) keep_altitude: bool,
 
     #[command(flatten)]
-    pub(crate) riding: FieldArgs,
+    pub(crate) fields: FieldArgs,
 
     /// Untangle the mesh first if triangles are inverted or flat: move free vertices until none is. Done on the CPU
     #[arg(long, help_heading = "Untangling")]

@@ -21,7 +21,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     let (reading, surface) = (ReadRequest::from(args.reading), Surface::from(&args.surface));
     let movable = MovableRequest::from(args.moving);
     let slide = SlideRequest::of(args.sliding);
-    let fields = FieldsRequest::from(args.riding);
+    let fields = FieldsRequest::from(args.fields);
     let mut before = read(&args.before, reading)?;
     let mut after = read(&args.after, reading)?;
     let laid_out = lay_out(&mut before, surface)?;

@@ -128,7 +128,7 @@ impl SmoothRequest {
             target: (&args.target).into(),
             movable: args.moving.into(),
             slide: SlideRequest::of(args.sliding),
-            fields: args.riding.into(),
+            fields: args.fields.into(),
             engine: EngineRequest::of(args.engine, args.adapter),
             run,
             time_limit: args.time_limit,

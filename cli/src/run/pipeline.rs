@@ -23,7 +23,7 @@ use crate::terminal::progress::Stage;
 struct ReadMesh {
     file: LoadedMesh,
     choice: MovableSelection,
-    riding: InterpolatedFields,
+    fields: InterpolatedFields,
     /// Size of the input file in bytes; 0 if the input is not a file.
     bytes: u64,
     /// Time at the end of reading.
@@ -39,9 +39,9 @@ pub(crate) fn run_pipeline<T>(
     finish: impl FnOnce(Done<'_>) -> Result<T, CliError>,
 ) -> Result<T, Failure> {
     let began = Instant::now();
-    let ReadMesh { file, choice, mut riding, bytes, at } = read(task, follow)?;
+    let ReadMesh { file, choice, mut fields, bytes, at } = read(task, follow)?;
     let input = Input { task, file: &file, choice: &choice, bytes, began };
-    let opened = open(&input, &riding, engine, follow);
+    let opened = open(&input, &fields, engine, follow);
     let mended;
     let subject = match opened.prepared? {
         Prepared::Ready(smoother) => Subject { smoother: *smoother, mended: None },
@@ -53,8 +53,8 @@ pub(crate) fn run_pipeline<T>(
     let ready = set_up(&input, subject, opened.taken?, follow)?;
     let ran = smooth(&input, &ready, follow)?;
     follow.has_smoothed()?;
-    let measured = measure(&input, &ready, &ran, &mut riding, follow)?;
-    let written = write(&input, &ready, &ran, &riding, follow)?;
+    let measured = measure(&input, &ready, &ran, &mut fields, follow)?;
+    let written = write(&input, &ready, &ran, &fields, follow)?;
     let seconds = run_report::Clock {
         began,
         read: at,
@@ -82,7 +82,7 @@ fn read(task: &SmoothJob<'_>, follow: &mut dyn PipelineObserver) -> Result<ReadM
     let mut file = streams::read(task.input, request.reading)?;
     let laid_out = lay_out(&mut file, request.surface)?;
     let choice = request.movable.apply(&mut file)?;
-    let riding = request.fields.choose(&file)?;
+    let fields = request.fields.choose(&file)?;
     let at = Instant::now();
     follow.has_read(&file)?;
     let degrees = (request.surface == Surface::Plane).then(|| remarks::degrees(&file)).flatten();
@@ -90,7 +90,7 @@ fn read(task: &SmoothJob<'_>, follow: &mut dyn PipelineObserver) -> Result<ReadM
     for remark in remarks.iter().chain(&laid_out).chain(&choice.notes).chain(&degrees) {
         follow.remark(remark);
     }
-    Ok(ReadMesh { file, choice, riding, bytes, at })
+    Ok(ReadMesh { file, choice, fields, bytes, at })
 }
 
 /// Returns the size of a file in bytes; 0 if the file does not exist.

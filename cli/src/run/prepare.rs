@@ -59,7 +59,7 @@ impl<'a> Subject<'a> {
 /// Prepares a mesh while a second thread opens its engine. Untangles the mesh if requested and necessary.
 pub(super) fn open<'a>(
     input: &Input<'a>,
-    riding: &InterpolatedFields,
+    fields: &InterpolatedFields,
     engine: impl FnOnce(MeshSize) -> Result<OpenEngine, CliError> + Send,
     follow: &mut dyn PipelineObserver,
 ) -> Opened<'a> {
@@ -68,7 +68,7 @@ pub(super) fn open<'a>(
     follow.stage(Stage::Preparing { vertices: size.vertices });
     std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
-        let prepared = prepared(input, riding, follow);
+        let prepared = prepared(input, fields, follow);
         let taken = opening.join().map_err(|_| engine::driver_crashed());
         Opened { prepared, taken: taken.and_then(|taken| taken) }
     })
@@ -76,7 +76,7 @@ pub(super) fn open<'a>(
 
 fn prepared<'a>(
     input: &Input<'a>,
-    riding: &InterpolatedFields,
+    fields: &InterpolatedFields,
     follow: &mut dyn PipelineObserver,
 ) -> Result<Prepared<'a>, Failure> {
     let (request, file) = (input.request(), input.file);
@@ -84,7 +84,7 @@ fn prepared<'a>(
         prepared if request.untangle.is_some() && untangle::can_mend(&prepared) => {
             drop(prepared);
             follow.stage(Stage::Untangling);
-            riding.check_untangled()?;
+            fields.check_untangled()?;
             Ok(Prepared::UntangledInput(untangle::untangle_input(input.task, input.began, file)?))
         }
         Err(error) => Err(refusal(request, input.choice, file, &error)),

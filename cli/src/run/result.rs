@@ -39,7 +39,7 @@ pub(super) fn measure(
     input: &Input<'_>,
     ready: &Ready<'_>,
     ran: &FinishedRun,
-    riding: &mut InterpolatedFields,
+    fields: &mut InterpolatedFields,
     follow: &mut dyn PipelineObserver,
 ) -> Result<Measures, CliError> {
     let (request, file, outcome) = (input.request(), input.file, &ran.outcome);
@@ -50,10 +50,10 @@ pub(super) fn measure(
     let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
     let f_after = || Ok(ready.smoother.f(base, &outcome.points)?);
     let target = request.target.report(request.surface, f_before, f_after)?;
-    let interpolated = riding.interpolate(file, topology, &outcome.points)?;
-    let left_over = riding.add_dependents(file, &outcome.points)?;
+    let interpolated = fields.interpolate(file, topology, &outcome.points)?;
+    let left_over = fields.add_dependents(file, &outcome.points)?;
     let has_moved = outcome.points != *old;
-    let omission_remark = has_moved.then(|| riding.omission_remark(file)).flatten();
+    let omission_remark = has_moved.then(|| fields.omission_remark(file)).flatten();
     let left_over = left_over.iter().filter(|_| has_moved);
     for note in interpolated.iter().chain(&omission_remark).chain(left_over) {
         follow.remark(note);
@@ -67,16 +67,16 @@ pub(super) fn write(
     input: &Input<'_>,
     ready: &Ready<'_>,
     ran: &FinishedRun,
-    riding: &InterpolatedFields,
+    fields: &InterpolatedFields,
     follow: &mut dyn PipelineObserver,
 ) -> Result<Written, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);
     follow.stage(Stage::Writing { bytes: input.bytes });
     // Hashing precedes writing, which may replace the input files.
     let hashes = if request.outputs.report.is_some() { proof::hashes(file) } else { Vec::new() };
-    streams::write(file, out, &ran.outcome.points, riding.fields())?;
+    streams::write(file, out, &ran.outcome.points, fields.fields())?;
     let certificate = match request.outputs.report.is_some() && !streams::is_standard(out) {
-        true => Some(certificate(input, ready, riding, hashes)?),
+        true => Some(certificate(input, ready, fields, hashes)?),
         false => None,
     };
     checkpoint::clear(request.outputs.checkpoint.as_ref(), ran.outcome.stop);
@@ -87,7 +87,7 @@ pub(super) fn write(
 fn certificate(
     input: &Input<'_>,
     ready: &Ready<'_>,
-    riding: &InterpolatedFields,
+    fields: &InterpolatedFields,
     hashes: Vec<FileHash>,
 ) -> Result<Certificate, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);
@@ -98,7 +98,7 @@ fn certificate(
     theirs.add_dependents(&after, &after.mesh().points)?;
     let slide = request.slide.as_ref().map(|slide| slide.slide(file)).transpose()?;
     let proof = Proof::of(
-        MeshVersion { file, fields: riding },
+        MeshVersion { file, fields },
         MeshVersion { file: &after, fields: &theirs },
         slide.as_ref(),
     )?;

@@ -144,7 +144,7 @@ fn a_mesh_that_another_program_has_changed_meanwhile_is_not_replaced() {
         let (code, out, err) = run.end();
         assert_eq!((code, out.as_str()), (Some(1), ""), "{err}");
         let problem =
-            format!("error: {name}: another program has changed this file during the run");
+            format!("error: {name}: another program has changed this file after the file was read");
         assert_holds(&err, &[&problem, "Give OUT another name"]);
         assert!(folder.content() == before, "files have changed");
     }

@@ -402,12 +402,12 @@ kernels! {
 
     /// Completes the open secant pair, with partial sums of its products.
     CompletePair {
-        entry_point: "close_secant",
+        entry_point: "complete_pair",
         layout: Secants,
         width: WORKGROUP,
         sees_targets: true,
         user: Corrections,
-        source: ["secants/close.wgsl"],
+        source: ["secants/complete_pair.wgsl"],
     }
 
     /// Completes the sums of products of secant pairs.
@@ -442,12 +442,12 @@ kernels! {
 
     /// Completes a correction by the secant pairs, and opens the next pair.
     BeginPair {
-        entry_point: "open_secant",
+        entry_point: "begin_pair",
         layout: Secants,
         width: WORKGROUP,
         sees_targets: false,
         user: Corrections,
-        source: ["secants/open.wgsl"],
+        source: ["secants/begin_pair.wgsl"],
     }
 
     /// Checks the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.

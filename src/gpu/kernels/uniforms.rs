@@ -274,7 +274,7 @@ shared_structs! {
         /// One entry for each evaluation (modulo HISTORY) and slot. The slot of a metric holds the metric's sum as a
         /// pair of floats. The slot INVERTED holds the number of triangles that are inverted or flat in single
         /// precision, also as a pair. The slot WORST holds the largest imr² - 1 in x, and in y, as bits, the number of
-        /// the worst triangle plus LEAST_NORMAL.
+        /// the worst triangle plus MIN_NORMAL.
         history: History,
     }
 

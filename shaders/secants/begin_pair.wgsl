@@ -2,7 +2,7 @@
 // the slot of the older pair.
 
 @compute @workgroup_size(WORKGROUP)
-fn open_secant(
+fn begin_pair(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {

@@ -1,7 +1,7 @@
 // Completes the open secant pair, and computes the partial sums of its products as pairs of floats.
 
 @compute @workgroup_size(WORKGROUP)
-fn close_secant(
+fn complete_pair(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
