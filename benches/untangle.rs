@@ -62,6 +62,14 @@ fn moved_boundaries(vertices: usize) {
     of("square, sides bent by 130 to 324 degrees", &|seed| {
         boundaries::bent(&square, 0.3 + 0.06 * seed as f64)
     });
+    of("a channel with a bent boundary", &|seed| boundaries::channel(vertices, seed));
+    of("square, opposite sides pushed in past each other", &|seed| {
+        boundaries::pushed(vertices, seed)
+    });
+    let three = boundaries::holes(3, vertices);
+    of("three holes, each moved to the place of the next", &|seed| {
+        boundaries::permuted(&three, 3, seed)
+    });
     let two = boundaries::two_holes(vertices);
     of("two holes, one dragged past the other", &|seed| boundaries::past(&two, seed));
     of("two holes swapped", &|seed| boundaries::swapped(&two, seed));

@@ -14,8 +14,8 @@ use crate::metric::{Corner, TargetMap};
 use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
 use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges};
 use crate::targets::Tensor;
-use crate::topology::Topology;
 use crate::topology::predicates::orientation;
+use crate::topology::{EnclosedArea, Topology};
 
 /// Number of vertices or triangles that one task handles.
 const CHUNK: usize = 1 << 12;
@@ -324,10 +324,32 @@ fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
     // overflow.
     let extent = (high * 0.5 - low * 0.5).max_element();
     let relative = |t: &[u32; 3]| 0.5 * orientation(&mesh.points, t) / extent / extent;
-    let mean = sum(topology.triangles(), relative) / topology.triangles().len() as f64;
+    let areas = map_parts(topology.triangles().chunks(4096), |_, part| {
+        part.iter()
+            .map(relative)
+            .fold([0.0; 2], |[sum, size], area| [sum + area, size + area.abs()])
+    });
+    let [mut area, size] = [0, 1].map(|k| areas.iter().map(|part| part[k]).sum::<f64>());
+    if area.is_nan() || area < TANGLED * size {
+        area = 0.5 * enclosed_area(mesh, topology) / extent / extent;
+    }
+    let mean = area / topology.triangles().len() as f64;
     let length = mean.sqrt() * extent;
     let scale = (-length.log2().round()).exp2();
     (center, scale, (length * scale).powi(2))
+}
+
+/// Share of the sum of the triangles' areas, each without its sign, below which the sum with signs is taken from the
+/// boundary. Vertices far away then leave few digits of the sum over triangles.
+const TANGLED: f64 = 1e-3;
+
+/// Returns twice the area within the boundary of the mesh.
+fn enclosed_area(mesh: &Mesh, topology: &Topology<'_>) -> f64 {
+    let mut area = EnclosedArea::default();
+    for edge in topology.boundary_edges() {
+        area.add(&mesh.points, edge);
+    }
+    area.doubled().unwrap_or(f64::NAN)
 }
 
 /// Returns a center that can be subtracted without rounding from all coordinates between `low` and `high`. If no

@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::error::MeshError;
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::{map_parts, map_ranges};
+use crate::topology::enclosed_area::EnclosedArea;
 use crate::topology::predicates;
 use crate::topology::stars::others_at_edge;
 
@@ -75,24 +76,29 @@ pub(crate) fn wind(
         seen[seed] = true;
         part.clear();
         part.push(seed as u32);
-        let (mut majority, mut doubled_area) = (0_i64, 0.0);
+        let (mut majority, mut sum_of_triangles) = (0_i64, 0.0);
+        let mut enclosed = EnclosedArea::default();
         let mut next = 0;
         while let Some(&t) = part.get(next) {
             next += 1;
             let corners = wound[t as usize];
             let orientation = predicates::orientation(points, &corners);
             majority += i64::from(orientation > 0.0) - i64::from(orientation < 0.0);
-            doubled_area += orientation;
+            sum_of_triangles += orientation;
             // `across` refers to the corners as given. If the last two corners have been swapped since, the edges of
             // the triangle run in the opposite direction.
             let given = triangles[t as usize];
             for (i, &other) in across[t as usize].iter().enumerate() {
-                if other == NONE || seen[other as usize] {
-                    continue;
-                }
                 let (mut a, mut b) = (given[i], given[(i + 1) % 3]);
                 if corners != given {
                     (a, b) = (b, a);
+                }
+                if other == NONE {
+                    enclosed.add(points, [a, b]);
+                    continue;
+                }
+                if seen[other as usize] {
+                    continue;
                 }
                 if runs(&wound[other as usize], a, b) {
                     wound[other as usize].swap(1, 2);
@@ -101,6 +107,7 @@ pub(crate) fn wind(
                 part.push(other);
             }
         }
+        let doubled_area = enclosed.doubled().unwrap_or(sum_of_triangles);
         let is_clockwise = match decides {
             Majority::OfTriangles => majority < 0 || majority == 0 && doubled_area < 0.0,
             Majority::OfArea => doubled_area < 0.0 || doubled_area == 0.0 && majority < 0,

@@ -2,14 +2,15 @@
 //!
 //! Sweeps of Newton steps lower an `energy` that is finite for inverted triangles too. At first, only vertices near bad
 //! triangles move, then vertices within more edges. If triangles stay bad, the free vertices are moved to the means of
-//! their neighbors, and a step from coarser levels follows each sweep. At last, the mesh is cut (`cuts`) into pieces,
-//! in which the means of neighbors are a good start.
+//! their neighbors, and a step from coarser levels follows each sweep. Then the mesh is cut (`cuts`) into pieces, in
+//! which the means of neighbors are a good start. At last, quasi-Newton steps move all vertices of the given mesh at once.
 
 mod cuts;
 pub(crate) mod energy;
 mod judge;
 mod patches;
 mod pieces;
+mod quasi_newton;
 mod stages;
 mod state;
 
@@ -26,11 +27,21 @@ use crate::run::regularization::epsilon;
 use crate::topology::Topology;
 use crate::topology::predicates::not_positive;
 use judge::{Judge, Judgment};
+use quasi_newton::{QuasiNewton, next_epsilon};
 use stages::{STAGES, Stage, Start};
 use state::{Region, State};
 
 /// Share of bad triangles (0 to 1) above which all vertices move from the start.
 const MANY: f64 = 0.05;
+
+/// Regularization of the first period of quasi-Newton steps, in units of the target area (Garanzha et al., section 2.3).
+const FIRST_EPSILON: f64 = 1.0;
+/// Regularization at which quasi-Newton steps end.
+const LAST_EPSILON: f64 = 1e-4;
+/// Largest number of quasi-Newton steps in a period.
+const STEPS_PER_PERIOD: u32 = 300;
+/// Relative decrease of the energy by a step, below which a period ends.
+const MIN_GAIN: f64 = 1e-5;
 
 /// Largest number of results of cuts that are kept for [`Start::Nearest`].
 const ENDS: usize = 3;
@@ -158,6 +169,12 @@ impl<'m> Work<'m> {
         observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
     ) {
         for stage in &STAGES {
+            if matches!(stage.start, Start::Given) {
+                if self.descend(stage, result, observe).is_break() {
+                    return;
+                }
+                continue;
+            }
             let Some(region) = self.begin(&stage.start, result) else { continue };
             let has_moved = !matches!(stage.start, Start::Near(_));
             if has_moved && self.is_done(result) {
@@ -196,10 +213,60 @@ impl<'m> Work<'m> {
                 self.state.make_harmonic(&self.state.hierarchy(&held), &held);
                 self.tried.push(held);
             }
+            Start::Given => return None,
             Start::Nearest if self.ends.is_empty() => return None,
             Start::Nearest => self.state.positions = self.ends.remove(0).1,
         }
         Some(Region::whole(self.problem))
+    }
+
+    /// Moves all free vertices from the given positions by quasi-Newton steps, while the regularization falls from period
+    /// to period. Breaks if only hopeless triangles are bad, or if `observe` breaks.
+    fn descend(
+        &mut self,
+        stage: &Stage,
+        result: &mut Untangled,
+        observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let region = Region::whole(self.problem);
+        let nobody = vec![false; self.problem.free_count()];
+        let levels = self.levels.take().unwrap_or_else(|| self.state.hierarchy(&nobody));
+        self.state.positions = self.problem.positions().to_vec();
+        let budget = stage.patience();
+        let mut now = self.state.assess(&region);
+        let mut judged = (result.sweeps, now);
+        let mut epsilon = FIRST_EPSILON;
+        let began = result.sweeps;
+        while result.sweeps - began < budget.most && epsilon > LAST_EPSILON {
+            if result.sweeps - judged.0 >= budget.often {
+                let before = std::mem::replace(&mut judged, (result.sweeps, now)).1;
+                if !budget.goes_on(before, now) {
+                    break;
+                }
+            }
+            let mut search = QuasiNewton::new(&levels, &region, epsilon, &self.state);
+            let first = search.energy();
+            for _ in 0..STEPS_PER_PERIOD {
+                let last = search.energy();
+                if !search.step(&mut self.state) {
+                    break;
+                }
+                result.sweeps += 1;
+                now = self.state.assess(&region);
+                if now.bad <= result.hopeless.len() && self.is_done(result) {
+                    return ControlFlow::Break(());
+                }
+                if observe(&Untangling { sweep: result.sweeps, bad: now.bad }).is_break() {
+                    self.is_done(result);
+                    return ControlFlow::Break(());
+                }
+                if last - search.energy() <= MIN_GAIN * last {
+                    break;
+                }
+            }
+            epsilon = next_epsilon(epsilon, now.least, [first, search.energy()]);
+        }
+        if self.is_done(result) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// Sweeps the region until the stage ends. Breaks if only hopeless triangles are bad, or if `observe` breaks.

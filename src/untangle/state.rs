@@ -10,11 +10,11 @@ use crate::untangle::cuts::{Short, cut};
 use crate::untangle::patches::{Tangle, VertexBatch, fours};
 
 /// Number of vertices or triangles in one parallel task.
-const CHUNK: usize = 1 << 12;
+pub(super) const CHUNK: usize = 1 << 12;
 
 /// The positions of a mesh that is untangled, with its target areas.
 pub(crate) struct State<'p> {
-    problem: &'p Problem,
+    pub(super) problem: &'p Problem,
     pub(crate) positions: Vec<DVec2>,
     /// Target area at each vertex, in normalized units.
     targets: Vec<f64>,
@@ -179,8 +179,18 @@ impl<'p> State<'p> {
         }
     }
 
+    /// Returns the mean target area at vertices.
+    pub(super) fn mean_target(&self) -> f64 {
+        self.targets.iter().sum::<f64>() / self.targets.len() as f64
+    }
+
+    /// Returns the energy of all triangles.
+    pub(super) fn energy(&self, epsilon: f64) -> f64 {
+        self.tangle(&self.positions).energy(epsilon)
+    }
+
     /// Returns the gradient of the energy by the positions of the free vertices, zero outside the region.
-    fn gradient(&self, region: &Region, epsilon: f64) -> Vec<DVec2> {
+    pub(super) fn gradient(&self, region: &Region, epsilon: f64) -> Vec<DVec2> {
         let mut gradient = vec![DVec2::ZERO; self.problem.free_count()];
         for fours in &region.vertices {
             let found = self.tangle(&self.positions).gradients(fours, epsilon);
@@ -259,7 +269,7 @@ impl<'p> State<'p> {
 }
 
 /// Returns the largest absolute coordinate of the vectors, 0 if there are none.
-fn largest(vectors: &[DVec2]) -> f64 {
+pub(super) fn largest(vectors: &[DVec2]) -> f64 {
     let parts = map_parts(vectors.chunks(CHUNK), |_, part| {
         part.iter().fold(0.0, |most: f64, v| most.max(v.abs().max_element()))
     });

@@ -3,10 +3,11 @@
 
 use super::Mesh;
 use super::check::held;
-use super::generate::triangulate;
+use super::generate::{lattice, triangulate};
 use super::outline::Outline;
 use super::rng::SplitMix64;
 use super::trig::on_circle;
+use std::f64::consts::TAU;
 
 /// Returns the mesh with `to` applied to the vertices on the boundary and the fixed vertices.
 pub fn dragged(mesh: &Mesh, mut to: impl FnMut([f64; 2]) -> [f64; 2]) -> Mesh {
@@ -70,6 +71,31 @@ pub fn swapped(mesh: &Mesh, seed: u64) -> Mesh {
         } else {
             [x, y]
         }
+    })
+}
+
+/// Makes a plate with `count` equal round holes in a row.
+pub fn holes(count: usize, vertices: usize) -> Mesh {
+    let width = 2.5 * count as f64 + 0.5;
+    let mut outline = format!("loop\n0 0\n{width} 0\n{width} 3\n0 3\n");
+    for i in 0..count {
+        outline += &format!("circle {} 1.5 {RADIUS} 36\n", 1.5 + 2.5 * i as f64);
+    }
+    triangulate(&Outline::parse(&outline).unwrap(), vertices).unwrap()
+}
+
+/// Moves each of the [`holes`] to the place of the next, the last to that of the first, and rotates them.
+pub fn permuted(mesh: &Mesh, count: usize, seed: u64) -> Mesh {
+    let mut rng = SplitMix64::new(seed);
+    let center = |i: usize| [1.5 + 2.5 * (i % count) as f64, 1.5];
+    let turns: Vec<f64> = (0..count).map(|_| rng.range(-0.2, 0.2)).collect();
+    dragged(mesh, |[x, y]| {
+        let Some(i) = (0..count).find(|&i| is_near([x, y], center(i), 1.2 * RADIUS)) else {
+            return [x, y];
+        };
+        let ([cx, cy], [tx, ty], [cos, sin]) = (center(i), center(i + 1), on_circle(turns[i]));
+        let (x, y) = (x - cx, y - cy);
+        [tx + cos * x - sin * y, ty + sin * x + cos * y]
     })
 }
 
@@ -138,4 +164,55 @@ pub fn regions(vertices: usize) -> Mesh {
     }
     text += "line\n1.6 -2\n1.7 -1\n1.9 0\n1.6 1\n1.8 2\n";
     triangulate(&Outline::parse(&text).unwrap(), vertices).unwrap()
+}
+
+/// Makes a straight channel whose boundary is bent: the middle line turns by up to 0.9 turns and swings to both sides.
+pub fn channel(vertices: usize, seed: u64) -> Mesh {
+    let mut rng = SplitMix64::new(seed);
+    let length = rng.range(6.0, 20.0);
+    let rows = (vertices as f64 / length).sqrt();
+    let mesh = lattice((vertices as f64 / rows) as usize, rows as usize);
+    let most = |i: usize| mesh.points.iter().map(|p| p[i]).fold(0.0, f64::max);
+    let size = [most(0), most(1)];
+    let (turn, waves, phase) = (rng.range(0.0, 0.9), rng.range(0.5, 1.5), rng.range(0.0, 1.0));
+    // Curvatures stay below 1.9, so the inner side, at the distance 0.5, has a positive length.
+    let swing = (1.9 - turn * TAU / length).clamp(0.0, 1.0) * length / (TAU * waves) / TAU;
+    let heading = |s: f64| {
+        let [_, sin] = on_circle(waves * s / length + phase);
+        on_circle(turn * s / length + swing * sin)
+    };
+    const STEPS: usize = 2000;
+    let step = length / STEPS as f64;
+    let mut line = vec![[0.0, 0.0]];
+    for i in 0..STEPS {
+        let ([x, y], [cos, sin]) = (line[i], heading((i as f64 + 0.5) * step));
+        line.push([x + step * cos, y + step * sin]);
+    }
+    dragged(&mesh, |[x, y]| {
+        let (x, y) = (x / size[0] * length, y / size[1] - 0.5);
+        let ([cx, cy], [cos, sin]) = (line[((x / step).round() as usize).min(STEPS)], heading(x));
+        [cx - y * sin, cy + y * cos]
+    })
+}
+
+/// Makes a square whose four sides are pushed in, each as a bump past which the bumps of other sides reach.
+pub fn pushed(vertices: usize, seed: u64) -> Mesh {
+    let mut rng = SplitMix64::new(seed);
+    let outline = Outline::parse("loop\n0 0\n1 0\n1 1\n0 1\n").unwrap();
+    let mesh = triangulate(&outline, vertices).unwrap();
+    let middle = rng.range(0.25, 0.38);
+    let reach = rng.range(0.12, 0.2);
+    let [deep, flat] = [rng.range(0.6, 0.9), rng.range(0.0, 0.2)];
+    let bump = |s: f64, middle: f64| (1.0 - ((s - middle) / reach).powi(2)).max(0.0).powi(2);
+    dragged(&mesh, |[x, y]| {
+        if y == 0.0 {
+            [x, deep * bump(x, middle)]
+        } else if y == 1.0 {
+            [x, 1.0 - deep * bump(x, 1.0 - middle)]
+        } else if x == 0.0 {
+            [flat * bump(y, 0.5), y]
+        } else {
+            [1.0 - flat * bump(y, 0.5), y]
+        }
+    })
 }

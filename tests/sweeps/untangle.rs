@@ -50,6 +50,34 @@ fn meshes_of_every_kind_of_tangle_are_untangled() {
     }
 }
 
+/// Damaged files put a vertex far away, or leave the fill value of netCDF in coordinates.
+#[test]
+fn free_vertices_far_away_are_brought_back() {
+    let plate = plate(700);
+    let free: Vec<usize> =
+        (0..plate.points.len()).filter(|&v| !support::check::held(&plate)[v]).collect();
+    for place in
+        [[1e6, 1e6], [1e8, 0.0], [1e10, 7e9], [1e12, -3e12], [1e16, 1e16], [9.97e36, 9.97e36]]
+    {
+        for count in [1, 10] {
+            let mut mesh = plate.clone();
+            for &v in free.iter().step_by(free.len() / count).take(count) {
+                mesh.points[v] = place;
+            }
+            check(&format!("{count} vertices at {place:?}"), &mesh);
+        }
+    }
+}
+
+/// Sweeps alone leave some of these meshes tangled from every start. Steps of all vertices at once are needed.
+#[test]
+fn squares_with_bumps_that_reach_past_each_other_are_untangled() {
+    for seed in 1..=12 {
+        check(&format!("sides pushed in, seed {seed}"), &boundaries::pushed(1500, seed));
+        check(&format!("a bent channel, seed {seed}"), &boundaries::channel(1500, seed));
+    }
+}
+
 #[test]
 fn a_hole_turned_by_half_a_turn_is_untangled_at_once() {
     // Both directions of rotation are equally far, so sweeps cannot detect the direction in which triangles must turn.

@@ -1,0 +1,34 @@
+//! The area within the boundary of a mesh, from the boundary alone.
+
+use crate::topology::predicates;
+
+/// The area that boundary edges enclose, as a sum along the boundary. The sum contains no vertex inside the boundary, so
+/// vertices that a damaged file puts far away do not hide the area under their rounding errors.
+#[derive(Default)]
+pub(crate) struct EnclosedArea {
+    /// A vertex of the boundary, to which the areas of edges refer. `None` before the first edge.
+    origin: Option<u32>,
+    doubled: f64,
+    /// Sum of the rounding errors of `doubled`.
+    lost: f64,
+}
+
+impl EnclosedArea {
+    /// Adds the triangle of an edge and the origin. The part lies to the left of the edge.
+    pub(crate) fn add(&mut self, points: &[[f64; 2]], [a, b]: [u32; 2]) {
+        let origin = *self.origin.get_or_insert(a);
+        let area = predicates::orientation(points, &[origin, a, b]);
+        let sum = self.doubled + area;
+        // Neumaier's compensated sum.
+        self.lost += match self.doubled.abs() >= area.abs() {
+            true => (self.doubled - sum) + area,
+            false => (area - sum) + self.doubled,
+        };
+        self.doubled = sum;
+    }
+
+    /// Returns twice the enclosed area, `None` without a boundary edge.
+    pub(crate) fn doubled(&self) -> Option<f64> {
+        self.origin.map(|_| self.doubled + self.lost)
+    }
+}
