@@ -13,7 +13,7 @@ fn shape_of(v: u32) -> vec3<f32> {
 }
 
 // Returns a triangle transformed by a target map, the argument of metrics.
-fn shown(t: Corner, map: vec3<f32>) -> Corner {
+fn transformed(t: Corner, map: vec3<f32>) -> Corner {
     if MAPPED {
         return Corner(mapped(map, t.a), mapped(map, t.b), t.mean_area);
     }

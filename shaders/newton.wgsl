@@ -8,7 +8,7 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     var a = ring_edge(p, p.end - 1u) - d;
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i) - d;
-        let t = shown(Corner(a, b, p.mean_area), map_around(p, i));
+        let t = transformed(Corner(a, b, p.mean_area), map_around(p, i));
         if !is_positive(doubled_area(t)) {
             return vec2(0.0, 0.0);
         }
@@ -25,10 +25,10 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
 // objective E. `decrease` is gᵀH⁻¹g, and `squares` is E. See src/patch/search_rule.rs.
 fn lengthening(decrease: f32, squares: f32) -> f32 {
     let share = decrease / squares;
-    if part.longest <= 1.0 || squares <= MIN_FLAT_SUM || !(share > FLAT_RATIO) {
+    if part.max_lengthening <= 1.0 || squares <= MIN_FLAT_SUM || !(share > FLAT_RATIO) {
         return 1.0;
     }
-    return 1.0 / max(1.0 - FLAT_EXPONENT * share, 1.0 / part.longest);
+    return 1.0 / max(1.0 - FLAT_EXPONENT * share, 1.0 / part.max_lengthening);
 }
 
 // Returns a Newton step after its line search, in the patch's unit; zero if no trial improves the patch.
@@ -42,7 +42,7 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
         let map = map_around(p, i);
-        let t = shown(Corner(a, b, p.mean_area), map);
+        let t = transformed(Corner(a, b, p.mean_area), map);
         if part.shape_guard < NO_GUARD {
             limit = max(limit, inverse_mean_ratio(t));
         }
@@ -94,10 +94,10 @@ fn sweep(
         return;
     }
     sharpness = part.sharpness;
-    over_guard = part.over_guard;
+    inverse_penalty_guard = part.inverse_penalty_guard;
     var p = patch_of(vertex);
     var moved = false;
-    for (var i = 0u; i < params.inner; i++) {
+    for (var i = 0u; i < params.newton_steps; i++) {
         let d = newton_step(p, part.omega);
         if all(d == vec2(0.0)) {
             break;

@@ -40,7 +40,7 @@ fn objective(
         let p = position(corners.x);
         let a = edge(p, position(corners.y));
         let b = edge(p, position(corners.z));
-        let corner = shown(Corner(a, b, params.mean_area), map_of(corners));
+        let corner = transformed(Corner(a, b, params.mean_area), map_of(corners));
         let values = tracked_values(corner);
         let seen = edge_is_finite(a) && edge_is_finite(b);
         for (var i = 0u; i < TRACKED; i++) {

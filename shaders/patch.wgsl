@@ -18,7 +18,7 @@ struct Derivatives {
 // log2 of the exponent of EDGE's p-norm in this sweep.
 var<private> sharpness: u32;
 // Reciprocal of the inverse mean ratio toward which EDGE's penalty grows; 0 without a penalty.
-var<private> over_guard: f32;
+var<private> inverse_penalty_guard: f32;
 
 // Returns the edge from one position to another. The differences of the high and of the low parts are opaque: a sum in
 // another order, such as head.xy - (tail.xy + tail.zw) + head.zw, would lose the low parts.

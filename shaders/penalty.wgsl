@@ -5,7 +5,7 @@
 fn penalized_shape(t: Corner) -> vec2<f32> {
     let i = invariants(t);
     let m = i.excess / i.area;
-    return vec2(m, (m + 1.0) * over_guard);
+    return vec2(m, (m + 1.0) * inverse_penalty_guard);
 }
 
 fn penalty_at(ratio: f32) -> f32 {
@@ -18,7 +18,7 @@ fn penalty_at(ratio: f32) -> f32 {
 
 fn smoothed_model(t: Corner) -> f32 {
     let norm = edge_model(t);
-    if over_guard == 0.0 {
+    if inverse_penalty_guard == 0.0 {
         return norm;
     }
     return norm + penalty_at(penalized_shape(t).y);
@@ -26,7 +26,7 @@ fn smoothed_model(t: Corner) -> f32 {
 
 fn smoothed_derivatives(t: Corner) -> Derivatives {
     let norm = edge_derivatives(t);
-    if over_guard == 0.0 {
+    if inverse_penalty_guard == 0.0 {
         return norm;
     }
     let shape = penalized_shape(t);

@@ -15,7 +15,7 @@ pub use device::{BindLayout, Kernel, run_on_gpu};
 
 pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
 pub use crate::metric::{Dual, InvariantSlopes, Invariants, Properties, Real, Slopes};
-pub use crate::run::{Plan, Step, Stepwise, StopRule};
+pub use crate::run::{Plan, Stepwise, StopRule, SweepParams};
 
 /// Starts a run of sweeps on the CPU from `positions`, which are normalized and in the problem's order.
 pub fn run_on_cpu<'a>(problem: &'a Problem, positions: &[DVec2], plan: Plan) -> impl Stepwise + 'a {

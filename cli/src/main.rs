@@ -27,7 +27,7 @@ use terminal::{Verbosity, interrupt, panics, tell};
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| request::checks::any_line(bytes));
 
 fn main() -> ExitCode {
-    panics::told(run)
+    panics::reporting_panics(run)
 }
 
 fn run() -> ExitCode {

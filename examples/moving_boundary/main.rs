@@ -36,7 +36,7 @@ fn main() -> Result<()> {
     println!("            with {sweeps} sweeps a step             with none");
     println!("step  angle  worst IMR  inverted     ms  worst IMR  inverted");
     for (k, step) in (1..).zip(&steps).filter(|(k, _)| k % 10 == 0) {
-        let Step { angle, took, kept: Quality { worst_imr, inverted, .. }, left } = step;
+        let SweepParams { angle, took, kept: Quality { worst_imr, inverted, .. }, left } = step;
         let ms = took.as_secs_f64() * 1e3;
         print!("{k:>4} {angle:>5.1}°  {worst_imr:>9.2}  {inverted:>8}  {ms:>5.2}");
         println!("  {:>9.2}  {:>8}", left.worst_imr, left.inverted);
@@ -56,7 +56,7 @@ fn main() -> Result<()> {
 }
 
 /// Result of a step.
-pub(crate) struct Step {
+pub(crate) struct SweepParams {
     /// Angle of the hole after the step, in degrees.
     pub(crate) angle: f64,
     /// Time from the step's first call until the device finished.
@@ -73,7 +73,7 @@ pub(crate) fn simulate(
     sweeps: u32,
     steps: u32,
     degrees: f64,
-) -> Result<Vec<Step>> {
+) -> Result<Vec<SweepParams>> {
     let mesh = plate(vertices)?;
     let topology = Topology::new(&mesh)?;
     let hole = hole(&topology, &mesh.points);
@@ -116,7 +116,7 @@ pub(crate) fn simulate(
         let took = start.elapsed();
 
         turned.for_each(|(v, point)| left_alone[v as usize] = point);
-        log.push(Step {
+        log.push(SweepParams {
             angle,
             took,
             kept: Quality::of(&device_mesh.read_points()?, &topology)?,

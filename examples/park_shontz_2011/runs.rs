@@ -210,14 +210,14 @@ fn plain(scheme: Scheme) -> Plan {
         scheme,
         omega: [1.0; Metric::ALL.len()],
         unrelaxed_sweeps: 4,
-        inner: 1,
+        newton_steps: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
         sharpness: PNormExponent::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
         track_all: false,
         shape_guard: f64::INFINITY,
         worst_guard: f64::INFINITY,
-        longest: 1.0,
+        max_lengthening: 1.0,
         is_guard_penalized: false,
     }
 }
@@ -225,7 +225,7 @@ fn plain(scheme: Scheme) -> Plan {
 /// Returns the plan for a batch's setting.
 fn plan(batch: &Batch, scheme: Scheme) -> Plan {
     let alone = scheme.metrics().iter().all(|&m| m == scheme.base());
-    let mut plan = Plan { inner: batch.inner, ..plain(scheme) };
+    let mut plan = Plan { newton_steps: batch.inner, ..plain(scheme) };
     plan.stop.max_sweeps = batch.max_sweeps;
     match batch.setting {
         Setting::Plain => {}

@@ -1,4 +1,4 @@
-// Lets a run in progress continue after the evaluation that reopen.wgsl made it skip.
+// Lets a run in progress continue after the evaluation that restart_if_changed.wgsl made it skip.
 
 @compute @workgroup_size(1)
 fn resume() {

@@ -1,5 +1,5 @@
 // Computes the correction with zeros at the free vertices of triangles that the correction would break. The result goes
-// to `vectors`, because invocations for neighbors still read the old correction; leave_out_broken.wgsl copies the
+// to `vectors`, because invocations for neighbors still read the old correction; exclude_broken.wgsl copies the
 // result.
 
 @compute @workgroup_size(WORKGROUP)
@@ -23,8 +23,8 @@ fn find_broken(
         let b = edge(p.at, position(neighbor));
         let moved_b = moved_edge(b, d, displacement(neighbor));
         let map = map_around(p, i);
-        let here = shown(Corner(a, b, params.mean_area), map);
-        let there = shown(Corner(moved_a, moved_b, params.mean_area), map);
+        let here = transformed(Corner(a, b, params.mean_area), map);
+        let there = transformed(Corner(moved_a, moved_b, params.mean_area), map);
         kept = kept && !is_broken(here, there);
         a = b;
         moved_a = moved_b;

@@ -20,7 +20,7 @@ fn find_gradient(
         return;
     }
     sharpness = op.sharpness;
-    over_guard = op.over_guard;
+    inverse_penalty_guard = op.inverse_penalty_guard;
     let p = patch_of(vertex);
     var sum = derivatives_around(p);
     if MAPPED {

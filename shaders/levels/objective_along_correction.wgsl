@@ -14,7 +14,7 @@ fn objective_along_correction(
     }
     let stride = groups.x * WORKGROUP;
     sharpness = op.sharpness;
-    over_guard = op.over_guard;
+    inverse_penalty_guard = op.inverse_penalty_guard;
     var sums: array<vec2<f32>, 4>;
     if op.first != 0u {
         for (var i = 0u; i < 4u; i++) {
@@ -32,13 +32,13 @@ fn objective_along_correction(
         let b = edge(p, position(corners.z));
         let d = displacement(corners.x);
         let map = map_of(corners);
-        let here = shown(Corner(a, b, params.mean_area), map);
+        let here = transformed(Corner(a, b, params.mean_area), map);
         let moved = Corner(
             moved_edge(a, d, displacement(corners.y)),
             moved_edge(b, d, displacement(corners.z)),
             params.mean_area,
         );
-        let there = shown(moved, map);
+        let there = transformed(moved, map);
         sums[0] = pair_accumulate(sums[0], metric_model(here));
         if !is_positive(doubled_area(here)) || is_broken(here, there) {
             sums[2].x += 1.0;

@@ -12,7 +12,7 @@ fn find_stiffness(
     }
     let vertex = op.first + index;
     sharpness = op.sharpness;
-    over_guard = op.over_guard;
+    inverse_penalty_guard = op.inverse_penalty_guard;
     let p = patch_of(vertex);
     let sum = pulled_back(derivatives_around(p), inverse_of(shape_of(vertex))).hessian;
     gradient[vertex] = vec2(root_of_stiffness(p, sum));

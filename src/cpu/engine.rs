@@ -15,7 +15,7 @@ use crate::metric::{Metric, Smoothing, TargetMap};
 use crate::parallel::{collect, for_each_chunk};
 use crate::run::multilevel::Hierarchy;
 use crate::run::{
-    CPU, EXCLUSION_PASSES, Engine, EngineState, History, Objectives, Plan, Proposal, Step,
+    CPU, EXCLUSION_PASSES, Engine, EngineState, History, Objectives, Plan, Proposal, SweepParams,
 };
 
 /// Number of vertices that one task handles.
@@ -28,7 +28,7 @@ pub(crate) struct CpuEngine {
     tracked: Vec<Metric>,
     /// The step of the base metric. Corrections use its shape guard, and its exponent and penalty, which
     /// [`Engine::sweep_and_propose`] updates for each correction.
-    step: Step,
+    step: SweepParams,
     positions: Vec<DVec2>,
     /// Positions and objective of the best state so far. `None` if every sweep of the plan lowers f, so that the last
     /// state is the best.
@@ -64,7 +64,7 @@ impl CpuEngine {
         }
     }
 
-    fn sweep_now(&mut self, step: &Step) {
+    fn sweep_now(&mut self, step: &SweepParams) {
         let Self { problem, positions, held, moved, .. } = self;
         sweep::sweep(problem, positions, held, moved, step);
     }
@@ -127,8 +127,9 @@ fn correction(
 ) -> Vec<Vec2> {
     let mut correction = match hierarchy {
         Some(hierarchy) if problem.is_stretched() => {
-            let shown = vcycle::correction(hierarchy, problem, &as_shown(problem, gradient));
-            as_shown(problem, &shown)
+            let transformed =
+                vcycle::correction(hierarchy, problem, &as_transformed(problem, gradient));
+            as_transformed(problem, &transformed)
         }
         Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),
         None => vec![Vec2::ZERO; gradient.len()],
@@ -146,17 +147,17 @@ fn set_to_zero(vectors: &mut [Vec2], held: &[bool]) {
 
 /// Returns vectors at the free vertices, transformed by the inverse shapes of the target maps. The coarser levels work
 /// in these coordinates: in a layer of stretched triangles, neighbors are then as near across the layer as along it.
-fn as_shown(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
+fn as_transformed(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
     let targets = problem.targets().unwrap_or_default();
     collect(vectors.len(), |v| {
         let map = TargetMap(targets[v].map(f64::from));
-        let shown = map.inverse().shape().apply(vectors[v].as_dvec2().to_array());
-        DVec2::from(shown).as_vec2()
+        let transformed = map.inverse().shape().apply(vectors[v].as_dvec2().to_array());
+        DVec2::from(transformed).as_vec2()
     })
 }
 
 impl Engine for CpuEngine {
-    async fn sweep(&mut self, step: &Step) -> Result<(), GpuError> {
+    async fn sweep(&mut self, step: &SweepParams) -> Result<(), GpuError> {
         self.sweep_now(step);
         Ok(())
     }
@@ -165,7 +166,11 @@ impl Engine for CpuEngine {
         Ok(self.objectives_now())
     }
 
-    async fn sweeps(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
+    async fn sweeps(
+        &mut self,
+        steps: &[SweepParams],
+        history: &mut History,
+    ) -> Result<(), GpuError> {
         if history.is_empty() {
             history.record(self.objectives_now());
         }
@@ -221,12 +226,12 @@ impl Engine for CpuEngine {
 
     async fn sweep_and_propose(
         &mut self,
-        step: &Step,
+        step: &SweepParams,
         length: f64,
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
         self.sweep_now(step);
-        (self.step.sharpness, self.step.penalized) = (step.sharpness, step.penalized);
+        (self.step.sharpness, self.step.penalty_guard) = (step.sharpness, step.penalty_guard);
         let Self { base, problem, positions, held, gradient, secants, .. } = self;
         sweep::gradient(*base, problem, positions, step.smoothing(), gradient);
         set_to_zero(gradient, held);
@@ -281,7 +286,7 @@ impl Engine for CpuEngine {
             ..EngineState::default()
         };
         if whole {
-            state.roots = self.hierarchy.as_ref().map(Hierarchy::recipe).unwrap_or_default();
+            state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
             if let Some(secants) = &self.secants {
                 secants.save(&mut state);
             }

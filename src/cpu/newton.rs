@@ -7,7 +7,7 @@ use crate::metric::{Dual, Formulas};
 use crate::options::Derivatives;
 use crate::patch::lanes::{Lanes, Mask, Points};
 use crate::patch::{Direction, MetricObjective, Objective, Rings, SearchRule, newton_step};
-use crate::run::{Step, line_search};
+use crate::run::{SweepParams, line_search};
 
 /// Visits four vertices at `at`, and returns their new positions.
 #[inline(always)]
@@ -15,7 +15,7 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     formulas: impl Formulas,
     rings: &Rings<S, MAPPED>,
     mut at: Points<S>,
-    step: &Step,
+    step: &SweepParams,
 ) -> Points<S> {
     let mut going = Mask::splat(at[0].simd, true);
     let (smoothing, shape_guard) = (step.smoothing(), step.shape_guard);
@@ -31,13 +31,13 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
             false => SearchRule::SWEEP.sufficient_decrease,
         },
         eigenvalue_floor: properties.eigenvalue_floor,
-        max_lengthening: properties.barrier.then_some(step.longest),
+        max_lengthening: properties.barrier.then_some(step.max_lengthening),
         ..SearchRule::SWEEP
     };
-    for _ in 0..step.inner {
+    for _ in 0..step.newton_steps {
         let from = at;
         (at, going) = newton_step(&objective, at, going, &rule);
-        if step.inner > 1 && step.derivatives == Derivatives::Analytic {
+        if step.newton_steps > 1 && step.derivatives == Derivatives::Analytic {
             going &= !settled(rings, from, at);
         }
         if going.all_false() {

@@ -8,7 +8,7 @@ use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
 use crate::parallel::{collect, map_parts};
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, target_maps, with_lanes};
 use crate::patch::{is_kept, is_no_worse, is_positive, is_within};
-use crate::run::Step;
+use crate::run::SweepParams;
 
 /// Number of triangles that one task evaluates.
 const CHUNK: usize = 1024;
@@ -56,7 +56,11 @@ pub(crate) struct Along<'a> {
 /// Returns the mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model.
 /// `None` if the move breaks a triangle: inverts or flattens it, or makes its inverse mean ratio both worse than before
 /// and larger than the shape guard of the step.
-pub(crate) fn mean_excess_along(step: &Step, problem: &Problem, along: &Along<'_>) -> Option<f64> {
+pub(crate) fn mean_excess_along(
+    step: &SweepParams,
+    problem: &Problem,
+    along: &Along<'_>,
+) -> Option<f64> {
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem, step.metric, simd, formulas, MAPPED => {
             excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
@@ -89,7 +93,7 @@ fn excess_along<S: Simd, const MAPPED: bool>(
     formulas: impl Formulas,
     problem: &Problem,
     along: &Along<'_>,
-    step: &Step,
+    step: &SweepParams,
     triangles: &[[u32; 3]],
 ) -> Option<f64> {
     let guard = step.shape_guard;
@@ -149,7 +153,7 @@ fn corner<S: Simd>(
     let corner = Corner { a, b, mean_area: problem.mean_area() };
     match map {
         None => corner,
-        Some(map) => map.show(&corner),
+        Some(map) => map.transform(&corner),
     }
 }
 
@@ -237,7 +241,7 @@ mod tests {
         let positions = problem.positions();
         for metric in [Metric::Imr, Metric::Rms, Metric::Edge] {
             let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });
-            let step = Step { sharpness: 6, shape_guard: 30.0, ..plan.base_step(1.0) };
+            let step = SweepParams { sharpness: 6, shape_guard: 30.0, ..plan.base_step(1.0) };
             let along = |direction: Vec2, length: f64| {
                 let direction = &[direction];
                 mean_excess_along(&step, &problem, &Along { positions, direction, length })

@@ -10,7 +10,7 @@ use crate::options::Derivatives;
 use crate::parallel::for_each_chunk;
 use crate::patch::lanes::{LANES, Lanes, points, with_lanes};
 use crate::patch::{MetricObjective, Objective, Rings, Scratch};
-use crate::run::Step;
+use crate::run::SweepParams;
 
 /// Number of vertices that one task visits.
 const CHUNK: usize = Problem::BLOCK;
@@ -58,7 +58,7 @@ pub(crate) fn sweep(
     positions: &mut [DVec2],
     held: &[bool],
     moved: &mut Vec<DVec2>,
-    step: &Step,
+    step: &SweepParams,
 ) {
     for color in problem.colors() {
         let first = color.start as usize;
@@ -116,15 +116,15 @@ fn find(
     found: &mut Vec<Vec2>,
 ) {
     found.resize(problem.free_count(), Vec2::ZERO);
-    let step = Step {
+    let step = SweepParams {
         metric,
         omega: 1.0,
-        inner: 1,
+        newton_steps: 1,
         sharpness: smoothing.sharpness,
-        penalized: smoothing.penalized,
+        penalty_guard: smoothing.penalty_guard,
         derivatives: Derivatives::Analytic,
         shape_guard: f64::INFINITY,
-        longest: 1.0,
+        max_lengthening: 1.0,
     };
     // The loop goes color by color, as within a color, vertices of equal degree are consecutive.
     for color in problem.colors() {
@@ -143,9 +143,9 @@ pub(crate) fn held_back(
     problem: &Problem,
     positions: &[DVec2],
     held: &[bool],
-    step: &Step,
+    step: &SweepParams,
 ) -> usize {
-    let free = Step { shape_guard: f64::INFINITY, ..*step };
+    let free = SweepParams { shape_guard: f64::INFINITY, ..*step };
     let (mut guarded, mut unguarded) = (Vec::new(), Vec::new());
     let mut count = 0;
     for color in problem.colors() {
@@ -169,7 +169,7 @@ fn visit<T: VisitOutput>(
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
-    step: &Step,
+    step: &SweepParams,
     sought: VertexQuantity,
     found: &mut [T],
 ) {
@@ -190,7 +190,7 @@ fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
-    step: &Step,
+    step: &SweepParams,
     sought: VertexQuantity,
     found: &mut [T],
 ) {

@@ -133,8 +133,10 @@ impl Problem {
         self.targets = Some(maps.into());
         let is_longer = |&[xx, xy, yy]: &[f32; 3]| xx != yy || xy != 0.0;
         self.is_stretched = self.targets().is_some_and(|maps| maps.iter().any(is_longer));
-        let shown = |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
-        self.mean_area = sum(&self.layout.triangles, shown) / self.layout.triangles.len() as f64;
+        let transformed_area =
+            |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
+        self.mean_area =
+            sum(&self.layout.triangles, transformed_area) / self.layout.triangles.len() as f64;
     }
 
     /// Copies the targets of another problem of the same mesh. `number` has the index in `other` of each vertex of the
@@ -210,7 +212,7 @@ impl Problem {
         let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: self.mean_area };
         match self.target_map(t) {
             None => corner,
-            Some(map) => map.show(&corner),
+            Some(map) => map.transform(&corner),
         }
     }
 

@@ -111,7 +111,7 @@ mod tests {
     fn the_slopes_of_own_give_the_bits_of_the_same_numbers_at_run_time() {
         let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], mean_area: 0.6 };
         for &metric in Metric::ALL {
-            let smoothing = Smoothing { sharpness: 2, penalized: 2.0 };
+            let smoothing = Smoothing { sharpness: 2, penalty_guard: 2.0 };
             let folded = metric.formulas().expansion(&corner, Own, smoothing);
             let [alpha, beta] = std::hint::black_box([-1.0, -1.0]);
             let given = metric.formulas().expansion(&corner, Given(alpha, beta), smoothing);

@@ -10,7 +10,7 @@ pub(crate) struct Smoothing {
     /// Binary logarithm of the exponent k of the p-norm.
     pub(crate) sharpness: u32,
     /// Shape guard that the penalty keeps triangles away from, as an inverse mean ratio; infinite for no penalty.
-    pub(crate) penalized: f64,
+    pub(crate) penalty_guard: f64,
 }
 
 /// Value of the penalty at the shape guard. With a tenth of this value, the guard stops runs again; with ten times the
@@ -20,13 +20,13 @@ pub(crate) const PENALTY: f64 = 0.1;
 impl Smoothing {
     /// Returns the smoothing by the p-norm alone, with the exponent 2^`sharpness`.
     pub(crate) fn of(sharpness: u32) -> Self {
-        Self { sharpness, penalized: f64::INFINITY }
+        Self { sharpness, penalty_guard: f64::INFINITY }
     }
 
     /// Returns whether the objective includes a penalty.
     #[inline(always)]
     pub(crate) fn is_penalized(&self) -> bool {
-        self.penalized < f64::INFINITY
+        self.penalty_guard < f64::INFINITY
     }
 
     /// Returns the penalty [`PENALTY`] · min(imr / guard, 1)^k, with k the exponent of the p-norm. The penalty is
@@ -64,7 +64,7 @@ impl Smoothing {
     fn ratio<T: Real>(&self, t: &Corner<T>) -> [T; 2] {
         let invariants = t.invariants();
         let shape = invariants.excess / invariants.area;
-        [shape, (shape + 1.0) * (1.0 / self.penalized)]
+        [shape, (shape + 1.0) * (1.0 / self.penalty_guard)]
     }
 
     #[inline(always)]
@@ -90,7 +90,7 @@ mod tests {
     fn the_derivatives_of_the_penalty_are_those_of_its_value() {
         for sharpness in [0, 1, 4, 7, 13] {
             for guard in [1.0004, 1.01, 1.7, 30.0] {
-                let smoothing = Smoothing { sharpness, penalized: guard };
+                let smoothing = Smoothing { sharpness, penalty_guard: guard };
                 for height in [0.05, 0.3, 0.8660, 0.87, 0.95] {
                     let t = corner(height);
                     let ([ax, ay], [bx, by]) = (t.a, t.b);
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn beyond_the_guard_the_penalty_is_constant() {
-        let smoothing = Smoothing { sharpness: 13, penalized: 2.0 };
+        let smoothing = Smoothing { sharpness: 13, penalty_guard: 2.0 };
         for height in [1e-9, 0.01, 0.1] {
             let t = corner(0.04 + height);
             assert!(t.inverse_mean_ratio() > 2.0);

@@ -47,7 +47,7 @@ impl<T: Real> TargetMap<T> {
 
     /// Returns a triangle transformed by the map.
     #[inline(always)]
-    pub(crate) fn show(&self, corner: &Corner<T>) -> Corner<T> {
+    pub(crate) fn transform(&self, corner: &Corner<T>) -> Corner<T> {
         let (a, b) = (self.apply(corner.a), self.apply(corner.b));
         Corner { a, b, mean_area: corner.mean_area }
     }
@@ -55,14 +55,14 @@ impl<T: Real> TargetMap<T> {
     /// Returns the derivatives by a vertex of the plane, S g and S H S, from the gradient g and the Hessian H by the
     /// transformed vertex.
     #[inline(always)]
-    pub(crate) fn pull_back(&self, shown: Dual<T>) -> Dual<T> {
-        let [xx, xy, yy] = shown.hessian;
+    pub(crate) fn pull_back(&self, transformed: Dual<T>) -> Dual<T> {
+        let [xx, xy, yy] = transformed.hessian;
         let (first, second) = (self.apply([xx, xy]), self.apply([xy, yy]));
         // The rows of H S are multiplied by S from the left.
         let [left, right] = [self.apply([first[0], second[0]]), self.apply([first[1], second[1]])];
         Dual {
-            value: shown.value,
-            gradient: self.apply(shown.gradient),
+            value: transformed.value,
+            gradient: self.apply(transformed.gradient),
             hessian: [left[0], left[1], right[1]],
         }
     }

@@ -38,8 +38,8 @@ pub(crate) trait Corners<T: Numbers> {
 
     /// Converts derivatives by the visited vertex in the coordinates of a corner's target map to those of the plane.
     #[inline(always)]
-    fn pull_back(&self, _: usize, shown: Dual<T>) -> Dual<T> {
-        shown
+    fn pull_back(&self, _: usize, transformed: Dual<T>) -> Dual<T> {
+        transformed
     }
 
     /// Returns the Newton direction for the derivatives of the sum over the patch.
@@ -92,8 +92,9 @@ impl<T: Numbers, P: Corners<T>, F: Formulas> Objective<T> for MetricObjective<'_
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.patch.count() {
             let corner = self.patch.corner(i, at);
-            let shown = self.formulas.expansion(&corner, self.patch.slopes(i), self.smoothing);
-            sum = sum + self.patch.weighted(i, self.patch.pull_back(i, shown));
+            let transformed =
+                self.formulas.expansion(&corner, self.patch.slopes(i), self.smoothing);
+            sum = sum + self.patch.weighted(i, self.patch.pull_back(i, transformed));
         }
         sum
     }

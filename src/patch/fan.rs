@@ -91,11 +91,11 @@ impl Corners<f64> for FanPatch {
 
     fn corner(&self, i: usize, at: [f64; 2]) -> Corner<f64> {
         let corner = self.corners[i].in_plane(at.into(), self.mean_area);
-        self.corners[i].map.map_or(corner, |map| map.show(&corner))
+        self.corners[i].map.map_or(corner, |map| map.transform(&corner))
     }
 
-    fn pull_back(&self, i: usize, shown: Dual) -> Dual {
-        self.corners[i].map.map_or(shown, |map| map.pull_back(shown))
+    fn pull_back(&self, i: usize, transformed: Dual) -> Dual {
+        self.corners[i].map.map_or(transformed, |map| map.pull_back(transformed))
     }
 
     /// Returns whether a triangle is counter-clockwise, by its exact sign and by its rounded area, and has at least the

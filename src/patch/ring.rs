@@ -107,12 +107,12 @@ impl<S: Simd, const MAPPED: bool> Corners<Lanes<S>> for Rings<'_, S, MAPPED> {
         let (p, q) = (self.ring[i], self.ring[i + 1]);
         let (a, b) = ([p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]);
         let corner = Corner { a, b, mean_area: self.mean_area };
-        if MAPPED { self.maps[i].show(&corner) } else { corner }
+        if MAPPED { self.maps[i].transform(&corner) } else { corner }
     }
 
     #[inline(always)]
-    fn pull_back(&self, i: usize, shown: Dual<Lanes<S>>) -> Dual<Lanes<S>> {
-        if MAPPED { self.maps[i].pull_back(shown) } else { shown }
+    fn pull_back(&self, i: usize, transformed: Dual<Lanes<S>>) -> Dual<Lanes<S>> {
+        if MAPPED { self.maps[i].pull_back(transformed) } else { transformed }
     }
 
     #[inline(always)]

@@ -14,8 +14,8 @@ use crate::run::history::History;
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::saved::Saved;
-use crate::run::step::Step;
 use crate::run::stop::Stop;
+use crate::run::sweep_params::SweepParams;
 use crate::run::sweeps;
 
 /// A callback that receives the progress of a run and can end the run: any `FnMut(&Progress) -> ControlFlow<()>` that
@@ -66,7 +66,7 @@ enum Strategy {
 }
 
 /// Returns all distinct steps that a run by `plan` can take.
-pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<Step> {
+pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<SweepParams> {
     if corrected { Corrections::steps(plan) } else { plan.steps() }
 }
 

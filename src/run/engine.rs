@@ -11,7 +11,7 @@ use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
 use crate::run::objectives::Objectives;
 use crate::run::saved::EngineState;
-use crate::run::step::Step;
+use crate::run::sweep_params::SweepParams;
 
 /// Sweeps, objectives and corrections from coarser levels, on the CPU or a device. Positions are normalized and in the
 /// order of the [`Problem`].
@@ -19,7 +19,7 @@ use crate::run::step::Step;
 /// The caller decides which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {
     /// Visits every free vertex once, by `step`.
-    fn sweep(&mut self, step: &Step) -> impl Future<Output = Result<(), GpuError>> + Send;
+    fn sweep(&mut self, step: &SweepParams) -> impl Future<Output = Result<(), GpuError>> + Send;
 
     /// Evaluates the tracked objectives at the present positions.
     fn objectives(&mut self) -> impl Future<Output = Result<Objectives, GpuError>> + Send;
@@ -31,7 +31,7 @@ pub(crate) trait Engine: Send {
     /// A device may do all sweeps in one submission, and apply the stop rule by itself.
     fn sweeps(
         &mut self,
-        steps: &[Step],
+        steps: &[SweepParams],
         history: &mut History,
     ) -> impl Future<Output = Result<(), GpuError>> + Send;
 
@@ -70,7 +70,7 @@ pub(crate) trait Engine: Send {
     /// corrections; see [`secant`](crate::run::secant). If not, the engine drops its pairs.
     fn sweep_and_propose(
         &mut self,
-        step: &Step,
+        step: &SweepParams,
         length: f64,
         accelerated: bool,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;

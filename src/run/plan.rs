@@ -3,8 +3,8 @@
 use crate::metric::{Metric, Scheme};
 use crate::options::{Derivatives, Options, PNormExponent, Paper};
 use crate::run::line_search::{self, LONGEST};
-use crate::run::step::Step;
 use crate::run::stop::StopRule;
+use crate::run::sweep_params::SweepParams;
 
 /// The parameters that determine the sweeps of a run on every engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Plan {
     /// Number of sweeps before over-relaxation starts.
     pub unrelaxed_sweeps: u32,
     /// Largest number of Newton steps in one visit of a vertex.
-    pub inner: u32,
+    pub newton_steps: u32,
     /// Method of differentiation by metric, in the order of [`Metric::ALL`].
     pub derivatives: [Derivatives; Metric::ALL.len()],
     /// Exponent of EDGE's p-norm, sweep by sweep.
@@ -34,7 +34,7 @@ pub struct Plan {
     pub worst_guard: f64,
     /// Upper limit of the factor by which steps of metrics with a barrier are lengthened, where nearly flat triangles
     /// make up most of a patch's objective. 1 turns lengthening off.
-    pub longest: f64,
+    pub max_lengthening: f64,
     /// Whether a penalty keeps sweeps by EDGE away from the shape guard, as in runs with corrections.
     pub is_guard_penalized: bool,
 }
@@ -76,27 +76,27 @@ impl Plan {
             scheme: options.scheme.clone(),
             omega,
             unrelaxed_sweeps: relaxed.unrelaxed_sweeps,
-            inner: newton_steps.max(1),
+            newton_steps: newton_steps.max(1),
             derivatives: [derivatives; Metric::ALL.len()],
             sharpness,
             stop: StopRule { target, tolerance, max_sweeps: options.max_sweeps },
             track_all: options.track_all,
             shape_guard: f64::INFINITY,
             worst_guard: f64::INFINITY,
-            longest: if options.is_multilevel() { LONGEST } else { 1.0 },
+            max_lengthening: if options.is_multilevel() { LONGEST } else { 1.0 },
             is_guard_penalized: false,
         }
     }
 
     /// Returns the step of a sweep. Sweeps count from 1.
-    pub fn step(&self, sweep: u32) -> Step {
+    pub fn step(&self, sweep: u32) -> SweepParams {
         let metric = self.scheme.metric(sweep);
         let omega = if sweep <= self.unrelaxed_sweeps { 1.0 } else { self.omega[metric as usize] };
         self.step_with(metric, omega, self.sharpness.of(sweep))
     }
 
     /// Returns all distinct steps that [`step`](Self::step) can return.
-    pub(crate) fn steps(&self) -> Vec<Step> {
+    pub(crate) fn steps(&self) -> Vec<SweepParams> {
         let PNormExponent { first, last, .. } = self.sharpness;
         let mut steps = Vec::new();
         for &metric in self.scheme.metrics() {
@@ -113,27 +113,27 @@ impl Plan {
     }
 
     /// Returns a step of the base metric with over-relaxation `omega`, for runs with corrections.
-    pub(crate) fn base_step(&self, omega: f64) -> Step {
+    pub(crate) fn base_step(&self, omega: f64) -> SweepParams {
         self.step_with(self.scheme.base(), omega, self.sharpness.largest())
     }
 
     /// Returns a step of `metric` with over-relaxation `omega`. `sharpness` is the binary logarithm of EDGE's exponent.
-    pub(crate) fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> Step {
+    pub(crate) fn step_with(&self, metric: Metric, omega: f64, sharpness: u32) -> SweepParams {
         let of_metric = match metric.properties().shape_guard {
             own if own.is_finite() => self.shape_guard.min(own),
             own => own,
         };
         let guard = of_metric.min(self.worst_guard);
         let is_penalized = self.is_guard_penalized && metric == Metric::Edge;
-        Step {
+        SweepParams {
             metric,
             omega,
-            inner: self.inner,
+            newton_steps: self.newton_steps,
             sharpness,
-            penalized: if is_penalized { guard } else { f64::INFINITY },
+            penalty_guard: if is_penalized { guard } else { f64::INFINITY },
             derivatives: self.derivatives[metric as usize],
             shape_guard: guard * (1.0 - line_search::GUARD_RESERVE),
-            longest: if metric.properties().barrier { self.longest } else { 1.0 },
+            max_lengthening: if metric.properties().barrier { self.max_lengthening } else { 1.0 },
         }
     }
 

@@ -7,7 +7,7 @@ use crate::metric::{AnyFormulas, Dual, Smoothing};
 use crate::patch::{
     Corners, Direction, FanPatch, MetricObjective, Objective, SearchRule, step_alone,
 };
-use crate::run::Step;
+use crate::run::SweepParams;
 use crate::slide::curve::{Curve, Place};
 use crate::slide::side::BoundaryCurve;
 
@@ -36,7 +36,7 @@ pub(crate) struct Visited<'a> {
 /// The objective and the bounds by which vertices slide.
 #[derive(Clone, Copy)]
 pub(crate) struct Rule<'a> {
-    pub(crate) step: &'a Step,
+    pub(crate) step: &'a SweepParams,
     /// Lower limit of the altitudes of triangles, in normalized units; 0 for no limit.
     pub(crate) floor: f64,
 }
@@ -110,12 +110,12 @@ struct CurveObjective<'a> {
     on_curves: Vec<OnCurve<'a>>,
     window: Window,
     reach: Reach,
-    step: &'a Step,
+    step: &'a SweepParams,
 }
 
 impl CurveObjective<'_> {
     fn metric<'p>(&self, patch: &'p FanPatch) -> MetricObjective<'p, FanPatch, AnyFormulas> {
-        let Step { metric, sharpness, shape_guard, .. } = *self.step;
+        let SweepParams { metric, sharpness, shape_guard, .. } = *self.step;
         let smoothing = Smoothing::of(sharpness);
         MetricObjective { patch, formulas: metric.formulas(), smoothing, shape_guard }
     }
@@ -126,11 +126,11 @@ impl Objective<f64> for CurveObjective<'_> {
         let (mut value, mut slope, mut curvature) = (0.0, 0.0, 0.0);
         for OnCurve { side, here, patch } in &self.on_curves {
             let Place { first, second, .. } = side.at(self.problem, at);
-            let shown = self.metric(patch).expansion(here.to_array());
-            let gradient = DVec2::from(shown.gradient);
-            let [xx, xy, yy] = shown.hessian;
+            let transformed = self.metric(patch).expansion(here.to_array());
+            let gradient = DVec2::from(transformed.gradient);
+            let [xx, xy, yy] = transformed.hessian;
             let hessian = DVec2::new(xx * first.x + xy * first.y, xy * first.x + yy * first.y);
-            value += shown.value;
+            value += transformed.value;
             slope += gradient.dot(first);
             curvature += hessian.dot(first) + gradient.dot(second);
         }

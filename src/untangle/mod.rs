@@ -137,7 +137,7 @@ struct Work<'m> {
     /// Held vertices of each cut so far, as one flag for each vertex. A cut with the held vertices of an earlier cut is
     /// skipped.
     tried: Vec<Vec<bool>>,
-    /// Results of stages after cuts: [`Assessment::far`](state::Assessment::far) and the positions, in ascending order
+    /// Results of stages after cuts: [`Assessment::inverted_area`](state::Assessment::inverted_area) and the positions, in ascending order
     /// of the former. At most [`ENDS`] results are kept.
     ends: Vec<(f64, Vec<DVec2>)>,
 }
@@ -311,7 +311,7 @@ impl<'m> Work<'m> {
             return ControlFlow::Break(());
         }
         if matches!(stage.start, Start::Cut(_)) {
-            self.ends.push((now.far(), self.state.positions.clone()));
+            self.ends.push((now.inverted_area(), self.state.positions.clone()));
             self.ends.sort_by(|a, b| a.0.total_cmp(&b.0));
             self.ends.truncate(ENDS);
         }

@@ -36,7 +36,7 @@ impl Assessment {
 
     /// Returns the depth of the most inverted triangle, in target areas, times the number of bad triangles; 0 if no area is
     /// negative.
-    pub(crate) fn far(&self) -> f64 {
+    pub(crate) fn inverted_area(&self) -> f64 {
         -self.least.min(0.0) * self.bad as f64
     }
 

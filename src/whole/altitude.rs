@@ -135,11 +135,11 @@ impl Stage for AltitudeStage<'_> {
     }
 
     fn judge(&mut self, period: &Period) -> Judgment {
-        let has_rounds_left = self.count < PERIODS;
+        let has_periods_left = self.count < PERIODS;
         let stop = match period.swept {
             _ if period.all_held => Some(Stop::Converged),
-            _ if !has_rounds_left && !period.is_settled => Some(Stop::Stalled),
-            swept if self.was_clean && period.is_settled || !has_rounds_left => {
+            _ if !has_periods_left && !period.is_settled => Some(Stop::Stalled),
+            swept if self.was_clean && period.is_settled || !has_periods_left => {
                 swept.or(Some(Stop::MaxSweeps))
             }
             _ => period.is_last.then_some(Stop::MaxSweeps),

@@ -9,7 +9,7 @@ use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
-use crate::run::{Engine, EngineState, History, Objectives, Proposal, Step};
+use crate::run::{Engine, EngineState, History, Objectives, Proposal, SweepParams};
 use crate::whole::device::DeviceEngine;
 
 /// The CPU engine or the engine of a device, by one interface.
@@ -32,7 +32,7 @@ macro_rules! on {
 }
 
 impl Engine for AnyEngine<'_> {
-    async fn sweep(&mut self, step: &Step) -> Result<(), GpuError> {
+    async fn sweep(&mut self, step: &SweepParams) -> Result<(), GpuError> {
         on!(self, engine => engine.sweep(step).await)
     }
 
@@ -40,7 +40,11 @@ impl Engine for AnyEngine<'_> {
         on!(self, engine => engine.objectives().await)
     }
 
-    async fn sweeps(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
+    async fn sweeps(
+        &mut self,
+        steps: &[SweepParams],
+        history: &mut History,
+    ) -> Result<(), GpuError> {
         on!(self, engine => engine.sweeps(steps, history).await)
     }
 
@@ -78,7 +82,7 @@ impl Engine for AnyEngine<'_> {
 
     async fn sweep_and_propose(
         &mut self,
-        step: &Step,
+        step: &SweepParams,
         length: f64,
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {

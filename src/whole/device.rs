@@ -6,7 +6,7 @@ use crate::error::GpuError;
 use crate::gpu::{Gpu, GpuEngine, Waiting};
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
-use crate::run::{Plan, Step};
+use crate::run::{Plan, SweepParams};
 
 /// The engine on a device.
 pub(crate) type DeviceEngine<'s> = Box<GpuEngine<'s>>;
@@ -45,7 +45,7 @@ impl<'s> Device<'s> {
         problem: &Problem,
         from: &[DVec2],
         plan: Plan,
-        steps: Vec<Step>,
+        steps: Vec<SweepParams>,
     ) -> Result<DeviceEngine<'s>, GpuError> {
         GpuEngine::new(self.gpu, problem, from, plan, steps, self.waiting).map(Box::new)
     }

@@ -13,7 +13,7 @@ use crate::patch::{
 };
 use crate::precision::Precision;
 use crate::run::records::{Reader, Writer};
-use crate::run::{Step, StopRule};
+use crate::run::{StopRule, SweepParams};
 use crate::slide::{Params, Sliding};
 use crate::topology::Topology;
 use crate::whole::host::Host;
@@ -122,8 +122,8 @@ impl<'s> MoveLimitStage<'s> {
     }
 
     /// Takes a step at each held vertex by [`SearchRule::BOUND`]. Held vertices are at their bound.
-    fn visit_held(&self, host: &mut Host<'_>, step: &Step) {
-        let Step { metric, sharpness, shape_guard, .. } = *step;
+    fn visit_held(&self, host: &mut Host<'_>, step: &SweepParams) {
+        let SweepParams { metric, sharpness, shape_guard, .. } = *step;
         let (formulas, smoothing) = (metric.formulas(), Smoothing::of(sharpness));
         // Vertices of a color are not neighbors, so no step reads a position that another step of the color changes.
         for color in self.problem.colors() {

@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
-use crate::run::{Plan, Step};
+use crate::run::{Plan, SweepParams};
 
 /// The device of a run. The type has no value, as no device exists.
 pub(crate) type Device<'s> = &'s NoDevice;
@@ -30,7 +30,7 @@ impl NoDevice {
         _: &Problem,
         _: &[DVec2],
         _: Plan,
-        _: Vec<Step>,
+        _: Vec<SweepParams>,
     ) -> Result<DeviceEngine<'s>, GpuError> {
         match *self {}
     }

@@ -44,7 +44,7 @@ impl Badness {
     pub(crate) fn seen(self, triangle: &FanCorner, at: DVec2, mean_area: f64) -> Corner<f64> {
         let corner = triangle.in_plane(at, mean_area);
         match triangle.map {
-            Some(map) if self.is_of_targets() => map.show(&corner),
+            Some(map) if self.is_of_targets() => map.transform(&corner),
             _ => corner,
         }
     }

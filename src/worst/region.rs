@@ -9,7 +9,7 @@ use crate::metric::{Dual, Smoothing, TargetMap};
 use crate::patch::{
     Circle, FanCorner, FanPatch, MetricObjective, Objective, SearchRule, is_acceptable, step_alone,
 };
-use crate::run::Step;
+use crate::run::SweepParams;
 use crate::worst::badness::Badness;
 
 /// Binary logarithms of the exponents k of the p-norms, in the order in which a region lowers the norms.
@@ -25,7 +25,7 @@ const RELAXING: u32 = 10;
 pub(crate) struct MoveConstraints<'a> {
     pub(crate) badness: Badness,
     /// The step of the run: metric and exponent that vertices lower to regain f.
-    pub(crate) step: Step,
+    pub(crate) step: SweepParams,
     /// Largest inverse mean ratio of a triangle, after its target map is applied.
     pub(crate) shape: f64,
     /// Lower limit of the altitudes of triangles, in normalized units; 0 for no limit.
@@ -148,7 +148,7 @@ impl<'a> Region<'a> {
 
     /// Takes a Newton step by the metric of the run. No triangle around the vertex becomes worse than `limit`.
     fn relax(&mut self, v: usize, limit: f64) {
-        let Step { metric, sharpness, .. } = self.rules.step;
+        let SweepParams { metric, sharpness, .. } = self.rules.step;
         let (patch, smoothing) = (&self.patch(v), Smoothing::of(sharpness));
         let formulas = metric.formulas();
         let shape_guard = f64::INFINITY;
@@ -192,10 +192,10 @@ impl Objective<f64> for PowerObjective<'_> {
         let Self { patch, badness, unit, doublings } = *self;
         patch.corners.iter().fold(Dual::default(), |sum, triangle| {
             let seen = badness.seen(triangle, at.into(), patch.mean_area);
-            let shown = badness.power_derivatives(&seen, unit, doublings);
+            let transformed = badness.power_derivatives(&seen, unit, doublings);
             sum + match triangle.map {
-                Some(map) if badness.is_of_targets() => map.pull_back(shown),
-                _ => shown,
+                Some(map) if badness.is_of_targets() => map.pull_back(transformed),
+                _ => transformed,
             }
         })
     }

@@ -46,7 +46,9 @@ fn every_kernel_is_timed_in_the_order_of_encoding() {
         expected.extend((0..colors).map(|color| (sweep.clone(), Some(color))));
     }
     let judged = [Kernel::Objective(vec![Metric::Edge]), Kernel::Finish(vec![Metric::Edge])];
-    expected.extend(judged.into_iter().chain([Kernel::Publish, Kernel::Export]).map(|k| (k, None)));
+    expected.extend(
+        judged.into_iter().chain([Kernel::WriteObjective, Kernel::Export]).map(|k| (k, None)),
+    );
     let found: Vec<_> = spans.iter().map(|span| (span.kernel.clone(), span.color)).collect();
     assert_eq!(found, expected);
 

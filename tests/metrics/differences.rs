@@ -23,14 +23,14 @@ fn a_sweep_by_differences_is_a_little_off() {
                 scheme: metric.into(),
                 omega: [1.0; Metric::ALL.len()],
                 unrelaxed_sweeps: 0,
-                inner: 1,
+                newton_steps: 1,
                 derivatives: [derivatives; Metric::ALL.len()],
                 sharpness: PNormExponent::FIXED,
                 stop: StopRule { target: None, tolerance: 0.0, max_sweeps: 1 },
                 track_all: false,
                 shape_guard: f64::INFINITY,
                 worst_guard: f64::INFINITY,
-                longest: 1.0,
+                max_lengthening: 1.0,
                 is_guard_penalized: false,
             };
             let mut engine = run_on_cpu(&problem, problem.positions(), plan);

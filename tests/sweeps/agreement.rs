@@ -77,8 +77,8 @@ fn every_sweep_of_a_run_is_the_same_on_both_engines() {
     let problem = mild();
     let sharpness = PNormExponent { first: 1, every: 3, last: 4 };
     let own = |name: &str| Plan { sharpness, unrelaxed_sweeps: 3, ..plan(scheme(name), 12) };
-    let twice = Plan { inner: 2, ..own("imr") };
-    let settled = Plan { inner: 50, ..own("imr") };
+    let twice = Plan { newton_steps: 2, ..own("imr") };
+    let settled = Plan { newton_steps: 50, ..own("imr") };
     for plan in [own("imr"), own("rms"), own("edge"), own("edge+imr+imr"), twice, settled] {
         let [cpu, gpu] = backends().each_ref().map(|backend| {
             let log = engine(backend, &problem, plan.clone()).advance(12).unwrap();
@@ -100,7 +100,7 @@ fn a_visit_ends_once_its_steps_are_short() {
         let mut engine = run_on_cpu(
             &problem,
             problem.positions(),
-            Plan { inner, ..plan(Metric::Imr.into(), 1) },
+            Plan { newton_steps: inner, ..plan(Metric::Imr.into(), 1) },
         );
         engine.advance(1).unwrap();
         engine.best_positions().unwrap()

@@ -121,13 +121,13 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
             .try_into()
             .unwrap(),
         unrelaxed_sweeps: 4,
-        inner: 1,
+        newton_steps: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
         sharpness: PNormExponent::FIXED,
         stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,
         worst_guard: f64::INFINITY,
-        longest: 1.0,
+        max_lengthening: 1.0,
         shape_guard: f64::INFINITY,
         is_guard_penalized: false,
     }

@@ -43,10 +43,10 @@ impl MovableRequest {
         if !self.restricts() {
             return Ok(choice);
         }
-        let chooser = SelectionResolver::new(file)?;
-        choice.free_without = chooser.topology.free_count();
-        let fixed = chooser.fixed(self, &mut choice)?;
-        let movers = chooser.movers(self, &mut choice)?;
+        let resolver = SelectionResolver::new(file)?;
+        choice.free_without = resolver.topology.free_count();
+        let fixed = resolver.fixed(self, &mut choice)?;
+        let movers = resolver.movers(self, &mut choice)?;
         file.fix(&fixed)?;
         for movers in movers {
             file.fix_all_but(&movers)?;

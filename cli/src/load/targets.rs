@@ -26,13 +26,13 @@ impl TargetRequest {
         points: &[[f64; 2]],
         surface: Surface,
     ) -> Result<Option<String>, CliError> {
-        let told = |error: MeshError| explain::mesh_error(file, &error);
+        let explained = |error: MeshError| explain::mesh_error(file, &error);
         if let Some((path, field)) = self.field(surface)? {
             let outside = match self.is_of_places() {
-                true => smoother.set_target_field(field).map_err(told)?,
+                true => smoother.set_target_field(field).map_err(explained)?,
                 false => {
-                    let (targets, outside) = field.at(points).map_err(told)?;
-                    smoother.set_targets(&targets).map_err(told)?;
+                    let (targets, outside) = field.at(points).map_err(explained)?;
+                    smoother.set_targets(&targets).map_err(explained)?;
                     outside
                 }
             };
@@ -45,12 +45,12 @@ impl TargetRequest {
         if !self.is_of_places() {
             let seen = targets.seen_on(surface, points, &file.mesh().triangles);
             let set = seen.and_then(|targets| smoother.set_targets(&targets));
-            return set.map(|()| None).map_err(told);
+            return set.map(|()| None).map_err(explained);
         }
         let triangles = smoother.topology().triangles().to_vec();
         let mesh = Mesh { points: points.to_vec(), triangles, fixed: Vec::new() };
-        let field = TargetField::new(&mesh, &targets).map_err(told)?.seen_on(surface);
-        smoother.set_target_field(field).map(|_| None).map_err(told)
+        let field = TargetField::new(&mesh, &targets).map_err(explained)?.seen_on(surface);
+        smoother.set_target_field(field).map(|_| None).map_err(explained)
     }
 
     /// Reads the target field on a background mesh or view. Returns the field and the path of its file; `None` for

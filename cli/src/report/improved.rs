@@ -32,7 +32,7 @@ impl From<Improved> for ImprovedReport {
 
 impl ImprovedReport {
     /// Describes the improvement and its cost in f, in one sentence.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let Self { measure, vertices, worst: [before, after], stuck, f } = self;
         let worst = match *measure {
             "imr" => "worst imr".to_owned(),
@@ -91,10 +91,10 @@ mod tests {
             stuck: 0,
             f: [1.0, f],
         };
-        for (f, told) in
+        for (f, expected) in
             [(1.02, "changed f by +2.00 %"), (1.0 - 1e-9, "changed f by less than 0.01 %")]
         {
-            assert!(report(f).told().ends_with(told), "{}", report(f).told());
+            assert!(report(f).sentence().ends_with(expected), "{}", report(f).sentence());
         }
     }
 }

@@ -40,7 +40,7 @@ impl Report {
             let _ = writeln!(text, "{slides}");
         }
         if let Some(improved) = &self.improved {
-            let _ = writeln!(text, "{}", improved.told());
+            let _ = writeln!(text, "{}", improved.sentence());
         }
         if let Some(warning) = self.warning() {
             let _ = writeln!(text, "{warning}");

@@ -176,10 +176,10 @@ impl Checker {
             }
             Err(error) if !error.use_stderr() => "help",
             Err(error) => {
-                let told = error.render().to_string();
+                let message = error.render().to_string();
                 assert!(
-                    told.starts_with("error: ") && told.contains("--help"),
-                    "{words:?}\n{told}"
+                    message.starts_with("error: ") && message.contains("--help"),
+                    "{words:?}\n{message}"
                 );
                 assert_eq!(error.exit_code(), 2, "{words:?}");
                 match error.kind() {

@@ -152,7 +152,7 @@ mod tests {
         assert!(kept.falls_back_to_cpu(&GpuError::OutOfMemory("full".into()), 7));
         assert!(kept.falls_back_to_cpu(&GpuError::Lost("gone".into()), 0));
         assert!(!kept.wants_checkpoint(true), "no file was named");
-        let told = "the GPU failed: the device is out of memory: full. The run goes on on the CPU, from sweep 7";
-        assert_eq!(remarks.0, [told]);
+        let expected = "the GPU failed: the device is out of memory: full. The run goes on on the CPU, from sweep 7";
+        assert_eq!(remarks.0, [expected]);
     }
 }

@@ -38,8 +38,8 @@ pub(crate) fn untangle_input(
     let SmoothJob { request, verbosity, out, .. } = *task;
     let keeps_going = request.untangle.is_some_and(|untangle| untangle.keeps_going);
     let mesh = file.mesh();
-    let told = |error: MeshError| explain::mesh_error(file, &error);
-    let topology = Topology::by_area(mesh).map_err(told)?;
+    let explained = |error: MeshError| explain::mesh_error(file, &error);
+    let topology = Topology::by_area(mesh).map_err(explained)?;
     let crossings = explain::crossings(file, &topology);
     if let (Some(crossings), false) = (&crossings, keeps_going) {
         let remedy =
@@ -64,7 +64,7 @@ pub(crate) fn untangle_input(
             None => ControlFlow::Continue(()),
         }
     };
-    let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(told)?;
+    let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(explained)?;
     let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved } = untangled;
     let mut error = match overlapping {
         None if left.is_empty() => {

@@ -15,7 +15,7 @@ thread_local! {
 }
 
 /// Runs `work`, the whole process, and reports an uncaught panic of wgpu as an error.
-pub(crate) fn told(work: impl FnOnce() -> ExitCode) -> ExitCode {
+pub(crate) fn reporting_panics(work: impl FnOnce() -> ExitCode) -> ExitCode {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
         let of_wgpu = panic.location().is_some_and(|place| is_of_wgpu(place.file()));

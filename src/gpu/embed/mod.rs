@@ -3,13 +3,13 @@
 mod budget;
 mod clamped_move;
 mod corrections;
+mod debug;
 mod exchange;
 mod last_valid;
 mod mesh;
 mod objective;
 mod pins;
 mod readback;
-mod shown;
 mod sweeps;
 mod untangling_sweeps;
 mod vertex_buffer;

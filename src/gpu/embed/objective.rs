@@ -12,10 +12,10 @@ use crate::gpu::embed::BoundVertices;
 use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::form::Positions;
-use crate::gpu::kernels::layouts::PublishBindings;
+use crate::gpu::kernels::layouts::WriteObjectiveBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::kernels::uniforms::{Publish, SLOTS};
+use crate::gpu::kernels::uniforms::{SLOTS, WriteObjective};
 use crate::gpu::mesh::{Changes, MeshBuffers};
 use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped_to_buffer;
@@ -139,7 +139,7 @@ impl BoundObjective {
             let slot = metric as usize;
             ideal_squared[slot / 4][slot % 4] = metric.ideal_squared() as f32;
         }
-        let uniform = Publish {
+        let uniform = WriteObjective {
             offset: window.offset,
             triangles: *triangles as u32,
             judged: run.is_judged().into(),
@@ -148,7 +148,7 @@ impl BoundObjective {
         };
         let bind_group = scoped_to_buffer(&gpu.device, || {
             let uniform = filled(gpu, "publish", &[uniform], Usage::UNIFORM);
-            let bindings = PublishBindings {
+            let bindings = WriteObjectiveBindings {
                 publish_to: uniform.as_entire_binding(),
                 control: evaluation.control.as_entire_binding(),
                 sweeps: dispatches.control.as_entire_binding(),
@@ -157,7 +157,7 @@ impl BoundObjective {
             };
             gpu.pipelines.bind(&gpu.device, Positions::Whole, bindings)
         })?;
-        let publish = gpu.pipelines.get(&gpu.device, &Kernel::Publish, Positions::Whole)?;
+        let publish = gpu.pipelines.get(&gpu.device, &Kernel::WriteObjective, Positions::Whole)?;
         Ok(Self { evaluation: Arc::clone(evaluation), publish, bind_group, drawn })
     }
 

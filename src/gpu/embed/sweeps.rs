@@ -11,7 +11,7 @@ use crate::gpu::embed::objective::Run;
 use crate::gpu::embed::{BoundObjective, Budget, DeviceMesh};
 use crate::gpu::encode::{Encoder, Passes};
 use crate::gpu::kernels::form::Positions;
-use crate::gpu::kernels::layouts::ReopenBindings;
+use crate::gpu::kernels::layouts::RestartBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::run::Dispatches;
@@ -19,7 +19,7 @@ use crate::gpu::scope::scoped;
 use crate::metric::Scheme;
 use crate::options::{Feature, Method, Options};
 use crate::run::corrections::plan_steps::OMEGA_BETWEEN;
-use crate::run::{Plan, Step};
+use crate::run::{Plan, SweepParams};
 
 /// A scheme bound to a mesh on the device. Its methods encode sweeps into the application's command encoder, and
 /// neither submit nor read back. Sweeps made by [`new`](Self::new) never end. Sweeps made by
@@ -39,7 +39,7 @@ const LABEL: &str = "gpu-smooth sweeps";
 
 /// The additional resources of sweeps that end by the stop rule.
 struct SelfStopping {
-    reopen: Pipeline,
+    restart: Pipeline,
     resume: Pipeline,
     bind_group: wgpu::BindGroup,
 }
@@ -176,7 +176,7 @@ impl Sweeps {
     fn encode(&mut self, passes: &mut Passes<'_>, sweeps: u32) {
         let Self { run: Run { dispatches, .. }, judged, corrections, .. } = self;
         if let Some(judged) = judged.as_ref().filter(|_| sweeps > 0) {
-            judged.encode(passes, &judged.reopen);
+            judged.encode(passes, &judged.restart);
             dispatches.encode_evaluation(passes);
             judged.encode(passes, &judged.resume);
         }
@@ -227,7 +227,7 @@ impl Sweeps {
 }
 
 /// Returns the step of sweeps between corrections.
-fn between(plan: &Plan) -> Step {
+fn between(plan: &Plan) -> SweepParams {
     plan.base_step(OMEGA_BETWEEN)
 }
 
@@ -241,15 +241,15 @@ impl SelfStopping {
     fn new(gpu: &Gpu, run: &Run) -> Result<Self, GpuError> {
         let whole = Positions::Whole;
         let bind_group = scoped(&gpu.device, || {
-            let bindings = ReopenBindings {
+            let bindings = RestartBindings {
                 control: run.dispatches.control.as_entire_binding(),
                 changes: run.changes.buffer.as_entire_binding(),
             };
             gpu.pipelines.bind(&gpu.device, whole, bindings)
         })?;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, whole);
-        let (reopen, resume) = (pipeline(Kernel::Reopen)?, pipeline(Kernel::Resume)?);
-        Ok(Self { reopen, resume, bind_group })
+        let (restart, resume) = (pipeline(Kernel::RestartIfChanged)?, pipeline(Kernel::Resume)?);
+        Ok(Self { restart, resume, bind_group })
     }
 
     fn encode(&self, passes: &mut Passes<'_>, pipeline: &Pipeline) {

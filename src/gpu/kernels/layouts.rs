@@ -176,8 +176,8 @@ bind_layouts! {
     }
 
     /// A run's history and a buffer of an application.
-    Publish, PublishBindings, [] {
-        publish_to: Uniform Publish,
+    WriteObjective, WriteObjectiveBindings, [] {
+        publish_to: Uniform WriteObjective,
         /// The control of the evaluation.
         control: Read Control,
         /// The control of the sweeps.
@@ -188,7 +188,7 @@ bind_layouts! {
     }
 
     /// The control of judged sweeps, and the changes of a mesh.
-    Reopen, ReopenBindings, ["judged/common.wgsl"] {
+    RestartIfChanged, RestartBindings, ["judged/common.wgsl"] {
         control: ReadWrite Control,
         /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
         changes: Read array<u32, 2>,

@@ -141,30 +141,30 @@ kernels! {
     }
 
     /// Writes objectives to an application's buffer.
-    Publish {
-        entry_point: "publish",
-        layout: Publish,
+    WriteObjective {
+        entry_point: "write_objective",
+        layout: WriteObjective,
         width: SLOTS as u32,
         sees_targets: false,
         user: Sweeps,
-        source: ["publish.wgsl"],
+        source: ["write_objective.wgsl"],
     }
 
     /// Restarts the stop rule of sweeps if an application has changed the mesh. Otherwise makes a run in progress skip
     /// the next evaluation.
-    Reopen {
-        entry_point: "reopen",
-        layout: Reopen,
+    RestartIfChanged {
+        entry_point: "restart_if_changed",
+        layout: RestartIfChanged,
         width: 1,
         sees_targets: false,
         user: Sweeps,
-        source: ["judged/reopen.wgsl"],
+        source: ["judged/restart_if_changed.wgsl"],
     }
 
-    /// Lets the run continue that [`Reopen`](Self::Reopen) has made skip an evaluation.
+    /// Lets the run continue that [`RestartIfChanged`](Self::RestartIfChanged) has made skip an evaluation.
     Resume {
         entry_point: "resume",
-        layout: Reopen,
+        layout: RestartIfChanged,
         width: 1,
         sees_targets: false,
         user: Sweeps,
@@ -361,13 +361,13 @@ kernels! {
     }
 
     /// Leaves the vertices found by [`FindBroken`](Self::FindBroken) out of the correction.
-    LeaveOutBroken {
-        entry_point: "leave_out_broken",
+    ExcludeBroken {
+        entry_point: "exclude_broken",
         layout: Fine,
         width: WORKGROUP,
         sees_targets: false,
         user: Corrections,
-        source: ["levels/leave_out_broken.wgsl"],
+        source: ["levels/exclude_broken.wgsl"],
     }
 
     /// Begins the line search of a correction that an application encodes.

@@ -109,7 +109,7 @@ shared_structs! {
         /// Number of invocations of the objective kernel.
         partials: u32,
         /// Limit of the Newton steps per visit of a vertex.
-        inner: u32,
+        newton_steps: u32,
         /// The number of the base metric. This member and those up to `tolerance` are for the stop rule in finish.wgsl.
         base: u32,
         window: u32,
@@ -142,9 +142,9 @@ shared_structs! {
         ring_base: u32,
         /// Limit of the factor by which a Newton step is lengthened where nearly flat triangles dominate a patch's
         /// objective; 1 for no lengthening.
-        longest: f32,
+        max_lengthening: f32,
         /// Reciprocal of the inverse mean ratio toward which EDGE's penalty grows; 0 without a penalty.
-        over_guard: f32,
+        inverse_penalty_guard: f32,
     }
 
     /// An operation of a correction on the free vertices or triangles of the mesh. Offsets are relative to the binding.
@@ -171,7 +171,7 @@ shared_structs! {
         /// log2 of the exponent of EDGE's p-norm.
         sharpness: u32,
         /// Reciprocal of the inverse mean ratio toward which EDGE's penalty grows; 0 without a penalty.
-        over_guard: f32,
+        inverse_penalty_guard: f32,
         padding: u32,
     }
 
@@ -376,7 +376,7 @@ shared_structs! {
     }
 
     /// The place in an application's buffer that receives objectives.
-    Publish {
+    WriteObjective {
         /// Offset of the values in the binding, in words.
         offset: u32,
         triangles: u32,
@@ -414,7 +414,7 @@ impl Params {
             zero: 0,
             triangles: 0,
             partials: 0,
-            inner: 0,
+            newton_steps: 0,
             base: 0,
             window: 0,
             max_sweeps: 0,
@@ -432,8 +432,8 @@ impl Params {
 impl FineOp {
     /// Returns the same operation with another smoothing of EDGE.
     pub(crate) fn smoothed(self, smoothing: Smoothing) -> Self {
-        let Smoothing { sharpness, penalized } = smoothing;
-        Self { sharpness, over_guard: penalized.recip() as f32, ..self }
+        let Smoothing { sharpness, penalty_guard } = smoothing;
+        Self { sharpness, inverse_penalty_guard: penalty_guard.recip() as f32, ..self }
     }
 }
 
@@ -493,7 +493,7 @@ mod tests {
     #[test]
     fn a_uniform_holds_only_what_16_byte_rows_allow() {
         // In a uniform an array's elements must be multiples of 16 bytes apart.
-        assert_eq!(offset_of!(Publish, ideal_squared) % 16, 0);
+        assert_eq!(offset_of!(WriteObjective, ideal_squared) % 16, 0);
         assert!(size_of::<Part>() <= 256, "within the least dynamic offset alignment");
     }
 

@@ -20,7 +20,7 @@ use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::options::Derivatives;
-use crate::run::{Plan, Step, StopRule};
+use crate::run::{Plan, StopRule, SweepParams};
 
 /// The dispatches of a plan, bound to a mesh on the device. The methods encode sweeps and evaluations, and submit
 /// nothing.
@@ -43,7 +43,7 @@ pub(crate) struct Dispatches {
 /// vertices.
 struct Uniforms {
     /// Distinct steps of the run.
-    steps: Vec<Step>,
+    steps: Vec<SweepParams>,
     /// Dispatches of one sweep, ordered by color and part.
     sweep: Vec<ColorPart>,
     triangles: Vec<Range<u32>>,
@@ -62,7 +62,7 @@ struct ColorPart {
 }
 
 impl Uniforms {
-    fn new(gpu: &Gpu, steps: Vec<Step>, colors: &[Range<u32>], parts: &Parts) -> Self {
+    fn new(gpu: &Gpu, steps: Vec<SweepParams>, colors: &[Range<u32>], parts: &Parts) -> Self {
         let mut sweep = Vec::new();
         for (color, of_color) in (0..).zip(colors) {
             for (part, ring) in parts.rings.iter().enumerate() {
@@ -89,8 +89,8 @@ impl Uniforms {
                 sharpness: step.sharpness,
                 shape_guard: step.shape_guard.min(NO_GUARD) as f32,
                 ring_base: d.ring_base,
-                longest: step.longest as f32,
-                over_guard: step.penalized.recip() as f32,
+                max_lengthening: step.max_lengthening as f32,
+                inverse_penalty_guard: step.penalty_guard.recip() as f32,
             };
             parts.extend(self.sweep.iter().map(of_color));
         }
@@ -102,8 +102,8 @@ impl Uniforms {
             sharpness: 0,
             shape_guard: 0.0,
             ring_base: 0,
-            longest: 0.0,
-            over_guard: 0.0,
+            max_lengthening: 0.0,
+            inverse_penalty_guard: 0.0,
         };
         parts.extend(self.triangles.iter().chain(&self.free).map(of_range));
         let mut bytes = vec![0; parts.len() * self.stride as usize];
@@ -114,7 +114,7 @@ impl Uniforms {
     }
 
     /// Returns the index of a step's first uniform; `None` for a step outside of the run.
-    fn of_step(&self, step: &Step) -> Option<usize> {
+    fn of_step(&self, step: &SweepParams) -> Option<usize> {
         Some(self.steps.iter().position(|known| known == step)? * self.sweep.len())
     }
 
@@ -135,13 +135,13 @@ impl Dispatches {
         problem: &Problem,
         mesh: &MeshBuffers,
         plan: Plan,
-        steps: Vec<Step>,
+        steps: Vec<SweepParams>,
         keep_best: bool,
     ) -> Result<Self, GpuError> {
         let form = mesh.parts.form();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
         let mut sweeps: Vec<(Metric, Derivatives, Pipeline)> = Vec::new();
-        for &Step { metric, derivatives, .. } in &steps {
+        for &SweepParams { metric, derivatives, .. } in &steps {
             if sweeps.iter().all(|known| (known.0, known.1) != (metric, derivatives)) {
                 let sweep = pipeline(Kernel::Sweep(metric, derivatives))?;
                 sweeps.push((metric, derivatives, sweep));
@@ -217,7 +217,7 @@ impl Dispatches {
     }
 
     /// Encodes one sweep over all colors by one of the run's steps.
-    pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, step: &Step) {
+    pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, step: &SweepParams) {
         let key = (step.metric, step.derivatives);
         let pipeline = self.sweeps.iter().find(|known| (known.0, known.1) == key);
         // Both exist, as they were created for every step of the run.
@@ -269,7 +269,7 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         zero: 0,
         triangles: problem.triangles().len() as u32,
         partials,
-        inner: plan.inner,
+        newton_steps: plan.newton_steps,
         base: base as u32,
         window: StopRule::window(&plan.scheme),
         max_sweeps: plan.stop.max_sweeps,

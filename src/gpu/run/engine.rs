@@ -20,7 +20,7 @@ use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
-use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Step, Stop};
+use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Stop, SweepParams};
 
 /// Least sum of q² - ideal² over a mesh with a triangle whose edges are not finite.
 const MIN_NOT_FINITE: f64 = 1e38;
@@ -62,7 +62,7 @@ impl<'a> GpuEngine<'a> {
         problem: &Problem,
         start: &[DVec2],
         plan: Plan,
-        steps: Vec<Step>,
+        steps: Vec<SweepParams>,
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
         gpu.check()?;
@@ -118,7 +118,11 @@ impl<'a> GpuEngine<'a> {
     }
 
     /// Submits sweeps, preceded by an evaluation if the history is empty, and records the device's results.
-    async fn batch(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
+    async fn batch(
+        &mut self,
+        steps: &[SweepParams],
+        history: &mut History,
+    ) -> Result<(), GpuError> {
         let sweeps = |passes: &mut Passes<'_>| {
             if self.evaluated == 0 {
                 self.dispatches.encode_evaluation(passes);
@@ -178,7 +182,7 @@ impl<'a> GpuEngine<'a> {
 }
 
 impl Engine for GpuEngine<'_> {
-    async fn sweep(&mut self, step: &Step) -> Result<(), GpuError> {
+    async fn sweep(&mut self, step: &SweepParams) -> Result<(), GpuError> {
         self.submit(|passes| self.dispatches.encode_sweep(passes, step))
     }
 
@@ -189,7 +193,11 @@ impl Engine for GpuEngine<'_> {
         Ok(self.objectives_of(&control.history[last as usize]))
     }
 
-    async fn sweeps(&mut self, steps: &[Step], history: &mut History) -> Result<(), GpuError> {
+    async fn sweeps(
+        &mut self,
+        steps: &[SweepParams],
+        history: &mut History,
+    ) -> Result<(), GpuError> {
         if steps.is_empty() && self.evaluated == 0 {
             return self.batch(&[], history).await;
         }
@@ -265,7 +273,7 @@ impl Engine for GpuEngine<'_> {
 
     async fn sweep_and_propose(
         &mut self,
-        step: &Step,
+        step: &SweepParams,
         length: f64,
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
@@ -345,7 +353,7 @@ impl Engine for GpuEngine<'_> {
             let control: Vec<Control> =
                 readback::read(gpu, &self.dispatches.control, 1, waiting).await?;
             state.add(CONTROL, &control);
-            state.roots = self.hierarchy.as_ref().map(Hierarchy::recipe).unwrap_or_default();
+            state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
             if let Some(secants) = &self.secants {
                 secants.save(gpu, &mut state, waiting).await?;
             }

@@ -367,7 +367,7 @@ impl Levels {
             length: 0.0,
             shape_guard: guard,
             sharpness: 0,
-            over_guard: 0.0,
+            inverse_penalty_guard: 0.0,
             padding: 0,
         };
         let transfer = TransferOp {
@@ -424,7 +424,7 @@ impl Levels {
             // Between V-cycles, `vectors` from SUMS on holds nothing that is still needed.
             listing.vectors = listing.vectors.max(SUMS + free);
             fine_by_rings(&mut listing, &mut left_out, Kernel::FindBroken)?;
-            let kernel = Kernel::LeaveOutBroken;
+            let kernel = Kernel::ExcludeBroken;
             left_out.push(listing.step(kernel, whole, Groups::ForRows, everywhere)?);
         }
 

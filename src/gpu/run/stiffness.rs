@@ -47,7 +47,7 @@ pub(crate) async fn roots(
             length: 0.0,
             shape_guard: NO_GUARD as f32,
             sharpness: 0,
-            over_guard: 0.0,
+            inverse_penalty_guard: 0.0,
             padding: 0,
         };
         let op = op.smoothed(smoothing);

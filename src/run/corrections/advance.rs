@@ -11,8 +11,8 @@ use crate::run::history::History;
 use crate::run::multilevel::{MIN_FIRST_LENGTH, Search};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
-use crate::run::step::Step;
 use crate::run::stop::{MIN_SCALE, NOISE};
+use crate::run::sweep_params::SweepParams;
 
 /// Relative decrease of the excess of f over its ideal value by one sweep alone, below which corrections begin.
 /// Earlier, a few bad triangles would force every correction to be short.
@@ -43,7 +43,7 @@ const ACCELERATED_FROM: f64 = 0.3;
 
 impl Corrections {
     /// Returns all distinct steps that a run with corrections can take.
-    pub(crate) fn steps(plan: &Plan) -> Vec<Step> {
+    pub(crate) fn steps(plan: &Plan) -> Vec<SweepParams> {
         let base = plan.scheme.base();
         let by_base = [1.0, OMEGA_BEFORE, OMEGA_BETWEEN, base.properties().omega];
         let by_base = by_base.map(|omega| (base, omega));
@@ -96,7 +96,7 @@ impl Corrections {
     }
 
     /// Returns the step of a sweep alone, after `done` such sweeps.
-    fn step_before(&self, done: usize) -> Step {
+    fn step_before(&self, done: usize) -> SweepParams {
         let turns = self.turns();
         let omega = match done {
             0 => 1.0,

@@ -6,7 +6,7 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::history::History;
 use crate::run::plan::Plan;
-use crate::run::step::Step;
+use crate::run::sweep_params::SweepParams;
 
 /// Number of successive estimates below the tolerance that end a run with accelerated corrections, whose gains are
 /// irregular. One estimate is enough if each of the last gains was less than 0.3 times the gain before (`STEADY` in
@@ -131,7 +131,7 @@ impl Corrections {
     }
 
     /// Returns a step of the base metric, with the present exponent.
-    pub(super) fn step(&self, omega: f64) -> Step {
+    pub(super) fn step(&self, omega: f64) -> SweepParams {
         self.plan.step_with(self.metric(), omega, self.sharpness)
     }
 

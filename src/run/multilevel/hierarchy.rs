@@ -125,14 +125,14 @@ impl Hierarchy {
 
     /// Returns the data from which [`of_recipe`](Self::of_recipe) builds equal levels: the roots of the build, and then
     /// the roots of each fit, in order.
-    pub(crate) fn recipe(&self) -> Vec<Vec<f32>> {
+    pub(crate) fn build_log(&self) -> Vec<Vec<f32>> {
         self.earlier.iter().chain([&self.root]).cloned().collect()
     }
 
-    /// Builds the levels of a [`recipe`](Self::recipe). `None` if the recipe is empty or from another mesh.
-    pub(crate) fn of_recipe(problem: &Problem, recipe: &[Vec<f32>]) -> Option<Self> {
-        let (built_from, fitted_to) = recipe.split_first()?;
-        if recipe.iter().any(|roots| roots.len() != problem.free_count()) {
+    /// Builds the levels of a [`build_log`](Self::build_log). `None` if the build_log is empty or from another mesh.
+    pub(crate) fn of_recipe(problem: &Problem, build_log: &[Vec<f32>]) -> Option<Self> {
+        let (built_from, fitted_to) = build_log.split_first()?;
+        if build_log.iter().any(|roots| roots.len() != problem.free_count()) {
             return None;
         }
         let built = Self::new(problem, built_from.clone());

@@ -48,21 +48,21 @@ pub(crate) fn run(
     make(&batch.directory)?;
     let is_done = |mesh: &BatchItem| batch.skips_done && mesh.is_done();
     let (skipped, open): (Vec<_>, Vec<_>) = (0..list.len()).partition(|&i| is_done(&list[i]));
-    let mut told: Vec<Option<BatchStatus>> = list.iter().map(|_| None).collect();
-    skipped.iter().for_each(|&i| told[i] = Some(BatchStatus::Skipped));
+    let mut statuses: Vec<Option<BatchStatus>> = list.iter().map(|_| None).collect();
+    skipped.iter().for_each(|&i| statuses[i] = Some(BatchStatus::Skipped));
     if !open.is_empty() {
         let engines = Engines::new(request)?;
         let tally = Tally::new(verbosity, open.len());
-        let mut watch = Watched { list: &list, verbosity, tally, told: &mut told };
+        let mut watch = Watched { list: &list, verbosity, tally, statuses: &mut statuses };
         workers::run(&list, &open, &|mesh| smooth(request, &engines, mesh), &mut watch);
         watch.tally.clear();
     }
-    let entry = |(mesh, told): (BatchItem, Option<BatchStatus>)| {
-        let told = told.unwrap_or(BatchStatus::Interrupted);
+    let entry = |(mesh, status): (BatchItem, Option<BatchStatus>)| {
+        let status = status.unwrap_or(BatchStatus::Interrupted);
         let BatchItem { input, out, inputs, .. } = mesh;
-        Entry { input, out, files: inputs, told }
+        Entry { input, out, files: inputs, status }
     };
-    let entries: Vec<Entry> = list.into_iter().zip(told).map(entry).collect();
+    let entries: Vec<Entry> = list.into_iter().zip(statuses).map(entry).collect();
     let seconds = start.elapsed().as_secs_f64();
     write_report(outputs, &entries, seconds)?;
     match batch.table {
@@ -79,7 +79,7 @@ pub(crate) fn run(
             Ok(())
         }
         Some(error) => Err(error),
-        None => match entries.iter().filter(|entry| entry.told.fell_short()).count() {
+        None => match entries.iter().filter(|entry| entry.status.fell_short()).count() {
             short if short > 0 && request.is_strict => Err(CliError::run(format!(
                 "{short} of {} runs neither converged nor reached their goal; --strict makes this an error",
                 entries.len()
@@ -102,14 +102,14 @@ struct Watched<'a> {
     list: &'a [BatchItem],
     verbosity: Verbosity,
     tally: Tally,
-    told: &'a mut [Option<BatchStatus>],
+    statuses: &'a mut [Option<BatchStatus>],
 }
 
 impl Watch for Watched<'_> {
-    fn done(&mut self, mesh: usize, told: BatchStatus) {
-        let problem = told.problem();
-        self.tally.add(&self.list[mesh].input, problem.as_deref(), &told.text());
-        self.told[mesh] = Some(told);
+    fn done(&mut self, mesh: usize, status: BatchStatus) {
+        let problem = status.problem();
+        self.tally.add(&self.list[mesh].input, problem.as_deref(), &status.text());
+        self.statuses[mesh] = Some(status);
     }
 
     fn waits(&mut self) {

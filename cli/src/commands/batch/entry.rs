@@ -12,7 +12,7 @@ pub(crate) struct Entry {
     pub(crate) out: PathBuf,
     /// The existing files of the mesh.
     pub(crate) files: Vec<PathBuf>,
-    pub(crate) told: BatchStatus,
+    pub(crate) status: BatchStatus,
 }
 
 /// The result of smoothing one mesh.

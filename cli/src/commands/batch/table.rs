@@ -51,13 +51,13 @@ fn name(entry: &Entry) -> String {
 /// columns; `None` without a terminal.
 pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> String {
     let widths = Widths::new(entries, terminal);
-    let base = entries.iter().find_map(|entry| entry.told.report()).map_or("imr", Report::base);
+    let base = entries.iter().find_map(|entry| entry.status.report()).map_or("imr", Report::base);
     let base = format!("f {base}");
     let head = ["vertices", "sweeps", &base, "after", "min angle", "after", "s"];
     let mut text = widths.line("mesh", head.map(str::to_owned));
     for entry in entries {
         text.push('\n');
-        match entry.told.report() {
+        match entry.status.report() {
             Some(report) => {
                 text += &widths.line(&name(entry), numbers(report));
                 if !matches!(report.stop, "converged" | "reached") {
@@ -66,13 +66,13 @@ pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> 
             }
             None => {
                 let name = left(&shortened(&name(entry), widths.name), widths.name);
-                text += &format!("{name}  {}", entry.told.status());
+                text += &format!("{name}  {}", entry.status.status());
             }
         }
     }
     let _ = write!(text, "\n\n{}", counts(entries));
     let vertices: usize =
-        entries.iter().filter_map(|entry| Some(entry.told.report()?.mesh.vertices)).sum();
+        entries.iter().filter_map(|entry| Some(entry.status.report()?.mesh.vertices)).sum();
     let _ = write!(text, "; {vertices} vertices in {seconds:.3} s");
     text
 }
@@ -97,14 +97,14 @@ fn numbers(report: &Report) -> [String; WIDTHS.len()] {
 fn counts(entries: &[Entry]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for status in ["smoothed", "skipped", "failed", "interrupted"] {
-        let count = entries.iter().filter(|entry| entry.told.status() == status).count();
+        let count = entries.iter().filter(|entry| entry.status.status() == status).count();
         if count > 0 {
             counts.push((status, count));
         }
     }
-    let told: Vec<String> =
+    let status: Vec<String> =
         counts.iter().map(|(status, count)| format!("{count} {status}")).collect();
-    format!("{} of {}", told.join(", "), counted(entries.len()))
+    format!("{} of {}", status.join(", "), counted(entries.len()))
 }
 
 fn counted(meshes: usize) -> String {
@@ -113,7 +113,7 @@ fn counted(meshes: usize) -> String {
 
 /// Returns an error that lists the failed meshes with their problems; `None` without failures.
 pub(crate) fn failures(entries: &[Entry]) -> Option<CliError> {
-    let failed = || entries.iter().filter_map(|entry| Some((entry, entry.told.problem()?)));
+    let failed = || entries.iter().filter_map(|entry| Some((entry, entry.status.problem()?)));
     let count = failed().count();
     let line = |(entry, problem): (&Entry, String)| {
         let input = entry.input.display().to_string();
@@ -152,8 +152,8 @@ const KEYS: [&str; 18] = [
 
 fn values(entry: &Entry) -> [Value; KEYS.len()] {
     let [input, out] = [&entry.input, &entry.out].map(|path| path.display().to_string());
-    let head = [json!(input), json!(out), json!(entry.told.status())];
-    let numbers = match entry.told.report() {
+    let head = [json!(input), json!(out), json!(entry.status.status())];
+    let numbers = match entry.status.report() {
         None => std::array::from_fn(|_| Value::Null),
         Some(report) => {
             let Report { mesh, before, after, .. } = report;
@@ -177,7 +177,7 @@ fn values(entry: &Entry) -> [Value; KEYS.len()] {
         }
     };
     let mut all =
-        head.into_iter().chain::<[Value; 14]>(numbers).chain([json!(entry.told.problem())]);
+        head.into_iter().chain::<[Value; 14]>(numbers).chain([json!(entry.status.problem())]);
     std::array::from_fn(|_| all.next().unwrap_or_default())
 }
 
@@ -206,7 +206,7 @@ pub(crate) fn json(entries: &[Entry]) -> Result<String, CliError> {
 /// Returns the JSON report on all meshes. Each smoothed mesh has the report of a single run.
 pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, CliError> {
     let mut meshes = Vec::new();
-    for Entry { input, out, told: what, .. } in entries {
+    for Entry { input, out, status: what, .. } in entries {
         let mut object = json!({
             "mesh": input.display().to_string(), "out": out.display().to_string(), "status": what.status(),
         });
@@ -238,7 +238,7 @@ mod tests {
             input: path.clone(),
             out: path.clone(),
             files: vec![path],
-            told: BatchStatus::Skipped,
+            status: BatchStatus::Skipped,
         }
     }
 

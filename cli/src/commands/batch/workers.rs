@@ -22,7 +22,7 @@ const INTERVAL: Duration = Duration::from_millis(50);
 /// Observer of the work on many meshes.
 pub(crate) trait Watch {
     /// Receives the result of a finished mesh, by its index in the list.
-    fn done(&mut self, mesh: usize, told: BatchStatus);
+    fn done(&mut self, mesh: usize, status: BatchStatus);
     /// Called at intervals without results.
     fn waits(&mut self);
     /// Called once after a signal, which keeps further meshes from being started.
@@ -52,7 +52,7 @@ pub(crate) fn run(
         let mut is_told = false;
         loop {
             match receiver.recv_timeout(INTERVAL) {
-                Ok((i, told)) => watch.done(i, told),
+                Ok((i, status)) => watch.done(i, status),
                 Err(mpsc::RecvTimeoutError::Disconnected) => break,
                 Err(mpsc::RecvTimeoutError::Timeout) => watch.waits(),
             }

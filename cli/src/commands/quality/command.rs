@@ -2,7 +2,7 @@
 
 use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
-use crate::commands::quality::sheet::MeshQuality;
+use crate::commands::quality::mesh_quality::MeshQuality;
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
 
@@ -15,17 +15,17 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     let outputs = Outputs::of_picture(&args.picture)?;
     outputs.check(&args.meshes, &[])?;
     let style = Style::of_terminal(args.ascii);
-    let sheets =
+    let qualities =
         args.meshes.iter().map(|path| MeshQuality::of(path, args, outputs.picture.as_ref()));
-    let sheets = sheets.collect::<Result<Vec<_>, _>>()?;
+    let qualities = qualities.collect::<Result<Vec<_>, _>>()?;
     if args.json {
-        tell::say(&format!("{:#}", json::json(&sheets)?));
+        tell::say(&format!("{:#}", json::json(&qualities)?));
     } else if args.csv {
-        tell::say(&json::csv(&sheets));
+        tell::say(&json::csv(&qualities));
     } else {
-        tell::say(&text::text(&sheets, &style));
+        tell::say(&text::text(&qualities, &style));
     }
-    let mut violations = sheets.iter().flat_map(|sheet| violations(sheet, &style));
+    let mut violations = qualities.iter().flat_map(|quality| violations(quality, &style));
     match violations.next() {
         None => Ok(()),
         Some(first) => Err(CliError::run(first).with_details(violations.collect())),
@@ -33,14 +33,14 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
 }
 
 /// Returns a sentence for each threshold that triangles of a mesh violate.
-fn violations(sheet: &MeshQuality, style: &Style) -> impl Iterator<Item = String> {
-    sheet.violations.iter().filter_map(move |violation| {
+fn violations(quality: &MeshQuality, style: &Style) -> impl Iterator<Item = String> {
+    quality.violations.iter().filter_map(move |violation| {
         let (place, value) = violation.worst.as_ref()?;
-        let (path, threshold) = (sheet.path.display(), &violation.threshold);
+        let (path, threshold) = (quality.path.display(), &violation.threshold);
         let worst = text::valued(threshold.measure, *value, style);
         Some(format!(
             "{path}: {} of {} triangles have {threshold}; the worst is triangle {} ({place}), {worst}",
-            violation.count, sheet.triangles, place.id
+            violation.count, quality.triangles, place.id
         ))
     })
 }

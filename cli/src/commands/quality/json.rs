@@ -6,37 +6,37 @@ use gpu_smooth::measure::{QUANTILES, Statistics};
 use mesh_io::SourceLocation;
 use serde_json::{Map, Value, json};
 
-use crate::commands::quality::sheet::{MeshQuality, Region, Violation, Worst, location};
+use crate::commands::quality::mesh_quality::{MeshQuality, Region, Violation, Worst, location};
 use crate::error::CliError;
 use crate::render::columns::quoted;
 use crate::report::Histogram;
 
 /// Returns an object for a single mesh, or an array of objects for several meshes.
-pub(crate) fn json(sheets: &[MeshQuality]) -> Result<Value, CliError> {
-    let one = |sheet| object(sheet).map_err(CliError::from);
-    match sheets {
+pub(crate) fn json(qualities: &[MeshQuality]) -> Result<Value, CliError> {
+    let one = |quality| object(quality).map_err(CliError::from);
+    match qualities {
         [only] => one(only),
         several => several.iter().map(one).collect::<Result<Vec<_>, _>>().map(Value::from),
     }
 }
 
-fn object(sheet: &MeshQuality) -> Result<Value, serde_json::Error> {
-    let mut value = serde_json::to_value(&sheet.report)?;
-    value["file"] = sheet.path.display().to_string().into();
-    value["format"] = sheet.format.clone().into();
-    value["vertices"] = sheet.vertices.into();
-    value["triangles"] = sheet.triangles.into();
-    value["free"] = sheet.free.into();
-    value["flat"] = sheet.flat.into();
-    value["hanging_nodes"] = sheet.hanging_nodes.into();
-    value["duplicate_vertices"] = sheet.duplicate_vertices.into();
-    value["unused_vertices"] = sheet.unused_vertices.into();
-    value["bad_triangles"] = serde_json::to_value(&sheet.bad)?;
-    value["measures"] = measures(&sheet.statistics);
-    value["histograms"] = sheet.histograms.iter().map(histogram).collect();
-    value["worst"] = sheet.worst.iter().map(worst).collect();
-    if !sheet.regions.is_empty() {
-        let regions = sheet.regions.iter().map(|region| {
+fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
+    let mut value = serde_json::to_value(&quality.report)?;
+    value["file"] = quality.path.display().to_string().into();
+    value["format"] = quality.format.clone().into();
+    value["vertices"] = quality.vertices.into();
+    value["triangles"] = quality.triangles.into();
+    value["free"] = quality.free.into();
+    value["flat"] = quality.flat.into();
+    value["hanging_nodes"] = quality.hanging_nodes.into();
+    value["duplicate_vertices"] = quality.duplicate_vertices.into();
+    value["unused_vertices"] = quality.unused_vertices.into();
+    value["bad_triangles"] = serde_json::to_value(&quality.bad)?;
+    value["measures"] = measures(&quality.statistics);
+    value["histograms"] = quality.histograms.iter().map(histogram).collect();
+    value["worst"] = quality.worst.iter().map(worst).collect();
+    if !quality.regions.is_empty() {
+        let regions = quality.regions.iter().map(|region| {
             let mut object = placed("first_triangle", &region.first);
             object.insert("groups".into(), json!(spellings(region)));
             object.insert("triangles".into(), region.statistics[0].count.into());
@@ -45,8 +45,8 @@ fn object(sheet: &MeshQuality) -> Result<Value, serde_json::Error> {
         });
         value["regions"] = regions.collect();
     }
-    if !sheet.violations.is_empty() {
-        value["thresholds"] = sheet.violations.iter().map(violation).collect();
+    if !quality.violations.is_empty() {
+        value["thresholds"] = quality.violations.iter().map(violation).collect();
     }
     Ok(value)
 }
@@ -107,17 +107,17 @@ fn spellings(region: &Region) -> Vec<&str> {
 
 /// Returns a table in CSV with a row for each measure of each file. With regions, further rows
 /// follow for each region.
-pub(crate) fn csv(sheets: &[MeshQuality]) -> String {
+pub(crate) fn csv(qualities: &[MeshQuality]) -> String {
     let mut text = String::from("file,region,measure,triangles,min,mean,max,sd");
     for share in QUANTILES {
         let _ = write!(text, ",p{:.0}", 100.0 * share);
     }
-    let by_region = sheets.iter().any(|sheet| !sheet.regions.is_empty());
+    let by_region = qualities.iter().any(|quality| !quality.regions.is_empty());
     if by_region {
         text.push_str(",groups");
     }
-    for sheet in sheets {
-        let file = quoted(&sheet.path.display().to_string());
+    for quality in qualities {
+        let file = quoted(&quality.path.display().to_string());
         let mut rows = |region: &str, groups: &str, statistics: &[Statistics]| {
             for s in statistics {
                 let (measure, count) = (s.measure, s.count);
@@ -133,8 +133,8 @@ pub(crate) fn csv(sheets: &[MeshQuality]) -> String {
                 }
             }
         };
-        rows("", "", &sheet.statistics);
-        for (number, region) in (1..).zip(&sheet.regions) {
+        rows("", "", &quality.statistics);
+        for (number, region) in (1..).zip(&quality.regions) {
             rows(&format!("{number}"), &spellings(region).join(";"), &region.statistics);
         }
     }

@@ -3,7 +3,7 @@
 mod bars;
 mod command;
 mod json;
-mod sheet;
+mod mesh_quality;
 mod text;
 
 pub(crate) use command::run;

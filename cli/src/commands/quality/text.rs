@@ -8,7 +8,7 @@ use gpu_smooth::{
 };
 
 use crate::commands::quality::bars::{self, Style};
-use crate::commands::quality::sheet::{MeshQuality, Region, Worst};
+use crate::commands::quality::mesh_quality::{MeshQuality, Region, Worst};
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
 use crate::terminal::numbers::{fit8, sig6};
@@ -29,37 +29,37 @@ fn shown(style: &Style) -> [bool; COLUMNS.len()] {
 }
 
 /// Writes the measurements of one or more meshes.
-pub(crate) fn text(sheets: &[MeshQuality], style: &Style) -> String {
+pub(crate) fn text(qualities: &[MeshQuality], style: &Style) -> String {
     let mut text = String::new();
-    for sheet in sheets {
-        let MeshQuality { path, format, vertices, free, triangles, remarks, .. } = sheet;
+    for quality in qualities {
+        let MeshQuality { path, format, vertices, free, triangles, remarks, .. } = quality;
         let _ = writeln!(text, "{}: {format}", path.display());
         remarks.iter().for_each(|remark| text.push_str(&format!("{remark}\n")));
         let _ = writeln!(text, "{vertices} vertices ({free} free), {triangles} triangles\n");
     }
-    text.push_str(&table(sheets, style));
-    for sheet in sheets {
+    text.push_str(&table(qualities, style));
+    for quality in qualities {
         text.push('\n');
-        if sheets.len() > 1 {
-            let _ = writeln!(text, "== {}", sheet.path.display());
+        if qualities.len() > 1 {
+            let _ = writeln!(text, "== {}", quality.path.display());
         }
-        text.push_str(&details(sheet, style));
+        text.push_str(&details(quality, style));
     }
     text.trim_end().to_owned()
 }
 
 /// Writes a table with the statistics of all measures: one row per measure, or one row per measure
 /// and file.
-fn table(sheets: &[MeshQuality], style: &Style) -> String {
+fn table(qualities: &[MeshQuality], style: &Style) -> String {
     let mut text = head(style);
     for (i, measure) in Measure::ALL.iter().enumerate() {
-        match sheets {
+        match qualities {
             [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i], style)),
             several => {
                 let _ = writeln!(text, "{}", named(*measure, style));
-                for sheet in several {
-                    let name = shortened(&sheet.path.display().to_string(), NAME - 2);
-                    text.push_str(&row(&format!("  {name}"), &sheet.statistics[i], style));
+                for quality in several {
+                    let name = shortened(&quality.path.display().to_string(), NAME - 2);
+                    text.push_str(&row(&format!("  {name}"), &quality.statistics[i], style));
                 }
             }
         }
@@ -96,55 +96,55 @@ fn named(measure: Measure, style: &Style) -> String {
 }
 
 /// Writes histograms, regions, worst triangles, objectives and counts of one mesh.
-fn details(sheet: &MeshQuality, style: &Style) -> String {
+fn details(quality: &MeshQuality, style: &Style) -> String {
     let mut text = String::new();
-    for histogram in &sheet.histograms {
+    for histogram in &quality.histograms {
         text.push_str(&bars::text(histogram, &named(histogram.measure, style), style));
         text.push('\n');
     }
-    text.push_str(&by_region(sheet, style));
-    if let Some(first) = sheet.worst.first() {
+    text.push_str(&by_region(quality, style));
+    if let Some(first) = quality.worst.first() {
         let by = first.values.first().map_or("", |value| value.0.name());
         let _ = writeln!(text, "worst triangles by {by}");
-        sheet.worst.iter().for_each(|worst| text.push_str(&worst_line(worst, style)));
+        quality.worst.iter().for_each(|worst| text.push_str(&worst_line(worst, style)));
         text.push('\n');
     }
-    let report = &sheet.report;
+    let report = &quality.report;
     for metric in Metric::ALL {
         let _ =
             writeln!(text, "{:<22}{:>12}", format!("f {metric}"), sig6(report.f[metric.name()]));
     }
-    let (worst, place) = (sig6(report.worst_imr), &sheet.worst_place);
+    let (worst, place) = (sig6(report.worst_imr), &quality.worst_place);
     let at = format!("  triangle {} ({place})", place.id);
     let _ = writeln!(text, "{:<22}{worst:>12}{at}", "worst imr");
-    if sheet.free > 0 && report.worst_movable_imr < report.worst_imr {
+    if quality.free > 0 && report.worst_movable_imr < report.worst_imr {
         let movable = sig6(report.worst_movable_imr);
         let among = "among triangles with a free vertex";
         let _ = writeln!(text, "{:<22}{movable:>12}  {among}", "worst imr movable");
     }
     for (name, count) in [
-        ("duplicate vertices", sheet.duplicate_vertices),
-        ("unused vertices", sheet.unused_vertices),
-        ("flat", sheet.flat),
+        ("duplicate vertices", quality.duplicate_vertices),
+        ("unused vertices", quality.unused_vertices),
+        ("flat", quality.flat),
     ] {
         let _ = writeln!(text, "{name:<22}{count:>12}");
     }
     let _ = writeln!(text, "{:<22}{:>12}", "inverted or flat", report.inverted);
-    for line in explain::list(&sheet.bad, report.inverted, "--json") {
+    for line in explain::list(&quality.bad, report.inverted, "--json") {
         let _ = writeln!(text, "  {line}");
     }
     text
 }
 
 /// Writes a table by region for each measure of `--measure`, then the list of regions.
-fn by_region(sheet: &MeshQuality, style: &Style) -> String {
+fn by_region(quality: &MeshQuality, style: &Style) -> String {
     let mut text = String::new();
-    for histogram in sheet.histograms.iter().filter(|_| !sheet.regions.is_empty()) {
+    for histogram in quality.histograms.iter().filter(|_| !quality.regions.is_empty()) {
         let measure = histogram.measure;
         let at = Measure::ALL.iter().position(|&other| other == measure).unwrap_or_default();
         let _ = writeln!(text, "{} by region", named(measure, style));
         text.push_str(&head(style));
-        for (number, region) in (1..).zip(&sheet.regions) {
+        for (number, region) in (1..).zip(&quality.regions) {
             let name = match region.groups.first() {
                 Some(group) => format!("{number} {}", group.short),
                 None => format!("region {number}"),
@@ -153,14 +153,14 @@ fn by_region(sheet: &MeshQuality, style: &Style) -> String {
         }
         text.push('\n');
     }
-    for (number, region) in (1..).zip(&sheet.regions) {
+    for (number, region) in (1..).zip(&quality.regions) {
         let Region { first, groups, statistics } = region;
         let groups: Vec<&str> = groups.iter().map(|group| &*group.full).collect();
         let named = if groups.is_empty() { String::new() } else { groups.join(", ") + "; " };
         let count = statistics[0].count;
         let _ = writeln!(text, "region {number}: {named}{count} triangles, the first at {first}");
     }
-    if !sheet.regions.is_empty() {
+    if !quality.regions.is_empty() {
         text.push('\n');
     }
     text

@@ -59,7 +59,7 @@ pub(crate) fn run(
         })
     });
     display.clear();
-    done.map_err(|failure| told_with_report(&request.outputs, failure))
+    done.map_err(|failure| error_with_report(&request.outputs, failure))
 }
 
 /// Observer that shows a run on the terminal and checks its output files.
@@ -155,7 +155,7 @@ fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
 
 /// Returns the error of a mesh that cannot be smoothed. If inverted or flat triangles are the cause, lists all of them
 /// in the requested report.
-fn told_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) -> CliError {
+fn error_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) -> CliError {
     if triangles.is_empty() {
         return error;
     }
@@ -172,11 +172,11 @@ fn draw(
     smoother: &Smoother<'_>,
     outcome: &Outcome,
 ) -> Result<(), CliError> {
-    let shot = |title: &str, points| MeshState { title: title.to_owned(), points };
-    let shots = [shot("before", &file.mesh().points[..]), shot("after", &outcome.points[..])];
+    let state = |title: &str, points| MeshState { title: title.to_owned(), points };
+    let states = [state("before", &file.mesh().points[..]), state("after", &outcome.points[..])];
     let SmoothRequest { outputs, surface, .. } = task.request;
     let mesh = PictureSubject { file, topology: smoother.topology(), surface: *surface };
-    picture::write(outputs.picture.as_ref(), mesh, &shots)
+    picture::write(outputs.picture.as_ref(), mesh, &states)
 }
 
 fn write_report(outputs: &Outputs, report: &impl Serialize) -> Result<(), CliError> {

@@ -37,7 +37,7 @@ pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliEr
         item("choice", choice);
     }
     if let Some(improved) = &done.report.improved {
-        item("worst", &improved.told());
+        item("worst", &improved.sentence());
     }
     text += "</dl>";
     text += &certificate(done)?;

@@ -276,7 +276,7 @@ function tell(canvas, event) {
       break;
     }
   }
-  document.getElementById("told").textContent = text;
+  document.getElementById("hovered").textContent = text;
 }
 
 /** The value of a measure that a code stands for. */

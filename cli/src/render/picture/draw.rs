@@ -37,18 +37,18 @@ pub(crate) struct MeshState<'a> {
     pub(crate) points: &'a [[f64; 2]],
 }
 
-/// Draws and writes the requested picture, with one panel for each shot and a common color scale. Does nothing
+/// Draws and writes the requested picture, with one panel for each state and a common color scale. Does nothing
 /// without a request.
 pub(crate) fn write(
     request: Option<&PictureRequest>,
     mesh: PictureSubject<'_>,
-    shots: &[MeshState<'_>],
+    states: &[MeshState<'_>],
 ) -> Result<(), CliError> {
     let Some(request) = request else { return Ok(()) };
     let failed = |error: CliError| error.within("the picture was not written");
-    let panels = shots.iter().map(|shot| panel(request.measure, mesh, shot));
+    let panels = states.iter().map(|state| panel(request.measure, mesh, state));
     let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
-    let (before, after) = match shots {
+    let (before, after) = match states {
         [first, .., last] => (first.points, last.points),
         _ => (&[][..], &[][..]),
     };
@@ -118,9 +118,9 @@ fn goodness_of(
 fn panel<'a>(
     measure: Measure,
     mesh: PictureSubject<'_>,
-    shot: &MeshState<'a>,
+    state: &MeshState<'a>,
 ) -> Result<Panel<'a>, MeshError> {
-    let measured = Measured::on(mesh.surface, shot.points, mesh.topology)?;
+    let measured = Measured::on(mesh.surface, state.points, mesh.topology)?;
     let goodness = goodness_of(mesh.topology, &measured, measure)?;
     let unit = measure.definition().unit;
     let statistics = measured.statistics(&[measure]);
@@ -129,5 +129,5 @@ fn panel<'a>(
         format!("{} triangles; {measure} {min}{unit} to {max}{unit}, mean {mean}{unit}", s.count)
     });
     let worst = measured.worst(measure, CANDIDATES);
-    Ok(Panel { title: [shot.title.clone(), numbers], points: shot.points, goodness, worst })
+    Ok(Panel { title: [state.title.clone(), numbers], points: state.points, goodness, worst })
 }

@@ -106,7 +106,7 @@ fn decay(ratio: f64, before: f64, after: f64) -> Option<f64> {
 }
 
 /// Formats a duration as seconds, minutes and seconds, or hours and minutes.
-pub(crate) fn told(seconds: f64) -> String {
+pub(crate) fn duration_text(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {
         0..100 => format!("{whole} s"),
@@ -163,7 +163,7 @@ mod tests {
     fn times_are_printed_in_units_of_their_size() {
         let cases = [(0.4, "0 s"), (99.0, "99 s"), (150.0, "2 min 30 s"), (9000.0, "2 h 30 min")];
         for (seconds, text) in cases {
-            assert_eq!(told(seconds), text);
+            assert_eq!(duration_text(seconds), text);
         }
     }
 }

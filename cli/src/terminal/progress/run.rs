@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::terminal::Verbosity;
 use crate::terminal::progress::form::{Form, PATIENCE};
-use crate::terminal::progress::left::{Decay, Pace, told};
+use crate::terminal::progress::left::{Decay, Pace, duration_text};
 use crate::terminal::progress::stage::Stage;
 use crate::terminal::tell;
 
@@ -45,13 +45,13 @@ struct LatestSweep {
     progress: Progress,
     /// Start of the current phase of sweeps.
     began: Instant,
-    told: Instant,
+    reported_at: Instant,
 }
 
 impl LatestSweep {
     /// Returns the mean duration of a sweep in this phase, in seconds.
     fn seconds(&self) -> f64 {
-        (self.told - self.began).as_secs_f64() / f64::from(self.progress.sweep.max(1))
+        (self.reported_at - self.began).as_secs_f64() / f64::from(self.progress.sweep.max(1))
     }
 }
 
@@ -103,13 +103,13 @@ impl Display {
     /// Records the progress of sweeps and updates the display.
     pub(crate) fn sweep(&self, progress: &Progress) {
         let mut state = self.shared.lock();
-        let told = Instant::now();
+        let reported_at = Instant::now();
         let began = match &state.sweeps {
             Some(last) if last.progress.phase == progress.phase => last.began,
-            Some(_) => told,
+            Some(_) => reported_at,
             None => state.stage_began,
         };
-        state.sweeps = Some(LatestSweep { progress: *progress, began, told });
+        state.sweeps = Some(LatestSweep { progress: *progress, began, reported_at });
         if progress.phase == Phase::Smoothing {
             state.decay.learn(progress.sweep, progress.f);
         }
@@ -209,7 +209,8 @@ impl State {
                     seconds if seconds > 0.5 => format!("{seconds:.1} s/sweep"),
                     seconds => format!("{:.0} sweeps/s", 1.0 / seconds.max(1e-6)),
                 };
-                let figures = format!("f {f:.7}  {speed}  {}", told(began.elapsed().as_secs_f64()));
+                let figures =
+                    format!("f {f:.7}  {speed}  {}", duration_text(began.elapsed().as_secs_f64()));
                 match phase {
                     Phase::Reference => format!("finding the optimum: sweep {sweep}  {figures}"),
                     Phase::Improving => format!("improving the worst triangles: f {f:.7}"),
@@ -217,11 +218,15 @@ impl State {
                 }
             }
             (stage, _) => {
-                format!("{}  {}", stage.text(), told(self.stage_began.elapsed().as_secs_f64()))
+                format!(
+                    "{}  {}",
+                    stage.text(),
+                    duration_text(self.stage_began.elapsed().as_secs_f64())
+                )
             }
         };
         if let Some(left) = self.left().filter(|left| *left > 0.5) {
-            text += &format!(", about {} left", told(left));
+            text += &format!(", about {} left", duration_text(left));
         }
         text
     }
@@ -231,7 +236,7 @@ impl State {
         let seconds = self.stage_began.elapsed().as_secs_f64();
         match (self.stage, &self.sweeps) {
             (Stage::Smoothing, Some(swept)) if swept.progress.phase == Phase::Smoothing => {
-                let since = swept.told.elapsed().as_secs_f64();
+                let since = swept.reported_at.elapsed().as_secs_f64();
                 Some((self.decay.sweeps_left()? * swept.seconds() - since).max(0.0))
             }
             (Stage::Smoothing, _) => None,

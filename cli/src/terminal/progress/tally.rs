@@ -8,7 +8,7 @@ use serde_json::json;
 
 use crate::terminal::Verbosity;
 use crate::terminal::progress::form::Form;
-use crate::terminal::progress::left::told;
+use crate::terminal::progress::left::duration_text;
 use crate::terminal::tell;
 
 /// Display of the number of finished meshes, on standard error.
@@ -90,9 +90,9 @@ impl Tally {
         if self.failed > 0 {
             text += &format!(", {} failed", self.failed);
         }
-        text += &format!("  {}", told(self.started.elapsed().as_secs_f64()));
+        text += &format!("  {}", duration_text(self.started.elapsed().as_secs_f64()));
         if let Some(left) = self.left().filter(|left| *left > 0.5) {
-            text += &format!(", about {} left", told(left));
+            text += &format!(", about {} left", duration_text(left));
         }
         text
     }

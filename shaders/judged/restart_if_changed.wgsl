@@ -2,7 +2,7 @@
 // in progress skips the evaluation, as the present state was evaluated after the last sweep.
 
 @compute @workgroup_size(1)
-fn reopen() {
+fn restart_if_changed() {
     let count = changes[0] + changes[1];
     if control.changes != count {
         control.changes = count;

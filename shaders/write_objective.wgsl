@@ -4,7 +4,7 @@
 const INFINITY: u32 = 0x7f800000u;
 
 @compute @workgroup_size(SLOTS)
-fn publish(@builtin(local_invocation_index) slot: u32) {
+fn write_objective(@builtin(local_invocation_index) slot: u32) {
     let last = ((control.evaluated - 1u) % HISTORY) * SLOTS;
     let sum = control.history[last + slot];
     var word = 0u;

@@ -17,15 +17,15 @@ impl fmt::Debug for Gpu {
 impl fmt::Debug for DeviceMesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let MeshSize { vertices, triangles } = self.size();
-        let mut shown = f.debug_struct("DeviceMesh");
-        shown.field("vertices", &vertices).field("triangles", &triangles).finish_non_exhaustive()
+        let mut debug = f.debug_struct("DeviceMesh");
+        debug.field("vertices", &vertices).field("triangles", &triangles).finish_non_exhaustive()
     }
 }
 
 impl fmt::Debug for Sweeps {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut shown = f.debug_struct("Sweeps");
-        shown.field("scheme", &self.scheme().to_string()).finish_non_exhaustive()
+        let mut debug = f.debug_struct("Sweeps");
+        debug.field("scheme", &self.scheme().to_string()).finish_non_exhaustive()
     }
 }
 

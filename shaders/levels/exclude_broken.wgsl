@@ -1,7 +1,7 @@
 // Replaces the correction by the result of find_broken.wgsl, and sets the gradient to zero at the excluded vertices.
 
 @compute @workgroup_size(WORKGROUP)
-fn leave_out_broken(
+fn exclude_broken(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {

@@ -110,11 +110,11 @@ impl MeshQuality {
         let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let title = path.file_name().unwrap_or_default().display().to_string();
-        let shot = MeshState { title, points: &mesh.points };
+        let state = MeshState { title, points: &mesh.points };
         picture::write(
             picture,
             PictureSubject { file: &file, topology: &topology, surface },
-            &[shot],
+            &[state],
         )?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
