@@ -64,7 +64,8 @@ pub(crate) fn untangle_input(
             None => ControlFlow::Continue(()),
         }
     };
-    let untangled = gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(explained)?;
+    let untangled =
+        gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(explained)?;
     let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved } = untangled;
     let mut error = match overlapping {
         None if left.is_empty() => {

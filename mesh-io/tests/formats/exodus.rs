@@ -4,7 +4,7 @@ use super::Folder;
 use super::facts::fixed;
 use super::made::{Made, all, base};
 use super::others::folder;
-use mesh_io::{Format, MeshFile};
+use mesh_io::{Conversion, Format, MeshFile};
 use std::fs;
 
 fn samples() -> Vec<Made> {
@@ -43,6 +43,55 @@ fn blocks_and_sets_are_groups() {
         assert!(!fixed(&file).contains(&14));
         assert!(groups.find("steel").unwrap().triangles().iter().copied().eq(0..30));
     }
+}
+
+/// The sample is in space, so side 3 of its first triangle is the first edge. In the plane, side 3 is the third edge.
+#[test]
+fn sides_of_triangles_begin_with_two_faces_in_space_and_with_edges_in_the_plane() {
+    for made in samples() {
+        let [a, b, c] = made.mesh.triangles[0];
+        let shore = |bytes: &[u8]| {
+            let file = folder(&made, bytes).read(made.name);
+            let groups = file.groups().unwrap();
+            let shore = groups.find("shore").unwrap();
+            assert_eq!(shore.lines, 2);
+            shore.vertices().to_vec()
+        };
+        let has = |vertices: &[u32], v: u32| vertices.contains(&v);
+        let in_space = shore(&made.bytes);
+        assert!(has(&in_space, a) && has(&in_space, b) && !has(&in_space, c), "{in_space:?}");
+        if !made.bytes.windows(6).any(|part| part == b"coordx") {
+            // A table of all axes has the dimension num_dim, and could not keep three axes.
+            continue;
+        }
+        let name = b"num_dim\0";
+        let at = made.bytes.windows(name.len()).position(|part| part == name).unwrap() + name.len();
+        let length = at + made.bytes[at..].iter().position(|&byte| byte == 3).unwrap();
+        let mut in_plane = made.bytes.clone();
+        in_plane[length] = 2;
+        let in_plane = shore(&in_plane);
+        assert!(has(&in_plane, a) && !has(&in_plane, b) && has(&in_plane, c), "{in_plane:?}");
+    }
+}
+
+/// Writes the edge of a mesh in space to a side set, as another program would read the set.
+#[test]
+fn a_mesh_in_space_is_written_with_the_sides_of_triangles_in_space() {
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"shore\"\n$EndPhysicalNames\n\
+        $Nodes\n4\n1 0 0 1\n2 1 0 1\n3 1 1 2\n4 0 1 1\n$EndNodes\n\
+        $Elements\n3\n1 1 2 7 7 2 3\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4\n$EndElements\n";
+    let folder = Folder::new(&[("in.msh", text)]);
+    let file = folder.read("in.msh");
+    let conversion = Conversion::new(&file, Format::Exodus).unwrap().unwrap();
+    conversion.write(&folder.path("out.exo")).unwrap();
+    let bytes = fs::read(folder.path("out.exo")).unwrap();
+    // Element 1, side 4: the second edge after two faces.
+    let set: Vec<u8> = [1_i32, 4].iter().flat_map(|number| number.to_be_bytes()).collect();
+    let sides = bytes.windows(8).filter(|part| **part == *set).count();
+    let groups = folder.read("out.exo").groups().unwrap();
+    let shore = groups.find("shore").unwrap();
+    assert_eq!((shore.lines, shore.vertices()), (1, &[1, 2][..]));
+    assert!(sides > 0 || bytes.ends_with(&set), "no side 4 of element 1");
 }
 
 #[test]

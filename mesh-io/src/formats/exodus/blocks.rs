@@ -18,8 +18,9 @@ pub(super) struct Block<'a> {
     /// Position of the block, from 1, which is part of its variables' names.
     pub(super) number: usize,
     pub(super) kind: CellKind,
-    /// Whether sides 1 and 2 of an element are its two faces, as for shells. Edges then start at side 3.
-    pub(super) is_shell: bool,
+    /// Whether sides 1 and 2 of an element are its two faces, as for shells, and for triangles in space. Edges then start
+    /// at side 3.
+    pub(super) has_sides_of_faces: bool,
     /// Number of elements in all earlier blocks.
     pub(super) before: u64,
     /// Number of elements of the block.
@@ -119,10 +120,13 @@ impl<'a> File<'a> {
                 return Err(cursor.error(problem, remedy));
             }
         };
-        let is_shell = is(&["SHELL", "TRISHELL"]);
+        // Exodus II: A Finite Element Data Model (SAND92-2137), section 4.10: sides of TRI depend on the dimension.
+        let is_in_space = self.header.dimension("num_dim") == Some(3);
+        let has_sides_of_faces =
+            is(&["SHELL", "TRISHELL"]) || kind == CellKind::Triangle && is_in_space;
         let items = self.header.items(variable)?;
         let order = variable.order;
-        Ok(Block { number, kind, is_shell, before, count, items, width, order })
+        Ok(Block { number, kind, has_sides_of_faces, before, count, items, width, order })
     }
 
     /// Returns the ids of blocks or sets in file order, from the property variable `name`; empty if the file lacks the

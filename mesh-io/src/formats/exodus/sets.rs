@@ -58,7 +58,7 @@ impl File<'_> {
         let block = &blocks[blocks.partition_point(|block| block.before + block.count <= place)..];
         let block = block.first()?;
         let mut side = usize::try_from(side).ok()?.checked_sub(1)?;
-        if block.is_shell {
+        if block.has_sides_of_faces {
             match side.checked_sub(2) {
                 None => return Some(None),
                 Some(edge) => side = edge,

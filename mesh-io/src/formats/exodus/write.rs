@@ -4,7 +4,7 @@
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
 
 use crate::content::group_label::GroupLabel;
-use crate::export::content::ContentGroup;
+use crate::export::content::{Content, ContentGroup};
 use crate::export::sides::{pair, sides};
 use crate::export::writer_input::WriterInput;
 use crate::netcdf::write::{NetCdfWriter, Values};
@@ -109,6 +109,8 @@ fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) 
         }
     }
     let mut element = 0;
+    // In space, sides 1 and 2 of a triangle are its faces.
+    let faces = if is_flat(content) { 0 } else { 2 };
     for block in blocks {
         for &cell in &block.cells {
             element += 1;
@@ -119,7 +121,8 @@ fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) 
             for (side, &a) in corners.iter().enumerate() {
                 let b = corners[(side + 1) % corners.len()];
                 if let Some(found) = wanted.get_mut(&pair(a, b)).filter(|found| found.0 == 0) {
-                    *found = (element, side as i32 + 1);
+                    let before = if block.kind == CellKind::Triangle { faces } else { 0 };
+                    *found = (element, side as i32 + 1 + before);
                 }
             }
         }
@@ -148,11 +151,15 @@ fn text(name: &'static str, content: &str) -> (&'static str, Values) {
     (name, Values::Text(content.as_bytes().to_vec()))
 }
 
+/// Returns whether all vertices have z = 0, so that the file has two axes.
+fn is_flat(content: &Content) -> bool {
+    (0..content.points.len()).all(|vertex| content.z(vertex) == 0.0)
+}
+
 fn points(out: &mut NetCdfWriter, input: &WriterInput<'_>, width: usize) {
     let content = input.content;
     let count = content.points.len();
-    let is_flat = (0..count).all(|vertex| content.z(vertex) == 0.0);
-    let axes = if is_flat { 2 } else { 3 };
+    let axes = if is_flat(content) { 2 } else { 3 };
     out.dimension("num_dim", axes);
     out.dimension("num_nodes", count);
     for (axis, name) in ["coordx", "coordy", "coordz"].into_iter().enumerate().take(axes) {

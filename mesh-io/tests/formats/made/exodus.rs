@@ -74,13 +74,13 @@ fn exodus(mesh: &Mesh, version: u8, precision: Precision, axes: Axes) -> Made {
     connect(&mut file, 3, &["tri", "num_el_in_blk3", "three"], second);
     connect(&mut file, 2, &["SHELL4\0", "one", "four"], &[QUADRILATERAL.to_vec()]);
     connect(&mut file, 4, &["BAR2", "one", "two"], &[LINE.to_vec()]);
-    // The side set has the edge between the first two vertices of triangle 0, and the first edge and a face of the
-    // shell.
+    // The side set has the edge between the first two vertices of triangle 0, and the first edge of the shell. In space,
+    // sides 1 and 2 of both are faces.
     let shell = SECOND_REGION as i32 + 1;
     file.ints("ss_prop1", &["one"], &[40]);
     file.names("ss_names", &["one", "len_name"], &["shore"]);
     file.ints("elem_ss1", &["num_side_ss1"], &[1, shell]);
-    file.ints("side_ss1", &["num_side_ss1"], &[1, 3]);
+    file.ints("side_ss1", &["num_side_ss1"], &[3, 3]);
     file.ints("node_ns1", &["num_nod_ns1"], &[1, 13, 15]);
     file.names("name_nod_var", &["two", "len_name"], &["T", "p"]);
     file.ints("elem_num_map", &["one"], &[1]);
