@@ -3,7 +3,7 @@
 use clap::Args;
 
 /// The options of reading, which all commands share.
-#[derive(Args, Clone, Copy)]
+#[derive(Args, Clone)]
 pub(crate) struct ReadArgs {
     /// Join corners of triangles at the same place to one vertex, as an STL lists the corners of each triangle by
     /// themselves. No effect on other formats
@@ -13,4 +13,8 @@ pub(crate) struct ReadArgs {
     /// input file what it includes
     #[arg(long)]
     pub(crate) allow_outside: bool,
+    /// Cell data that number the regions of the mesh, whose common vertices stay fixed [default: the entries of the format, else
+    /// the first cell data of whole numbers that form few connected regions]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) regions: Option<String>,
 }

@@ -18,12 +18,12 @@ const LISTED: usize = 10;
 /// Compares two files. Returns an error if the files differ in anything but movable vertices and
 /// interpolated data.
 pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
-    let (reading, surface) = (ReadRequest::from(args.reading), Surface::from(&args.surface));
+    let (reading, surface) = (ReadRequest::from(&args.reading), Surface::from(&args.surface));
     let movable = MovableRequest::from(args.moving);
     let slide = SlideRequest::of(args.sliding);
     let fields = FieldsRequest::from(args.fields);
-    let mut before = read(&args.before, reading)?;
-    let mut after = read(&args.after, reading)?;
+    let mut before = read(&args.before, &reading)?;
+    let mut after = read(&args.after, &reading)?;
     let laid_out = lay_out(&mut before, surface)?;
     before.lay_out_likewise(&mut after);
     let after = after;

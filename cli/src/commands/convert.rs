@@ -21,7 +21,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     let outputs = Outputs::of_mesh(MeshOutput::Converted);
     let (read, written) = (slice::from_ref(&args.input), slice::from_ref(&args.output));
     outputs.check(read, written)?;
-    let file = streams::read(&args.input, args.reading.into())?;
+    let file = streams::read(&args.input, &(&args.reading).into())?;
     let conversion = Conversion::new(&file.source, format)?;
     let (path, out) = (file.source.path().display(), args.output.display());
     let Some(mut conversion) = conversion else {
@@ -55,7 +55,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     let written = conversion.destinations(&args.output);
     outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
     if !args.force {
-        check_overwrite(&file, &conversion, &written, args.reading.into())?;
+        check_overwrite(&file, &conversion, &written, (&args.reading).into())?;
     }
     conversion.write(&args.output)?;
     if !show.quiet {
@@ -78,7 +78,7 @@ fn check_overwrite(
 ) -> Result<(), CliError> {
     // An existing mesh may be an STL, independent of the format of IN.
     let reading = ReadRequest { weld: true, ..reading };
-    let found = overwrite::check(file, written, reading.options(), Likeness::Triangles);
+    let found = overwrite::check(file, written, reading.options_of_output(), Likeness::Triangles);
     let Err(error) = found else { return Ok(()) };
     // A format may renumber vertices. Equal bytes then identify an earlier result of this conversion.
     let is_same = |path: &PathBuf, new: Vec<u8>| fs::read(path).is_ok_and(|old| old == new);

@@ -12,7 +12,7 @@ use crate::terminal::tell;
 
 /// Prints the groups of a mesh with the names that options accept, and the names of vertex data.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
-    let file = read(&args.mesh, args.reading.into())?;
+    let file = read(&args.mesh, &(&args.reading).into())?;
     let groups = file.source.groups()?;
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {

@@ -32,6 +32,12 @@ fn with_effect(remark: &Remark) -> String {
         Remark::UnlistedPairs { count, list } => format!(
             "periodic pairs that name a node which {list} does not list do not slide: {count}"
         ),
+        Remark::RegionArray { others, .. } => match &others[..] {
+            [] => format!("{remark} (--regions NAME takes others)"),
+            names => {
+                format!("{remark}, and not `{}` (--regions NAME takes others)", names.join("`, `"))
+            }
+        },
         _ => remark.to_string(),
     }
 }

@@ -11,11 +11,11 @@ use crate::request::ReadRequest;
 use crate::terminal::tell;
 
 /// Reads a mesh from a file, or from standard input if the path is `-`.
-pub(crate) fn read(path: &Path, request: ReadRequest) -> Result<LoadedMesh, CliError> {
+pub(crate) fn read(path: &Path, request: &ReadRequest) -> Result<LoadedMesh, CliError> {
     read_source(path, request).map(LoadedMesh::new)
 }
 
-fn read_source(path: &Path, request: ReadRequest) -> Result<MeshFile, CliError> {
+fn read_source(path: &Path, request: &ReadRequest) -> Result<MeshFile, CliError> {
     let options = request.options();
     if !is_standard(path) {
         return Ok(options.read(path)?);

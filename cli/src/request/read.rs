@@ -5,24 +5,34 @@ use mesh_io::ReadOptions;
 use crate::args::ReadArgs;
 
 /// How meshes are read.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct ReadRequest {
     /// Whether corners of triangles at equal positions are joined to one vertex. STL requires
     /// joining; other formats ignore the option.
     pub(crate) weld: bool,
     /// Whether a mesh may name files outside of its directory.
     pub(crate) allow_outside: bool,
+    /// Name of the cell data that number the regions. `None` for the reader's choice.
+    pub(crate) regions: Option<String>,
 }
 
 impl ReadRequest {
     /// Returns the options by which the library reads a mesh.
-    pub(crate) fn options(self) -> ReadOptions {
-        ReadOptions::new().weld(self.weld).allow_outside(self.allow_outside)
+    pub(crate) fn options(&self) -> ReadOptions {
+        ReadOptions::new()
+            .weld(self.weld)
+            .allow_outside(self.allow_outside)
+            .regions(self.regions.clone())
+    }
+
+    /// Returns the options by which a file is read that a command may replace. Its cell data may have other names.
+    pub(crate) fn options_of_output(&self) -> ReadOptions {
+        self.options().regions(None)
     }
 }
 
-impl From<ReadArgs> for ReadRequest {
-    fn from(args: ReadArgs) -> Self {
-        Self { weld: args.weld, allow_outside: args.allow_outside }
+impl From<&ReadArgs> for ReadRequest {
+    fn from(args: &ReadArgs) -> Self {
+        Self { weld: args.weld, allow_outside: args.allow_outside, regions: args.regions.clone() }
     }
 }

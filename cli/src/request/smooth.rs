@@ -123,7 +123,7 @@ impl SmoothRequest {
         };
         Ok(Self {
             meshes,
-            reading: args.reading.into(),
+            reading: (&args.reading).into(),
             surface: (&args.target.surface).into(),
             target: (&args.target).into(),
             movable: args.moving.into(),

@@ -91,7 +91,7 @@ fn certificate(
     hashes: Vec<FileHash>,
 ) -> Result<Certificate, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);
-    let mut after = streams::read(out, request.reading)?;
+    let mut after = streams::read(out, &request.reading)?;
     file.lay_out_likewise(&mut after);
     let after = after;
     let mut theirs = request.fields.choose(&after)?;

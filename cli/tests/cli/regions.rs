@@ -104,3 +104,176 @@ fn a_mesh_with_a_region_for_each_triangle_is_refused_with_the_way_to_smooth_it()
         folder.run([input, &output, "--engine", "cpu", "--free-interfaces"]).clean();
     }
 }
+
+/// An array of cell data: its name, whether its numbers are real, and the number of each triangle.
+type CellData<'n> = (&'n str, bool, Vec<f64>);
+
+/// Writes the mesh in formats with cell data: legacy VTK, VTU, XDMF and gmsh.
+fn with_cell_data(mesh: &Mesh, arrays: &[CellData<'_>]) -> Vec<(&'static str, String)> {
+    let (n, m) = (mesh.points.len(), mesh.triangles.len());
+    let points: String = mesh.points.iter().map(|[x, y]| format!("{x:?} {y:?} 0\n")).collect();
+    let triangles = |before: &str| -> String {
+        mesh.triangles.iter().map(|[a, b, c]| format!("{before}{a} {b} {c}\n")).collect()
+    };
+    let numbers = |(_, is_real, values): &CellData<'_>| -> String {
+        let number =
+            |value: &f64| if *is_real { format!("{value:?} ") } else { format!("{value} ") };
+        values.iter().map(number).collect()
+    };
+    let of_vtk: String = arrays
+        .iter()
+        .map(|array| {
+            let kind = if array.1 { "double" } else { "int" };
+            format!("{} 1 {m} {kind}\n{}\n", array.0.replace(' ', "%20"), numbers(array))
+        })
+        .collect();
+    let of_vtu: String = arrays
+        .iter()
+        .map(|array| {
+            let kind = if array.1 { "Float64" } else { "Int32" };
+            let (name, numbers) = (array.0, numbers(array));
+            format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">{numbers}</DataArray>\n")
+        })
+        .collect();
+    let of_xdmf: String = arrays
+        .iter()
+        .map(|array| {
+            let kind = if array.1 { "Float" } else { "Int" };
+            let (name, numbers) = (array.0, numbers(array));
+            format!(
+                "<Attribute Name=\"{name}\" AttributeType=\"Scalar\" Center=\"Cell\"><DataItem Format=\"XML\" \
+                 NumberType=\"{kind}\" Precision=\"8\" Dimensions=\"{m}\">{numbers}</DataItem></Attribute>\n"
+            )
+        })
+        .collect();
+    let of_gmsh: String = arrays
+        .iter()
+        .map(|(name, _, values)| {
+            let rows = (1..).zip(values).map(|(id, value)| format!("{id} {value:?}\n"));
+            let rows = rows.collect::<String>();
+            format!("$ElementData\n1\n\"{name}\"\n1\n0\n3\n0\n1\n{m}\n{rows}$EndElementData\n")
+        })
+        .collect();
+    let ends: String = (1..=m).map(|t| format!("{} ", 3 * t)).collect();
+    let (nodes, elements): (String, String) = (
+        (1..).zip(&mesh.points).map(|(v, [x, y])| format!("{v} {x:?} {y:?} 0\n")).collect(),
+        (1..)
+            .zip(&mesh.triangles)
+            .map(|(t, [a, b, c])| format!("{t} 2 2 1 1 {} {} {}\n", a + 1, b + 1, c + 1))
+            .collect(),
+    );
+    vec![
+        (
+            "in.vtk",
+            format!(
+                "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {n} double\n{points}\
+                 CELLS {m} {}\n{}CELL_TYPES {m}\n{}\nCELL_DATA {m}\nFIELD FieldData {}\n{of_vtk}",
+                4 * m,
+                triangles("3 "),
+                "5 ".repeat(m),
+                arrays.len(),
+            ),
+        ),
+        (
+            "in.vtu",
+            format!(
+                "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n\
+                 <UnstructuredGrid><Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{m}\">\n<Points><DataArray type=\"Float64\" \
+                 NumberOfComponents=\"3\" format=\"ascii\">{points}</DataArray></Points>\n<Cells><DataArray type=\"Int64\" \
+                 Name=\"connectivity\" format=\"ascii\">{}</DataArray><DataArray type=\"Int64\" Name=\"offsets\" \
+                 format=\"ascii\">{ends}</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{}</DataArray>\
+                 </Cells>\n<CellData>{of_vtu}</CellData></Piece></UnstructuredGrid></VTKFile>\n",
+                triangles(""),
+                "5 ".repeat(m),
+            ),
+        ),
+        (
+            "in.xdmf",
+            format!(
+                "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid GridType=\"Uniform\">\n<Geometry \
+                 GeometryType=\"XYZ\"><DataItem Format=\"XML\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"{n} 3\">{points}\
+                 </DataItem></Geometry>\n<Topology TopologyType=\"Triangle\" NumberOfElements=\"{m}\"><DataItem Format=\"XML\" \
+                 NumberType=\"Int\" Precision=\"8\" Dimensions=\"{m} 3\">{}</DataItem></Topology>\n{of_xdmf}\
+                 </Grid></Domain></Xdmf>\n",
+                triangles(""),
+            ),
+        ),
+        (
+            "in.msh",
+            format!(
+                "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{n}\n{nodes}$EndNodes\n$Elements\n{m}\n{elements}$EndElements\n\
+                 {of_gmsh}"
+            ),
+        ),
+    ]
+}
+
+#[test]
+fn cell_data_under_any_name_that_look_like_regions_are_regions() {
+    let mesh = disturbed();
+    let m = mesh.triangles.len();
+    let halves: Vec<f64> = (0..m).map(|t| if t < m / 2 { 1.0 } else { 2.0 }).collect();
+    for (name, is_real) in [
+        ("attribute", false),
+        ("subdomains", true),
+        ("PartId", false),
+        ("MatId", true),
+        ("Cell tags", false),
+        ("mesh_tags", false),
+        ("zone", true),
+        ("MaterialIDs", true),
+    ] {
+        for (input, text) in with_cell_data(&mesh, &[(name, is_real, halves.clone())]) {
+            let folder = Folder::new(&[(input, &text)]);
+            let output = input.replace("in", "out");
+            let run = folder.run([input, &output, "--engine", "cpu"]);
+            assert_eq!(run.code, Some(0), "{name} {input}: {}", run.err);
+            assert_holds(&run.err, &[NOTE]);
+            let (before, after) = (folder.mesh(input), folder.mesh(&output));
+            assert_smoothed(&before, &after);
+            assert_middle_row_held(&before, &after);
+            // The reader of legacy VTK takes real numbers under usual names as regions too.
+            if (name, input) != ("MaterialIDs", "in.vtk") {
+                let note = format!(
+                    "the cell data `{name}` number the regions (--regions NAME takes others)"
+                );
+                assert_holds(&run.err, &[&note]);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_option_chooses_the_cell_data_of_regions() {
+    let mesh = disturbed();
+    let m = mesh.triangles.len();
+    let halves: Vec<f64> = (0..m).map(|t| if t < m / 2 { 1.0 } else { 2.0 }).collect();
+    let arrays = [
+        ("error", true, (0..m).map(|t| 0.5 + t as f64).collect()),
+        ("marked", false, (0..m).map(|t| (t % 2) as f64).collect()),
+        ("id", false, (0..m).map(|t| t as f64).collect()),
+        ("partition", false, (0..m).map(|t| (t / (m / 4)) as f64).collect()),
+        ("zone", false, halves),
+    ];
+    for (input, text) in with_cell_data(&mesh, &arrays) {
+        let folder = Folder::new(&[(input, &text)]);
+        let output = input.replace("in", "out");
+        let line =
+            |rest: &str| folder.line(&format!("{input} {output} --engine cpu --force {rest}"));
+        let run = line("");
+        let note = "the cell data `partition` number the regions, and not `zone` (--regions NAME takes others)";
+        assert_holds(&run.err, &[note, "27 vertices between regions stay fixed"]);
+        let run = line("--regions zone");
+        assert_eq!((run.code, run.err), (Some(0), format!("gpu-smooth: {NOTE}\n")), "{input}");
+        assert_middle_row_held(&folder.mesh(input), &folder.mesh(&output));
+        let all = "`error`, `marked`, `id`, `partition`, `zone`";
+        for (name, problem) in [
+            ("zones", "it has no cell data `zones`"),
+            ("error", "the cell data `error` are not a whole number for each triangle"),
+        ] {
+            let run = line(&format!("--regions {name}"));
+            assert_eq!(run.code, Some(1));
+            assert_holds(&run.err.replace("\n  ", " "), &[input, problem, all]);
+        }
+    }
+}

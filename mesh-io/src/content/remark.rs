@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Fact about a mesh file for the user of the mesh. [`Display`](fmt::Display) states the fact in one line.
 ///
-/// This crate does not decide which vertices move. For the first three variants, a program may word the message by its
+/// This crate does not decide which vertices move. For all variants but the last, a program may word the message by its
 /// own treatment of the vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -28,6 +28,13 @@ pub enum Remark {
         /// The name of the file's list of nodes, such as `$Nodes`.
         list: String,
     },
+    /// The regions of the triangles are those of cell data under a name that is not usual for regions.
+    RegionArray {
+        /// Name of the array.
+        array: String,
+        /// Names of further arrays that look like regions, in file order.
+        others: Vec<String>,
+    },
     /// Any other fact, as a sentence.
     Text(String),
 }
@@ -49,6 +56,9 @@ impl fmt::Display for Remark {
             }
             Remark::UnlistedPairs { count, list } => {
                 write!(f, "periodic pairs that name a node which {list} does not list: {count}")
+            }
+            Remark::RegionArray { array, .. } => {
+                write!(f, "the cell data `{array}` number the regions")
             }
             Remark::Text(text) => f.write_str(text),
         }

@@ -19,10 +19,11 @@ use std::path::{Path, PathBuf};
 /// let file = ReadOptions::new().weld(true).read(Path::new("part.stl"))?;
 /// # Ok::<(), mesh_io::ReadError>(())
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReadOptions {
     pub(crate) welds: bool,
     pub(crate) allows_outside: bool,
+    pub(crate) regions: Option<String>,
 }
 
 impl ReadOptions {
@@ -45,6 +46,14 @@ impl ReadOptions {
     #[must_use]
     pub fn allow_outside(self, allows_outside: bool) -> ReadOptions {
         ReadOptions { allows_outside, ..self }
+    }
+
+    /// Sets the cell data that number the regions of the triangles, in place of those that the reader finds. Each
+    /// triangle must have a whole number, as an integer or a real number. `None` by default: regions are then the
+    /// entries of the format, or else the first array of whole numbers that form few connected regions.
+    #[must_use]
+    pub fn regions(self, array: Option<String>) -> ReadOptions {
+        ReadOptions { regions: array, ..self }
     }
 }
 

@@ -12,4 +12,5 @@ mod parallel_tests;
 pub(crate) mod parameters;
 pub(crate) mod parametric;
 pub(crate) mod read;
+mod region_arrays;
 pub(crate) mod rewrite;

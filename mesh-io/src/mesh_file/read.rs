@@ -5,6 +5,7 @@ use crate::disk::source::{ReadOptions, Source};
 use crate::error::ReadError;
 use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
+use crate::mesh_file::region_arrays;
 use crate::visit::mesh_builder;
 use crate::visit::reader::ReaderFunctions;
 use std::path::Path;
@@ -68,7 +69,10 @@ fn reader(given: &Source) -> Result<&'static ReaderFunctions, ReadError> {
 fn parsed(reader: &'static ReaderFunctions, source: Source) -> Result<MeshFile, ReadError> {
     // Formats read by words accept carriage returns. The error about line ends is therefore used only if reading fails.
     let ends = source.files().find_map(ends_by_returns);
-    let read = mesh_builder::parse(reader, &source);
+    let read = mesh_builder::parse(reader, &source).and_then(|mut parsed| {
+        region_arrays::find(&mut parsed, reader, &source)?;
+        Ok(parsed)
+    });
     let made = read.and_then(|parsed| MeshFile::new(parsed, reader, source));
     made.map_err(|error| ends.unwrap_or(error))
 }

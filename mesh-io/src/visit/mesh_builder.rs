@@ -17,6 +17,9 @@ use crate::visit::storage::{CoordinateStorage, RepeatedVertices};
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashSet;
 
+/// Largest number of arrays of cell data whose names are stored.
+const MAX_CELL_ARRAYS: usize = 256;
+
 /// Reads a mesh, long lists on all threads.
 pub(crate) fn parse(reader: &ReaderFunctions, source: &Source) -> Result<ParsedMesh, ReadError> {
     parse_by(reader, source, true)
@@ -41,7 +44,7 @@ pub(crate) fn parse_by(
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
-    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
+    let MeshBuilder { quadrilaterals, mut remarks, data, cell_arrays, on_lower, .. } = assembler;
     if quadrilaterals > 0 {
         remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
     }
@@ -78,6 +81,7 @@ pub(crate) fn parse_by(
         constraints,
         remarks,
         data,
+        cell_arrays,
         has_parameters,
         has_centers,
     })
@@ -101,6 +105,8 @@ struct MeshBuilder {
     data: Vec<String>,
     /// The names in `data` as a set, as a damaged file may announce very many names.
     named: HashSet<String>,
+    /// Names of the arrays of one number for each cell, each once.
+    cell_arrays: Vec<String>,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
     has_centers: bool,
@@ -221,6 +227,22 @@ impl MeshVisitor for MeshBuilder {
 
     fn center_array(&mut self, _: &[u8], _: usize) -> bool {
         self.has_centers = true;
+        false
+    }
+
+    fn asks_for_cell_arrays(&self) -> bool {
+        true
+    }
+
+    fn cell_array(&mut self, name: &[u8], components: u64, _: bool) -> bool {
+        let name = String::from_utf8_lossy(name).into_owned();
+        // Beyond this number, an array without a usual name is not looked for among the others.
+        if components == 1
+            && self.cell_arrays.len() < MAX_CELL_ARRAYS
+            && !self.cell_arrays.contains(&name)
+        {
+            self.cell_arrays.push(name);
+        }
         false
     }
 

@@ -14,5 +14,6 @@ pub(crate) mod records;
 pub(crate) mod rows;
 pub(crate) mod send;
 pub(crate) mod storage;
+pub(crate) mod triangle_values;
 pub(crate) mod visitor;
 pub(crate) mod z_values;

@@ -29,6 +29,8 @@ pub(crate) struct ParsedMesh {
     pub(crate) remarks: Vec<Remark>,
     /// Names of the arrays of real numbers on vertices besides x and y, each once.
     pub(crate) data: Vec<String>,
+    /// Names of the arrays of one number for each cell, except those of regions, each once.
+    pub(crate) cell_arrays: Vec<String>,
     /// Whether vertices have parameters on surfaces of a model (gmsh 4), which can be replaced.
     pub(crate) has_parameters: bool,
     /// Whether the file stores centers of faces or edges (UGRID).

@@ -107,6 +107,11 @@ pub(crate) trait MeshVisitor {
     fn asks_for_data(&self) -> bool {
         false
     }
+    /// Returns whether the visitor wants announcements of cell data. For `false`, readers may skip calls of
+    /// [`cell_array`](Self::cell_array).
+    fn asks_for_cell_arrays(&self) -> bool {
+        self.asks_for_data()
+    }
     /// Announces an array of point data: its name, components per point, and whether its numbers are real (else whole).
     /// Returns whether the visitor wants the numbers, in a call of [`point_numbers`](Self::point_numbers).
     fn point_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
@@ -131,7 +136,7 @@ pub(crate) trait MeshVisitor {
         self.point_array(name, 1, true)
     }
     /// Announces an array of cell data, with arguments and result as in [`point_array`](Self::point_array). Readers
-    /// call this method only if [`asks_for_data`](Self::asks_for_data) returns `true`.
+    /// call this method only if [`asks_for_cell_arrays`](Self::asks_for_cell_arrays) returns `true`.
     fn cell_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }

@@ -155,9 +155,13 @@ impl PipelineObserver for Followed<'_> {
         if outputs.replaces_any {
             return Ok(());
         }
-        overwrite::check(file, &written, reading.options(), Likeness::Mesh).map_err(|error| {
-            error.with_remedy("Give another directory to --out-dir, or replace the file by --force")
-        })
+        overwrite::check(file, &written, reading.options_of_output(), Likeness::Mesh).map_err(
+            |error| {
+                error.with_remedy(
+                    "Give another directory to --out-dir, or replace the file by --force",
+                )
+            },
+        )
     }
 
     fn remark(&mut self, text: &str) {

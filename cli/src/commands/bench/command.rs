@@ -22,7 +22,7 @@ use crate::terminal::tell;
 type Explain<'a> = dyn Fn(SmoothError) -> CliError + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
-    let file = args.mesh.as_deref().map(|mesh| read(mesh, args.reading.into())).transpose()?;
+    let file = args.mesh.as_deref().map(|mesh| read(mesh, &(&args.reading).into())).transpose()?;
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let places = places(args, quiet)?;
     let form = Form::new(args);

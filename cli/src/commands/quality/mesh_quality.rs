@@ -98,7 +98,7 @@ impl MeshQuality {
         args: &QualityArgs,
         picture: Option<&PictureRequest>,
     ) -> Result<Self, CliError> {
-        let mut file = read(path, args.reading.into())?;
+        let mut file = read(path, &(&args.reading).into())?;
         let surface = Surface::from(&args.surface);
         let laid_out = lay_out(&mut file, surface)?;
         let file = file;

@@ -84,7 +84,7 @@ impl PipelineObserver for Shown<'_> {
         if outputs.replaces_any {
             return Ok(());
         }
-        overwrite::check(file, &written, reading.options(), Likeness::Mesh).map_err(|error| {
+        overwrite::check(file, &written, reading.options_of_output(), Likeness::Mesh).map_err(|error| {
             error.with_remedy(
                 "To smooth several meshes, name a directory by --out-dir; to replace the file all the same, add --force",
             )

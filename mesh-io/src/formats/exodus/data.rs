@@ -11,8 +11,10 @@ impl File<'_> {
     /// are skipped, as the mesh does not depend on data.
     pub(super) fn data(&self, blocks: &[Block<'_>], visitor: &mut dyn MeshVisitor) {
         self.of_nodes(visitor);
-        if visitor.asks_for_data() {
+        if visitor.asks_for_cell_arrays() {
             self.of_elements(blocks, visitor);
+        }
+        if visitor.asks_for_data() {
             self.left_out(visitor);
         }
     }

@@ -32,7 +32,7 @@ pub(super) fn read(
     }
     let is_wanted = match nodes {
         Some(_) => visitor.point_array(name, components, true),
-        None => visitor.asks_for_data() && visitor.cell_array(name, components, true),
+        None => visitor.asks_for_cell_arrays() && visitor.cell_array(name, components, true),
     };
     if is_wanted
         && let Some(numbers) = match order {

@@ -113,7 +113,7 @@ impl<'a> File<'a> {
             let problem = format!("the Topology ends after {id} elements of {count} numbers");
             return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
-        if visitor.asks_for_data() {
+        if visitor.asks_for_cell_arrays() {
             self.cell_data(&of_regions, id, visitor);
         }
         Ok(())

@@ -147,7 +147,7 @@ impl Data<'_> {
         if self.of_cells
             && of_all
             && !is_region
-            && self.visitor.asks_for_data()
+            && self.visitor.asks_for_cell_arrays()
             && self.visitor.cell_array(name, components, precision.is_some())
         {
             let numbers = self.numbers(cursor, kind, count)?.numbers;

@@ -38,7 +38,7 @@ impl File<'_> {
         for (piece, announced) in self.document.pieces.iter().enumerate() {
             let lists = self.lists(piece)?;
             let count: usize = lists.iter().map(|list| list.offsets.len()).sum();
-            if visitor.asks_for_data() {
+            if visitor.asks_for_cell_arrays() {
                 let cells = first_cell..first_cell + count as u64;
                 self.cell_arrays(piece, &regions, cells, visitor);
             }

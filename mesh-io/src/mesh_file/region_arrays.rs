@@ -1,0 +1,149 @@
+//! Finds the cell data that number the regions of a mesh, in files that name no regions.
+
+use crate::content::remark::Remark;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::visit::parsed_mesh::ParsedMesh;
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::triangle_values::triangle_values;
+use std::collections::HashMap;
+
+/// Largest number of regions that an array without a usual name may have.
+const MAX_REGIONS: usize = 1000;
+/// Smallest mean number of triangles in the connected parts of regions, unless each region is connected. Flags of single
+/// elements, such as marks for refinement, have smaller parts.
+const MIN_PART: usize = 8;
+
+/// Sets the regions of a mesh by cell data: by the array that the options of reading name, else, if the file has no
+/// region under a usual name, by the first array that looks like regions.
+///
+/// # Errors
+/// If the options name an array that the file lacks, or that has other than whole numbers. If the file cannot be read.
+pub(super) fn find(
+    parsed: &mut ParsedMesh,
+    reader: &ReaderFunctions,
+    source: &Source,
+) -> Result<(), ReadError> {
+    if let Some(name) = &source.options.regions {
+        let wanted = [name.clone()];
+        let values = triangle_values(reader, source, &wanted)?.pop().unwrap_or_default();
+        if values.is_empty() {
+            return Err(source.error(format!("it has no cell data `{name}`"), known(parsed)));
+        }
+        let Some(regions) = numbered(&values) else {
+            let problem =
+                format!("the cell data `{name}` are not a whole number for each triangle");
+            return Err(source.error(problem, known(parsed)));
+        };
+        parsed.regions = regions.iter().any(|&region| region != 0).then_some(regions);
+        return Ok(());
+    }
+    if parsed.regions.is_some() || parsed.cell_arrays.is_empty() {
+        return Ok(());
+    }
+    let all = triangle_values(reader, source, &parsed.cell_arrays)?;
+    let (mut used, mut others) = (None, Vec::new());
+    for (name, values) in parsed.cell_arrays.iter().zip(all) {
+        match numbered(&values).filter(|regions| looks_like_regions(regions, &parsed.triangles)) {
+            Some(regions) if used.is_none() => used = Some((name.clone(), regions)),
+            Some(_) => others.push(name.clone()),
+            None => {}
+        }
+    }
+    if let Some((array, regions)) = used {
+        parsed.regions = Some(regions);
+        parsed.remarks.push(Remark::RegionArray { array, others });
+    }
+    Ok(())
+}
+
+/// Returns the remedy that lists the cell data of a mesh.
+fn known(parsed: &ParsedMesh) -> String {
+    match &parsed.cell_arrays[..] {
+        [] => "It has no cell data of one number for each cell".to_owned(),
+        names => format!("Its cell data are `{}`", names.join("`, `")),
+    }
+}
+
+/// Numbers the values of triangles by first occurrence, from 0. `None` if a value is not a whole number.
+fn numbered(values: &[f64]) -> Option<Vec<u32>> {
+    let mut numbers: HashMap<i64, u32> = HashMap::new();
+    let number = |&value: &f64| {
+        // Whole numbers up to 2^53 are exact.
+        let is_whole = value.fract() == 0.0 && value.abs() <= 9.0e15;
+        let next = numbers.len() as u32;
+        is_whole.then(|| *numbers.entry(value as i64).or_insert(next))
+    };
+    (!values.is_empty()).then(|| values.iter().map(number).collect())?
+}
+
+/// Returns whether numbers of triangles look like regions: several numbers, but few, whose triangles are connected in
+/// large parts.
+fn looks_like_regions(regions: &[u32], triangles: &[[u32; 3]]) -> bool {
+    let count = regions.iter().max().map_or(0, |&most| most as usize + 1);
+    let is_few = (2..=MAX_REGIONS).contains(&count) && count * 2 <= regions.len();
+    is_few && {
+        let parts = connected_parts(regions, triangles);
+        parts == count || parts * MIN_PART <= regions.len()
+    }
+}
+
+/// Returns the number of parts of triangles that are connected across edges and have equal regions.
+fn connected_parts(regions: &[u32], triangles: &[[u32; 3]]) -> usize {
+    let mut parent: Vec<u32> = (0..triangles.len() as u32).collect();
+    fn root(parent: &mut [u32], mut t: u32) -> u32 {
+        while parent[t as usize] != t {
+            parent[t as usize] = parent[parent[t as usize] as usize];
+            t = parent[t as usize];
+        }
+        t
+    }
+    let mut parts = triangles.len();
+    let mut edges: HashMap<[u32; 2], u32> = HashMap::with_capacity(triangles.len() * 3 / 2);
+    for (t, &[a, b, c]) in (0..).zip(triangles) {
+        for [p, q] in [[a, b], [b, c], [c, a]] {
+            let other = *edges.entry([p.min(q), p.max(q)]).or_insert(t);
+            if regions[other as usize] == regions[t as usize] {
+                let (one, two) = (root(&mut parent, other), root(&mut parent, t));
+                if one != two {
+                    parent[two as usize] = one;
+                    parts -= 1;
+                }
+            }
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip of `count` triangles.
+    fn strip(count: u32) -> Vec<[u32; 3]> {
+        (0..count).map(|t| [t, t + 1, t + 2]).collect()
+    }
+
+    #[test]
+    fn few_whole_numbers_in_large_parts_look_like_regions() {
+        let looks = |number: &dyn Fn(u32) -> f64, count| {
+            let values: Vec<f64> = (0..count).map(number).collect();
+            numbered(&values).is_some_and(|regions| looks_like_regions(&regions, &strip(count)))
+        };
+        assert!(looks(&|t| f64::from(t / 20), 40));
+        assert!(looks(&|t| f64::from(t / 10 % 2) - 5.0, 40), "two regions of two parts");
+        assert!(looks(&|t| f64::from(t / 2), 4), "small but connected");
+        assert!(!looks(&|t| f64::from(t), 40), "a number of its own for each triangle");
+        assert!(!looks(&|t| f64::from(t % 2), 40), "flags of single triangles");
+        assert!(!looks(&|_| 3.0, 40), "one region");
+        assert!(!looks(&|t| 0.5 + f64::from(t / 20), 40), "fractions");
+        assert!(!looks(&|t| if t < 20 { 1.0 } else { f64::NAN }, 40), "missing values");
+    }
+
+    #[test]
+    fn parts_are_connected_across_edges() {
+        assert_eq!(connected_parts(&[0; 5], &strip(5)), 1);
+        assert_eq!(connected_parts(&[0, 0, 1, 0, 0], &strip(5)), 3);
+        assert_eq!(connected_parts(&[0, 0], &[[0, 1, 2], [2, 3, 4]]), 2, "a common vertex alone");
+    }
+}
