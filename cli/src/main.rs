@@ -31,6 +31,7 @@ fn main() -> ExitCode {
 }
 
 fn run() -> ExitCode {
+    shell::complete();
     let Cli { command, smooth, output } = request::command_line();
     if output.log == LogForm::Json {
         tell::log_json();

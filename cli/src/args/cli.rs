@@ -81,7 +81,7 @@ pub(crate) enum LogForm {
 /// Examples of `completions`, with the directories in which each shell looks for completions.
 const COMPLETIONS: &str = "Examples:
   gpu-smooth completions bash > ~/.local/share/bash-completion/completions/gpu-smooth
-  gpu-smooth completions zsh > ~/.zfunc/_gpu-smooth
+  echo 'source <(gpu-smooth completions zsh)' >> ~/.zshrc
   gpu-smooth completions fish > ~/.config/fish/completions/gpu-smooth.fish";
 
 #[derive(Subcommand)]

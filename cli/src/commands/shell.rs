@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use clap::{Command, CommandFactory};
+use clap_complete::env::{CompleteEnv, Shells};
 use clap_mangen::Man;
 use mesh_io::atomic;
 
@@ -12,10 +13,28 @@ use crate::args::{Cli, CompletionsArgs, ManArgs};
 use crate::error::CliError;
 use crate::terminal::tell;
 
-/// Prints the completions for a shell.
+/// Name of the program in scripts of shells.
+const PROGRAM: &str = "gpu-smooth";
+/// Environment variable by which a script of a shell asks the program for completions. The value is the name of the
+/// shell.
+const VARIABLE: &str = "GPU_SMOOTH_COMPLETE";
+
+/// Answers a script of a shell that asks for completions, and ends the program. Does nothing in all other calls.
+pub(crate) fn complete() {
+    CompleteEnv::with_factory(Cli::command).var(VARIABLE).bin(PROGRAM).complete();
+}
+
+/// Prints the script by which a shell asks the program for completions.
 pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
     let mut text = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "gpu-smooth", &mut text);
+    let shell = args.shell.to_string();
+    let shells = Shells::builtins();
+    let written = shells.completer(&shell).map(|completer| {
+        completer.write_registration(VARIABLE, PROGRAM, PROGRAM, PROGRAM, &mut text)
+    });
+    if !matches!(written, Some(Ok(()))) {
+        return Err(CliError::run(format!("there are no completions for {shell}")));
+    }
     tell::say(String::from_utf8_lossy(&text).trim_end());
     Ok(())
 }

@@ -14,24 +14,59 @@ fn named(help: &str) -> Vec<String> {
     names
 }
 
+/// Returns the completions of the last word, as the scripts of the shells ask for them.
+fn offered(folder: &Folder, words: &[&str]) -> Vec<String> {
+    let mut command = folder.command();
+    command.arg("--").args(words);
+    command.env("GPU_SMOOTH_COMPLETE", "bash").env("_CLAP_IFS", "\n");
+    command.env("_CLAP_COMPLETE_INDEX", (words.len() - 1).to_string());
+    command.env("_CLAP_COMPLETE_COMP_TYPE", "9").env("_CLAP_COMPLETE_SPACE", "true");
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()
+}
+
 #[test]
 fn completions_and_manual_have_every_option() {
-    let folder = Folder::new(&[]);
-    let options = named(&folder.line("--help").clean().out);
+    let folder = Folder::new(&[("part.msh", ""), ("other.msh", "")]);
+    let help = folder.line("--help").clean().out;
+    let options = named(&help);
     assert!(options.len() > 35, "{options:?}");
+    let words = offered(&folder, &["gpu-smooth", "part.msh", "out.msh", "--"]);
+    // The help also mentions options of other commands, but never at the start of a line.
+    let begins_line = |line: &str| {
+        let mut words = line.split_whitespace().take(2).map(|word| word.trim_matches(','));
+        let option = words.find(|word| word.starts_with("--"))?;
+        option.split(['[', '=']).next().map(str::to_owned)
+    };
+    let of_lines: Vec<_> = help
+        .lines()
+        .filter(|line| line.trim_start().starts_with('-'))
+        .filter_map(begins_line)
+        .collect();
+    assert!(of_lines.len() > 35, "{of_lines:?}");
+    for option in &of_lines {
+        assert!(words.contains(option), "{option} is not completed: {words:?}");
+    }
+    for command in ["quality", "groups", "compare", "convert", "bench"] {
+        let options = named(&folder.line(&format!("{command} --help")).clean().out);
+        let words = offered(&folder, &["gpu-smooth", command, "part.msh", "--"]);
+        let own = options.iter().filter(|option| words.contains(option)).count();
+        assert!(own >= 3, "{command}: {words:?}");
+        assert!(offered(&folder, &["gpu-smooth", &command[..4]]).contains(&command.to_owned()));
+        assert_eq!(offered(&folder, &["gpu-smooth", command, "oth"]), ["other.msh"], "{command}");
+    }
+    let metrics: Vec<_> = Metric::ALL.iter().map(|metric| metric.name()).collect();
+    assert_eq!(offered(&folder, &["gpu-smooth", "part.msh", "out.msh", "--scheme", ""]), metrics);
+    let measures = Measure::ALL.iter().map(|measure| measure.name());
+    let words = offered(&folder, &["gpu-smooth", "quality", "--measure", ""]);
+    assert!(measures.into_iter().all(|name| words.iter().any(|word| word == name)), "{words:?}");
+    let engines = offered(&folder, &["gpu-smooth", "part.msh", "out.msh", "--engine", ""]);
+    assert_eq!(engines, ["auto", "gpu", "cpu"]);
+    assert_eq!(offered(&folder, &["gpu-smooth", "par"]), ["part.msh"]);
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = folder.line(&format!("completions {shell}")).clean().out;
-        for option in &options {
-            let name = option.trim_start_matches('-');
-            assert!(text.contains(name), "{shell}: {option}");
-        }
-        assert_holds(&text, &["quality", "compare"]);
-        if ["bash", "zsh", "fish"].contains(&shell) {
-            assert_holds(&text, &["multilevel"]);
-            let metrics = Metric::ALL.iter().map(|metric| metric.name());
-            let names: Vec<_> = metrics.chain(Measure::ALL.iter().map(|m| m.name())).collect();
-            assert_holds(&text, &names);
-        }
+        assert_holds(&text, &["GPU_SMOOTH_COMPLETE", "gpu-smooth"]);
     }
     let page = folder.line("man").clean().out;
     // Manual pages escape hyphens, so that they are not minus signs.
@@ -41,6 +76,60 @@ fn completions_and_manual_have_every_option() {
     let run = folder.line("completions tcsh");
     assert_eq!(run.code, Some(2));
     assert_holds(&run.err, &["'tcsh'", "bash"]);
+}
+
+/// Completes a command line in a real shell by the script of the program. The last word is completed.
+#[cfg(unix)]
+fn completed(folder: &Folder, shell: &str, words: &[&str]) -> Vec<String> {
+    let line = words.join(" ");
+    let script = match shell {
+        "bash" => format!(
+            "source <(gpu-smooth completions bash); COMP_WORDS=({line}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); COMP_TYPE=9; \
+             _clap_complete_gpu_smooth gpu-smooth \"${{COMP_WORDS[COMP_CWORD]}}\"; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+        ),
+        // The functions of zsh's interactive completion are replaced, so that the script runs without a terminal.
+        "zsh" => format!(
+            "compdef() {{ }}; source <(gpu-smooth completions zsh); \
+             _describe() {{ print -rl -- ${{${{(P)3}}%%:*}} }}; \
+             words=({line}); CURRENT=$#words; _clap_dynamic_completer_gpu_smooth"
+        ),
+        _ => format!("gpu-smooth completions fish | source; complete -C '{line}'"),
+    };
+    let options: &[&str] = match shell {
+        "bash" => &["--norc"],
+        "zsh" => &["-f"],
+        _ => &["--no-config"],
+    };
+    let program = std::path::Path::new(env!("CARGO_BIN_EXE_gpu-smooth")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let mut command = std::process::Command::new(shell);
+    command.args(options).args(["-c", &script]).current_dir(folder.path(""));
+    let output = command.env("PATH", path).env("HOME", folder.path("")).output();
+    let output = output.unwrap_or_else(|error| panic!("{shell}: {error}; tests/run installs it"));
+    let errors = String::from_utf8_lossy(&output.stderr);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(errors.is_empty(), "{shell} {line}: {errors}");
+    text.lines().map(|line| line.split('\t').next().unwrap_or_default().to_owned()).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn bash_zsh_and_fish_complete_commands_options_values_and_files() {
+    let folder = Folder::new(&[("part.msh", ""), ("other.txt", "")]);
+    for shell in ["bash", "zsh", "fish"] {
+        for (words, expected) in [
+            (&["gpu-smooth", "qual"][..], "quality"),
+            (&["gpu-smooth", "quality", "--me"], "--measure"),
+            (&["gpu-smooth", "quality", "part.msh", "--measure", "scaled"], "scaled-jacobian"),
+            (&["gpu-smooth", "part.msh", "out.msh", "--max-s"], "--max-sweeps"),
+            (&["gpu-smooth", "part.msh", "out.msh", "--scheme", "tmop-8"], "tmop-80"),
+            (&["gpu-smooth", "part.msh", "out.msh", "--engine", "g"], "gpu"),
+            (&["gpu-smooth", "convert", "par"], "part.msh"),
+            (&["gpu-smooth", "par"], "part.msh"),
+        ] {
+            assert_eq!(completed(&folder, shell, words), [expected], "{shell}: {words:?}");
+        }
+    }
 }
 
 #[test]
