@@ -11,6 +11,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "equal to imr for every triangle; kept apart because the paper times both",
     barrier: true,
     ideal: 1.0,
+    least: 1.0,
     scale_invariant: true,
     is_inverse_mean_ratio: true,
     quadratic: false,

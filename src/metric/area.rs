@@ -11,6 +11,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "evens out areas and pays no attention to shape: angles of a few degrees are common, bounded by the shape guard only",
     barrier: false,
     ideal: 0.0,
+    least: 0.0,
     scale_invariant: false,
     is_inverse_mean_ratio: false,
     quadratic: true,

@@ -12,6 +12,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "evens out edge lengths; knows no barrier, so flat triangles with three long edges are held off by the shape guard only",
     barrier: false,
     ideal: 1.0,
+    least: 1.0,
     scale_invariant: true,
     is_inverse_mean_ratio: false,
     quadratic: false,

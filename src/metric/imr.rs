@@ -11,6 +11,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "the all-round choice: well-shaped triangles whatever their size, and a barrier against inversion",
     barrier: true,
     ideal: 1.0,
+    least: 1.0,
     scale_invariant: true,
     is_inverse_mean_ratio: true,
     quadratic: false,

@@ -13,8 +13,11 @@ pub struct Properties {
     pub purpose: &'static str,
     /// Whether q grows to infinity as the area of a triangle goes to zero.
     pub barrier: bool,
-    /// Least value of q, the value of an equilateral triangle of mean area.
+    /// Value of q of an equilateral triangle of mean area.
     pub ideal: f64,
+    /// Least value of q of a single triangle. Less than `ideal` only if no mesh of a given area has a mean of q² below
+    /// ideal²: by RMS, where small triangles leave others larger.
+    pub least: f64,
     /// Whether q is independent of the size of a triangle.
     pub scale_invariant: bool,
     /// Whether q equals the inverse mean ratio.

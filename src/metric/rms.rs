@@ -11,6 +11,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "shortens edges and evens out sizes: each vertex moves to the mean of its neighbors (Laplacian smoothing that cannot invert); flattens triangles where sizes differ, as far as the shape guard lets it",
     barrier: false,
     ideal: 1.0,
+    least: 0.0,
     scale_invariant: false,
     is_inverse_mean_ratio: false,
     quadratic: true,

@@ -11,6 +11,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "good shapes and even sizes at once, with a barrier against inversion: for uniform meshes, not for graded ones",
     barrier: true,
     ideal: 0.0,
+    least: 0.0,
     scale_invariant: false,
     is_inverse_mean_ratio: false,
     quadratic: false,

@@ -12,6 +12,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "good shapes of about the sizes that targets ask for, with a barrier against inversion: sizes give way to shapes",
     barrier: true,
     ideal: 0.0,
+    least: 0.0,
     scale_invariant: false,
     is_inverse_mean_ratio: false,
     quadratic: false,

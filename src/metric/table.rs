@@ -335,7 +335,7 @@ impl Metric {
         self.properties().purpose
     }
 
-    /// Returns the least value of q, the value of an equilateral triangle of mean area.
+    /// Returns q of an equilateral triangle of mean area, the least value of q by all metrics but RMS.
     pub const fn ideal(self) -> f64 {
         self.properties().ideal
     }
@@ -366,6 +366,13 @@ impl Metric {
     /// [`Method::Multilevel`](crate::Method::Multilevel).
     pub const fn supports_multilevel(self) -> bool {
         self.properties().is_corrected
+    }
+
+    /// Returns the lower limit of f. With `has_targets`, target maps change the areas of triangles, so the sum of areas is
+    /// not that of the domain.
+    pub(crate) const fn least_objective(self, has_targets: bool) -> f64 {
+        let least = self.properties().least;
+        if has_targets { least * least } else { self.ideal_squared() }
     }
 
     /// Returns q² of the ideal triangle, which [`Self::excess`] subtracts.

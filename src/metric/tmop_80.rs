@@ -11,6 +11,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     purpose: "good shapes of the sizes that targets ask for, in equal parts, with a barrier against inversion: sizes weigh heavily",
     barrier: true,
     ideal: 0.0,
+    least: 0.0,
     scale_invariant: false,
     is_inverse_mean_ratio: false,
     quadratic: false,

@@ -193,7 +193,8 @@ impl Smoother<'_> {
         }
         let slid = stages.slid(gains, &points);
         let best = if gains { written } else { initial };
-        let possible = (best - base.ideal_squared()).max(0.0) / best.max(MIN_SCALE);
+        let least = base.least_objective(problem.targets().is_some());
+        let possible = (best - least).max(0.0) / best.max(MIN_SCALE);
         let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
         let improved = improving.map(|improving| {
             let positions = if gains { &judged } else { self.problem.positions() };
@@ -213,7 +214,7 @@ impl Smoother<'_> {
             opening_sweeps: ended.opening_sweeps,
             levels_left_out: ended.counts.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
-            // A decay that has just begun may promise more than the distance between f and its ideal.
+            // A decay that has just begun may promise more than the distance between f and its lower limit.
             remaining: ended.remaining.map(|left| left.min(possible)),
             held_back: ended.held_back,
             lost,

@@ -126,6 +126,27 @@ fn both_engines_end_at_the_same_minimum_and_hold_the_certificate() {
     }
 }
 
+/// The sum of the target triangles' areas is not fixed, so f by RMS can fall far below its value for ideal triangles.
+#[test]
+fn no_run_to_targets_takes_the_ideal_without_targets_for_a_limit() {
+    let lattice = support::perturb_random(&support::lattice(24, 28), 0.3, 2);
+    let sizes: Vec<f64> = lattice.points.iter().map(|[x, _]| 0.3 + 0.1 * x).collect();
+    for targets in [Targets::sizes(&sizes).unwrap(), swirling(&lattice)] {
+        let smoother = with_targets(&lattice, &targets);
+        for metric in [Metric::Rms, Metric::Imr, Metric::ShapeSize, Metric::SoftSize] {
+            let f = |method| {
+                let options = Options { scheme: metric.into(), method, ..Options::default() };
+                let outcome = run(&smoother, &options, &Backend::Cpu);
+                (smoother.f(metric, &outcome.points).unwrap(), outcome)
+            };
+            let (relaxed, _) = f(Method::RELAXED);
+            let (corrected, outcome) = f(Method::Multilevel);
+            let share = corrected / relaxed - 1.0;
+            assert!(share < 1e-5, "{metric}: {corrected} for {relaxed}, {} sweeps", outcome.sweeps);
+        }
+    }
+}
+
 /// Returns half the logarithm of the mean area of the triangles at each vertex, the logarithm of a size.
 fn sizes(mesh: &Mesh) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];

@@ -14,7 +14,7 @@ use crate::run::plan::Plan;
 use crate::run::stop::{MIN_SCALE, NOISE};
 use crate::run::sweep_params::SweepParams;
 
-/// Relative decrease of the excess of f over its ideal value by one sweep alone, below which corrections begin.
+/// Relative decrease of the excess of f over its lower limit by one sweep alone, below which corrections begin.
 /// Earlier, a few bad triangles would force every correction to be short.
 const SWEEPS_PAY: f64 = 0.1;
 /// Replaces [`SWEEPS_PAY`] after [`MANY_SWEEPS`] sweeps alone. On a mesh whose ideal can be reached, each sweep may
@@ -125,8 +125,8 @@ impl Corrections {
             _ => SWEEPS_PAY,
         };
         let pays = 1.0 - (1.0 - share).powi(period as i32);
-        let gain = last - (f - self.metric().ideal_squared());
-        // The two sides are equal if f has its ideal value.
+        let gain = last - (f - self.least_objective());
+        // The two sides are equal if f has its least value.
         if done >= until.max(period) && gain <= pays * last {
             if self.attempts == 0 {
                 self.alternated = done as u32;

@@ -63,11 +63,11 @@ impl Corrections {
                 (None, false) => None,
             });
         }
-        // f cannot fall below its ideal value, so near the ideal the distance is known without an estimate.
+        // f cannot fall below its lower limit, so near the limit the distance is known without an estimate.
         let f = history.last();
-        let above_ideal = (f - self.metric().ideal_squared()) / f.max(MIN_SCALE);
+        let above_least = (f - self.least_objective()) / f.max(MIN_SCALE);
         let asked = history.rule().tolerance;
-        let bound = Some(above_ideal.max(NOISE))
+        let bound = Some(above_least.max(NOISE))
             .filter(|&most| asked > 0.0 && most <= asked && f.is_finite());
         of_decay = of_decay.or(bound.filter(|_| target.is_none()).map(|_| Stop::Converged));
         let remaining = remaining.map(|left| left + self.above());

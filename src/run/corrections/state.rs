@@ -163,8 +163,13 @@ impl Corrections {
         self.problem = problem.clone();
     }
 
-    /// Returns the excess of the base objective over its ideal value, at an index in the history.
+    /// Returns the lower limit of f.
+    pub(super) fn least_objective(&self) -> f64 {
+        self.metric().least_objective(self.problem.targets().is_some())
+    }
+
+    /// Returns the excess of f over its lower limit, at an index in the history.
     pub(super) fn excess(&self, history: &History, evaluation: usize) -> f64 {
-        history.f()[evaluation] - self.metric().ideal_squared()
+        history.f()[evaluation] - self.least_objective()
     }
 }
