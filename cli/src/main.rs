@@ -20,7 +20,7 @@ use std::process::ExitCode;
 use args::{Cli, Command, LogForm, SmoothArgs};
 use commands::{adapters, batch, bench, compare, convert, groups, metrics, quality, shell, smooth};
 use error::CliError;
-use request::{Meshes, SmoothRequest};
+use request::{Meshes, SmoothRequest, mistyped};
 use terminal::{Verbosity, interrupt, panics, tell};
 
 #[cfg(fuzzing)]
@@ -62,7 +62,10 @@ fn run() -> ExitCode {
 fn smooth_meshes(args: SmoothArgs, verbosity: Verbosity) -> Result<(), CliError> {
     let request = SmoothRequest::new(args)?;
     match &request.meshes {
-        Meshes::One { input, output } => smooth::run(&request, input, output, verbosity),
+        Meshes::One { input, output } => {
+            mistyped::check(input)?;
+            smooth::run(&request, input, output, verbosity)
+        }
         Meshes::Many(meshes) => batch::run(&request, meshes, verbosity),
     }
 }

@@ -4,6 +4,7 @@
 pub(crate) mod checks;
 mod command_line;
 mod conflicts;
+pub(crate) mod mistyped;
 mod movable;
 mod outputs;
 mod picture;

@@ -200,7 +200,8 @@ fn several_meshes_stand_in_one_table() {
     let csv = folder.line("quality in a-long-name-of-a-mesh --csv").clean().out;
     assert_eq!(csv.lines().count(), 1 + 2 * Measure::ALL.len());
     let run = folder.line("quality in none");
-    assert_eq!((run.code, run.out.as_str()), (Some(1), ""));
+    assert_eq!(run.code, Some(1));
+    assert!(run.out.starts_with("in: Triangle"), "{}", run.out);
     assert_holds(&run.err, &["none: "]);
 }
 
@@ -326,5 +327,29 @@ fn on_a_terminal_bars_are_of_blocks_unless_it_is_dumb() {
         let text = String::from_utf8(output.stdout).unwrap();
         assert_holds(&text, &["min-angle"]);
         assert_eq!((text.contains('█'), text.is_ascii()), (blocks, !blocks), "{text}");
+    }
+}
+
+#[test]
+fn a_mesh_that_cannot_be_read_does_not_hide_the_others() {
+    let folder = small();
+    fs::write(folder.path("broken.su2"), "NDIME= 3\n").unwrap();
+    let run = folder.line("quality none.msh in.node broken.su2");
+    assert_eq!(run.code, Some(1));
+    assert_holds(&run.out, &["in.node: Triangle", "160 triangles"]);
+    assert_holds(&run.err, &["error: none.msh: ", "error: broken.su2"]);
+    assert_eq!(folder.line("quality none.msh broken.su2").out, "");
+}
+
+#[test]
+fn a_mistyped_command_is_told_from_a_missing_mesh() {
+    let folder = small();
+    for (line, name) in
+        [("qualtiy in.node", "quality"), ("comvert in.node", "convert"), ("in.nod x", "")]
+    {
+        let run = folder.line(line);
+        let remedy = format!("There is a command `{name}`");
+        assert_eq!(run.err.contains(&remedy), !name.is_empty(), "{line}: {}", run.err);
+        assert_ne!(run.code, Some(0), "{line}");
     }
 }

@@ -17,13 +17,27 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     let style = Style::of_terminal(args.ascii);
     let qualities =
         args.meshes.iter().map(|path| MeshQuality::of(path, args, outputs.picture.as_ref()));
-    let qualities = qualities.collect::<Result<Vec<_>, _>>()?;
-    if args.json {
+    // A mesh that cannot be read must not hide the others.
+    let (mut measured, mut errors) = (Vec::new(), Vec::new());
+    for quality in qualities {
+        match quality {
+            Ok(quality) => measured.push(quality),
+            Err(error) => errors.push(error),
+        }
+    }
+    let qualities = measured;
+    if qualities.is_empty() {
+        // Without any mesh, there is nothing to print.
+    } else if args.json {
         tell::say(&format!("{:#}", json::json(&qualities)?));
     } else if args.csv {
         tell::say(&json::csv(&qualities));
     } else {
         tell::say(&text::text(&qualities, &style));
+    }
+    if let Some(last) = errors.pop() {
+        errors.iter().for_each(tell::error);
+        return Err(last);
     }
     let mut violations = qualities.iter().flat_map(|quality| violations(quality, &style));
     match violations.next() {
