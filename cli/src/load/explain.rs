@@ -168,7 +168,9 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                 return CliError::input(format!(
                     "{path}: {axis} of all vertices is {value}, so that every triangle is flat in the plane of x and y, in which meshes are smoothed"
                 ))
-                .with_remedy("Turn the mesh into that plane");
+                .with_remedy(
+                    "Turn the mesh into the plane of x and y, or add --z coordinate if z is a coordinate",
+                );
             }
             let is_across = are_across(file, triangles);
             if !is_across && let Some(triangle) = closed_part(file) {

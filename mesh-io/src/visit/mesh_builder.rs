@@ -39,6 +39,7 @@ pub(crate) fn parse_by(
         file_index,
     } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
+    let has_z = assembler.has_z;
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
     let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
@@ -80,6 +81,7 @@ pub(crate) fn parse_by(
         data,
         has_parameters,
         has_centers,
+        has_z,
     })
 }
 
@@ -104,6 +106,8 @@ struct MeshBuilder {
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
     has_centers: bool,
+    /// Whether third coordinates differ.
+    has_z: bool,
     /// Name of the file's list of vertices in messages.
     vertices_of: &'static str,
     /// Number of nodes on points and curves of the model.
@@ -222,6 +226,11 @@ impl MeshVisitor for MeshBuilder {
     fn center_array(&mut self, _: &[u8], _: usize) -> bool {
         self.has_centers = true;
         false
+    }
+
+    fn z_array(&mut self, name: &[u8]) -> bool {
+        self.has_z |= name == b"z";
+        self.point_array(name, 1, true)
     }
 
     fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {
