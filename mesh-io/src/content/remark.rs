@@ -28,6 +28,8 @@ pub enum Remark {
         /// The name of the file's list of nodes, such as `$Nodes`.
         list: String,
     },
+    /// The file says that coordinates are longitude and latitude in degrees (UGRID).
+    Degrees,
     /// Any other fact, as a sentence.
     Text(String),
 }
@@ -50,6 +52,7 @@ impl fmt::Display for Remark {
             Remark::UnlistedPairs { count, list } => {
                 write!(f, "periodic pairs that name a node which {list} does not list: {count}")
             }
+            Remark::Degrees => f.write_str("coordinates are longitude and latitude in degrees"),
             Remark::Text(text) => f.write_str(text),
         }
     }
