@@ -54,8 +54,10 @@ impl<'s> MoveLimitStage<'s> {
     ) -> Self {
         let edges = mean_edges(topology, &mesh.points);
         let bound = |([x, y], edge): (&[f64; 2], &f64)| {
-            let rounding = 2.0 * stored.error(x.abs().max(y.abs()));
-            (most * edge * (1.0 - 1e-9) - rounding).max(0.0)
+            let bound = most * edge * (1.0 - 1e-9);
+            // Coordinates may become larger by the move, and so may their rounding errors.
+            let rounding = 2.0 * stored.error(x.abs().max(y.abs()) + bound);
+            (bound - rounding).max(0.0)
         };
         let all: Vec<f64> = mesh.points.iter().zip(&edges).map(bound).collect();
         let (_, scale) = problem.normalization();

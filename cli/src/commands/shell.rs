@@ -16,7 +16,7 @@ use crate::terminal::tell;
 pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
     let mut text = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "gpu-smooth", &mut text);
-    tell::say(String::from_utf8_lossy(&text).trim_end());
+    tell::say_data(String::from_utf8_lossy(&text).trim_end());
     Ok(())
 }
 
@@ -25,7 +25,7 @@ pub(crate) fn man(args: &ManArgs) -> Result<(), CliError> {
     let mut program = Cli::command();
     program.build();
     let Some(directory) = &args.directory else {
-        tell::say(String::from_utf8_lossy(&page(program)?).trim_end());
+        tell::say_data(String::from_utf8_lossy(&page(program)?).trim_end());
         return Ok(());
     };
     let refused = |error| {

@@ -19,9 +19,9 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
         args.meshes.iter().map(|path| MeshQuality::of(path, args, outputs.picture.as_ref()));
     let sheets = sheets.collect::<Result<Vec<_>, _>>()?;
     if args.json {
-        tell::say(&format!("{:#}", json::json(&sheets)?));
+        tell::say_data(&format!("{:#}", json::json(&sheets)?));
     } else if args.csv {
-        tell::say(&json::csv(&sheets));
+        tell::say_data(&json::csv(&sheets));
     } else {
         tell::say(&text::text(&sheets, &style));
     }
