@@ -93,6 +93,8 @@ pub enum MeshError {
         triangle: usize,
         /// Name of the metric that judges the run.
         metric: &'static str,
+        /// Names of the metrics that can judge all triangles of this mesh.
+        usable: Vec<&'static str>,
     },
     /// The target of a vertex is invalid; see [`Targets`](crate::Targets).
     #[error("vertex {vertex} has no target: {problem}")]

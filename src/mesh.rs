@@ -10,8 +10,9 @@ pub struct Mesh {
     pub points: Vec<[f64; 2]>,
     /// Vertex indices of each triangle, zero-based, in either winding.
     pub triangles: Vec<[u32; 3]>,
-    /// Interior vertices that must not move: vertices on constraint lines, between regions, or of elements that are not
-    /// triangles. Any order, repeats allowed. Boundary vertices never move and need not be listed.
+    /// Vertices that must not move: vertices on constraint lines, between regions, or of elements that are not triangles.
+    /// Any order, repeats allowed. Boundary vertices move only if they slide, and a listed boundary vertex does not slide
+    /// along the boundary; see [`Slide::lines`](crate::Slide::lines).
     pub fixed: Vec<u32>,
 }
 

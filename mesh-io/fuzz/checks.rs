@@ -96,7 +96,7 @@ fn use_file(file: &MeshFile) {
     if let Ok(fields) = file.point_fields(None) {
         assert!(fields.iter().all(|f| f.values().len() == vertices * f.components()));
     }
-    let _ = file.plane_parameters(file.points());
+    let _ = file.plane_parameters(file.points(), file.points());
     assert!(file.difference(file).is_none());
     write_moved(file);
     for (name, format) in Conversion::targets() {

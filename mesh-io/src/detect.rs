@@ -24,6 +24,9 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     if head.is_empty() {
         return Err(source.error("the file is empty", "Write the mesh again"));
     }
+    if let Some((problem, remedy)) = other_content(&source.bytes) {
+        return Err(source.error(problem, remedy));
+    }
     // The title of an ADCIRC grid may start like any other format.
     if ADCIRC.matches_extension(&source.path) {
         return reader_of(source, &ADCIRC);
@@ -57,6 +60,37 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
         Some(family) => reader_of(source, family),
         None => detect_by_rows(source),
     }
+}
+
+/// Returns the problem and the remedy for a file that a program stored in place of a mesh, or in an encoding that no
+/// format of meshes has; `None` for any other content. The extension of the file may be that of a mesh.
+fn other_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    let text = bytes.trim_ascii_start();
+    let starts =
+        |word: &[u8]| text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word));
+    if starts(b"version https://git-lfs.github.com/spec/") {
+        return Some(("a pointer of Git LFS, not the mesh itself", "Fetch the mesh: git lfs pull"));
+    }
+    if starts(b"<!doctype html") || starts(b"<html") {
+        return Some((
+            "an HTML page, not a mesh",
+            "Download the mesh again, by the address of the file instead of that of a page about the file",
+        ));
+    }
+    // Without a byte-order mark, every second byte of a text in the Latin alphabet is zero.
+    let is_utf16 = |zero: usize| {
+        let pairs = bytes[..bytes.len().min(64)].as_chunks::<2>().0;
+        let is_letter =
+            |pair: &[u8; 2]| pair[zero] == 0 && matches!(pair[1 - zero], 9..=13 | 32..=126);
+        let is_text = |pairs: &[[u8; 2]]| pairs.len() >= 3 && pairs.iter().all(is_letter);
+        let mark = if zero == 1 { [0xFF, 0xFE] } else { [0xFE, 0xFF] };
+        match pairs {
+            [first, rest @ ..] if *first == mark => is_text(&rest[..rest.len().min(4)]),
+            _ => is_text(pairs),
+        }
+    };
+    (is_utf16(0) || is_utf16(1))
+        .then_some(("a text in UTF-16", "Convert it to UTF-8: iconv -f UTF-16 -t UTF-8 IN > OUT"))
 }
 
 /// Detects the format of a file of plain numbers by the counts of numbers in its first rows.

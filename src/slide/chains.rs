@@ -40,6 +40,9 @@ pub(crate) fn chains(
     };
     let partners = Partners::new(&slide.periodic, points, shortest);
     let mut held = slide.held.clone();
+    // A fixed vertex slides along given lines only.
+    let is_on_lines = |&v: &u32| edges.at(v).iter().all(|edge| edges.is_of_lines(edge));
+    held.extend(topology.fixed_on_boundary().iter().copied().filter(|v| !is_on_lines(v)));
     held.sort_unstable();
     // The turn of the curve at a vertex. `None` unless exactly one curve passes through the vertex.
     let turn = |v: u32| match edges.at(v) {
@@ -101,12 +104,12 @@ pub(crate) fn chains(
             chains.push(Chain { vertices, is_closed, straight, image: None });
         }
     };
-    for &(v, next) in edges.0.iter().filter(|&&(v, _)| is_corner(v)) {
+    for &(v, next) in edges.all.iter().filter(|&&(v, _)| is_corner(v)) {
         if !is_corner(next) && !walked[next as usize] {
             add(v, next, &mut walked);
         }
     }
-    for &(v, next) in &edges.0 {
+    for &(v, next) in &edges.all {
         if !is_corner(v) && !walked[v as usize] {
             walked[v as usize] = true;
             add(v, next, &mut walked);
@@ -186,7 +189,11 @@ fn turn_between(a: DVec2, v: DVec2, b: DVec2) -> Turn {
 }
 
 /// Edges of curves as (start, end), in both directions, in ascending order.
-struct Edges(Vec<(u32, u32)>);
+struct Edges {
+    all: Vec<(u32, u32)>,
+    /// The edges of the given lines, which may also be edges of the boundary.
+    of_lines: Vec<(u32, u32)>,
+}
 
 impl Edges {
     fn of(topology: &Topology<'_>, slide: &Slide) -> Self {
@@ -197,17 +204,25 @@ impl Edges {
         let is_held = |v: u32| !topology.free()[v as usize];
         let stays = |&[a, b]: &[u32; 2]| is_held(a) && is_held(b);
         let lines = slide.lines.iter().copied().filter(|line| stays(line) && is_edge(line));
-        let all = topology.boundary_edges().into_iter().chain(lines);
-        let mut edges: Vec<(u32, u32)> = all.flat_map(|[a, b]| [(a, b), (b, a)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        Self(edges)
+        let both = |edges: &mut dyn Iterator<Item = [u32; 2]>| {
+            let mut edges: Vec<_> = edges.flat_map(|[a, b]| [(a, b), (b, a)]).collect();
+            edges.sort_unstable();
+            edges.dedup();
+            edges
+        };
+        let of_lines = both(&mut lines.into_iter());
+        let all = topology.boundary_edges().into_iter();
+        Self { all: both(&mut all.chain(of_lines.iter().map(|&(a, b)| [a, b]))), of_lines }
+    }
+
+    fn is_of_lines(&self, edge: &(u32, u32)) -> bool {
+        self.of_lines.binary_search(edge).is_ok()
     }
 
     /// Returns the edges that start at a vertex.
     fn at(&self, v: u32) -> &[(u32, u32)] {
-        let start = self.0.partition_point(|&(from, _)| from < v);
-        let count = self.0[start..].iter().take_while(|&&(from, _)| from == v).count();
-        &self.0[start..start + count]
+        let start = self.all.partition_point(|&(from, _)| from < v);
+        let count = self.all[start..].iter().take_while(|&&(from, _)| from == v).count();
+        &self.all[start..start + count]
     }
 }

@@ -8,8 +8,8 @@ use crate::periodic::Periodic;
 /// [`Smoother::set_slide`](crate::Smoother::set_slide).
 ///
 /// Curves are chains of edges of the boundary and of [`lines`](Self::lines). Corners do not move. Corners are the ends
-/// of curves, vertices where more than two edges of curves meet, [`held`](Self::held) vertices, and vertices where a
-/// curve turns by more than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight
+/// of curves, vertices where more than two edges of curves meet, [`held`](Self::held) vertices, boundary vertices in
+/// [`Mesh::fixed`](crate::Mesh::fixed) with a boundary edge that `lines` lacks, and vertices where a curve turns by more than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight
 /// runs stay straight. Elsewhere, vertices move along a piecewise cubic through the given positions of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
@@ -19,7 +19,8 @@ pub struct Slide {
     /// between given vertices, and of a given vertex from the lines between moved vertices. `None` for a tenth of the
     /// local edge length.
     pub hausdorff: Option<f64>,
-    /// Edges of curves besides the boundary: between regions, or on lines inside a region. Pairs that are not edges of
+    /// Edges of curves: between regions, or on lines inside a region. Vertices in [`Mesh::fixed`](crate::Mesh::fixed)
+    /// slide only along these edges, other boundary vertices along the boundary too. Pairs that are not edges of
     /// triangles are ignored, and so are edges with a free vertex.
     pub lines: Vec<[u32; 2]>,
     /// Fixed vertices that do not slide, in any order. Repeats are allowed.

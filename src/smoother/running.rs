@@ -42,11 +42,15 @@ impl Smoother<'_> {
             .map(|from| resume::check(&about, from, &self.problem).map(|()| from))
             .transpose()?;
         let base = options.scheme.base();
-        let initial = self.objective(base, self.problem.positions());
-        if !initial.is_finite() || self.is_beyond_precision(base, initial) {
+        let objective = |metric| self.objective(metric, self.problem.positions());
+        let is_usable = |metric, f: f64| f.is_finite() && !self.is_beyond_precision(metric, f);
+        let initial = objective(base);
+        if !is_usable(base, initial) {
             let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
-            let metric = base.name();
-            return Err(MeshError::BeyondPrecision { triangle, metric }.into());
+            let usable =
+                Metric::ALL.iter().copied().filter(|&metric| is_usable(metric, objective(metric)));
+            let (metric, usable) = (base.name(), usable.map(Metric::name).collect());
+            return Err(MeshError::BeyondPrecision { triangle, metric, usable }.into());
         }
         let known = resumed.and_then(|resumed| resumed.about.goal.clone());
         let goal = match (options.stopping.goal(), known) {
@@ -172,8 +176,9 @@ impl Smoother<'_> {
         let mut returned = self.certify(&mut points)?;
         // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
         let mut low = usize::from(options.keep_altitude);
+        let guard = if low > 0 { self.final_guard(options) } else { f64::INFINITY };
         while low > 0 {
-            low = altitude::restore(&self.topology, &self.mesh.points, &mut points);
+            low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
             returned += low + self.certify(&mut points)?;
         }
         let judged = self.problem.normalized(&points, ended.positions);
@@ -181,6 +186,7 @@ impl Smoother<'_> {
         let problem = &problem;
         let written = base.ideal_squared() + mean_excess(base, problem, &judged);
         let gains = initial - written > NOISE * initial + ROUNDING
+            && self.is_lower(base, &points)?
             || improving.as_ref().is_some_and(|improving| improving.is_better(problem, &judged));
         // In a smaller gain, the errors of f on a device would be a considerable share.
         let lost = match initial - swept > 100.0 * JITTER * initial {
@@ -226,6 +232,29 @@ impl Smoother<'_> {
             device_fault: ended.fault,
             smooth: Duration::ZERO,
         })
+    }
+
+    /// Returns whether f by a metric, with the areas of the vertices at `points`, is lower than f of the mesh. A run
+    /// divides areas by the mean area at its start, and sliding vertices change the mean area. Areas that are errors of
+    /// rounding depend on the unit of positions too. With targets, sizes are absolute, and the result is true.
+    fn is_lower(&self, metric: Metric, points: &[[f64; 2]]) -> Result<bool, MeshError> {
+        let is_exact = self.sliding.is_none() && metric.properties().barrier;
+        if is_exact || self.problem.targets().is_some() || self.field.is_some() {
+            return Ok(true);
+        }
+        let f = |points| Ok(Quality::of(points, &self.topology)?.f(metric));
+        Ok(f(points)? < f(&self.mesh.points)?)
+    }
+
+    /// Returns the largest inverse mean ratio that the guard of a run allows; infinite without a guard, and with
+    /// targets, by which the guard is no property of the triangles alone.
+    fn final_guard(&self, options: &Options) -> f64 {
+        if self.problem.targets().is_some() {
+            return f64::INFINITY;
+        }
+        let mut plan = Plan::new(options);
+        set_guards(&mut plan, options.guard, &self.problem, self.problem.positions());
+        plan.base_step(1.0).shape_guard
     }
 
     /// Returns the outcome of a run that was canceled before its first sweep.

@@ -18,6 +18,8 @@ use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
 pub struct Topology<'m> {
     triangles: Cow<'m, [[u32; 3]]>,
     free: Vec<bool>,
+    /// Boundary vertices that [`Mesh::fixed`] lists, ascending.
+    fixed_on_boundary: Vec<u32>,
     /// The triangles at each vertex. Empty after [`Self::forget_stars`], until [`Self::stars`] computes them again.
     stars: OnceLock<Groups>,
 }
@@ -65,16 +67,21 @@ impl<'m> Topology<'m> {
                 close(&wound, &mut stars, &mut free);
                 Cow::Owned(wound)
             };
+        let is_on_boundary = |v: &u32| !free[*v as usize];
+        let mut fixed_on_boundary: Vec<u32> =
+            fixed.iter().copied().filter(is_on_boundary).collect();
+        fixed_on_boundary.sort_unstable();
         for &v in fixed {
             free[v as usize] = false;
         }
-        Ok(Self { triangles, free, stars: stars.into() })
+        Ok(Self { triangles, free, fixed_on_boundary, stars: stars.into() })
     }
 
     /// Copies the triangles if they are borrowed, so that the topology no longer borrows the mesh.
     pub fn into_owned(self) -> Topology<'static> {
-        let Self { triangles, free, stars } = self;
-        Topology { triangles: Cow::Owned(triangles.into_owned()), free, stars }
+        let Self { triangles, free, fixed_on_boundary, stars } = self;
+        let triangles = Cow::Owned(triangles.into_owned());
+        Topology { triangles, free, fixed_on_boundary, stars }
     }
 
     /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, some vertex is free, and
@@ -149,6 +156,11 @@ impl<'m> Topology<'m> {
             Some(_) => self.stars().of(vertex as usize),
             None => &[],
         }
+    }
+
+    /// Returns the boundary vertices that [`Mesh::fixed`] lists, ascending.
+    pub(crate) fn fixed_on_boundary(&self) -> &[u32] {
+        &self.fixed_on_boundary
     }
 
     /// Returns the triangles at each vertex, computed if [`Self::forget_stars`] has freed them.

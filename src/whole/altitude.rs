@@ -8,6 +8,8 @@ use glam::DVec2;
 use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::altitude;
+use crate::metric::Corner;
+use crate::patch::is_kept;
 use crate::run::Stop;
 use crate::run::records::{Reader, Writer};
 use crate::topology::Topology;
@@ -31,23 +33,25 @@ pub(crate) fn least_of(problem: &Problem) -> f64 {
     least(problem.triangles(), |v| problem.positions()[v as usize])
 }
 
-/// Repeats passes until no triangle below `floor` has a moved vertex. The first `halved` passes halve the moves of the
-/// vertices of triangles below `floor`; later passes undo the moves. Returns every vertex whose move was shortened.
+/// Returns whether the altitude of a triangle is below `floor`. An altitude of NaN counts as below.
+fn is_low(t: &[u32; 3], points: &[DVec2], floor: f64) -> bool {
+    let altitude = altitude(t.map(|v| points[v as usize]));
+    altitude.partial_cmp(&floor).is_none_or(|order| order == Ordering::Less)
+}
+
+/// Repeats passes until no triangle for which `is_bad` is true has a moved vertex. The first `halved` passes halve the
+/// moves of the vertices of these triangles; later passes undo the moves. Returns every vertex whose move was shortened.
 fn bring_back(
     triangles: &[[u32; 3]],
     before: &[DVec2],
     points: &mut [DVec2],
-    floor: f64,
+    is_bad: impl Fn(&[u32; 3], &[DVec2]) -> bool,
     mut halved: u32,
 ) -> Vec<u32> {
     let mut returned = Vec::new();
     loop {
-        // An altitude of NaN counts as below the floor.
-        let is_low = |t: &&[u32; 3]| {
-            let altitude = altitude(t.map(|v| points[v as usize]));
-            altitude.partial_cmp(&floor).is_none_or(|order| order == Ordering::Less)
-        };
-        let mut low: Vec<u32> = triangles.iter().filter(is_low).flatten().copied().collect();
+        let is_now_bad = |t: &&[u32; 3]| is_bad(t, points);
+        let mut low: Vec<u32> = triangles.iter().filter(is_now_bad).flatten().copied().collect();
         low.sort_unstable();
         low.dedup();
         low.retain(|&v| points[v as usize] != before[v as usize]);
@@ -66,16 +70,32 @@ fn bring_back(
 }
 
 /// Moves vertices of a result back until no altitude is below the smallest altitude of the given mesh, for points as
-/// they are written. Returns the number of vertices moved back.
+/// they are written. If a vertex goes back, so do the vertices of each triangle whose inverse mean ratio is above
+/// `guard` and larger than before. Returns the number of vertices moved back.
 pub(crate) fn restore(
     topology: &Topology<'_>,
     before: &[[f64; 2]],
     points: &mut [[f64; 2]],
+    guard: f64,
 ) -> usize {
     let vectors = |points: &[[f64; 2]]| points.iter().map(|&p| p.into()).collect::<Vec<DVec2>>();
     let (old, mut new) = (vectors(before), vectors(points));
     let floor = least(topology.triangles(), |v| old[v as usize]);
-    let returned = bring_back(topology.triangles(), &old, &mut new, floor, 0);
+    let triangles = topology.triangles();
+    let low = |t: &[u32; 3], at: &[DVec2]| is_low(t, at, floor);
+    let mut returned = bring_back(triangles, &old, &mut new, low, 0);
+    if !returned.is_empty() && guard.is_finite() {
+        let corner = |t: &[u32; 3], at: &[DVec2]| {
+            let [p, q, r] = t.map(|v| at[v as usize]);
+            Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 }
+        };
+        let is_bad = |t: &[u32; 3], at: &[DVec2]| {
+            is_low(t, at, floor) || !is_kept(&corner(t, &old), &corner(t, at), guard)
+        };
+        returned.extend(bring_back(triangles, &old, &mut new, is_bad, 0));
+        returned.sort_unstable();
+        returned.dedup();
+    }
     for &v in &returned {
         points[v as usize] = before[v as usize];
     }
@@ -118,8 +138,19 @@ impl Stage for AltitudeStage<'_> {
         _: &dyn Fn(&[DVec2]) -> bool,
     ) -> Result<Worked, MeshError> {
         self.count = self.count.saturating_add(1);
+        let (guard, least) = (host.guard(), self.least);
         let Host { problem, before, positions, held, .. } = host;
-        let returned = bring_back(problem.triangles(), before, positions, self.least, MAX_HALVINGS);
+        let (triangles, before) = (problem.triangles(), &before[..]);
+        let low = |t: &[u32; 3], at: &[DVec2]| is_low(t, at, least);
+        let mut returned = bring_back(triangles, before, positions, low, MAX_HALVINGS);
+        if !returned.is_empty() && guard.is_finite() {
+            // Sweeps kept the guard with all vertices moved, but some vertices have gone back.
+            let corner = |t: &[u32; 3], at: &[DVec2]| problem.corner(t, |v: u32| at[v as usize]);
+            let is_bad = |t: &[u32; 3], at: &[DVec2]| {
+                is_low(t, at, least) || !is_kept(&corner(t, before), &corner(t, at), guard)
+            };
+            returned.extend(bring_back(triangles, before, positions, is_bad, MAX_HALVINGS));
+        }
         let mut is_settled = true;
         for v in returned {
             if let Some(held) = held.get_mut(v as usize) {

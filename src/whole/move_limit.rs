@@ -54,8 +54,13 @@ impl<'s> MoveLimitStage<'s> {
     ) -> Self {
         let edges = mean_edges(topology, &mesh.points);
         let bound = |([x, y], edge): (&[f64; 2], &f64)| {
-            let rounding = 2.0 * stored.error(x.abs().max(y.abs()));
-            (most * edge * (1.0 - 1e-9) - rounding).max(0.0)
+            let (full, size) = (most * edge, x.abs().max(y.abs()));
+            let rounding = 2.0 * stored.error(size);
+            // Coordinates may become larger by the move, and so may their rounding errors. The share 1e-9 covers the
+            // growth in double precision.
+            let growth = 2.0 * stored.error(size + full) - rounding;
+            let rounding = rounding + (growth - 1e-9 * full).max(0.0);
+            (full * (1.0 - 1e-9) - rounding).max(0.0)
         };
         let all: Vec<f64> = mesh.points.iter().zip(&edges).map(bound).collect();
         let (_, scale) = problem.normalization();

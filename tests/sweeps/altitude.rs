@@ -1,9 +1,10 @@
 //! Runs with `keep_altitude`, which preserves the smallest altitude of a mesh.
 
+use crate::random::scattered;
 use crate::{backends, history, name, plate, run, support};
 use gpu_smooth::{
-    Mesh, Metric, OptionError, Options, Slide, SmoothError, Smoother, Stop, TargetField, Targets,
-    measure::Change, options::Feature, precision::Precision, topology,
+    Backend, Guard, Mesh, Metric, OptionError, Options, Quality, Slide, SmoothError, Smoother,
+    Stop, TargetField, Targets, measure::Change, options::Feature, precision::Precision, topology,
 };
 
 /// Makes a square of cells that are all cut along one diagonal. Rows become lower toward one side, against which
@@ -91,5 +92,31 @@ fn the_least_altitude_is_kept_where_vertices_slide() {
         assert!(f[f.len() - 1] < f[0], "{label}: {f:?}");
         let bad = topology::infeasible(&kept.points, smoother.topology().triangles()).unwrap();
         assert!(bad.is_empty(), "{label}");
+    }
+}
+
+/// Vertices that go back to keep an altitude may leave a neighboring triangle worse than both before and after.
+#[test]
+fn the_worst_triangle_does_not_get_worse_where_altitudes_are_kept_too() {
+    for seed in 5700..6000 {
+        let mut rng = support::SplitMix64::new(seed);
+        let mut mesh = scattered(&mut rng);
+        let factor = rng.range(0.05, 1.0);
+        mesh.points.iter_mut().for_each(|point| point[1] *= factor);
+        let Ok(smoother) = Smoother::new(&mesh) else { continue };
+        if smoother.topology().check_smoothable(&mesh.points).is_err() {
+            continue;
+        }
+        for (metric, guard) in [(Metric::Imr, Guard::Worst), (Metric::Area, Guard::ByMetric)] {
+            let options =
+                Options { scheme: metric.into(), guard, keep_altitude: true, ..Options::default() };
+            // Some meshes are too flat for double precision.
+            let Ok(outcome) = smoother.run(&options).on(&Backend::Cpu).block() else { continue };
+            let [before, after] = [&mesh.points, &outcome.points].map(|points| {
+                let quality = Quality::of(points, smoother.topology()).unwrap();
+                quality.worst_imr
+            });
+            assert!(after <= before * (1.0 + 1e-12), "{metric}, mesh {seed}: {before} {after}");
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{backends, history, name, plate, run, support, with_points};
 use gpu_smooth::{
-    Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother, Stop, Topology,
+    Backend, Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother, Stop, Topology,
 };
 use std::f64::consts::TAU;
 
@@ -107,7 +107,8 @@ fn a_mesh_whose_objective_is_not_a_number_is_refused_with_its_worst_triangle() {
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
         let run = smoother.run(&Options::default()).on(backend).block();
-        let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, metric })) = run else {
+        let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, metric, .. })) = run
+        else {
             panic!("{:?} on the {}", run.map(|outcome| outcome.stop), name(backend))
         };
         assert_eq!((triangle < mesh.triangles.len(), metric), (true, "imr"));
@@ -224,5 +225,38 @@ fn the_gain_lost_to_rounding_is_reported() {
         let fine = fan(12, 1);
         let lost = run(&Smoother::new(&fine).unwrap(), &Options::default(), backend).lost;
         assert!(lost < 1e-5, "{lost} on the {}", name(backend));
+    }
+}
+
+/// Areas of triangles whose vertices lie on a line up to rounding are errors of rounding.
+#[test]
+fn f_of_a_mesh_on_a_line_does_not_rise() {
+    for seed in 0..200 {
+        let mut rng = support::SplitMix64::new(seed);
+        let slope = rng.range(0.1, 0.9);
+        let at = |x: f64, ulps: f64| [x, x * slope * (1.0 + ulps * f64::EPSILON)];
+        let points = vec![
+            at(0.103, 0.0),
+            at(0.7, -3.0),
+            at(1.31, 0.0),
+            at(0.77, 4.0),
+            at(0.2 + 0.9 * f64::from(seed as u32) / 200.0, 0.0),
+        ];
+        let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let Ok(smoother) = Smoother::new(&mesh) else { continue };
+        for metric in [Metric::Area, Metric::Rms] {
+            let options = Options { scheme: metric.into(), ..Options::default() };
+            let f =
+                |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(metric);
+            match smoother.run(&options).on(&Backend::Cpu).block() {
+                Ok(outcome) => {
+                    let [before, after] = [&mesh.points, &outcome.points].map(|points| f(points));
+                    assert!(after <= before, "{metric}, mesh {seed}: {before} {after}");
+                }
+                Err(SmoothError::Mesh(MeshError::BeyondPrecision { .. })) => {}
+                Err(error) => panic!("{error}"),
+            }
+        }
     }
 }

@@ -30,7 +30,7 @@ fn most_vertices() -> usize {
 
 /// Makes a Delaunay mesh of random points in a square, a disk or clusters. The number of vertices is at least one,
 /// uniform in the logarithm.
-fn scattered(rng: &mut SplitMix64) -> Mesh {
+pub(crate) fn scattered(rng: &mut SplitMix64) -> Mesh {
     let most = most_vertices() as f64;
     let count = decades(rng, 0.0, most.log10()).ceil() as usize;
     let kind = rng.below(3);

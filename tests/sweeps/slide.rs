@@ -110,6 +110,33 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     }
 }
 
+#[test]
+fn fixed_vertices_of_the_boundary_slide_along_given_lines_only() {
+    let (mut mesh, middle) = halves();
+    // Vertices inside the lower and the left side.
+    let (below, left) = ([3, 4], 26);
+    mesh.fixed.extend(below.iter().chain([&left]));
+    let with = |lines: &[[u32; 2]]| {
+        let lines = [&middle, lines].concat();
+        let slide = Slide { lines, ..Slide::default() };
+        let (smoother, count) = sliding(&mesh, &slide);
+        let outcome = run(&smoother, &Options::default(), &Backend::Cpu);
+        let moved = |v: u32| mesh.points[v as usize] != outcome.points[v as usize];
+        (count, [below[0], below[1], left].map(moved), outcome)
+    };
+    let (count, moved, outcome) = with(&[]);
+    assert_eq!((count, moved), (2 * 10 + 2 * 5 + 5 - 3, [false; 3]));
+    let slide = Slide { lines: middle.clone(), ..Slide::default() };
+    let topology = Topology::new(&mesh).unwrap();
+    let misplaced =
+        |points: &[[f64; 2]]| slide.misplaced(&topology, &mesh.points, points, Precision::Double);
+    assert!(misplaced(&outcome.points).is_empty());
+    let (count, moved, outcome) = with(&[[2, 3], [3, 4], [4, 5]]);
+    assert_eq!((count, moved), (2 * 10 + 2 * 5 + 5 - 1, [true, true, false]));
+    let found = misplaced(&outcome.points);
+    assert!(below.iter().all(|v| found.contains(v)), "{found:?}");
+}
+
 /// Makes a circle of 40 vertices around a center. The circle is a closed line without a corner.
 #[test]
 fn vertices_slide_around_a_circle() {
@@ -175,9 +202,10 @@ fn options_that_cannot_be_combined_with_sliding_are_refused() {
     let slide = Slide { held: vec![9999], ..Slide::default() };
     let error = smoother.set_slide(Some(&slide)).unwrap_err();
     assert!(matches!(error, SmoothError::Mesh(MeshError::IndexOutOfRange { .. })), "{error}");
+    // All vertices of the sides slide, except the fixed ends of the line between the halves.
     assert_eq!(
         smoother.set_slide(Some(&Slide { corner_angle: 0.0, ..Slide::default() })).unwrap(),
-        32
+        2 * 10 + 2 * 5
     );
     let searched = Stopping::Goal(Goal { fraction: 0.95, desired: None });
     for options in [
@@ -231,5 +259,24 @@ fn a_strip_slides_without_a_free_vertex() {
         smoother.set_slide(slide).unwrap();
         let error = smoother.run(&Options::default()).block().unwrap_err();
         assert!(matches!(error, SmoothError::Mesh(MeshError::NothingFree { vertices: 26 })));
+    }
+}
+
+/// The area of the mesh changes where vertices slide along curves, and metrics of sizes divide by the mean area.
+#[test]
+fn f_by_the_areas_of_the_result_does_not_rise_where_vertices_slide() {
+    for metric in [Metric::Rms, Metric::ShapeSize, Metric::Area] {
+        let mut mesh = worn();
+        for round in 0..4 {
+            let (smoother, _) = sliding(&mesh, &Slide::default());
+            let options = Options { scheme: metric.into(), ..Options::default() };
+            let outcome = run(&smoother, &options, &Backend::Cpu);
+            let f = |points: &[[f64; 2]]| {
+                gpu_smooth::Quality::of(points, smoother.topology()).unwrap().f(metric)
+            };
+            let [before, after] = [&mesh.points, &outcome.points].map(|points| f(points));
+            assert!(after <= before, "{metric}, round {round}: {before} {after}");
+            mesh.points = outcome.points;
+        }
     }
 }

@@ -30,6 +30,6 @@ pub(crate) use sliding::SlideArgs;
 pub(crate) use smooth::{
     DerivativesChoice, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice, SmoothArgs,
 };
-pub(crate) use surface::{SurfaceArg, SurfaceArgs};
+pub(crate) use surface::{SurfaceArg, SurfaceArgs, ZArg};
 pub(crate) use target::{Owner, Target, TargetArgs};
 pub(crate) use worst::{WorstArgs, WorstChoice};

@@ -15,6 +15,23 @@ pub(crate) struct SurfaceArgs {
         help_heading = "Target elements"
     )]
     pub(crate) surface: SurfaceArg,
+    /// Meaning of third coordinates that differ: a coordinate of a mesh that lies in any plane and is smoothed in it, or
+    /// data of a mesh in x and y, such as depths. A mesh on a curved surface is refused unless z is data. Files of SMS
+    /// 2dm, MIKE, ADCIRC, SCHISM, FVCOM, SELAFIN and UGRID have z as data
+    #[arg(
+        long,
+        value_enum,
+        default_value = "coordinate",
+        value_name = "MEANING",
+        help_heading = "Target elements"
+    )]
+    pub(crate) z: ZArg,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ZArg {
+    Coordinate,
+    Data,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -7,7 +7,7 @@ use crate::load::explain;
 use crate::load::streams::read;
 use crate::load::{LoadedMesh, lay_out};
 use crate::report::FileHash;
-use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest};
+use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest, ThirdCoordinate};
 use crate::run::proof::{self, MeshVersion, Proof};
 use crate::terminal::tell;
 use gpu_smooth::targets::Surface;
@@ -19,13 +19,14 @@ const LISTED: usize = 10;
 /// interpolated data.
 pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
     let (reading, surface) = (ReadRequest::from(&args.reading), Surface::from(&args.surface));
+    let z = ThirdCoordinate::of(&args.surface, &args.fields.interpolate);
     let movable = MovableRequest::from(args.moving);
     let slide = SlideRequest::of(args.sliding);
     let fields = FieldsRequest::from(args.fields);
     let mut before = read(&args.before, &reading)?;
     let mut after = read(&args.after, &reading)?;
-    let laid_out = lay_out(&mut before, surface)?;
-    before.lay_out_likewise(&mut after);
+    let laid_out = lay_out(&mut before, surface, z)?;
+    before.lay_out_likewise(&mut after)?;
     let after = after;
     let choice = movable.apply(&mut before)?;
     if choice.nothing_to_do.is_some() {

@@ -28,7 +28,7 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
             "groups": list,
             "data": file.source.data_names(),
         });
-        tell::say(&format!("{value:#}"));
+        tell::say_data(&format!("{value:#}"));
         return Ok(());
     }
     tell::say(&format!("{path}: {format}"));

@@ -35,7 +35,7 @@ pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
     if !matches!(written, Some(Ok(()))) {
         return Err(CliError::run(format!("there are no completions for {shell}")));
     }
-    tell::say(String::from_utf8_lossy(&text).trim_end());
+    tell::say_data(String::from_utf8_lossy(&text).trim_end());
     Ok(())
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn man(args: &ManArgs) -> Result<(), CliError> {
     let mut program = Cli::command();
     program.build();
     let Some(directory) = &args.directory else {
-        tell::say(String::from_utf8_lossy(&page(program)?).trim_end());
+        tell::say_data(String::from_utf8_lossy(&page(program)?).trim_end());
         return Ok(());
     };
     let refused = |error| {

@@ -168,7 +168,9 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                 return CliError::input(format!(
                     "{path}: {axis} of all vertices is {value}, so that every triangle is flat in the plane of x and y, in which meshes are smoothed"
                 ))
-                .with_remedy("Turn the mesh into that plane");
+                .with_remedy(
+                    "Turn the mesh into the plane of x and y, or add --z coordinate if z is a coordinate",
+                );
             }
             let is_across = are_across(file, triangles);
             if !is_across && let Some(triangle) = closed_part(file) {
@@ -243,16 +245,24 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             name(vertex)
         ))
         .with_remedy("Only meshes that lie flat are smoothed: separate the layers there"),
-        MeshError::BeyondPrecision { triangle, metric } => {
+        MeshError::BeyondPrecision { triangle, metric, ref usable } => {
+            let others = match &usable[..] {
+                [] => String::new(),
+                [one] => format!(". The metric {one} can judge this mesh: --scheme {one}"),
+                [first, ..] => format!(
+                    ". The metrics {} can judge this mesh: --scheme {first}",
+                    usable.join(", ")
+                ),
+            };
             let place = file.source.triangle_location(triangle);
             CliError::input(format!(
                 "{place}: triangle {} is too flat, or too small beside the others, for double precision: \
                  {metric} cannot judge it",
                 place.id
             ))
-            .with_remedy(
-                "Open it with --untangle if one of its vertices is free, correct it, or smooth by area or rms first",
-            )
+            .with_remedy(format!(
+                "Open it with --untangle if one of its vertices is free, or correct it{others}"
+            ))
         }
         MeshError::Target { vertex, problem } => {
             let vertex = vertex as u32;

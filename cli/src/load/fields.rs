@@ -7,9 +7,10 @@ use gpu_smooth::{Topology, interpolate::Interpolation};
 use mesh_io::PointField;
 
 /// The fields of vertex data that are interpolated at new positions.
+#[derive(Default)]
 pub(crate) struct InterpolatedFields {
-    /// The fields named by the user, then dependents: parameters of vertices on surfaces of a model, and centers of
-    /// elements.
+    /// The fields named by the user, then dependents: third coordinates, parameters of vertices on surfaces of a model,
+    /// and centers of elements.
     fields: Vec<PointField>,
     /// Number of fields named by the user, at the front of `fields`.
     data: usize,
@@ -24,12 +25,7 @@ impl FieldsRequest {
     /// Finds the fields of a file that `--interpolate` names.
     pub(crate) fn choose(&self, file: &LoadedMesh) -> Result<InterpolatedFields, CliError> {
         if self.names.is_empty() {
-            return Ok(InterpolatedFields {
-                fields: Vec::new(),
-                data: 0,
-                asked: false,
-                all: false,
-            });
+            return Ok(InterpolatedFields::default());
         }
         // A field's name may contain commas.
         let split = |text: &String| match file.source.data_names().contains(text) {
@@ -42,7 +38,12 @@ impl FieldsRequest {
         let mut fields = fields.map_err(|error| CliError::from(error).about("--interpolate"))?;
         if all {
             // Constant fields, such as a third coordinate of 0, need no interpolation.
+            let mut is_coordinate = file.plane().is_some();
             fields.retain(|field| {
+                // The first field with the name z has the third coordinates of a mesh in a plane.
+                if field.name() == "z" && std::mem::take(&mut is_coordinate) {
+                    return false;
+                }
                 let first = field.values().first();
                 field.values().iter().any(|value| Some(value) != first)
             });
@@ -83,6 +84,7 @@ impl InterpolatedFields {
             .data_names()
             .iter()
             .filter(|name| !taken.contains(&name.as_str()))
+            .filter(|name| *name != "z" || file.plane().is_none())
             .collect();
         let (verb, them) = match left[..] {
             [] => return None,
@@ -108,8 +110,8 @@ impl InterpolatedFields {
         }
     }
 
-    /// Adds the fields that follow from vertex positions, evaluated at `points`: parameters of vertices on plane
-    /// surfaces of a model, and centers of elements. Returns remarks on parameters and element positions that remain
+    /// Adds the fields that follow from vertex positions, evaluated at `points`: third coordinates of a mesh in a plane,
+    /// parameters of vertices on plane surfaces of a model, and centers of elements. Returns remarks on parameters and element positions that remain
     /// unchanged.
     pub(crate) fn add_dependents(
         &mut self,
@@ -117,8 +119,12 @@ impl InterpolatedFields {
         points: &[[f64; 2]],
     ) -> Result<Vec<String>, CliError> {
         let mut remarks = Vec::new();
+        if let Some(plane) = file.plane() {
+            self.fields.extend(plane.z_field(&file.source, points)?);
+        }
         if file.source.has_parameters() {
-            let (fields, others) = file.source.plane_parameters(&file.given(points))?;
+            let new = if file.plane().is_some() { points.into() } else { file.given(points) };
+            let (fields, others) = file.source.plane_parameters(file.positions(), &new)?;
             self.fields.extend(fields);
             let surfaces = if others == 1 { "1 surface" } else { &format!("{others} surfaces") };
             if others > 0 {

@@ -1,10 +1,13 @@
 //! A mesh file together with the mesh to smooth.
 
+use crate::error::CliError;
+use crate::load::plane::Plane;
 use gpu_smooth::{
-    Mesh, MeshError,
+    Mesh, MeshError, Topology,
     interpolate::Chart,
     precision::{Precision, Rounding},
     slide::Periodic,
+    topology::certify,
 };
 use mesh_io::{MeshFile, PointField, SourceLocation, WriteError};
 use std::borrow::Cow;
@@ -21,6 +24,8 @@ pub(crate) struct LoadedMesh {
     mesh: Mesh,
     /// The mesh with continued longitudes; `None` if no triangle crosses the date line or touches a pole.
     chart: Option<Chart>,
+    /// The plane of the mesh; `None` if all z are equal, or z is data.
+    plane: Option<Plane>,
     /// Vertices fixed only because they lie between regions, ascending. They are the last entries of `mesh.fixed`.
     interfaces: Vec<u32>,
     has_free_interfaces: bool,
@@ -40,7 +45,15 @@ impl LoadedMesh {
         fixed.extend_from_slice(&interfaces);
         let (points, triangles) = (source.points().to_vec(), source.triangles().to_vec());
         let mesh = Mesh { points, triangles, fixed };
-        Self { source, mesh, chart: None, interfaces, has_free_interfaces: false, anchored }
+        Self {
+            source,
+            mesh,
+            chart: None,
+            plane: None,
+            interfaces,
+            has_free_interfaces: false,
+            anchored,
+        }
     }
 
     /// Returns the paths of all files that were read.
@@ -58,9 +71,71 @@ impl LoadedMesh {
         self.chart.as_ref()
     }
 
-    /// Returns the precision with which the file stores coordinates.
+    /// Returns the plane of the mesh; `None` if all z are equal, or z is data.
+    pub(crate) fn plane(&self) -> Option<&Plane> {
+        self.plane.as_ref()
+    }
+
+    /// Returns the precision with which the file stores the coordinates of the mesh. Coordinates in a tilted plane are
+    /// not stored, so that a run does not round them.
     pub(crate) fn precision(&self) -> Precision {
-        precision(self.source.precision())
+        match self.plane().is_some_and(Plane::is_tilted) {
+            true => Precision::Double,
+            false => precision(self.source.precision()),
+        }
+    }
+
+    /// Returns the vertices of the file by which options select vertices: x and y, or positions in the plane of the
+    /// mesh.
+    pub(crate) fn positions(&self) -> &[[f64; 2]] {
+        self.plane().map_or(self.source.points(), Plane::points)
+    }
+
+    /// Lays the mesh out in the plane in which its vertices lie, unless all z are equal. Returns a remark on the plane.
+    ///
+    /// # Errors
+    /// Returns an error if the vertices do not lie in a plane.
+    pub(crate) fn lay_out_in_plane(&mut self) -> Result<Vec<String>, CliError> {
+        let plane = Plane::of(&self.source)?;
+        let remark = plane.as_ref().and_then(Plane::remark);
+        self.take_plane(plane);
+        Ok(remark.into_iter().collect())
+    }
+
+    fn take_plane(&mut self, plane: Option<Plane>) {
+        if let Some(plane) = &plane {
+            self.mesh.points = plane.points().to_vec();
+        }
+        self.plane = plane;
+    }
+
+    /// Sets the vertices of triangles back to `before` that are inverted once the positions in a tilted plane are
+    /// rounded to coordinates of the file.
+    pub(crate) fn certify_as_stored(
+        &self,
+        topology: &Topology<'_>,
+        before: &[[f64; 2]],
+        points: &mut [[f64; 2]],
+    ) -> Result<(), MeshError> {
+        let Some(plane) = self.plane().filter(|plane| plane.is_tilted()) else { return Ok(()) };
+        let stored = self.source.precision();
+        let bits = |point: [f64; 2]| point.map(f64::to_bits);
+        let old = plane.as_stored(before, stored);
+        loop {
+            let rounded = plane.as_stored(points, stored);
+            let mut certified = rounded.clone();
+            certify(topology, &old, &mut certified)?;
+            let mut is_done = true;
+            for (v, (rounded, certified)) in rounded.iter().zip(&certified).enumerate() {
+                if bits(*rounded) != bits(*certified) {
+                    points[v] = before[v];
+                    is_done = false;
+                }
+            }
+            if is_done {
+                return Ok(());
+            }
+        }
     }
 
     /// Interprets coordinates as longitude and latitude in degrees, and continues longitudes across the meridian at
@@ -77,13 +152,21 @@ impl LoadedMesh {
         Ok(())
     }
 
-    /// Continues the longitudes of `other`, a moved state of this mesh: each vertex is placed nearest to its position
-    /// in this mesh. Does nothing if this mesh has no chart, or if the numbers of vertices differ.
-    pub(crate) fn lay_out_likewise(&self, other: &mut LoadedMesh) {
-        let Some(chart) = self.chart() else { return };
+    /// Lays `other`, a moved state of this mesh, out in the plane of this mesh, or continues its longitudes: each
+    /// vertex is placed nearest to its position in this mesh. Does nothing if this mesh has no chart and no plane, or if
+    /// the numbers of vertices differ.
+    ///
+    /// # Errors
+    /// Returns an error if the third coordinates of `other` cannot be read.
+    pub(crate) fn lay_out_likewise(&self, other: &mut LoadedMesh) -> Result<(), CliError> {
+        if let Some(plane) = self.plane() {
+            other.take_plane(Some(plane.likewise(&other.source)?));
+        }
+        let Some(chart) = self.chart() else { return Ok(()) };
         if other.chart.is_none() && other.mesh.points.len() == chart.original().points.len() {
             other.take_chart(chart.moved(&other.mesh));
         }
+        Ok(())
     }
 
     fn take_chart(&mut self, chart: Chart) {
@@ -131,10 +214,16 @@ impl LoadedMesh {
         &self.anchored
     }
 
-    /// Returns the periodic pairs of the file.
+    /// Returns the periodic pairs of the file. Motions of files are motions in x and y, and are left out in other planes.
     pub(crate) fn periodic(&self) -> Vec<Periodic> {
         let pairs = self.source.constraints().periodic.iter();
-        pairs.map(|p| Periodic { pairs: p.pairs.clone(), motion: p.motion }).collect()
+        let motion = |motion| if self.is_in_xy() { motion } else { None };
+        pairs.map(|p| Periodic { pairs: p.pairs.clone(), motion: motion(p.motion) }).collect()
+    }
+
+    /// Returns whether the mesh lies in the plane of x and y.
+    pub(crate) fn is_in_xy(&self) -> bool {
+        self.plane().is_none_or(Plane::is_of_xy)
     }
 
     /// Fixes `vertices`, so that they neither move nor slide. The list may be unordered and have repeats.
@@ -215,8 +304,11 @@ impl LoadedMesh {
         }
     }
 
-    /// Converts points of the mesh to points of the file, without copies and with longitudes in the file's range.
+    /// Converts points of the mesh to x and y of the file, without copies and with longitudes in the file's range.
     pub(crate) fn given<'p>(&self, points: &'p [[f64; 2]]) -> Cow<'p, [[f64; 2]]> {
+        if let Some(plane) = self.plane().filter(|plane| !plane.is_of_xy()) {
+            return plane.in_space(points).iter().map(|&[x, y, _]| [x, y]).collect();
+        }
         match self.chart() {
             // The writer refuses a list of any other length.
             Some(chart) if points.len() == self.mesh.points.len() => chart.given(points).into(),

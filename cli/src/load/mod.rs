@@ -2,9 +2,11 @@
 
 pub(crate) mod explain;
 mod fields;
+mod frame;
 mod mesh;
 mod movable;
 pub(crate) mod overwrite;
+mod plane;
 pub(crate) mod remarks;
 mod slide;
 pub(crate) mod streams;

@@ -134,7 +134,7 @@ impl<'f> SelectionResolver<'f> {
             hold(format!("--fix-array {name}"), set.map(|(vertex, _)| vertex).collect());
         }
         for corners in &request.fix_box {
-            let vertices = select::vertices_in_box(file.source.points(), *corners);
+            let vertices = select::vertices_in_box(file.positions(), *corners);
             let [[x0, y0], [x1, y1]] = corners;
             hold(format!("--fix-box {x0},{y0},{x1},{y1}"), vertices);
         }

@@ -7,7 +7,9 @@ use crate::load::LoadedMesh;
 /// Returns the remarks on a mesh, one line each. If `slides` is true, no remark says that vertices between regions stay
 /// fixed.
 pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
-    let mut remarks: Vec<String> = file.source.remarks().iter().map(with_effect).collect();
+    // The effect of degrees depends on `--surface`.
+    let told = file.source.remarks().iter().filter(|remark| **remark != Remark::Degrees);
+    let mut remarks: Vec<String> = told.map(with_effect).collect();
     match file.interface_vertices().len() {
         0 => {}
         _ if slides => {}
@@ -42,12 +44,24 @@ fn with_effect(remark: &Remark) -> String {
     }
 }
 
-/// Returns a remark if a mesh in a format of coastal models seems to have longitudes and latitudes, at latitudes above
-/// 20°, where a degree of longitude is shorter by more than 6 %. `None` for other meshes.
+/// Returns a remark if a file says that its coordinates are longitude and latitude, or if a mesh in a format of coastal
+/// models seems to have longitudes and latitudes, at latitudes above 20°, where a degree of longitude is shorter by more
+/// than 6 %. `None` for other meshes.
 pub(crate) fn degrees(file: &LoadedMesh) -> Option<String> {
+    if file.source.remarks().contains(&Remark::Degrees) {
+        return Some(format!(
+            "{}: --surface sphere smooths them as longitude and latitude",
+            Remark::Degrees
+        ));
+    }
     let is_of_oceans = matches!(
         file.source.format(),
-        Format::Adcirc | Format::Sms2dm | Format::Mike | Format::Fvcom | Format::Selafin
+        Format::Adcirc
+            | Format::Sms2dm
+            | Format::Mike
+            | Format::Fvcom
+            | Format::Selafin
+            | Format::Ugrid
     );
     let points = &file.mesh().points;
     let fits = |&[x, y]: &[f64; 2]| x.abs() <= 360.0 && y.abs() < 90.0;

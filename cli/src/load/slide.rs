@@ -12,7 +12,12 @@ impl SlideRequest {
     pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Slide, CliError> {
         let Self { corner_angle, hausdorff, .. } = *self;
         let (held, periodic) = (file.held_vertices().to_vec(), file.periodic().to_vec());
-        let mut slide = Slide { corner_angle, hausdorff, lines: file.lines(), held, periodic };
+        let topology =
+            Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
+        let mut lines = file.lines();
+        // Files list the vertices of line elements on the boundary, which are fixed but slide along the boundary.
+        lines.extend(topology.boundary_edges());
+        let mut slide = Slide { corner_angle, hausdorff, lines, held, periodic };
         let motions = &file.source.constraints().motions;
         if self.periodic.is_empty()
             && motions.is_empty()
@@ -20,11 +25,12 @@ impl SlideRequest {
         {
             return Ok(slide);
         }
-        let topology =
-            Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
         let points = &file.mesh().points;
         for &motion in motions {
-            slide.pair_by(&topology, points, motion);
+            // Motions are motions in x and y.
+            if file.is_in_xy() {
+                slide.pair_by(&topology, points, motion);
+            }
         }
         self.pair(file, &topology, &mut slide)?;
         if has_lost_pairs(file, &slide) {

@@ -5,11 +5,20 @@ use crate::load::LoadedMesh;
 use gpu_smooth::{interpolate::Chart, targets::Surface};
 
 use crate::load::explain;
+use crate::request::ThirdCoordinate;
 
-/// Lays a mesh out on `surface`. Returns remarks on continued longitudes and poles.
-pub(crate) fn lay_out(file: &mut LoadedMesh, surface: Surface) -> Result<Vec<String>, CliError> {
+/// Lays a mesh out on `surface`, and in its own plane if `z` is a coordinate. Returns remarks on the plane, or on
+/// continued longitudes and poles.
+pub(crate) fn lay_out(
+    file: &mut LoadedMesh,
+    surface: Surface,
+    z: ThirdCoordinate,
+) -> Result<Vec<String>, CliError> {
     if surface == Surface::Plane {
-        return Ok(Vec::new());
+        return match z {
+            ThirdCoordinate::Coordinate => file.lay_out_in_plane(),
+            ThirdCoordinate::Data => Ok(Vec::new()),
+        };
     }
     match file.lay_out_on_sphere() {
         Ok(()) => Ok(file.chart().map(remarks).unwrap_or_default()),
@@ -17,7 +26,8 @@ pub(crate) fn lay_out(file: &mut LoadedMesh, surface: Surface) -> Result<Vec<Str
     }
 }
 
-/// Converts a point of a laid-out mesh to the coordinates of the file.
+/// Converts a point of a laid-out mesh to the coordinates of the file, without continued longitudes. A mesh in a plane
+/// other than that of x and y has its points in this plane.
 pub(crate) fn as_in_file(file: &LoadedMesh, [x, y]: [f64; 2]) -> [f64; 2] {
     [file.chart().map_or(x, |chart| chart.given_longitude(x)), y]
 }

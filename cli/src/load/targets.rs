@@ -13,7 +13,9 @@ use gpu_smooth::{
 use mesh_io::{GmshView, MeditSolution, MeshFile, ReadError};
 
 use crate::load::{explain, lay_out};
-use crate::request::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};
+use crate::request::{
+    ElementProperty, TargetNumbers, TargetRequest, TargetSource, ThirdCoordinate,
+};
 use crate::terminal::numbers::sig6;
 
 impl TargetRequest {
@@ -27,7 +29,7 @@ impl TargetRequest {
         surface: Surface,
     ) -> Result<Option<String>, CliError> {
         let explained = |error: MeshError| explain::mesh_error(file, &error);
-        if let Some((path, field)) = self.field(surface)? {
+        if let Some((path, field)) = self.field(file, surface)? {
             let outside = match self.is_of_places() {
                 true => smoother.set_target_field(field).map_err(explained)?,
                 false => {
@@ -55,12 +57,24 @@ impl TargetRequest {
 
     /// Reads the target field on a background mesh or view. Returns the field and the path of its file; `None` for
     /// other targets.
-    fn field(&self, surface: Surface) -> Result<Option<(&Path, TargetField)>, CliError> {
+    fn field(
+        &self,
+        file: &LoadedMesh,
+        surface: Surface,
+    ) -> Result<Option<(&Path, TargetField)>, CliError> {
         let Self::Given { what, source, .. } = self else { return Ok(None) };
         match source {
             TargetSource::OfMesh(_) => Ok(None),
             TargetSource::Background { mesh, data } => {
-                Ok(Some((mesh, field_of_mesh(mesh, data, *what, surface)?)))
+                Ok(Some((mesh, field_of_mesh(file, mesh, data, *what, surface)?)))
+            }
+            TargetSource::View(path) if !file.is_in_xy() => {
+                let text = format!(
+                    "{}: a view has positions in x and y, but the mesh lies in another plane",
+                    path.display()
+                );
+                Err(CliError::input(text)
+                    .with_remedy("Take the targets from data of a mesh in this plane"))
             }
             TargetSource::View(path) => Ok(Some((path, field_of_view(path, surface)?))),
         }
@@ -120,8 +134,9 @@ fn of_numbers(what: TargetNumbers, numbers: &[f64]) -> Result<Targets, MeshError
     }
 }
 
-/// Reads the target field on a background mesh.
+/// Reads the target field on a background mesh, in the plane of the mesh `file`.
 fn field_of_mesh(
+    file: &LoadedMesh,
     path: &Path,
     data: &str,
     what: TargetNumbers,
@@ -135,7 +150,10 @@ fn field_of_mesh(
         error => of_background(error.into()),
     })?;
     let mut background = LoadedMesh::new(read);
-    lay_out(&mut background, surface)?;
+    lay_out(&mut background, surface, ThirdCoordinate::Data)?;
+    if file.plane().is_some() {
+        file.lay_out_likewise(&mut background)?;
+    }
     let numbers = given(&background, data, components(what))?;
     of_numbers(what, &numbers)
         .and_then(|targets| TargetField::new(background.mesh(), &targets))

@@ -141,10 +141,6 @@ impl Report {
         if moved.most == 0.0 {
             return "no vertex moved".to_owned();
         }
-        let percent = |factor: f64| match 100.0 * (factor - 1.0) {
-            change if change < 99.5 => format!("{change:.0} %"),
-            _ => format!("{factor:.1} times"),
-        };
         // Sizes in a mesh of bad elements are hardly intended.
         let is_sound = self.before.f["imr"] < SOUND;
         let keeps = match self.target.is_none() && is_sound && size.p95 > LARGE_CHANGE {
@@ -156,9 +152,9 @@ impl Report {
             moved.median,
             moved.p95,
             moved.most,
-            percent(size.median),
-            percent(size.p95),
-            percent(size.most),
+            change_of(size.median),
+            change_of(size.p95),
+            change_of(size.most),
         )
     }
 
@@ -295,5 +291,33 @@ impl Report {
             let _ = write!(text, "; vertices put back for rounding: {}", self.returned);
         }
         text
+    }
+}
+
+/// Describes a factor of sizes: a change in percent, or a number of times.
+fn change_of(factor: f64) -> String {
+    match 100.0 * (factor - 1.0) {
+        change if change < 99.5 => format!("{change:.0} %"),
+        _ if factor < 1e5 => format!("{factor:.1} times"),
+        // A mesh with a nearly flat triangle has factors of many digits.
+        _ => format!("{factor:.0e} times"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_of_sizes_are_short() {
+        let cases = [
+            (1.25, "25 %"),
+            (2.0, "2.0 times"),
+            (8.47e4, "84700.0 times"),
+            (1.236e67, "1e67 times"),
+        ];
+        for (factor, text) in cases {
+            assert_eq!(change_of(factor), text);
+        }
     }
 }

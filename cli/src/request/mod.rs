@@ -20,4 +20,6 @@ pub(crate) use outputs::{CheckpointPlan, MeshOutput, Outputs, is_checkpoint};
 pub(crate) use picture::{PictureFormat, PictureRequest};
 pub(crate) use read::ReadRequest;
 pub(crate) use smooth::{Batch, EngineRequest, Meshes, SmoothRequest, TableForm};
-pub(crate) use target::{ElementProperty, TargetNumbers, TargetRequest, TargetSource};
+pub(crate) use target::{
+    ElementProperty, TargetNumbers, TargetRequest, TargetSource, ThirdCoordinate,
+};

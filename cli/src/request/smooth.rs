@@ -18,7 +18,7 @@ use crate::error::CliError;
 use crate::request::movable::{FieldsRequest, MovableRequest, SlideRequest};
 use crate::request::outputs::Outputs;
 use crate::request::read::ReadRequest;
-use crate::request::target::TargetRequest;
+use crate::request::target::{TargetRequest, ThirdCoordinate};
 
 /// A run on one mesh, or equal runs on many meshes.
 pub(crate) struct SmoothRequest {
@@ -26,6 +26,8 @@ pub(crate) struct SmoothRequest {
     pub(crate) reading: ReadRequest,
     /// The surface on which coordinates lie.
     pub(crate) surface: Surface,
+    /// The meaning of third coordinates.
+    pub(crate) z: ThirdCoordinate,
     pub(crate) target: TargetRequest,
     pub(crate) movable: MovableRequest,
     /// Options of sliding vertices; `None` if no vertex slides.
@@ -125,6 +127,7 @@ impl SmoothRequest {
             meshes,
             reading: (&args.reading).into(),
             surface: (&args.target.surface).into(),
+            z: ThirdCoordinate::of(&args.target.surface, &args.fields.interpolate),
             target: (&args.target).into(),
             movable: args.moving.into(),
             slide: SlideRequest::of(args.sliding),

@@ -4,13 +4,34 @@ use std::path::{Path, PathBuf};
 
 use gpu_smooth::{Metric, targets::Surface};
 
-use crate::args::{Owner, SurfaceArg, SurfaceArgs, Target, TargetArgs};
+use crate::args::{Owner, SurfaceArg, SurfaceArgs, Target, TargetArgs, ZArg};
 
 impl From<&SurfaceArgs> for Surface {
     fn from(args: &SurfaceArgs) -> Self {
         match args.surface {
             SurfaceArg::Plane => Surface::Plane,
             SurfaceArg::Sphere => Surface::Sphere,
+        }
+    }
+}
+
+/// Whether third coordinates that differ are coordinates or data.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ThirdCoordinate {
+    /// A mesh must lie in a plane, in which it is smoothed.
+    Coordinate,
+    /// A mesh is smoothed in x and y.
+    Data,
+}
+
+impl ThirdCoordinate {
+    /// Returns the meaning of z: data by `--z data`, if `--interpolate` names z, and on a sphere.
+    pub(crate) fn of(args: &SurfaceArgs, interpolated: &[String]) -> Self {
+        let mut names = interpolated.iter().flat_map(|names| names.split(','));
+        let is_interpolated = names.any(|name| name.trim() == "z");
+        match args.z == ZArg::Data || args.surface == SurfaceArg::Sphere || is_interpolated {
+            true => Self::Data,
+            false => Self::Coordinate,
         }
     }
 }

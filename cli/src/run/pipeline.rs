@@ -80,7 +80,7 @@ fn read(task: &SmoothJob<'_>, follow: &mut dyn PipelineObserver) -> Result<ReadM
     let bytes = size_of(task.input);
     follow.stage(Stage::Reading { bytes });
     let mut file = streams::read(task.input, &request.reading)?;
-    let laid_out = lay_out(&mut file, request.surface)?;
+    let laid_out = lay_out(&mut file, request.surface, request.z)?;
     let choice = request.movable.apply(&mut file)?;
     let fields = request.fields.choose(&file)?;
     let at = Instant::now();

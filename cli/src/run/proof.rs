@@ -15,7 +15,8 @@ pub(crate) struct Proof {
     pub(crate) difference: Option<Difference>,
     /// Vertices whose coordinates differ in any bit, ascending.
     pub(crate) moved: Vec<u32>,
-    /// Moved vertices that are not free, ascending. With sliding, only vertices that left their line.
+    /// Moved vertices that are not free, and vertices that left the plane of the mesh, ascending. With sliding, only
+    /// vertices that left their line or plane.
     pub(crate) held: Vec<u32>,
     /// Number of vertices that slid along their line.
     pub(crate) slid: usize,
@@ -50,6 +51,10 @@ impl Proof {
             let bits = |point: &[f64; 2]| point.map(f64::to_bits);
             let differ = |&(_, (old, new)): &(u32, (&[f64; 2], &[f64; 2]))| bits(old) != bits(new);
             moved = (0..).zip(old.iter().zip(new)).filter(differ).map(|(v, _)| v).collect();
+            let strays = match (before.plane(), after.plane()) {
+                (Some(plane), Some(other)) => plane.strays(other, before.source.precision()),
+                _ => Vec::new(),
+            };
             held = moved.iter().copied().filter(|&v| !topology.free()[v as usize]).collect();
             if let Some(slide) = slide {
                 let misplaced = slide.misplaced(&topology, old, new, after.precision());
@@ -58,6 +63,9 @@ impl Proof {
                 pairs = pairs_among(slide, &held);
                 held = misplaced;
             }
+            held.extend(strays);
+            held.sort_unstable();
+            held.dedup();
             bad = topology.bad_triangles(new)?;
             if !bad.is_empty() {
                 // If more than half of the triangles were inverted before, the windings derived from `before` are

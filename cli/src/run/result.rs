@@ -92,7 +92,7 @@ fn certificate(
 ) -> Result<Certificate, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);
     let mut after = streams::read(out, &request.reading)?;
-    file.lay_out_likewise(&mut after);
+    file.lay_out_likewise(&mut after)?;
     let after = after;
     let mut theirs = request.fields.choose(&after)?;
     theirs.add_dependents(&after, &after.mesh().points)?;

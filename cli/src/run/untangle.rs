@@ -1,7 +1,7 @@
 //! Untangling of meshes with inverted or flat triangles, for `--untangle`.
 
 use crate::error::CliError;
-use crate::load::LoadedMesh;
+use crate::load::{InterpolatedFields, LoadedMesh};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -86,7 +86,9 @@ pub(crate) fn untangle_input(
     if !keeps_going {
         return Err(error);
     }
-    Err(error.with_detail(match streams::write(file, out, &points, &[]) {
+    let mut fields = InterpolatedFields::default();
+    fields.add_dependents(file, &points)?;
+    Err(error.with_detail(match streams::write(file, out, &points, fields.fields()) {
         Ok(()) => format!("The best mesh found was written: {}", out.display()),
         Err(error) => error.to_string(),
     }))

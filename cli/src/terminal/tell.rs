@@ -39,9 +39,15 @@ pub(crate) fn event(mut event: Value) {
     put(format_args!("{event}"));
 }
 
-/// Prints a result to standard output. Ignores a reader that has closed the pipe, as `head` does; other failures, such
-/// as a full disk, end the process.
+/// Prints a result for people to standard output. Escapes control characters, which names of files and groups may
+/// contain.
 pub(crate) fn say(text: &str) {
+    say_data(&printable(text));
+}
+
+/// Prints a result for programs to standard output, without any change. Ignores a reader that has closed the pipe, as `head` does; other failures, such
+/// as a full disk, end the process.
+pub(crate) fn say_data(text: &str) {
     match writeln!(std::io::stdout(), "{text}") {
         Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
             error(&CliError::output(format!("standard output: {problem}")));
@@ -53,7 +59,7 @@ pub(crate) fn say(text: &str) {
 
 /// Prints a result to standard error, for commands whose standard output receives the mesh.
 pub(crate) fn aside(text: &str) {
-    put(format_args!("{text}"));
+    put(format_args!("{}", printable(text)));
 }
 
 /// Prints a remark to standard error, unless `quiet` is true.
@@ -65,10 +71,10 @@ pub(crate) fn note(quiet: bool, text: &str) {
     }
 }
 
-/// Escapes control characters of a message, except for line ends. File names may contain control characters, which a
+/// Escapes control characters of a message, except for line ends and tabs. File names may contain control characters, which a
 /// terminal would execute.
 fn printable(text: &str) -> String {
-    let shown = |c: char| match c.is_control() && c != '\n' {
+    let shown = |c: char| match c.is_control() && !matches!(c, '\n' | '\t') {
         true => c.escape_default().to_string(),
         false => c.to_string(),
     };

@@ -91,3 +91,27 @@ fn compare_lets_interfaces_move_with_the_option_for_it() {
         folder.run(["compare", input, &output, "--free-interfaces"]).clean();
     }
 }
+
+/// A terminal would execute control characters.
+#[cfg(unix)]
+#[test]
+fn control_characters_of_names_are_escaped_on_standard_output() {
+    let folder = super::small();
+    let name = "a\u{1b}]0;title\u{7}.node";
+    for ending in ["node", "ele"] {
+        let from = folder.path(&format!("in.{ending}"));
+        fs::copy(from, folder.path(&name.replace("node", ending))).unwrap();
+    }
+    let runs = [
+        folder.run(["quality", name]),
+        folder.run(["quality", name, "in.node"]),
+        folder.run(["compare", name, "in.node"]),
+        folder.run(["groups", name]),
+        folder.run(["convert", name, "out\u{1b}[2J.vtk"]),
+    ];
+    for run in runs {
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let is_escaped = !run.out.contains(['\u{1b}', '\u{7}']);
+        assert!(is_escaped && run.out.contains("\\u{1b}"), "{:?}", run.out);
+    }
+}

@@ -28,6 +28,7 @@ mod outside;
 mod overwrite;
 mod periodic;
 mod picture;
+mod planes;
 mod plate;
 mod progress;
 mod quality;

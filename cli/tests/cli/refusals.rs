@@ -293,7 +293,8 @@ fn files_of_other_kinds_are_errors() {
     assert_refused(&step, "in.stp", &["is not read. Mesh it first, with gmsh for example"]);
     let upright = "v 0 5 0\nv 2 5 0\nv 1 5 3\nv 1 5 1\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     let folder = Folder::new(&[("in.obj", upright)]);
-    folder.line("in.obj out.obj").refused(&["y of all vertices is 5, ", "Turn the mesh"]);
+    let remedy = "add --z coordinate if z is a coordinate";
+    folder.line("in.obj out.obj --z data").refused(&["y of all vertices is 5, ", remedy]);
 }
 
 /// On a closed surface, untangling would take long and fail.
@@ -304,7 +305,7 @@ fn closed_surfaces_are_refused_without_advice_to_untangle() {
     let below = "f 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n";
     let sphere = format!("{vertices}{above}{below}");
     let folder = Folder::new(&[("in.obj", &sphere), ("cup.obj", &sphere.replace("f 1 4 6\n", ""))]);
-    for arguments in ["in.obj out.obj", "in.obj out.obj --untangle"] {
+    for arguments in ["in.obj out.obj --z data", "in.obj out.obj --z data --untangle"] {
         let run = folder.line(arguments).refused(&[
             "in.obj:7: triangle 1 belongs to a part of the mesh without boundary: a closed surface",
             "Only meshes of the plane of x and y are smoothed",
@@ -313,7 +314,7 @@ fn closed_surfaces_are_refused_without_advice_to_untangle() {
     }
     // An open surface may also be a tangled mesh with heights.
     let hint = "But if this is a surface in space that folds over itself";
-    folder.line("cup.obj out.obj").refused(&["Untangle the mesh first: --untangle", hint]);
+    folder.line("cup.obj out.obj --z data").refused(&["Untangle the mesh first: --untangle", hint]);
 }
 
 #[test]

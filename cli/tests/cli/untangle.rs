@@ -1,7 +1,7 @@
 //! Untangling: `--untangle` untangles meshes with inverted triangles, which are refused otherwise.
 
 use super::{Folder, assert_holds, disturbed, support};
-use gpu_smooth::Mesh;
+use gpu_smooth::{Mesh, Metric};
 use std::fs;
 use support::check;
 
@@ -87,6 +87,48 @@ fn triangles_that_double_precision_cannot_judge_are_opened_with_the_option() {
             "\ninverted                 0           0\n",
         ],
     );
+}
+
+/// Returns a mesh with a triangle of the given size at a corner of the unit square, with a vertex inside.
+fn with_speck(size: f64) -> Mesh {
+    let points = vec![
+        [0.0, 0.0],
+        [size, 0.0],
+        [1.0, 0.0],
+        [1.0, 1.0],
+        [0.0, 1.0],
+        [0.5 * size, size],
+        [0.5, 0.4],
+    ];
+    let triangles =
+        vec![[0, 1, 5], [1, 2, 6], [2, 3, 6], [3, 4, 6], [4, 0, 5], [4, 5, 6], [5, 1, 6]];
+    Mesh { points, triangles, fixed: vec![] }
+}
+
+#[test]
+fn a_mesh_that_a_metric_cannot_judge_is_refused_with_the_metrics_that_can() {
+    let mut refused = 0;
+    for mesh in
+        [with_speck(1e-310), with_speck(1e-160), support::disturb::beyond_double_precision()]
+    {
+        let folder = folder(&mesh);
+        let run = |metric: &str| {
+            folder.line(&format!("in.node out.node --engine cpu --force --scheme {metric}"))
+        };
+        let runs: Vec<_> =
+            Metric::ALL.iter().map(|metric| (metric.name(), run(metric.name()))).collect();
+        let able = runs.iter().filter(|(_, run)| run.code == Some(0)).map(|(name, _)| *name);
+        let able: Vec<_> = able.collect();
+        for (_, run) in runs.iter().filter(|(_, run)| run.err.contains("cannot judge it")) {
+            refused += 1;
+            match &able[..] {
+                [] => assert!(!run.err.contains("--scheme"), "{}", run.err),
+                [one] => assert_holds(&run.err, &[&format!("The metric {one} can")]),
+                _ => assert_holds(&run.err, &[&format!("The metrics {} can", able.join(", "))]),
+            }
+        }
+    }
+    assert!(refused > Metric::ALL.len());
 }
 
 #[test]

@@ -35,6 +35,8 @@ pub enum Remark {
         /// Names of further arrays that look like regions, in file order.
         others: Vec<String>,
     },
+    /// The file says that coordinates are longitude and latitude in degrees (UGRID).
+    Degrees,
     /// Any other fact, as a sentence.
     Text(String),
 }
@@ -60,6 +62,7 @@ impl fmt::Display for Remark {
             Remark::RegionArray { array, .. } => {
                 write!(f, "the cell data `{array}` number the regions")
             }
+            Remark::Degrees => f.write_str("coordinates are longitude and latitude in degrees"),
             Remark::Text(text) => f.write_str(text),
         }
     }

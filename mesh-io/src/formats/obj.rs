@@ -6,6 +6,7 @@
 
 use crate::content::group_label::GroupLabel;
 use crate::content::regions::Interner;
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
@@ -34,6 +35,8 @@ enum Row<'a> {
     Points(Corners),
     /// The row that starts a group, object or material.
     Name(&'a [u8]),
+    /// Texture coordinates.
+    Texture,
     Other,
 }
 
@@ -78,17 +81,26 @@ impl FormatReader for Obj {
         let start = rows(source);
         let cursor = &mut start.clone();
         let mut count = 0;
+        let mut has_texture = false;
         let mut z_values = ZValues::new(visitor);
         all_rows(cursor, visitor, vertex, |cursor, visitor, row| {
-            if let Row::Vertex(x_at, at, z) = row {
-                count += 1;
-                visitor.node(cursor, count, 2, x_at, at);
-                z_values.push(z);
+            match row {
+                Row::Vertex(x_at, at, z) => {
+                    count += 1;
+                    visitor.node(cursor, count, 2, x_at, at);
+                    z_values.push(z);
+                }
+                Row::Texture => has_texture = true,
+                _ => {}
             }
             Ok(())
         })?;
         cursor.check_vertex_count(count)?;
         visitor.end_nodes(cursor)?;
+        if has_texture {
+            let text = "texture coordinates (vt) stay as they are where vertices move";
+            visitor.remark(Remark::Text(text.to_owned()));
+        }
         if visitor.asks_for_data() {
             left_out(start.clone(), visitor);
         }
@@ -135,7 +147,7 @@ impl FormatReader for Obj {
                     let nodes = counted(cursor, points.all(), before)?;
                     visitor.polyline(cursor, 0, region, &nodes)?;
                 }
-                Row::Other => {}
+                Row::Texture | Row::Other => {}
             }
             Ok(())
         })?;
@@ -244,8 +256,10 @@ fn left_out(mut cursor: Cursor<'_>, visitor: &mut dyn MeshVisitor) {
 /// Reads a row in the first pass over the file: a vertex, or else [`Row::Other`].
 #[inline]
 fn vertex<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
-    if cursor.token() != Some(b"v") {
-        return Ok(Row::Other);
+    match cursor.token() {
+        Some(b"v") => {}
+        Some(b"vt") => return Ok(Row::Texture),
+        _ => return Ok(Row::Other),
     }
     let (x_at, at) = cursor.point("a vertex")?;
     Ok(Row::Vertex(x_at, at, cursor.z_if_any("a vertex")?))

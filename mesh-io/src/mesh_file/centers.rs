@@ -1,7 +1,9 @@
 //! Centers of faces and edges, which UGRID files may store.
 
 use crate::content::id_index::IdIndex;
+use crate::content::remark::Remark;
 use crate::error::FieldError;
+use crate::mesh_file::center_functions::{CenterCoordinate, CenterFunction, within};
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
@@ -11,12 +13,6 @@ use crate::visit::visitor::MeshVisitor;
 /// Relative tolerance for recognizing a stored center, in units of the distance between the computed center and the
 /// farthest corner along the axis.
 const CENTER_TOLERANCE: f64 = 1e-6;
-
-/// Function from the corners of an element to its center; `None` if the corners have no such center.
-type CenterFunction = fn(&[[f64; 2]]) -> Option<[f64; 2]>;
-
-/// Functions for the centers that programs store, in the order in which arrays are tested.
-const CENTER_FUNCTIONS: [CenterFunction; 3] = [mean, centroid, circumcenter];
 
 /// Array in the file with one coordinate of the centers of elements.
 struct Array {
@@ -29,7 +25,8 @@ impl MeshFile {
     /// Returns the stored centers of faces and edges, updated for vertices at `points`, as fields for
     /// [`write_with_fields`](Self::write_with_fields). A field has one coordinate of the centers, with a number per
     /// face or edge. An array is updated if all its numbers are means of corners, all are centroids, or all are
-    /// circumcenters of triangles. The second list holds the names of the remaining arrays. Without centers in the
+    /// circumcenters of triangles. If the file says that coordinates are in degrees, corners are continued across the
+    /// date line, and centers on the sphere are recognized too. The second list holds the names of the remaining arrays. Without centers in the
     /// file, both lists are empty.
     ///
     /// # Errors
@@ -53,7 +50,11 @@ impl MeshFile {
             let new = Elements::of(&centers, &map).and_then(|elements| {
                 let stored = centers.numbers.location.as_ref()?.encoding.precision();
                 let error = |size: f64| stored.error(size).max(self.precision().error(size));
-                elements.moved(&centers.numbers.numbers, axis, [old, points], error)
+                let coordinate = CenterCoordinate {
+                    axis,
+                    is_in_degrees: self.remarks().contains(&Remark::Degrees),
+                };
+                elements.moved(&centers.numbers.numbers, coordinate, [old, points], error)
             });
             match new {
                 None => others.push(name),
@@ -94,10 +95,11 @@ impl<'c> Elements<'c> {
     fn moved(
         &self,
         numbers: &[f64],
-        axis: usize,
+        coordinate: CenterCoordinate,
         [old, new]: [&[[f64; 2]]; 2],
         error: impl Fn(f64) -> f64,
     ) -> Option<Vec<f64>> {
+        let axis = coordinate.axis;
         let mut corners = Vec::new();
         let mut at = |points: &[[f64; 2]], element: &[u32], recipe: CenterFunction| {
             corners.clear();
@@ -111,52 +113,25 @@ impl<'c> Elements<'c> {
                 |(element, &number)| {
                     let found = at(old, element, recipe);
                     found.is_some_and(|(center, reach)| {
-                        (center - number).abs()
+                        (coordinate.near(center, number) - number).abs()
                             <= CENTER_TOLERANCE * reach + 4.0 * error(center.abs())
                     })
                 },
             )
         };
-        let recipe = CENTER_FUNCTIONS.into_iter().find(|&recipe| fits(recipe))?;
+        let recipe = coordinate.functions().iter().copied().find(|&recipe| fits(recipe))?;
+        let range = coordinate.range(numbers);
         let updated = self.each().zip(numbers).map(|(element, &number)| {
             let has_moved =
                 |&v: &u32| old[v as usize].map(f64::to_bits) != new[v as usize].map(f64::to_bits);
             match element.iter().any(has_moved) {
-                true => at(new, element, recipe).map_or(number, |(center, _)| center),
+                true => at(new, element, recipe)
+                    .map_or(number, |(center, _)| within(&range, coordinate.near(center, number))),
                 false => number,
             }
         });
         Some(updated.collect())
     }
-}
-
-fn mean(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let &first = corners.first()?;
-    // Sums differences to the first corner, which loses no digits far from the origin.
-    let offset = |axis: usize| corners.iter().map(|corner| corner[axis] - first[axis]).sum::<f64>();
-    Some([0, 1].map(|axis| first[axis] + offset(axis) / corners.len() as f64))
-}
-
-/// Returns the center of mass of a polygon; `None` for zero area.
-fn centroid(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let &[first, ref others @ ..] = corners else { return None };
-    let (mut area, mut moment) = (0.0, [0.0; 2]);
-    for pair in others.windows(2) {
-        let [b, c] = [0, 1].map(|k| [pair[k][0] - first[0], pair[k][1] - first[1]]);
-        let doubled = b[0] * c[1] - b[1] * c[0];
-        area += doubled;
-        moment = [0, 1].map(|axis| moment[axis] + doubled * (b[axis] + c[axis]) / 3.0);
-    }
-    (area != 0.0).then(|| [0, 1].map(|axis| first[axis] + moment[axis] / area))
-}
-
-fn circumcenter(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let &[a, b, c] = corners else { return None };
-    let [b, c] = [b, c].map(|corner| [corner[0] - a[0], corner[1] - a[1]]);
-    let doubled = 2.0 * (b[0] * c[1] - b[1] * c[0]);
-    let [bb, cc] = [b, c].map(|[x, y]| x * x + y * y);
-    let offset = [(c[1] * bb - b[1] * cc) / doubled, (b[0] * cc - c[0] * bb) / doubled];
-    (doubled != 0.0).then(|| [a[0] + offset[0], a[1] + offset[1]])
 }
 
 /// Visitor that collects arrays with the centers of elements.
@@ -184,25 +159,5 @@ impl MeshVisitor for CenterVisitor {
     fn center_numbers(&mut self, centers: Centers) {
         let (name, axis) = std::mem::take(&mut self.last);
         self.found.push(Array { name, axis, centers });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn centers_of_triangles_and_quadrilaterals() {
-        let triangle = [[1e6, 0.0], [1e6 + 4.0, 0.0], [1e6, 3.0]];
-        assert_eq!(mean(&triangle), Some([1e6 + 4.0 / 3.0, 1.0]));
-        assert_eq!(circumcenter(&triangle), Some([1e6 + 2.0, 1.5]));
-        let close = |a: [f64; 2], b: [f64; 2]| (0..2).all(|k| (a[k] - b[k]).abs() < 1e-9);
-        assert!(close(centroid(&triangle).unwrap(), mean(&triangle).unwrap()));
-        let trapezoid = [[0.0, 0.0], [6.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
-        assert!(close(centroid(&trapezoid).unwrap(), [7.0 / 3.0, 4.0 / 3.0]));
-        assert_eq!(mean(&trapezoid), Some([2.25, 1.5]));
-        assert_eq!(circumcenter(&trapezoid), None);
-        assert_eq!(circumcenter(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]), None);
-        assert_eq!((mean(&[]), centroid(&[[1.0, 2.0]])), (None, None));
     }
 }

@@ -170,6 +170,14 @@ impl MeshFile {
         &self.parsed.data
     }
 
+    /// Returns whether the third coordinates of vertices differ. [`point_fields`](Self::point_fields) then returns them
+    /// as the first field with the name `z`. In formats whose third number is a height or a depth by definition (SMS
+    /// 2dm, MIKE), and in formats whose heights are arrays of data (ADCIRC, FVCOM, SELAFIN, UGRID), vertices have no third
+    /// coordinate.
+    pub fn has_third_coordinates(&self) -> bool {
+        self.parsed.has_z && !matches!(self.format(), Format::Sms2dm | Format::Mike)
+    }
+
     /// Returns whether vertices have parameters on surfaces of a model, as in gmsh 4.1. [`write`](Self::write) keeps
     /// the parameters; [`plane_parameters`](Self::plane_parameters) updates them.
     pub fn has_parameters(&self) -> bool {

@@ -1,6 +1,7 @@
 //! Meshes with the bytes of their files: reading, rewriting, comparison, locations, groups and data.
 
-pub(crate) mod centers;
+pub(crate) mod center_functions;
+mod centers;
 mod content;
 pub(crate) mod diff;
 pub(crate) mod fields;

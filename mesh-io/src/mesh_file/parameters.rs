@@ -10,20 +10,22 @@ use crate::visit::field::PointField;
 const PLANE_TOLERANCE: f64 = 1e-8;
 
 impl MeshFile {
-    /// Returns the parameters of vertices on plane surfaces of a model, updated for vertices at `points`, as fields for
-    /// [`write_with_fields`](Self::write_with_fields). On a plane, u and v are linear in x and y. The second result
-    /// counts other surfaces with parameters, which cannot be updated. A file without parameters returns an empty list
-    /// and 0.
+    /// Returns the parameters of vertices on plane surfaces of a model, updated for vertices that move from `old` to
+    /// `new`, as fields for [`write_with_fields`](Self::write_with_fields). Positions are coordinates in the plane of
+    /// the mesh: [`points`](Self::points) in the plane of x and y. On a plane, u and v are linear in these coordinates.
+    /// The second result counts other surfaces with parameters, which cannot be updated. A file without parameters
+    /// returns an empty list and 0.
     ///
     /// # Errors
-    /// [`FieldError::PointCount`] if `points` does not have exactly one point per vertex.
+    /// [`FieldError::PointCount`] if `old` or `new` does not have exactly one point per vertex.
     pub fn plane_parameters(
         &self,
-        points: &[[f64; 2]],
+        old: &[[f64; 2]],
+        new: &[[f64; 2]],
     ) -> Result<(Vec<PointField>, usize), FieldError> {
-        let old = self.points();
-        if points.len() != old.len() {
-            return Err(FieldError::PointCount { expected: old.len(), given: points.len() });
+        let expected = self.points().len();
+        if let Some(given) = [old.len(), new.len()].into_iter().find(|&given| given != expected) {
+            return Err(FieldError::PointCount { expected, given });
         }
         // A second reading of the bytes cannot fail, as the first reading had no error.
         let read = || parametric::parameters(self.reader(), self.source()).ok();
@@ -34,7 +36,7 @@ impl MeshFile {
                 others += 1;
                 continue;
             };
-            let pairs = field.values().as_chunks::<2>().0.iter().zip(old.iter().zip(points));
+            let pairs = field.values().as_chunks::<2>().0.iter().zip(old.iter().zip(new));
             let moved = pairs.flat_map(|(parameters, (old, new))| {
                 let by = [new[0] - old[0], new[1] - old[1]];
                 // A vertex that has not moved keeps the bits of its parameters.

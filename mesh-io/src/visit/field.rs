@@ -93,6 +93,11 @@ impl PointField {
         Ok(left)
     }
 
+    /// Returns whether a rewrite can replace the numbers. Numbers that some vertices lack cannot be replaced.
+    pub fn is_replaceable(&self) -> bool {
+        self.location.is_some()
+    }
+
     /// Returns the number of values stored in the file.
     pub(crate) fn numbers(&self) -> usize {
         self.old.len()

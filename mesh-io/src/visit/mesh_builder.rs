@@ -42,6 +42,7 @@ pub(crate) fn parse_by(
         file_index,
     } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
+    let has_z = assembler.has_z;
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
     let MeshBuilder { quadrilaterals, mut remarks, data, cell_arrays, on_lower, .. } = assembler;
@@ -84,6 +85,7 @@ pub(crate) fn parse_by(
         cell_arrays,
         has_parameters,
         has_centers,
+        has_z,
     })
 }
 
@@ -110,6 +112,8 @@ struct MeshBuilder {
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
     has_centers: bool,
+    /// Whether third coordinates differ.
+    has_z: bool,
     /// Name of the file's list of vertices in messages.
     vertices_of: &'static str,
     /// Number of nodes on points and curves of the model.
@@ -244,6 +248,11 @@ impl MeshVisitor for MeshBuilder {
             self.cell_arrays.push(name);
         }
         false
+    }
+
+    fn z_array(&mut self, name: &[u8]) -> bool {
+        self.has_z |= name == b"z";
+        self.point_array(name, 1, true)
     }
 
     fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {

@@ -35,4 +35,6 @@ pub(crate) struct ParsedMesh {
     pub(crate) has_parameters: bool,
     /// Whether the file stores centers of faces or edges (UGRID).
     pub(crate) has_centers: bool,
+    /// Whether points have third coordinates that differ.
+    pub(crate) has_z: bool,
 }

@@ -196,3 +196,28 @@ fn files_outside_of_the_directory_of_a_mesh_are_errors_without_leave() {
         refused(MeshFile::read(&write("sub/x.xdmf", "x.h5")), &["names x.h5, which is "]);
     }
 }
+
+#[test]
+fn a_solution_beside_a_medit_mesh_is_told_and_a_loss_of_conversions() {
+    let mesh = "MeshVersionFormatted 2\nDimension 2\nVertices 3\n0 0 0\n1 0 0\n0 1 0\nTriangles 1\n1 2 3 0\nEnd\n";
+    let folder = super::Folder::new(&[("in.mesh", mesh), ("alone.mesh", mesh), ("in.sol", "any")]);
+    let remark = "in.sol beside the mesh stays as it is, although its numbers belong to the vertices of this mesh";
+    let file = folder.read("in.mesh");
+    assert_eq!(super::facts::remarks(&file), [remark]);
+    let losses = |file: &MeshFile| {
+        Conversion::new(file, mesh_io::Format::Vtk).unwrap().unwrap().losses().to_vec()
+    };
+    assert_eq!(losses(&file), ["the solution in in.sol beside the mesh"]);
+    let alone = folder.read("alone.mesh");
+    assert!(super::facts::remarks(&alone).is_empty() && losses(&alone).is_empty());
+}
+
+#[test]
+fn texture_coordinates_are_told() {
+    let obj = "v 0 0\nv 1 0\nv 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    let folder =
+        super::Folder::new(&[("in.obj", obj), ("plain.obj", "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n")]);
+    let remark = "texture coordinates (vt) stay as they are where vertices move";
+    assert_eq!(super::facts::remarks(&folder.read("in.obj")), [remark]);
+    assert!(super::facts::remarks(&folder.read("plain.obj")).is_empty());
+}

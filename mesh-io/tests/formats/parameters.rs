@@ -71,7 +71,7 @@ fn parameters_on_a_plane_move_with_the_nodes() {
     let folder = Folder::new(&[("in.msh", &before)]);
     let file = folder.read("in.msh");
     assert!(file.has_parameters() && remarks(&file).is_empty());
-    let (fields, others) = file.plane_parameters(&moved()).unwrap();
+    let (fields, others) = file.plane_parameters(file.points(), &moved()).unwrap();
     assert_eq!((fields.len(), others), (1, 0));
     file.write_with_fields(&folder.path("out.msh"), &moved(), &fields).unwrap();
     let out = folder.text("out.msh");
@@ -86,22 +86,22 @@ fn parameters_on_a_plane_move_with_the_nodes() {
     }
     assert_eq!(before.lines().count(), out.lines().count());
     // If no node moves, the parameters keep their text.
-    let (fields, _) = file.plane_parameters(&NODES).unwrap();
+    let (fields, _) = file.plane_parameters(file.points(), &NODES).unwrap();
     file.write_with_fields(&folder.path("same.msh"), &NODES, &fields).unwrap();
     assert_eq!(folder.text("same.msh"), before);
     let count = FieldError::PointCount { expected: 5, given: 4 };
-    assert_eq!(file.plane_parameters(&NODES[1..]).unwrap_err(), count);
+    assert_eq!(file.plane_parameters(file.points(), &NODES[1..]).unwrap_err(), count);
 
     for big in [false, true] {
         fs::write(folder.path("in.msh"), binary(big, &NODES)).unwrap();
         let file = folder.read("in.msh");
-        let (fields, _) = file.plane_parameters(&moved()).unwrap();
+        let (fields, _) = file.plane_parameters(file.points(), &moved()).unwrap();
         file.write_with_fields(&folder.path("out.msh"), &moved(), &fields).unwrap();
         let (out, expected) = (fs::read(folder.path("out.msh")).unwrap(), binary(big, &moved()));
         let differ = out.iter().zip(&expected).filter(|(a, b)| a != b).count();
         assert!(out.len() == expected.len() && differ < 16, "{differ} bytes differ");
         let after = folder.read("out.msh");
-        let (own, _) = after.plane_parameters(&moved()).unwrap();
+        let (own, _) = after.plane_parameters(after.points(), &moved()).unwrap();
         assert_eq!(own[0].values()[..8], fields[0].values()[..8]);
         assert!(is_near(&own[0].values()[8..], &parameters([2.5, 2.25], false)));
         assert_eq!(file.difference_ignoring(&after, [&fields, &own]), None);
@@ -112,13 +112,13 @@ fn parameters_on_a_plane_move_with_the_nodes() {
 fn parameters_on_other_surfaces_stay() {
     let folder = Folder::new(&[("in.msh", &text(true)), ("flat.msh", super::GMSH41)]);
     let file = folder.read("in.msh");
-    let (fields, others) = file.plane_parameters(&moved()).unwrap();
+    let (fields, others) = file.plane_parameters(file.points(), &moved()).unwrap();
     assert_eq!((fields.len(), others), (0, 1));
     // Constant parameters are linear too.
     let flat = folder.read("flat.msh");
-    let (fields, others) = flat.plane_parameters(flat.points()).unwrap();
+    let (fields, others) = flat.plane_parameters(flat.points(), flat.points()).unwrap();
     assert_eq!((fields.len(), others), (1, 0));
     let cut = text(false).replace(" 8.5e0 -1.5", " 8.5e0");
     let file = MeshFile::from_bytes("cut.msh".as_ref(), cut.into_bytes()).unwrap();
-    assert!(file.plane_parameters(&NODES).unwrap().0.is_empty());
+    assert!(file.plane_parameters(file.points(), &NODES).unwrap().0.is_empty());
 }

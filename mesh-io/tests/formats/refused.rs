@@ -246,3 +246,24 @@ fn points_beyond_the_precision_of_the_file_are_not_written() {
         assert_eq!(folder.path("out").exists(), written.is_ok());
     });
 }
+
+/// The endings are those of formats whose readers skip unknown rows.
+#[test]
+fn files_that_are_no_meshes_are_named_whatever_their_ending() {
+    let lfs = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12\n";
+    let page = "\n<!DOCTYPE html>\n<html><body>404</body></html>\n";
+    let text = "MESH2D\nND 1 0 0 0\nND 2 1 0 0\nND 3 0 1 0\nE3T 1 1 2 3 1\n";
+    let units: Vec<u16> = text.encode_utf16().collect();
+    let little = units.iter().flat_map(|unit| unit.to_le_bytes()).collect::<Vec<u8>>();
+    let big = units.iter().flat_map(|unit| unit.to_be_bytes()).collect::<Vec<u8>>();
+    let utf16 = ["a text in UTF-16", "iconv"];
+    for ending in ["2dm", "su2", "gr3", "mesh", "inp", "msh", "txt"] {
+        let name = format!("a.{ending}");
+        assert_refused(&name, lfs, &["a pointer of Git LFS", "git lfs pull"]);
+        assert_refused(&name, page, &["an HTML page", "Download"]);
+        assert_refused(&name, little.clone(), &utf16);
+        assert_refused(&name, big.clone(), &utf16);
+        assert_refused(&name, [&[0xFF, 0xFE][..], &little].concat(), &utf16);
+        assert_refused(&name, [&[0xFE, 0xFF][..], &big].concat(), &utf16);
+    }
+}

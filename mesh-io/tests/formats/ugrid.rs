@@ -5,7 +5,7 @@ use super::facts::remarks;
 use super::hdf5;
 use super::made::{Made, all, base};
 use super::others::folder;
-use mesh_io::{Format, MeshFile};
+use mesh_io::{Format, MeshFile, Remark};
 use std::fs;
 
 fn samples() -> Vec<Made> {
@@ -73,6 +73,65 @@ fn centers_of_faces_follow_the_vertices() {
         fields = file.centers(file.points()).unwrap().0;
         file.write_with_fields(&folder.path("out.nc"), file.points(), &fields).unwrap();
         assert!(fs::read(folder.path("out.nc")).unwrap() == made.bytes);
+    }
+}
+
+/// Returns the mean of the corners of each triangle, on the sphere, with longitudes from -180 to 180.
+fn centers_on_sphere(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<[f64; 2]> {
+    let center = |triangle: &[u32; 3]| {
+        let mut sum = [0.0; 3];
+        for &v in triangle {
+            let [x, y] = points[v as usize].map(f64::to_radians);
+            let at = [y.cos() * x.cos(), y.cos() * x.sin(), y.sin()];
+            (0..3).for_each(|k| sum[k] += at[k]);
+        }
+        let [x, y, z] = sum;
+        [y.atan2(x).to_degrees(), (z / (x * x + y * y + z * z).sqrt()).asin().to_degrees()]
+    };
+    triangles.iter().map(center).collect()
+}
+
+#[test]
+fn centers_in_degrees_follow_the_vertices_across_the_date_line() {
+    let wrap = |[x, y]: [f64; 2]| [(x + 180.0).rem_euclid(360.0) - 180.0, y];
+    let mut mesh = base();
+    let place = |[x, y]: [f64; 2]| wrap([178.1 + x, 50.0 + y]);
+    mesh.points.iter_mut().for_each(|point| *point = place(*point));
+    let triangles = mesh.triangles.clone();
+    let flat = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        let lifted = |v: u32| {
+            let [x, y] = points[v as usize];
+            [x.rem_euclid(360.0), y]
+        };
+        let mean = |t: &[u32; 3]| {
+            let corners = t.map(lifted);
+            [0, 1].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0)
+        };
+        triangles.iter().map(|t| wrap(mean(t))).collect()
+    };
+    let on_sphere = |points: &[[f64; 2]]| centers_on_sphere(points, &triangles);
+    type Centers<'a> = &'a dyn Fn(&[[f64; 2]]) -> Vec<[f64; 2]>;
+    for (centers, attributes) in [
+        (&flat as Centers<'_>, ["standard_name", "longitude", "latitude"]),
+        (&on_sphere, ["units", "degrees_east", "degrees_north"]),
+    ] {
+        let bytes = super::made::ugrid::in_degrees(&mesh, &centers(&mesh.points), attributes);
+        let folder = Folder::new(&[]);
+        fs::write(folder.path("in.nc"), &bytes).unwrap();
+        let file = folder.read("in.nc");
+        assert_eq!(file.remarks(), [Remark::Degrees]);
+        let to: Vec<_> = file.points().iter().map(|&[x, y]| wrap([x + 0.05, y + 0.01])).collect();
+        let (fields, others) = file.centers(&to).unwrap();
+        assert_eq!((fields.len(), &others[..]), (2, &[][..]), "{attributes:?}");
+        let expected = centers(&to);
+        for (axis, field) in fields.iter().enumerate() {
+            for (value, expected) in field.values().iter().zip(&expected) {
+                assert!((value - expected[axis]).abs() < 1e-9, "{value} {expected:?}");
+            }
+        }
+        let (fields, _) = file.centers(file.points()).unwrap();
+        file.write_with_fields(&folder.path("out.nc"), file.points(), &fields).unwrap();
+        assert!(fs::read(folder.path("out.nc")).unwrap() == bytes);
     }
 }
 

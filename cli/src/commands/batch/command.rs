@@ -66,8 +66,8 @@ pub(crate) fn run(
     let seconds = start.elapsed().as_secs_f64();
     write_report(outputs, &entries, seconds)?;
     match batch.table {
-        TableForm::Json => tell::say(&table::json(&entries)?),
-        TableForm::Csv => tell::say(&table::csv(&entries)),
+        TableForm::Json => tell::say_data(&table::json(&entries)?),
+        TableForm::Csv => tell::say_data(&table::csv(&entries)),
         TableForm::Text if verbosity.quiet => {}
         TableForm::Text => {
             tell::say(&table::text(&entries, seconds, columns::of_terminal()));

@@ -51,7 +51,7 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
         }
     }
     if args.json {
-        tell::say(&serde_json::to_string_pretty(&rows)?);
+        tell::say_data(&serde_json::to_string_pretty(&rows)?);
     } else {
         tell::say(&form.kernels(&rows));
     }

@@ -29,9 +29,9 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     if qualities.is_empty() {
         // Without any mesh, there is nothing to print.
     } else if args.json {
-        tell::say(&format!("{:#}", json::json(&qualities)?));
+        tell::say_data(&format!("{:#}", json::json(&qualities)?));
     } else if args.csv {
-        tell::say(&json::csv(&qualities));
+        tell::say_data(&json::csv(&qualities));
     } else {
         tell::say(&text::text(&qualities, &style));
     }

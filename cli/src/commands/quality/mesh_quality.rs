@@ -20,7 +20,7 @@ use crate::load::streams::read;
 use crate::load::{as_in_file, lay_out};
 use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::{Histogram, QualityReport, histogram};
-use crate::request::PictureRequest;
+use crate::request::{PictureRequest, ThirdCoordinate};
 
 /// Measurements of one mesh. The mesh is not stored, so that many meshes can be shown side by side.
 pub(crate) struct MeshQuality {
@@ -100,7 +100,7 @@ impl MeshQuality {
     ) -> Result<Self, CliError> {
         let mut file = read(path, &(&args.reading).into())?;
         let surface = Surface::from(&args.surface);
-        let laid_out = lay_out(&mut file, surface)?;
+        let laid_out = lay_out(&mut file, surface, ThirdCoordinate::of(&args.surface, &[]))?;
         let file = file;
         let mesh = file.mesh();
         let refused = |error| explain::mesh_error(&file, &error);
@@ -221,7 +221,7 @@ fn worst(
     let one = |&(t, _): &(usize, f64)| Worst {
         place: places[&t].clone(),
         vertices: mesh.triangles[t].map(|v| names[&v].id),
-        corners: file.source.triangles()[t].map(|v| file.source.points()[v as usize]),
+        corners: file.source.triangles()[t].map(|v| file.positions()[v as usize]),
         at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
         values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
         can_move: topology.can_move(t),

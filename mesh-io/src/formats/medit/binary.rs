@@ -11,6 +11,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::formats::medit::beside::report_solution;
 use crate::formats::medit::required::send_required_corners;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
@@ -57,6 +58,7 @@ impl FormatReader for MeditBinary {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
+        report_solution(source, visitor);
         let cursor = &mut Cursor::new(source);
         let order =
             if source.bytes.first() == Some(&1) { ByteOrder::Little } else { ByteOrder::Big };

@@ -9,6 +9,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::formats::medit::beside::report_solution;
 use crate::formats::medit::required::send_required_corners;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
@@ -71,6 +72,7 @@ impl FormatReader for Medit {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
+        report_solution(source, visitor);
         let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         let mut lists: Vec<List<'_>> = Vec::new();
         let mut required = Vec::new();

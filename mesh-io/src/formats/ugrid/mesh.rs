@@ -27,6 +27,12 @@ pub(super) fn is_mesh(variable: &Variable) -> bool {
     variable.text("cf_role") == Some(b"mesh_topology")
 }
 
+/// Units of longitudes and latitudes by the CF conventions, sections 4.1 and 4.2.
+const DEGREES_EAST: [&[u8]; 6] =
+    [b"degrees_east", b"degree_east", b"degree_E", b"degrees_E", b"degreeE", b"degreesE"];
+const DEGREES_NORTH: [&[u8]; 6] =
+    [b"degrees_north", b"degree_north", b"degree_N", b"degrees_N", b"degreeN", b"degreesN"];
+
 const REMEDY: &str = "Write it again by the UGRID conventions, or save the mesh in another format";
 
 impl<'h, 'a> Mesh<'h, 'a> {
@@ -72,6 +78,16 @@ impl<'h, 'a> Mesh<'h, 'a> {
             return Err(place.error(problem, REMEDY));
         };
         Ok(Mesh { header, own, x, y, nodes, face_nodes })
+    }
+
+    /// Returns whether attributes say that x is longitude and y latitude.
+    pub(super) fn is_in_degrees(&self) -> bool {
+        const NAMES: [(&[u8], &[&[u8]]); 2] =
+            [(b"longitude", &DEGREES_EAST), (b"latitude", &DEGREES_NORTH)];
+        [self.x, self.y].into_iter().zip(NAMES).all(|(variable, (name, units))| {
+            variable.text("standard_name") == Some(name)
+                || variable.text("units").is_some_and(|unit| units.contains(&unit))
+        })
     }
 
     /// Locates the coordinates of the nodes.
@@ -139,13 +155,7 @@ pub(super) fn axis_of(variable: &Variable) -> Option<usize> {
             ],
         ),
         ("axis", [&[b"X"], &[b"Y"]]),
-        (
-            "units",
-            [
-                &[b"degrees_east", b"degree_east", b"degreeE", b"degrees_E"],
-                &[b"degrees_north", b"degree_north", b"degreeN", b"degrees_N"],
-            ],
-        ),
+        ("units", [&DEGREES_EAST, &DEGREES_NORTH]),
     ];
     AXIS_ATTRIBUTES.iter().find_map(|(attribute, axes)| {
         let text = variable.text(attribute)?;

@@ -11,6 +11,7 @@ mod mesh;
 mod table;
 pub(crate) mod write;
 
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::format::Format;
@@ -44,6 +45,9 @@ impl FormatReader for Ugrid {
         let mesh = Mesh::find(&header)?;
         let faces = Table::find(&mesh, mesh.face_nodes, TableKind::Faces)?;
         let layout = mesh.axes()?.send(Format::Ugrid, mesh.nodes, faces.first, visitor)?;
+        if mesh.is_in_degrees() {
+            visitor.remark(Remark::Degrees);
+        }
         faces::send(&faces, visitor)?;
         mesh.data(&mesh.tables(faces), visitor);
         header.hdf5.as_ref().map_or(Ok(()), Hdf5::check_no_overlaps)?;

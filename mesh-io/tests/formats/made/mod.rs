@@ -10,7 +10,7 @@ mod nastran;
 mod netcdf;
 mod ply;
 mod text;
-mod ugrid;
+pub(crate) mod ugrid;
 mod vtk;
 pub(crate) mod vtu;
 mod xdmf;

@@ -174,3 +174,33 @@ fn made(mesh: &Mesh, style: &Style, built: Built) -> Made {
         bytes: built.bytes,
     }
 }
+
+/// Makes a file in degrees, with triangles alone and longitudes and latitudes of the centers of faces. `attributes` are
+/// the name and the values, for longitude and latitude, of the attribute by which the file says so.
+pub(crate) fn in_degrees(
+    mesh: &Mesh,
+    centers: &[[f64; 2]],
+    attributes: [&'static str; 3],
+) -> Vec<u8> {
+    let mut file = NetCdf::new(1);
+    file.ints("bay", &[], &[0]);
+    file.attribute("cf_role", Attribute::Text("mesh_topology"));
+    file.attribute("topology_dimension", Attribute::Whole(2));
+    file.attribute("node_coordinates", Attribute::Text("x y"));
+    file.attribute("face_node_connectivity", Attribute::Text("faces"));
+    file.attribute("face_coordinates", Attribute::Text("face_x face_y"));
+    let nodes: Vec<i32> = mesh.triangles.as_flattened().iter().map(|&v| v as i32).collect();
+    file.ints("faces", &["face", "corner"], &nodes);
+    let [attribute, values @ ..] = attributes;
+    for (points, dimension, names) in
+        [(&mesh.points[..], "node", ["x", "y"]), (centers, "face", ["face_x", "face_y"])]
+    {
+        for (axis, name) in names.into_iter().enumerate() {
+            let numbers: Vec<f64> = points.iter().map(|point| point[axis]).collect();
+            file.reals(name, Precision::Double, &[dimension], &numbers);
+            file.attribute(attribute, Attribute::Text(values[axis]));
+        }
+    }
+    let lengths = [("node", mesh.points.len()), ("face", centers.len()), ("corner", 3)];
+    file.build(&lengths, 0).bytes
+}

@@ -1,0 +1,170 @@
+//! Meshes with third coordinates: in planes of any orientation, on curved surfaces, and with z as data.
+
+use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
+use gpu_smooth::Mesh;
+use mesh_io::MeshFile;
+use std::fmt::Write;
+
+type Point = [f64; 3];
+
+/// Returns an OBJ of the mesh of [`disturbed`], with vertices where `place` puts them.
+fn obj(place: impl Fn([f64; 2]) -> Point) -> String {
+    let mesh = disturbed();
+    let mut text = String::from("# made for a test\n");
+    for [x, y, z] in mesh.points.iter().map(|&point| place(point)) {
+        writeln!(text, "v {x} {y} {z}").unwrap();
+    }
+    for [a, b, c] in &mesh.triangles {
+        writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
+    }
+    text
+}
+
+/// Returns the vertices of a file in space.
+fn space(folder: &Folder, name: &str) -> Vec<Point> {
+    let file = MeshFile::read(&folder.path(name)).unwrap();
+    let z = file.point_fields(Some(&["z".into()])).unwrap();
+    file.points().iter().zip(z[0].values()).map(|(&[x, y], &z)| [x, y, z]).collect()
+}
+
+/// Returns the vertices by two of their coordinates.
+fn by(points: &[Point], axes: [usize; 2]) -> Vec<[f64; 2]> {
+    points.iter().map(|point| axes.map(|axis| point[axis])).collect()
+}
+
+#[test]
+fn a_mesh_in_the_plane_of_any_two_axes_is_smoothed_as_in_x_and_y() {
+    let folder = Folder::new(&[
+        ("xy.obj", &obj(|[x, y]| [x, y, 5.5])),
+        ("xz.obj", &obj(|[x, y]| [x, 5.5, y])),
+        ("yz.obj", &obj(|[x, y]| [5.5, x, y])),
+    ]);
+    folder.line("xy.obj xy_out.obj --engine cpu").clean();
+    let expected = by(&space(&folder, "xy_out.obj"), [0, 1]);
+    for (name, axes, held, words) in
+        [("xz", [0, 2], 1, "the plane of x and z"), ("yz", [1, 2], 0, "the plane of y and z")]
+    {
+        for ending in ["obj", "vtk", "vtu", "msh", "off", "mesh", "inp", "ply", "exo", "xdmf"] {
+            if ending != "obj" {
+                folder.line(&format!("convert {name}.obj {name}.{ending}")).clean();
+            }
+            let line = format!("{name}.{ending} {name}_out.{ending} --engine cpu --report r.json");
+            let run = folder.line(&line);
+            assert_eq!(run.code, Some(0), "{ending}: {}", run.err);
+            assert_holds(&run.err, &[words]);
+            assert!(!run.err.contains("z stays"), "{}", run.err);
+            let certificate = &folder.json("r.json")["certificate"];
+            assert_eq!([&certificate["inverted"], &certificate["fixed_moved"]], [0, 0], "{ending}");
+            let after = space(&folder, &format!("{name}_out.{ending}"));
+            assert!(after.iter().all(|point| point[held].to_bits() == 5.5_f64.to_bits()));
+            assert!(by(&after, axes) == expected, "{ending}");
+            folder.line(&format!("compare {name}.{ending} {name}_out.{ending} -q")).clean();
+        }
+    }
+    // Rows of fixed vertices, and all other rows, keep their bytes.
+    let (before, after) = (folder.text("xz.obj"), folder.text("xz_out.obj"));
+    let same = before.lines().zip(after.lines()).filter(|(a, b)| a == b).count();
+    assert!(same > before.lines().count() - 100 && before != after);
+}
+
+/// Places a point in a plane that slopes in x and in y, with unequal lengths of the axes.
+fn tilted([x, y]: [f64; 2]) -> Point {
+    [x - 0.3 * y + 100.0, 0.2 * x + y, 0.75 * x + 2.0 * y - 7.0]
+}
+
+#[test]
+fn a_mesh_in_a_tilted_plane_is_smoothed_by_its_lengths_in_space() {
+    let folder = Folder::new(&[("in.obj", &obj(tilted))]);
+    folder.line("convert in.obj in.vtk").clean();
+    for ending in ["obj", "vtk"] {
+        let line =
+            format!("in.{ending} out.{ending} --engine cpu --tolerance 1e-12 --report r.json");
+        let run = folder.line(&line);
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.err, &["in a tilted plane with the normal ("]);
+        let report = folder.json("r.json");
+        let certificate = &report["certificate"];
+        assert_eq!([&certificate["inverted"], &certificate["fixed_moved"]], [0, 0]);
+        assert!(number(&certificate["moved"]) > 10.0);
+        let [before, after] = ["in", "out"].map(|name| space(&folder, &format!("{name}.{ending}")));
+        for (a, b) in before.iter().zip(&after) {
+            // The cross product of (1, 0.2, 0.75) and (-0.3, 1, 2).
+            let normal = [-0.35, -2.225, 1.06];
+            let off: f64 = (0..3).map(|k| normal[k] * (b[k] - a[k])).sum();
+            assert!(off.abs() < 1e-12, "{off}");
+        }
+        // The optimum does not depend on the coordinates in which the mesh is smoothed.
+        let triangles = disturbed().triangles;
+        let f = mean_imr_squared(&triangles, &after);
+        assert!((f - number(&report["after"]["f"]["imr"])).abs() < 1e-9, "{f}");
+        folder.line(&format!("compare in.{ending} out.{ending}"));
+    }
+    let quality = folder.line("quality out.vtk --json");
+    assert_eq!(quality.code, Some(0), "{}", quality.err);
+    // In 32-bit floats, the vertices of the file are off the plane by rounding.
+    let single = folder.text("in.vtk").replace(" double", " float");
+    std::fs::write(folder.path("single.vtk"), single).unwrap();
+    let run = folder.line("single.vtk single_out.vtk --engine cpu --report r.json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_eq!(folder.json("r.json")["certificate"]["inverted"], 0);
+}
+
+/// Returns the mean of the squared inverse mean ratio of triangles in space, by lengths of edges.
+fn mean_imr_squared(triangles: &[[u32; 3]], points: &[Point]) -> f64 {
+    let value = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| points[v as usize]);
+        let squared =
+            |p: Point, q: Point| (0..3).map(|k| (q[k] - p[k]) * (q[k] - p[k])).sum::<f64>();
+        let [ab, bc, ca] = [squared(a, b), squared(b, c), squared(c, a)];
+        // Heron's formula for 16 times the square of the area.
+        let area = (2.0 * (ab * bc + bc * ca + ca * ab) - ab * ab - bc * bc - ca * ca).sqrt();
+        let imr = (ab + bc + ca) / (3.0_f64.sqrt() * area);
+        imr * imr
+    };
+    triangles.iter().map(value).sum::<f64>() / triangles.len() as f64
+}
+
+#[test]
+fn a_curved_surface_is_refused_unless_z_is_data() {
+    let curved = obj(|[x, y]| [x, y, 0.05 * x * x + 0.02 * y]);
+    let folder = Folder::new(&[("in.obj", &curved)]);
+    let parts = ["in.obj:", "the mesh does not lie in a plane", "add --z data"];
+    folder.line("in.obj out.obj --engine cpu").refused(&parts);
+    folder.line("quality in.obj").refused(&parts);
+    let run = folder.line("in.obj out.obj --engine cpu --z data");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &["z stays as it is"]);
+    let (before, after) = (space(&folder, "in.obj"), space(&folder, "out.obj"));
+    assert!(before.iter().zip(&after).all(|(a, b)| a[2].to_bits() == b[2].to_bits()));
+    let mesh = |points: &[Point]| Mesh { points: by(points, [0, 1]), ..disturbed() };
+    assert_smoothed(&mesh(&before), &mesh(&after));
+    folder.line("compare in.obj out.obj --z data").clean();
+    // The name of z says too that z is data.
+    let run = folder.line("in.obj out.obj --engine cpu --interpolate z");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    folder.line("compare in.obj out.obj --interpolate z").clean();
+    // The third number of a 2dm is a height by definition.
+    folder.line("convert in.obj in.2dm").clean();
+    let run = folder.line("in.2dm out.2dm --engine cpu");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &["z stays as it is"]);
+}
+
+#[test]
+fn a_vertex_that_leaves_the_plane_of_its_mesh_is_told() {
+    let folder = Folder::new(&[("in.obj", &obj(|[x, y]| [x, 5.5, y]))]);
+    assert_eq!(folder.line("in.obj out.obj --engine cpu").code, Some(0));
+    let pairs = folder.text("in.obj");
+    let row = folder
+        .text("out.obj")
+        .lines()
+        .find(|row| row.starts_with('v') && !pairs.lines().any(|old| old == *row))
+        .unwrap()
+        .to_owned();
+    let off = folder.text("out.obj").replace(&row, &row.replacen(" 5.5 ", " 5.6 ", 1));
+    std::fs::write(folder.path("off.obj"), off).unwrap();
+    assert_eq!(folder.line("compare in.obj out.obj").code, Some(0));
+    let run = folder.line("compare in.obj off.obj");
+    assert_eq!(run.code, Some(1));
+    assert_holds(&run.err, &["1 vertex has moved that must not"]);
+}
