@@ -45,8 +45,8 @@ pub(crate) fn say(text: &str) {
     say_data(&printable(text));
 }
 
-/// Prints a result for programs to standard output, without any change. Ignores a reader that has closed the pipe, as `head` does; other failures, such
-/// as a full disk, end the process.
+/// Prints a result for programs to standard output, without any change. Ignores a reader that has closed the pipe, as
+/// `head` does; other failures, such as a full disk, end the process.
 pub(crate) fn say_data(text: &str) {
     match writeln!(std::io::stdout(), "{text}") {
         Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
