@@ -245,3 +245,12 @@ fn a_file_of_gmsh_without_pairs_slides_as_ever() {
     assert_holds(&run.err, &["--slide: 20 vertices on the boundary and other lines may slide"]);
     assert!(!run.err.contains("periodic"), "{}", run.err);
 }
+
+/// The sides of the square are free of lines, so their vertices slide, and both vertices of a pair have other neighbors.
+#[test]
+fn partners_of_a_zone_of_cgns_slide_together() {
+    let folder = Folder::new(&[]);
+    let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../mesh-io/tests/formats/h5");
+    std::fs::copy(format!("{samples}/periodic.cgns"), folder.path("in.cgns")).unwrap();
+    slides_together(&folder, "in.cgns", 2, "");
+}

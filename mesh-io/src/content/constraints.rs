@@ -26,10 +26,11 @@ pub struct Constraints {
     /// the model (gmsh 4), and the listed vertex of a periodic pair whose other node is missing. In any order, with
     /// repeats.
     pub anchored: Vec<u32>,
-    /// Periodic pairs from gmsh's `$Periodic`, in lists of pairs with a common motion.
+    /// Periodic pairs from gmsh's `$Periodic` and from a CGNS zone that is connected to itself, in lists of pairs with a
+    /// common motion.
     pub periodic: Vec<PeriodicPairs>,
     /// Motions that map boundary vertices to their periodic partners where the file lists no pairs, from SU2's
-    /// `NPERIODIC`.
+    /// `NPERIODIC`, or from CGNS connectivities of faces.
     pub motions: Vec<Affine>,
     /// Whether the file declares a periodic model whose pairs could not be read. Any boundary vertex may then have a
     /// periodic partner.

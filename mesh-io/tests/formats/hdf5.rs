@@ -288,6 +288,39 @@ fn sections_and_boundaries_of_cgns_are_groups() {
     assert_eq!(place.id, 2);
 }
 
+/// gmsh lists the pairs of a periodic boundary twice, once for each side.
+#[test]
+fn vertices_that_a_zone_of_cgns_joins_to_itself_are_periodic_pairs() {
+    let file = MeshFile::read(&made("periodic.cgns")).unwrap();
+    let [own] = &file.constraints().periodic[..] else { panic!("{:?}", file.constraints()) };
+    assert_eq!(own.pairs.len(), 4);
+    assert_eq!(own.motion, Some([[1.0, 0.0, -1.0], [0.0, 1.0, 0.0]]));
+    for [a, b] in &own.pairs {
+        let [a, b] = [a, b].map(|&vertex| file.points()[vertex as usize]);
+        assert!((a[0] - 1.0 - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
+    }
+    assert!(file.constraints().motions.is_empty() && !file.constraints().has_unread_pairs);
+}
+
+/// Without lists of vertices, the motion remains, by which a program can find the pairs.
+#[test]
+fn periodic_connectivities_without_pairs_of_vertices_are_motions() {
+    let mut bytes = fs::read(made("periodic.cgns")).unwrap();
+    let paired = b"Abutting1to1";
+    let starts: Vec<_> = (0..bytes.len()).filter(|&at| bytes[at..].starts_with(paired)).collect();
+    assert_eq!(starts.len(), 2);
+    for at in starts {
+        bytes[at..at + paired.len()].copy_from_slice(b"Abutting    ");
+    }
+    let folder = Folder::new(&[]);
+    fs::write(folder.path("in.cgns"), bytes).unwrap();
+    let file = folder.read("in.cgns");
+    let left = [[1.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
+    let right = [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
+    assert_eq!(file.constraints().motions, [left, right]);
+    assert!(file.constraints().periodic.is_empty());
+}
+
 /// With an extension of HDF5 or none, the content determines the format, and a write in place keeps the file name.
 #[test]
 fn any_file_of_hdf5_is_known_by_its_content() {

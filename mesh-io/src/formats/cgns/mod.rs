@@ -6,6 +6,7 @@
 
 mod boundaries;
 mod file;
+mod periodic;
 mod sections;
 
 use crate::disk::source::Source;
@@ -53,6 +54,9 @@ impl<'a> File<'a> {
             false => Boundaries::default(),
         };
         self.sections(&boundaries, visitor)?;
+        if visitor.asks_for_periodic_pairs() {
+            visitor.periodic_pairs(self.periodic());
+        }
         self.solutions(count, visitor);
         Ok(layout)
     }

@@ -275,4 +275,24 @@ gmsh.model.addPhysicalGroup(2, [2], 2, "sand")
 gmsh.model.addPhysicalGroup(1, [9], 9, "wire")
 gmsh.write("gmsh.med")
 gmsh.write("gmsh.cgns")
+
+# A square whose left and right sides are periodic. Connectivities of single corners are left out, as those of the sides
+# contain the corners.
+gmsh.clear()
+gmsh.model.add("cell")
+corners = [gmsh.model.geo.addPoint(x, y, 0, 0.34) for x, y in [(0, 0), (1, 0), (1, 1), (0, 1)]]
+sides = [gmsh.model.geo.addLine(corners[i], corners[(i + 1) % 4]) for i in range(4)]
+gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(sides)])
+gmsh.model.geo.synchronize()
+gmsh.model.mesh.setPeriodic(1, [sides[1]], [sides[3]], [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+gmsh.model.addPhysicalGroup(2, [1], 1, "fluid")
+gmsh.model.mesh.generate(2)
+gmsh.write("all.cgns")
 gmsh.finalize()
+with h5py.File("all.cgns", "a") as whole, h5py.File("periodic.cgns", "w") as f:
+    links = whole["all.cgns/cell_Part0/ZoneGridConnectivity"]
+    for key in [key for key in links if "_0-P" in key]:
+        del links[key]
+    for key, value in whole.items():
+        whole.copy(value, f, name=key)
+os.remove("all.cgns")
