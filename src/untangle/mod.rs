@@ -221,13 +221,19 @@ impl<'m> Work<'m> {
     }
 
     /// Moves all free vertices from the given positions by quasi-Newton steps, while the regularization falls from period
-    /// to period. Breaks if only hopeless triangles are bad, or if `observe` breaks.
+    /// to period. Breaks if only hopeless triangles are bad, or if `observe` breaks. Does nothing if no positions can be
+    /// feasible.
     fn descend(
         &mut self,
         stage: &Stage,
         result: &mut Untangled,
         observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        let Judge { mesh, topology, .. } = self.judge;
+        // If edges between fixed vertices cross, no positions are feasible, and the steps would take minutes in vain.
+        if topology.crossings(&mesh.points, 1).is_ok_and(|crossings| !crossings.is_empty()) {
+            return ControlFlow::Continue(());
+        }
         let region = Region::whole(self.problem);
         let nobody = vec![false; self.problem.free_count()];
         let levels = self.levels.take().unwrap_or_else(|| self.state.hierarchy(&nobody));

@@ -78,6 +78,20 @@ fn squares_with_bumps_that_reach_past_each_other_are_untangled() {
     }
 }
 
+/// No positions of free vertices are feasible, so the stage of many steps is not begun.
+#[test]
+fn a_boundary_that_crosses_itself_is_given_up_without_quasi_newton_steps() {
+    let square = support::lattice(20, 20);
+    let crossing =
+        boundaries::dragged(&square, |[x, y]| match y == 0.0 && (8.0..12.0).contains(&x) {
+            true => [x, 30.0],
+            false => [x, y],
+        });
+    let result = mend(&crossing);
+    assert!(!result.left.is_empty());
+    assert!(result.sweeps < 4000, "{} sweeps", result.sweeps);
+}
+
 #[test]
 fn a_hole_turned_by_half_a_turn_is_untangled_at_once() {
     // Both directions of rotation are equally far, so sweeps cannot detect the direction in which triangles must turn.
