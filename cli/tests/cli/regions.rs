@@ -277,3 +277,44 @@ fn an_option_chooses_the_cell_data_of_regions() {
         }
     }
 }
+
+/// Each piece of the mesh has the triangles of the other piece as ghosts.
+#[test]
+fn vertices_that_pieces_of_a_mesh_have_in_common_stay() {
+    let mesh = disturbed();
+    let half = mesh.triangles.len() / 2;
+    for (name, ghost) in [("vtkGhostType", 1), ("vtkGhostType", 33), ("vtkGhostLevels", 2)] {
+        let of = |is_ghost: &dyn Fn(usize) -> bool| {
+            let ghosts = (0..2 * half).map(|t| f64::from(ghost * i32::from(is_ghost(t)))).collect();
+            with_cell_data(&mesh, &[(name, false, ghosts)]).swap_remove(0).1
+        };
+        let [below, above] = [of(&|t| t >= half), of(&|t| t < half)];
+        let folder = Folder::new(&[("0.vtk", &below), ("1.vtk", &above)]);
+        let mut moved = Vec::new();
+        for (piece, ghosts) in ["0.vtk", "1.vtk"].into_iter().zip([half..2 * half, 0..half]) {
+            folder.line(&format!("convert {piece} {piece}.vtu --quiet")).clean();
+            let told = "80 ghost elements: their vertices stay fixed";
+            for piece in [piece.to_owned(), format!("{piece}.vtu")] {
+                for options in ["", "--slide"] {
+                    let run =
+                        folder.line(&format!("{piece} out-{piece} --engine cpu --force {options}"));
+                    assert_eq!(run.code, Some(0), "{}", run.err);
+                    assert_holds(&run.err, &[told]);
+                    let after = folder.mesh(&format!("out-{piece}")).points;
+                    assert_ne!(after, mesh.points);
+                    let fixed = mesh.triangles[ghosts.clone()].iter().flatten();
+                    let is_held = |&v: &u32| after[v as usize] == mesh.points[v as usize];
+                    assert!(fixed.into_iter().all(is_held), "{piece} {options}");
+                    moved.push(after);
+                }
+            }
+        }
+        assert_eq!(moved.len(), 8);
+    }
+    // Other bits mark hidden cells and the surface, not ghosts.
+    let hidden = (0..2 * half).map(|t| (32 * (t % 2)) as f64).collect();
+    let text = with_cell_data(&mesh, &[("vtkGhostType", false, hidden)]).swap_remove(0).1;
+    let folder = Folder::new(&[("in.vtk", &text)]);
+    let run = folder.line("in.vtk out.vtk --engine cpu");
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+}

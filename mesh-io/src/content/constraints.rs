@@ -17,14 +17,15 @@ pub struct PeriodicPairs {
 /// A program decides from these facts which vertices may move, and how.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Constraints {
-    /// Vertices of points, lines, quadrilaterals and polygons, and vertices on points and curves of the model (gmsh 4).
-    /// In any order, with repeats.
+    /// Vertices of points, lines, quadrilaterals and polygons, vertices on points and curves of the model (gmsh 4), and
+    /// vertices of ghosts: elements and points that belong to another piece of a partitioned mesh. In any order, with
+    /// repeats.
     pub vertices: Vec<u32>,
     /// Edges of line elements, segments and polylines, as pairs of vertices.
     pub lines: Vec<[u32; 2]>,
     /// Vertices constrained by more than lines: vertices of points, quadrilaterals and polygons, vertices on points of
-    /// the model (gmsh 4), and the listed vertex of a periodic pair whose other node is missing. In any order, with
-    /// repeats.
+    /// the model (gmsh 4), vertices of ghosts, vertices that several pieces of a VTK XML file have in common, and the
+    /// listed vertex of a periodic pair whose other node is missing. In any order, with repeats.
     pub anchored: Vec<u32>,
     /// Periodic pairs from gmsh's `$Periodic` and from a CGNS zone that is connected to itself, in lists of pairs with a
     /// common motion.

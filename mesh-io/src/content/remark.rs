@@ -9,7 +9,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// The file has elements other than triangles, whose vertices are among
+    /// The file has elements other than triangles, or ghosts of other pieces of the mesh, whose vertices are among
     /// [`Constraints::vertices`](crate::Constraints::vertices).
     OtherElements {
         /// Number of the elements.

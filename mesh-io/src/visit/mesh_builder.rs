@@ -15,7 +15,7 @@ use crate::visit::reader::ReaderFunctions;
 use crate::visit::records::{NodeRecords, TriangleRecords};
 use crate::visit::storage::{CoordinateStorage, RepeatedVertices};
 use crate::visit::visitor::MeshVisitor;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Largest number of arrays of cell data whose names are stored.
 const MAX_CELL_ARRAYS: usize = 256;
@@ -215,6 +215,32 @@ impl MeshVisitor for MeshBuilder {
         if unlisted > 0 {
             let list = self.vertices_of.to_owned();
             self.remark(Remark::UnlistedPairs { count: unlisted, list });
+        }
+    }
+
+    fn asks_for_ghosts(&self) -> bool {
+        true
+    }
+
+    fn ghosts(&mut self, name: &'static str, count: u64, nodes: &[u64]) {
+        let vertices = nodes.iter().filter_map(|&node| self.ids.index(node));
+        let vertices: Vec<u32> = vertices.collect();
+        self.constraints.vertices.extend_from_slice(&vertices);
+        self.constraints.anchored.extend_from_slice(&vertices);
+        self.remark(Remark::elements(count, name, ""));
+    }
+
+    fn pieces(&mut self, first_nodes: &[u64]) {
+        let starts: Vec<u32> = first_nodes.iter().filter_map(|&id| self.ids.index(id)).collect();
+        let piece = |vertex: usize| starts.partition_point(|&start| start as usize <= vertex);
+        // Adding zero makes a negative zero positive.
+        let place = |at: &[f64; 2]| at.map(|x| (x + 0.0).to_bits());
+        let mut first: HashMap<[u64; 2], u32> = HashMap::with_capacity(self.points.len());
+        for (vertex, at) in self.points.iter().enumerate() {
+            let other = *first.entry(place(at)).or_insert(vertex as u32);
+            if piece(other as usize) != piece(vertex) {
+                self.constraints.anchored.extend([other, vertex as u32]);
+            }
         }
     }
 

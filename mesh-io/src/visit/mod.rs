@@ -2,6 +2,7 @@
 //! items.
 
 pub(crate) mod field;
+pub(crate) mod ghosts;
 pub(crate) mod group_table;
 pub(crate) mod group_visitor;
 pub(crate) mod items;

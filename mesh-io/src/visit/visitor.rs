@@ -81,6 +81,17 @@ pub(crate) trait MeshVisitor {
     }
     /// Visits the pairs of periodic nodes in the file; `None` if a reader could not parse the pairs.
     fn periodic_pairs(&mut self, _pairs: Option<Vec<PeriodicNodes>>) {}
+    /// Returns whether the visitor uses ghosts. For `false`, readers may skip calls of [`ghosts`](Self::ghosts) and
+    /// [`pieces`](Self::pieces).
+    fn asks_for_ghosts(&self) -> bool {
+        false
+    }
+    /// Visits the ids of nodes that other pieces of a partitioned mesh have too, after the elements. `count` is the
+    /// number of ghosts, which `name` names in the singular. Ids may repeat, and may be unknown.
+    fn ghosts(&mut self, _name: &'static str, _count: u64, _nodes: &[u64]) {}
+    /// Visits the id of the first node of each piece of the mesh in one file, after the nodes. Nodes of different pieces
+    /// at one position are copies of each other.
+    fn pieces(&mut self, _first_nodes: &[u64]) {}
     /// Visits a remark for the user.
     fn remark(&mut self, _remark: Remark) {}
 

@@ -11,6 +11,7 @@ mod data;
 mod errors;
 mod exodus;
 mod facts;
+mod ghosts;
 mod golden;
 mod grouped;
 mod groups;

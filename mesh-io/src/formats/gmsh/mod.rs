@@ -10,6 +10,7 @@ mod binary4;
 mod binary40;
 mod data;
 mod encoding;
+mod ghosts;
 mod kind;
 mod lists;
 mod model;

@@ -3,7 +3,10 @@
 use super::encoding::{FileEncoding, Version, form};
 use super::lists::{note_parameters, row};
 use super::model::Model;
-use super::{binary2, binary4, binary40, data, model, periodic, text2, text4, text40, words};
+use super::{
+    binary2, binary4, binary40, data, ghosts, model, periodic, text2, text4, text40, words,
+};
+use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
 use crate::error::{Location, ReadError};
@@ -12,6 +15,7 @@ use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::quoted;
+use crate::visit::ghosts::GhostNodes;
 use crate::visit::reader::FormatReader;
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
@@ -58,6 +62,8 @@ fn visit_sections(
     let (mut nodes, mut elements) = (false, false);
     let mut node_count = 0;
     let mut model = Model::default();
+    // The place of the elements, for a second reading.
+    let mut elements_at = None;
     while cursor.next_row() {
         // gmsh ignores text between sections.
         let Some(name) = cursor.token().and_then(|token| token.strip_prefix(b"$")) else {
@@ -105,17 +111,8 @@ fn visit_sections(
                     let problem = "$Elements stands before $Nodes";
                     return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
                 }
-                let FileEncoding { version, order } = known(cursor, encoding)?;
-                let count = match (version, order) {
-                    (Version::V2, None) => text2::elements(cursor, visitor)?,
-                    (Version::V40 | Version::V41, None) => {
-                        text4::elements(cursor, version, &model, visitor)?
-                    }
-                    (Version::V2, Some(order)) => binary2::elements(cursor, order, visitor)?,
-                    (Version::V40 | Version::V41, Some(order)) => {
-                        binary4::elements(cursor, version, order, &model, visitor)?
-                    }
-                };
+                elements_at = Some(cursor.clone());
+                let count = read_elements(cursor, known(cursor, encoding)?, &model, visitor)?;
                 end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
                 cursor.syntax = Syntax::PLAIN;
             }
@@ -128,6 +125,19 @@ fn visit_sections(
                 model.read(cursor, known(cursor, encoding)?, partitioned)?;
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, "entities")?;
+            }
+            b"GhostElements" if visitor.asks_for_ghosts() => {
+                let encoding = known(cursor, encoding)?;
+                match (ghosts::read(cursor, encoding), &elements_at) {
+                    (Some(ids), Some(at)) => GhostNodes::of(ids).send(visitor, |visitor| {
+                        read_elements(&mut at.clone(), encoding, &model, visitor).map(drop)
+                    })?,
+                    _ => visitor.remark(Remark::Text(
+                        "the list of ghost elements cannot be read, so their vertices are not held"
+                            .into(),
+                    )),
+                }
+                skip_section(cursor, name, opened)?;
             }
             b"NodeData" | b"ElementData" => {
                 let order = known(cursor, encoding)?.order;
@@ -160,6 +170,23 @@ fn visit_sections(
             format!("it has no {missing} section"),
             "The file is incomplete, or was saved without a mesh: save it again",
         )),
+    }
+}
+
+/// Visits all elements of `$Elements`, after its first line. Returns their number.
+fn read_elements<'a>(
+    cursor: &mut Cursor<'a>,
+    FileEncoding { version, order }: FileEncoding,
+    model: &Model,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<u64, ReadError> {
+    match (version, order) {
+        (Version::V2, None) => text2::elements(cursor, visitor),
+        (Version::V40 | Version::V41, None) => text4::elements(cursor, version, model, visitor),
+        (Version::V2, Some(order)) => binary2::elements(cursor, order, visitor),
+        (Version::V40 | Version::V41, Some(order)) => {
+            binary4::elements(cursor, version, order, model, visitor)
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use crate::formats::vtk::legacy::skip::{array_name, size_of, skip_section, take}
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
+use crate::visit::ghosts::vtk_ghosts;
 use crate::visit::items::{PointNumbers, RegionAttribute};
 use crate::visit::storage::ArrayLocation;
 use crate::visit::visitor::MeshVisitor;
@@ -22,6 +23,8 @@ pub(super) struct RegionArrays {
     /// Region number of each cell, array by array. In text, and in binary arrays of real numbers, the number is the
     /// bits of a real number.
     pub(super) numbers: Vec<Vec<i64>>,
+    /// Ids of cells and of points that belong to another piece of the mesh.
+    pub(super) ghosts: [Vec<u64>; 2],
 }
 
 /// Reads point and cell data to the end of the file. `keyword` is the POINT_DATA or CELL_DATA before the cursor.
@@ -134,6 +137,16 @@ impl Data<'_> {
         let count = components.checked_mul(tuples)?;
         let of_all = tuples == self.count;
         let precision = precision_of(kind);
+        if of_all
+            && components == 1
+            && self.visitor.asks_for_ghosts()
+            && let Some(is_ghost) = vtk_ghosts(name)
+        {
+            let numbers = self.numbers(cursor, kind, count)?.numbers;
+            let ids = (0..).zip(numbers).filter(|&(_, number)| is_ghost(number));
+            self.found.ghosts[usize::from(!self.of_cells)].extend(ids.map(|(id, _)| id));
+            return Some(());
+        }
         if !self.of_cells
             && of_all
             && self.visitor.point_array(name, components, precision.is_some())

@@ -18,6 +18,7 @@ use crate::formats::vtk::regions::RegionNumbers;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
+use crate::visit::ghosts::GhostNodes;
 use crate::visit::reader::FormatReader;
 use crate::visit::records::{NodeIds, NodeRecords};
 use crate::visit::rows::each_row;
@@ -119,11 +120,17 @@ impl FormatReader for Vtk {
             z_values.send("z", form, visitor);
         }
         visitor.region_attributes(regions.columns);
+        let [ghost_cells, ghost_points] = regions.ghosts;
         let regions = RegionNumbers::from_iter(regions.numbers);
-        let mut id = 0;
-        for cells in &cells {
-            cells.send(cursor, &regions, &mut id, visitor)?;
+        let send = |visitor: &mut dyn MeshVisitor| {
+            let mut id = 0;
+            cells.iter().try_for_each(|cells| cells.send(cursor, &regions, &mut id, visitor))
+        };
+        send(visitor)?;
+        if !ghost_points.is_empty() {
+            visitor.ghosts("ghost point", ghost_points.len() as u64, &ghost_points);
         }
+        GhostNodes::of(ghost_cells.into_iter().collect()).send(visitor, send)?;
         let (format, numbers) = match binary {
             false => (Format::Vtk, CoordinateEncoding::Text { precision }),
             true => (Format::VtkBinary, CoordinateEncoding::adjacent(ByteOrder::Big, precision)),

@@ -9,6 +9,7 @@ mod blocks;
 mod cells;
 mod document;
 mod encoding;
+mod ghosts;
 mod points;
 
 use crate::disk::source::Source;
@@ -34,6 +35,9 @@ impl FormatReader for Vtu {
         let file = File { source, document, offsets };
         let points::PointStorage { numbers, encoded } = points::read(&file, visitor)?;
         file.cells(visitor)?;
+        if visitor.asks_for_ghosts() {
+            file.ghosts(visitor)?;
+        }
         file.point_arrays(visitor);
         let format = match file.document.content {
             Content::Grid => Format::Vtu,
