@@ -63,7 +63,7 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
 }
 
 /// Returns the problem and the remedy for a file that a program stored in place of a mesh, or in an encoding that no
-/// format of meshes has; `None` for any other content. The extension of the file may be that of a mesh.
+/// format of meshes has; `None` for any other content. Files with the extension of a mesh may have such content.
 fn other_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let text = bytes.trim_ascii_start();
     let starts =

@@ -307,7 +307,7 @@ impl Engine for CpuEngine {
             kept.clone_from(best);
             *least = self.base.ideal_squared() + mean_excess(self.base, &self.problem, kept);
         }
-        self.hierarchy = Hierarchy::of_recipe(&self.problem, &state.roots);
+        self.hierarchy = Hierarchy::of_build_log(&self.problem, &state.roots);
         self.secants = Secants::saved_in(state, self.problem.free_count());
         Ok(self.hierarchy.is_some() || state.roots.is_empty())
     }

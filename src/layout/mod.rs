@@ -3,6 +3,7 @@
 
 mod coloring;
 mod curve;
+mod normalization;
 mod prepare;
 mod problem;
 mod sizes;

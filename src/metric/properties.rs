@@ -15,8 +15,8 @@ pub struct Properties {
     pub barrier: bool,
     /// Value of q of an equilateral triangle of mean area.
     pub ideal: f64,
-    /// Least value of q of a single triangle. Less than `ideal` only if no mesh of a given area has a mean of q² below
-    /// ideal²: by RMS, where small triangles leave others larger.
+    /// Least value of q of a single triangle. The value of RMS is less than `ideal`: q falls with the size of the
+    /// triangle, while small triangles leave others larger, and the mean of q² of a mesh stays above ideal².
     pub least: f64,
     /// Whether q is independent of the size of a triangle.
     pub scale_invariant: bool,

@@ -9,8 +9,9 @@ use crate::periodic::Periodic;
 ///
 /// Curves are chains of edges of the boundary and of [`lines`](Self::lines). Corners do not move. Corners are the ends
 /// of curves, vertices where more than two edges of curves meet, [`held`](Self::held) vertices, boundary vertices in
-/// [`Mesh::fixed`](crate::Mesh::fixed) with a boundary edge that `lines` lacks, and vertices where a curve turns by more than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight
-/// runs stay straight. Elsewhere, vertices move along a piecewise cubic through the given positions of the vertices.
+/// [`Mesh::fixed`](crate::Mesh::fixed) with a boundary edge that `lines` lacks, and vertices where a curve turns by more
+/// than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight runs stay straight.
+/// Elsewhere, vertices move along a piecewise cubic through the given positions of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
     /// Turn of a curve, in degrees from 0 to 180, above which a vertex is a corner.

@@ -14,7 +14,7 @@ pub(crate) struct EnclosedArea {
 }
 
 impl EnclosedArea {
-    /// Adds the triangle of an edge and the origin. The part lies to the left of the edge.
+    /// Adds the triangle of an edge and the origin. The enclosed domain lies to the left of the edge.
     pub(crate) fn add(&mut self, points: &[[f64; 2]], [a, b]: [u32; 2]) {
         let origin = *self.origin.get_or_insert(a);
         let area = predicates::orientation(points, &[origin, a, b]);

@@ -28,7 +28,7 @@ use crate::topology::Topology;
 use crate::topology::predicates::not_positive;
 use judge::{Judge, Judgment};
 use quasi_newton::{QuasiNewton, next_epsilon};
-use stages::{STAGES, Stage, Start};
+use stages::{QUASI_NEWTON, STAGES, Stage, Start};
 use state::{Region, State};
 
 /// Share of bad triangles (0 to 1) above which all vertices move from the start.
@@ -169,12 +169,6 @@ impl<'m> Work<'m> {
         observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
     ) {
         for stage in &STAGES {
-            if matches!(stage.start, Start::Given) {
-                if self.descend(stage, result, observe).is_break() {
-                    return;
-                }
-                continue;
-            }
             let Some(region) = self.begin(&stage.start, result) else { continue };
             let has_moved = !matches!(stage.start, Start::Near(_));
             if has_moved && self.is_done(result) {
@@ -184,6 +178,7 @@ impl<'m> Work<'m> {
                 return;
             }
         }
+        self.descend(result, observe);
     }
 
     /// Moves the vertices to the start of a stage, and returns the region that the stage sweeps. Returns `None` to skip
@@ -213,7 +208,6 @@ impl<'m> Work<'m> {
                 self.state.make_harmonic(&self.state.hierarchy(&held), &held);
                 self.tried.push(held);
             }
-            Start::Given => return None,
             Start::Nearest if self.ends.is_empty() => return None,
             Start::Nearest => self.state.positions = self.ends.remove(0).1,
         }
@@ -221,28 +215,27 @@ impl<'m> Work<'m> {
     }
 
     /// Moves all free vertices from the given positions by quasi-Newton steps, while the regularization falls from period
-    /// to period. Breaks if only hopeless triangles are bad, or if `observe` breaks. Does nothing if no positions can be
+    /// to period. Ends if only hopeless triangles are bad, or if `observe` breaks. Does nothing if no positions can be
     /// feasible.
     fn descend(
         &mut self,
-        stage: &Stage,
         result: &mut Untangled,
         observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
+    ) {
         let Judge { mesh, topology, .. } = self.judge;
         // If edges between fixed vertices cross, no positions are feasible, and the steps would take minutes in vain.
         if topology.crossings(&mesh.points, 1).is_ok_and(|crossings| !crossings.is_empty()) {
-            return ControlFlow::Continue(());
+            return;
         }
         let region = Region::whole(self.problem);
         let nobody = vec![false; self.problem.free_count()];
         let levels = self.levels.take().unwrap_or_else(|| self.state.hierarchy(&nobody));
         self.state.positions = self.problem.positions().to_vec();
-        let budget = stage.patience();
+        let budget = &QUASI_NEWTON;
         let mut now = self.state.assess(&region);
-        let mut judged = (result.sweeps, now);
-        let mut epsilon = FIRST_EPSILON;
         let began = result.sweeps;
+        let mut judged = (began, now);
+        let mut epsilon = FIRST_EPSILON;
         while result.sweeps - began < budget.most && epsilon > LAST_EPSILON {
             if result.sweeps - judged.0 >= budget.often {
                 let before = std::mem::replace(&mut judged, (result.sweeps, now)).1;
@@ -260,11 +253,11 @@ impl<'m> Work<'m> {
                 result.sweeps += 1;
                 now = self.state.assess(&region);
                 if now.bad <= result.hopeless.len() && self.is_done(result) {
-                    return ControlFlow::Break(());
+                    return;
                 }
                 if observe(&Untangling { sweep: result.sweeps, bad: now.bad }).is_break() {
                     self.is_done(result);
-                    return ControlFlow::Break(());
+                    return;
                 }
                 if last - search.energy() <= MIN_GAIN * last {
                     break;
@@ -272,7 +265,7 @@ impl<'m> Work<'m> {
             }
             epsilon = next_epsilon(epsilon, now.least, [first, search.energy()]);
         }
-        if self.is_done(result) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.is_done(result);
     }
 
     /// Sweeps the region until the stage ends. Breaks if only hopeless triangles are bad, or if `observe` breaks.

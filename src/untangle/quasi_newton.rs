@@ -10,12 +10,11 @@
 
 use std::collections::VecDeque;
 
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 
-use crate::cpu::correction;
 use crate::parallel::{collect, map_ranges};
 use crate::run::multilevel::Hierarchy;
-use crate::untangle::state::{CHUNK, Region, State, largest};
+use crate::untangle::state::{CHUNK, Region, State, largest, preconditioned};
 
 /// Number of steps whose differences the method stores.
 const MEMORY: usize = 10;
@@ -75,7 +74,8 @@ impl<'l> QuasiNewton<'l> {
         epsilon: f64,
         state: &State<'_>,
     ) -> Self {
-        let here = Point::of(state, region, epsilon);
+        let (energy, gradient) = (state.energy(epsilon), state.gradient(region, epsilon));
+        let here = Point { energy, gradient };
         Self { levels, region, epsilon, here, pairs: VecDeque::new() }
     }
 
@@ -104,14 +104,15 @@ impl<'l> QuasiNewton<'l> {
             state.positions = collect(from.len(), |v| {
                 direction.get(v).map_or(from[v], |d| from[v] + *d * length)
             });
-            let there = Point::of(state, self.region, self.epsilon);
+            let energy = state.energy(self.epsilon);
             let enough = here.energy + SUFFICIENT_DECREASE * length * slope;
-            if there.energy.is_nan() || there.energy > enough {
+            if energy.is_nan() || energy > enough {
                 high = length;
             } else {
-                let is_flat = dot(&direction, &there.gradient) >= CURVATURE * slope;
+                let gradient = state.gradient(self.region, self.epsilon);
+                let is_flat = dot(&direction, &gradient) >= CURVATURE * slope;
                 low = length;
-                best = Some((there, state.positions.clone()));
+                best = Some((Point { energy, gradient }, state.positions.clone()));
                 if is_flat {
                     break;
                 }
@@ -146,11 +147,12 @@ impl<'l> QuasiNewton<'l> {
             found = collect(found.len(), |v| found[v] - pair.gradients[v] * share);
             shares.push(share);
         }
-        found = self.preconditioned(state, &found);
+        found = preconditioned(self.levels, state.problem, &found);
         if let Some(Pair { gradients, inverse_product, .. }) = self.pairs.back() {
             // The scale of the levels follows from the last step.
-            let scale =
-                1.0 / (inverse_product * dot(gradients, &self.preconditioned(state, gradients)));
+            let scale = 1.0
+                / (inverse_product
+                    * dot(gradients, &preconditioned(self.levels, state.problem, gradients)));
             if scale > 0.0 && scale.is_finite() {
                 found = collect(found.len(), |v| found[v] * scale);
             }
@@ -160,26 +162,6 @@ impl<'l> QuasiNewton<'l> {
             found = collect(found.len(), |v| found[v] + pair.positions[v] * (share - back));
         }
         collect(found.len(), |v| -found[v])
-    }
-
-    /// Returns a gradient multiplied by the inverse Hessian that the levels approximate.
-    fn preconditioned(&self, state: &State<'_>, gradient: &[DVec2]) -> Vec<DVec2> {
-        let most = largest(gradient);
-        if !(most > 0.0 && most.is_finite()) {
-            return gradient.to_vec();
-        }
-        let scaled: Vec<Vec2> = collect(gradient.len(), |v| (gradient[v] / most).as_vec2());
-        let coarse = correction(self.levels, state.problem, &scaled);
-        let diagonal = self.levels.inverse_diagonal();
-        collect(gradient.len(), |v| {
-            gradient[v] * f64::from(diagonal[v]) - coarse[v].as_dvec2() * most
-        })
-    }
-}
-
-impl Point {
-    fn of(state: &State<'_>, region: &Region, epsilon: f64) -> Self {
-        Self { energy: state.energy(epsilon), gradient: state.gradient(region, epsilon) }
     }
 }
 

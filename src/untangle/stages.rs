@@ -5,7 +5,7 @@ use crate::untangle::state::Assessment;
 
 /// Starts in the order of trials, until the mesh is untangled. Cuts by each rule untangle some meshes that cuts by the
 /// other rules leave tangled.
-pub(super) const STAGES: [Stage; 20] = [
+pub(super) const STAGES: [Stage; 19] = [
     Stage { start: Start::Near(2), sweeps: 10 },
     Stage { start: Start::Near(6), sweeps: 20 },
     Stage { start: Start::Means, sweeps: 10 },
@@ -25,11 +25,11 @@ pub(super) const STAGES: [Stage; 20] = [
     Stage { start: Start::Nearest, sweeps: 1000 },
     Stage { start: Start::Nearest, sweeps: 1000 },
     Stage { start: Start::Means, sweeps: 100 },
-    Stage { start: Start::Given, sweeps: MAX_STEPS },
 ];
 
-/// Largest number of quasi-Newton steps.
-const MAX_STEPS: u32 = 20_000;
+/// The budget of [quasi-Newton](super::quasi_newton) steps, which follow the last stage.
+pub(super) const QUASI_NEWTON: StageBudget =
+    StageBudget { fewest: 0, most: 20_000, often: 4000, area: 0.75, bad: 0.9 };
 
 /// Sweeps from one start.
 pub(super) struct Stage {
@@ -49,8 +49,6 @@ pub(super) enum Start {
     /// The result of an earlier stage after a cut, with the smallest inverted area. All free vertices move. Each result
     /// is a start only once.
     Nearest,
-    /// The positions of the given mesh. [Quasi-Newton](super::quasi_newton) steps move all free vertices at once.
-    Given,
 }
 
 /// The conditions that end the sweeps of a stage.
@@ -72,7 +70,7 @@ impl Stage {
     /// Returns the conditions that end the stage. After a cut, sweeps continue up to fourfold, while 50 sweeps halve
     /// the inverted area of the most inverted triangle. From the nearest result, up to 1,000 sweeps follow, while 100
     /// sweeps lower the inverted area by a quarter or the bad triangles by a tenth. Large meshes take hundreds of
-    /// sweeps. Quasi-Newton steps continue under the same condition, judged every 4,000 steps.
+    /// sweeps.
     pub(super) fn patience(&self) -> StageBudget {
         let sweeps = self.sweeps;
         match self.start {
@@ -84,9 +82,6 @@ impl Stage {
             }
             Start::Nearest => {
                 StageBudget { fewest: 0, most: sweeps, often: 100, area: 0.75, bad: 0.9 }
-            }
-            Start::Given => {
-                StageBudget { fewest: 0, most: sweeps, often: 4000, area: 0.75, bad: 0.9 }
             }
         }
     }

@@ -219,18 +219,14 @@ impl<'p> State<'p> {
             let ring = problem.ring_of(v as u32).iter().map(|&k| k as usize);
             ring.map(|k| (here - at(k)) * f64::from(hierarchy.weight(v, k))).sum()
         };
-        let preconditioned = |residual: &[DVec2]| -> Vec<DVec2> {
-            let most = largest(residual);
-            if most == 0.0 {
-                return vec![DVec2::ZERO; residual.len()];
-            }
-            let scaled: Vec<Vec2> = collect(residual.len(), |v| (residual[v] / most).as_vec2());
-            let coarse = correction(hierarchy, problem, &scaled);
-            let diagonal = hierarchy.inverse_diagonal();
-            collect(free, |v| match held[v] {
-                true => DVec2::ZERO,
-                false => residual[v] * f64::from(diagonal[v]) - coarse[v].as_dvec2() * most,
-            })
+        let of_free = |residual: &[DVec2]| -> Vec<DVec2> {
+            let mut found = preconditioned(hierarchy, problem, residual);
+            update(&mut found, |v, found| {
+                if held[v] {
+                    *found = DVec2::ZERO;
+                }
+            });
+            found
         };
         // Both coordinates are solved for at once, with separate step lengths.
         let dot = |a: &[DVec2], b: &[DVec2]| -> DVec2 {
@@ -246,7 +242,7 @@ impl<'p> State<'p> {
             )
         };
         let mut residual: Vec<DVec2> = collect(free, |v| -differences(v, &|k| self.positions[k]));
-        let mut z = preconditioned(&residual);
+        let mut z = of_free(&residual);
         let mut direction = z.clone();
         let mut norm = dot(&residual, &z);
         let enough = norm * 1e-16;
@@ -259,13 +255,31 @@ impl<'p> State<'p> {
             let length = ratio(norm, dot(&direction, &applied));
             update(&mut self.positions[..free], |v, at| *at += length * direction[v]);
             update(&mut residual, |v, residual| *residual -= length * applied[v]);
-            z = preconditioned(&residual);
+            z = of_free(&residual);
             let next = dot(&residual, &z);
             let share = ratio(next, norm);
             norm = next;
             update(&mut direction, |v, direction| *direction = z[v] + share * *direction);
         }
     }
+}
+
+/// Returns a gradient multiplied by the inverse Hessian that the levels approximate; a zero gradient for a gradient that
+/// is zero.
+pub(super) fn preconditioned(
+    hierarchy: &Hierarchy,
+    problem: &Problem,
+    gradient: &[DVec2],
+) -> Vec<DVec2> {
+    // The levels compute in single precision, whose range a gradient near flat triangles may exceed.
+    let most = largest(gradient);
+    if most == 0.0 {
+        return vec![DVec2::ZERO; gradient.len()];
+    }
+    let scaled: Vec<Vec2> = collect(gradient.len(), |v| (gradient[v] / most).as_vec2());
+    let coarse = correction(hierarchy, problem, &scaled);
+    let diagonal = hierarchy.inverse_diagonal();
+    collect(gradient.len(), |v| gradient[v] * f64::from(diagonal[v]) - coarse[v].as_dvec2() * most)
 }
 
 /// Returns the largest absolute coordinate of the vectors, 0 if there are none.

@@ -33,10 +33,43 @@ pub(crate) fn least_of(problem: &Problem) -> f64 {
     least(problem.triangles(), |v| problem.positions()[v as usize])
 }
 
-/// Returns whether the altitude of a triangle is below `floor`. An altitude of NaN counts as below.
-fn is_low(t: &[u32; 3], points: &[DVec2], floor: f64) -> bool {
-    let altitude = altitude(t.map(|v| points[v as usize]));
-    altitude.partial_cmp(&floor).is_none_or(|order| order == Ordering::Less)
+/// The bounds that triangles keep after a move. `corner` returns a triangle with vertices at given positions.
+struct Bounds<F> {
+    /// Smallest altitude.
+    floor: f64,
+    /// Largest inverse mean ratio of a triangle that becomes worse; infinite for no guard.
+    guard: f64,
+    corner: F,
+}
+
+impl<F: Fn(&[u32; 3], &[DVec2]) -> Corner<f64>> Bounds<F> {
+    /// Moves the vertices of triangles below the floor back toward `before`. Sweeps keep the guard with all vertices
+    /// moved, so if vertices have gone back, the vertices of triangles that break the guard follow. Returns every vertex
+    /// whose move was shortened, ascending. See [`bring_back`] for `halved`.
+    fn restore(
+        &self,
+        triangles: &[[u32; 3]],
+        before: &[DVec2],
+        points: &mut [DVec2],
+        halved: u32,
+    ) -> Vec<u32> {
+        // An altitude of NaN counts as below the floor.
+        let is_low = |t: &[u32; 3], at: &[DVec2]| {
+            let altitude = altitude(t.map(|v| at[v as usize]));
+            altitude.partial_cmp(&self.floor).is_none_or(|order| order == Ordering::Less)
+        };
+        let mut returned = bring_back(triangles, before, points, is_low, halved);
+        if !returned.is_empty() && self.guard.is_finite() {
+            let corner = &self.corner;
+            let is_bad = |t: &[u32; 3], at: &[DVec2]| {
+                is_low(t, at) || !is_kept(&corner(t, before), &corner(t, at), self.guard)
+            };
+            returned.extend(bring_back(triangles, before, points, is_bad, halved));
+            returned.sort_unstable();
+            returned.dedup();
+        }
+        returned
+    }
 }
 
 /// Repeats passes until no triangle for which `is_bad` is true has a moved vertex. The first `halved` passes halve the
@@ -80,22 +113,13 @@ pub(crate) fn restore(
 ) -> usize {
     let vectors = |points: &[[f64; 2]]| points.iter().map(|&p| p.into()).collect::<Vec<DVec2>>();
     let (old, mut new) = (vectors(before), vectors(points));
-    let floor = least(topology.triangles(), |v| old[v as usize]);
     let triangles = topology.triangles();
-    let low = |t: &[u32; 3], at: &[DVec2]| is_low(t, at, floor);
-    let mut returned = bring_back(triangles, &old, &mut new, low, 0);
-    if !returned.is_empty() && guard.is_finite() {
-        let corner = |t: &[u32; 3], at: &[DVec2]| {
-            let [p, q, r] = t.map(|v| at[v as usize]);
-            Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 }
-        };
-        let is_bad = |t: &[u32; 3], at: &[DVec2]| {
-            is_low(t, at, floor) || !is_kept(&corner(t, &old), &corner(t, at), guard)
-        };
-        returned.extend(bring_back(triangles, &old, &mut new, is_bad, 0));
-        returned.sort_unstable();
-        returned.dedup();
-    }
+    let corner = |t: &[u32; 3], at: &[DVec2]| {
+        let [p, q, r] = t.map(|v| at[v as usize]);
+        Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 }
+    };
+    let bounds = Bounds { floor: least(triangles, |v| old[v as usize]), guard, corner };
+    let returned = bounds.restore(triangles, &old, &mut new, 0);
     for &v in &returned {
         points[v as usize] = before[v as usize];
     }
@@ -138,19 +162,11 @@ impl Stage for AltitudeStage<'_> {
         _: &dyn Fn(&[DVec2]) -> bool,
     ) -> Result<Worked, MeshError> {
         self.count = self.count.saturating_add(1);
-        let (guard, least) = (host.guard(), self.least);
+        let guard = host.guard();
         let Host { problem, before, positions, held, .. } = host;
-        let (triangles, before) = (problem.triangles(), &before[..]);
-        let low = |t: &[u32; 3], at: &[DVec2]| is_low(t, at, least);
-        let mut returned = bring_back(triangles, before, positions, low, MAX_HALVINGS);
-        if !returned.is_empty() && guard.is_finite() {
-            // Sweeps kept the guard with all vertices moved, but some vertices have gone back.
-            let corner = |t: &[u32; 3], at: &[DVec2]| problem.corner(t, |v: u32| at[v as usize]);
-            let is_bad = |t: &[u32; 3], at: &[DVec2]| {
-                is_low(t, at, least) || !is_kept(&corner(t, before), &corner(t, at), guard)
-            };
-            returned.extend(bring_back(triangles, before, positions, is_bad, MAX_HALVINGS));
-        }
+        let corner = |t: &[u32; 3], at: &[DVec2]| problem.corner(t, |v| at[v as usize]);
+        let bounds = Bounds { floor: self.least, guard, corner };
+        let returned = bounds.restore(problem.triangles(), before, positions, MAX_HALVINGS);
         let mut is_settled = true;
         for v in returned {
             if let Some(held) = held.get_mut(v as usize) {

@@ -300,6 +300,7 @@ fn vertices_that_pieces_of_a_mesh_have_in_common_stay() {
                         folder.line(&format!("{piece} out-{piece} --engine cpu --force {options}"));
                     assert_eq!(run.code, Some(0), "{}", run.err);
                     assert_holds(&run.err, &[told]);
+                    assert!(!run.err.contains("regions"), "{}", run.err);
                     let after = folder.mesh(&format!("out-{piece}")).points;
                     assert_ne!(after, mesh.points);
                     let fixed = mesh.triangles[ghosts.clone()].iter().flatten();

@@ -26,8 +26,8 @@ impl MeshFile {
     /// [`write_with_fields`](Self::write_with_fields). A field has one coordinate of the centers, with a number per
     /// face or edge. An array is updated if all its numbers are means of corners, all are centroids, or all are
     /// circumcenters of triangles. If the file says that coordinates are in degrees, corners are continued across the
-    /// date line, and centers on the sphere are recognized too. The second list holds the names of the remaining arrays. Without centers in the
-    /// file, both lists are empty.
+    /// date line, and centers on the sphere are recognized too. The second list holds the names of the remaining arrays.
+    /// Without centers in the file, both lists are empty.
     ///
     /// # Errors
     /// [`FieldError::PointCount`] if `points` does not have exactly one point per vertex.

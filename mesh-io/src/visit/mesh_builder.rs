@@ -8,6 +8,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::ghosts::vtk_ghosts;
 use crate::visit::items::{CellKind, Element, PeriodicNodes};
 use crate::visit::locate::{ItemList, ItemLocation, locate};
 use crate::visit::parsed_mesh::ParsedMesh;
@@ -107,7 +108,7 @@ struct MeshBuilder {
     data: Vec<String>,
     /// The names in `data` as a set, as a damaged file may announce very many names.
     named: HashSet<String>,
-    /// Names of the arrays of one number for each cell, each once.
+    /// Names of the cell data with one number for each cell, except marks of ghosts. Each name is listed once.
     cell_arrays: Vec<String>,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
@@ -265,9 +266,11 @@ impl MeshVisitor for MeshBuilder {
     }
 
     fn cell_array(&mut self, name: &[u8], components: u64, _: bool) -> bool {
+        let is_ghosts = vtk_ghosts(name).is_some();
         let name = String::from_utf8_lossy(name).into_owned();
         // Beyond this number, an array without a usual name is not looked for among the others.
         if components == 1
+            && !is_ghosts
             && self.cell_arrays.len() < MAX_CELL_ARRAYS
             && !self.cell_arrays.contains(&name)
         {

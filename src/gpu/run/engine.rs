@@ -394,7 +394,7 @@ impl Engine for GpuEngine<'_> {
         if state.roots.is_empty() {
             return Ok(true);
         }
-        let Some(hierarchy) = Hierarchy::of_recipe(&self.problem, &state.roots) else {
+        let Some(hierarchy) = Hierarchy::of_build_log(&self.problem, &state.roots) else {
             return Ok(false);
         };
         self.set_hierarchy(hierarchy)?;

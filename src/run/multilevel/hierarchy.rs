@@ -123,14 +123,14 @@ impl Hierarchy {
         self
     }
 
-    /// Returns the data from which [`of_recipe`](Self::of_recipe) builds equal levels: the roots of the build, and then
+    /// Returns the data from which [`of_build_log`](Self::of_build_log) builds equal levels: the roots of the build, and then
     /// the roots of each fit, in order.
     pub(crate) fn build_log(&self) -> Vec<Vec<f32>> {
         self.earlier.iter().chain([&self.root]).cloned().collect()
     }
 
-    /// Builds the levels of a [`build_log`](Self::build_log). `None` if the build_log is empty or from another mesh.
-    pub(crate) fn of_recipe(problem: &Problem, build_log: &[Vec<f32>]) -> Option<Self> {
+    /// Builds the levels of a [`build_log`](Self::build_log). `None` if the log is empty or from another mesh.
+    pub(crate) fn of_build_log(problem: &Problem, build_log: &[Vec<f32>]) -> Option<Self> {
         let (built_from, fitted_to) = build_log.split_first()?;
         if build_log.iter().any(|roots| roots.len() != problem.free_count()) {
             return None;

@@ -30,7 +30,7 @@ pub(crate) enum BatchStatus {
 
 impl BatchStatus {
     /// Returns the result in one word.
-    pub(crate) fn status(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Smoothed { .. } => "smoothed",
             Self::Skipped => "skipped",
@@ -65,7 +65,7 @@ impl BatchStatus {
                 )
             }
             (None, Some(problem)) => problem,
-            (None, None) => self.status().to_owned(),
+            (None, None) => self.name().to_owned(),
         }
     }
 

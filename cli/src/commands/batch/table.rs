@@ -66,7 +66,7 @@ pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> 
             }
             None => {
                 let name = left(&shortened(&name(entry), widths.name), widths.name);
-                text += &format!("{name}  {}", entry.status.status());
+                text += &format!("{name}  {}", entry.status.name());
             }
         }
     }
@@ -97,14 +97,14 @@ fn numbers(report: &Report) -> [String; WIDTHS.len()] {
 fn counts(entries: &[Entry]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for status in ["smoothed", "skipped", "failed", "interrupted"] {
-        let count = entries.iter().filter(|entry| entry.status.status() == status).count();
+        let count = entries.iter().filter(|entry| entry.status.name() == status).count();
         if count > 0 {
             counts.push((status, count));
         }
     }
-    let status: Vec<String> =
+    let counts: Vec<String> =
         counts.iter().map(|(status, count)| format!("{count} {status}")).collect();
-    format!("{} of {}", status.join(", "), counted(entries.len()))
+    format!("{} of {}", counts.join(", "), counted(entries.len()))
 }
 
 fn counted(meshes: usize) -> String {
@@ -152,7 +152,7 @@ const KEYS: [&str; 18] = [
 
 fn values(entry: &Entry) -> [Value; KEYS.len()] {
     let [input, out] = [&entry.input, &entry.out].map(|path| path.display().to_string());
-    let head = [json!(input), json!(out), json!(entry.status.status())];
+    let head = [json!(input), json!(out), json!(entry.status.name())];
     let numbers = match entry.status.report() {
         None => std::array::from_fn(|_| Value::Null),
         Some(report) => {
@@ -206,17 +206,17 @@ pub(crate) fn json(entries: &[Entry]) -> Result<String, CliError> {
 /// Returns the JSON report on all meshes. Each smoothed mesh has the report of a single run.
 pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, CliError> {
     let mut meshes = Vec::new();
-    for Entry { input, out, status: what, .. } in entries {
+    for Entry { input, out, status, .. } in entries {
         let mut object = json!({
-            "mesh": input.display().to_string(), "out": out.display().to_string(), "status": what.status(),
+            "mesh": input.display().to_string(), "out": out.display().to_string(), "status": status.name(),
         });
-        match what {
+        match status {
             BatchStatus::Smoothed { report, remarks } => {
                 object["remarks"] = json!(remarks);
                 object["report"] = serde_json::to_value(report)?;
             }
             BatchStatus::Failed(failure) => {
-                object["error"] = json!(what.problem());
+                object["error"] = json!(status.problem());
                 object["triangles"] = serde_json::to_value(&failure.triangles)?;
             }
             BatchStatus::Skipped | BatchStatus::Interrupted => {}

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 /// Bytes per copy, more than caches hold.
 const BYTES: u64 = 128 << 20;
-/// Number of repetitions after the first timed call. The fastest call counts.
-const REPEATS: u32 = 5;
+/// Number of timed calls. The fastest call counts.
+const CALLS: usize = 6;
 /// Copies encoded into one submission to a GPU.
 const SUBMITTED: u32 = 4;
 
@@ -80,6 +80,6 @@ fn fastest(copies: u32, mut copy: impl FnMut()) -> f64 {
         copy();
         start.elapsed()
     };
-    let best = std::iter::repeat_with(time).take(REPEATS as usize + 1).min();
+    let best = std::iter::repeat_with(time).take(CALLS).min();
     2.0 * BYTES as f64 * f64::from(copies) / best.unwrap_or(Duration::MAX).as_secs_f64()
 }

@@ -5,7 +5,6 @@ use crate::commands::quality::bars::Style;
 use crate::commands::quality::mesh_quality::MeshQuality;
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
-
 use crate::request::Outputs;
 use crate::terminal::tell;
 
@@ -15,25 +14,16 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     let outputs = Outputs::of_picture(&args.picture)?;
     outputs.check(&args.meshes, &[])?;
     let style = Style::of_terminal(args.ascii);
-    let qualities =
-        args.meshes.iter().map(|path| MeshQuality::of(path, args, outputs.picture.as_ref()));
-    // A mesh that cannot be read must not hide the others.
-    let (mut measured, mut errors) = (Vec::new(), Vec::new());
-    for quality in qualities {
-        match quality {
-            Ok(quality) => measured.push(quality),
+    let (mut qualities, mut errors) = (Vec::new(), Vec::new());
+    for path in &args.meshes {
+        match MeshQuality::of(path, args, outputs.picture.as_ref()) {
+            Ok(quality) => qualities.push(quality),
+            // A mesh that cannot be read must not hide the others.
             Err(error) => errors.push(error),
         }
     }
-    let qualities = measured;
-    if qualities.is_empty() {
-        // Without any mesh, there is nothing to print.
-    } else if args.json {
-        tell::say_data(&format!("{:#}", json::json(&qualities)?));
-    } else if args.csv {
-        tell::say_data(&json::csv(&qualities));
-    } else {
-        tell::say(&text::text(&qualities, &style));
+    if !qualities.is_empty() {
+        print(&qualities, args, &style)?;
     }
     if let Some(last) = errors.pop() {
         errors.iter().for_each(tell::error);
@@ -44,6 +34,18 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
         None => Ok(()),
         Some(first) => Err(CliError::run(first).with_details(violations.collect())),
     }
+}
+
+/// Prints the quality of at least one mesh.
+fn print(qualities: &[MeshQuality], args: &QualityArgs, style: &Style) -> Result<(), CliError> {
+    if args.json {
+        tell::say_data(&format!("{:#}", json::json(qualities)?));
+    } else if args.csv {
+        tell::say_data(&json::csv(qualities));
+    } else {
+        tell::say(&text::text(qualities, style));
+    }
+    Ok(())
 }
 
 /// Returns a sentence for each threshold that triangles of a mesh violate.
