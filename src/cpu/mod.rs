@@ -1,5 +1,6 @@
 //! The CPU engine: all cores, in double precision, four vertices at a time.
 
+mod at_bound;
 mod differences;
 mod engine;
 mod newton;
@@ -8,6 +9,7 @@ mod secants;
 mod sweep;
 mod vcycle;
 
+pub(crate) use at_bound::steps_at_bound;
 pub(crate) use engine::CpuEngine;
 pub(crate) use objective::mean_excess;
 pub(crate) use sweep::held_back;

@@ -172,6 +172,14 @@ pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANE
     [Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]), Lanes::simd_from(simd, [a.y, b.y, c.y, d.y])]
 }
 
+/// Gathers the numbers of four vertices into lanes.
+#[inline(always)]
+pub(crate) fn numbers<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> {
+    let [a, b, c, d] = vertices;
+    let (a, b) = (numbers[a as usize], numbers[b as usize]);
+    Lanes::simd_from(simd, [a, b, numbers[c as usize], numbers[d as usize]])
+}
+
 /// Gathers the target maps of four vertices into lanes; identities if the mesh has no targets.
 #[inline(always)]
 pub(crate) fn target_maps<S: Simd>(

@@ -3,18 +3,20 @@
 //! once.
 
 mod acceptance;
+mod batch;
 mod corners;
 mod direction;
 mod fan;
 pub(crate) mod lanes;
 mod newton_step;
-mod numbers;
+pub(crate) mod numbers;
 mod ring;
 pub(crate) mod search_rule;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use acceptance::{Circle, is_kept, is_no_worse, is_positive, is_within};
+pub(crate) use batch::{VertexBatch, batches};
 pub(crate) use corners::{Corners, MetricObjective, is_acceptable};
 pub(crate) use direction::Direction;
 #[cfg(test)]

@@ -8,6 +8,9 @@ use crate::slide::options::Slide;
 /// The maximum of u (1 - u)² over u from 0 to 1.
 const MAX_CUBIC: f64 = 4.0 / 27.0;
 
+/// Number of knots that a search passes, one after another, before it bisects all knots.
+const NEAR: usize = 8;
+
 /// A curve through given vertices, in the unit of the mesh. The parameter at a vertex is the summed length of the lines
 /// between the given vertices before. On a closed curve, parameters that differ by the period identify the same point.
 ///
@@ -115,11 +118,26 @@ impl Curve {
         if self.is_closed { param.rem_euclid(self.period()) } else { param }
     }
 
-    /// Returns the point at a parameter, with derivatives.
-    pub(crate) fn at(&self, param: f64) -> Place {
+    /// Returns the number of knots with parameters up to `param`. The search begins at the knot `near`.
+    fn count_up_to(&self, param: f64, near: usize) -> usize {
+        let mut count = near.min(self.params.len());
+        for _ in 0..NEAR {
+            if self.params.get(count).is_some_and(|&next| next <= param) {
+                count += 1;
+            } else if count > 0 && self.params[count - 1] > param {
+                count -= 1;
+            } else {
+                return count;
+            }
+        }
+        self.params.partition_point(|&knot| knot <= param)
+    }
+
+    /// Returns the point at a parameter, with derivatives. The result does not depend on `near`, the index of a knot,
+    /// but is found fastest if the knot is near the parameter.
+    pub(crate) fn at(&self, param: f64, near: usize) -> Place {
         let param = self.wrapped(param);
-        let after = self.params.partition_point(|&start| start <= param);
-        let piece = after.saturating_sub(1).min(self.slopes.len() - 1);
+        let piece = self.count_up_to(param, near).saturating_sub(1).min(self.slopes.len() - 1);
         let (p, q) = (self.knots[piece], self.knots[piece + 1]);
         let (line, length) = (q - p, self.params[piece + 1] - self.params[piece]);
         let [a, b] = self.slopes[piece];
@@ -136,12 +154,18 @@ impl Curve {
         }
     }
 
-    /// Returns the indices of the given vertices strictly between two parameters, each with its parameter.
-    fn knots_between(&self, low: f64, high: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// Returns the indices of the given vertices strictly between two parameters, each with its parameter. See
+    /// [`at`](Self::at) for `near`.
+    fn knots_between(
+        &self,
+        low: f64,
+        high: f64,
+        near: usize,
+    ) -> impl Iterator<Item = (usize, f64)> + '_ {
         let period = if self.is_closed { self.period() } else { 0.0 };
         let turns = if self.is_closed { (low / period).floor() } else { 0.0 };
         let pieces = self.slopes.len();
-        let first = self.params.partition_point(|&param| param <= low - turns * period);
+        let first = self.count_up_to(low - turns * period, near);
         // The last knot of a closed curve is the first knot of the next turn.
         let knot = move |k: usize| match self.is_closed {
             true => (k % pieces, (turns + (k / pieces) as f64) * period + self.params[k % pieces]),
@@ -151,10 +175,11 @@ impl Curve {
     }
 
     /// Returns whether the two lines that join the points at `low`, `middle` and `high` pass near all given vertices
-    /// between `low` and `high`. For each vertex, `bounds` has the largest allowed distance.
-    pub(crate) fn is_near(&self, [low, middle, high]: [f64; 3]) -> bool {
-        let [from, over, to] = [low, middle, high].map(|param| self.at(param).point);
-        self.knots_between(low, high).all(|(knot, param)| {
+    /// between `low` and `high`. For each vertex, `bounds` has the largest allowed distance. See [`at`](Self::at) for
+    /// `near`.
+    pub(crate) fn is_near(&self, [low, middle, high]: [f64; 3], near: usize) -> bool {
+        let [from, over, to] = [low, middle, high].map(|param| self.at(param, near).point);
+        self.knots_between(low, high, near).all(|(knot, param)| {
             let ends = if param < middle { [from, over] } else { [over, to] };
             distance(self.knots[knot], ends) <= self.bounds[knot]
         })
@@ -162,12 +187,13 @@ impl Curve {
 
     /// Returns the larger of two distances, in the unit of the mesh. One is the largest distance of the given vertices
     /// between `low` and `high` from the line that joins the points at both parameters. The other is the distance of
-    /// the line's start from the line between the two given vertices around `low`.
-    pub(crate) fn off(&self, low: f64, high: f64) -> f64 {
-        let ends = [low, high].map(|param| self.at(param).point);
-        let far = self.knots_between(low, high).map(|(knot, _)| distance(self.knots[knot], ends));
+    /// the line's start from the line between the two given vertices around `low`. See [`at`](Self::at) for `near`.
+    pub(crate) fn off(&self, low: f64, high: f64, near: usize) -> f64 {
+        let ends = [low, high].map(|param| self.at(param, near).point);
+        let far =
+            self.knots_between(low, high, near).map(|(knot, _)| distance(self.knots[knot], ends));
         let param = self.wrapped(low);
-        let piece = self.params.partition_point(|&start| start <= param).saturating_sub(1);
+        let piece = self.count_up_to(param, near).saturating_sub(1);
         let piece = piece.min(self.slopes.len() - 1);
         far.fold(distance(ends[0], [self.knots[piece], self.knots[piece + 1]]), f64::max)
     }
@@ -190,7 +216,7 @@ impl Curve {
             let way = (point - p).dot(line) / line.length_squared() * length;
             let is_within = -tolerance <= way && way <= length + tolerance;
             let param = self.params[piece] + way.clamp(0.0, length);
-            let is_there = is_within && self.at(param).point.distance(point) <= tolerance;
+            let is_there = is_within && self.at(param, piece).point.distance(point) <= tolerance;
             is_there.then(|| param + turns as f64 * self.period())
         })
     }
@@ -223,20 +249,20 @@ mod tests {
     fn a_curve_goes_through_its_vertices_straight_where_they_are_and_near_the_arc_elsewhere() {
         let (curve, points) = slot();
         for (k, (&param, &point)) in curve.params().iter().zip(&points).enumerate() {
-            assert!(curve.at(param).point.distance(point.into()) < 1e-15, "{k}");
+            assert!(curve.at(param, k).point.distance(point.into()) < 1e-15, "{k}");
             assert!((curve.find(point.into(), k, 1e-12).unwrap() - param).abs() < 1e-12, "{k}");
         }
         for k in 0..100 {
             let share = f64::from(k) / 100.0;
-            assert_eq!(curve.at(3.0 * share).point.y, 1.0);
+            assert_eq!(curve.at(3.0 * share, 0).point.y, 1.0);
             let param = 3.0 + (curve.period() - 3.0) * share;
-            let place = curve.at(param);
+            let place = curve.at(param, k as usize);
             let radius = place.point.distance(DVec2::new(3.0, 0.0));
             assert!((radius - 1.0).abs() < 2e-4, "{share}: {radius}");
             assert_eq!(curve.find(place.point + DVec2::new(0.1, 0.1), 5, 1e-9), None);
         }
         // The tangent is continuous from the straight run into the arc.
-        let [before, after] = [3.0 - 1e-9, 3.0 + 1e-9].map(|at| curve.at(at).first.normalize());
+        let [before, after] = [3.0 - 1e-9, 3.0 + 1e-9].map(|at| curve.at(at, 3).first.normalize());
         assert!(before.distance(after) < 1e-7, "{before} {after}");
     }
 
@@ -245,7 +271,7 @@ mod tests {
         let (curve, _) = slot();
         let h = 1e-5;
         for param in [0.5, 3.1, 3.2, 4.0, 4.4] {
-            let [low, here, high] = [param - h, param, param + h].map(|param| curve.at(param));
+            let [low, here, high] = [param - h, param, param + h].map(|param| curve.at(param, 9));
             let first = (high.point - low.point) / (2.0 * h);
             let second = (high.first - low.first) / (2.0 * h);
             assert!(first.distance(here.first) < 1e-8, "{param}: {first} {}", here.first);
@@ -257,10 +283,12 @@ mod tests {
     fn vertices_that_would_cut_an_arc_off_are_not_near() {
         let (curve, _) = slot();
         let at = |k: usize| curve.params()[k];
-        assert!(curve.is_near([at(0), 1.5, at(3)]) && curve.is_near([at(5), at(6), at(7)]));
-        assert!(curve.is_near([at(4), 0.5 * (at(5) + at(6)), at(7)]));
-        assert!(!curve.is_near([at(4), at(6), at(8)]) && !curve.is_near([at(3), at(4), at(9)]));
-        assert!(curve.off(at(0), at(3)) == 0.0 && curve.off(at(3), at(9)) > 0.2);
+        assert!(curve.is_near([at(0), 1.5, at(3)], 4) && curve.is_near([at(5), at(6), at(7)], 4));
+        assert!(curve.is_near([at(4), 0.5 * (at(5) + at(6)), at(7)], 4));
+        assert!(
+            !curve.is_near([at(4), at(6), at(8)], 4) && !curve.is_near([at(3), at(4), at(9)], 4)
+        );
+        assert!(curve.off(at(0), at(3), 0) == 0.0 && curve.off(at(3), at(9), 3) > 0.2);
     }
 
     #[test]
@@ -275,14 +303,14 @@ mod tests {
         let curve = Curve::new(&points, &chain, &Slide::default());
         let edge = curve.period() / 12.0;
         for param in [-0.3, 0.2, 5.0] {
-            let turned = curve.at(param + curve.period()).point;
-            assert!(curve.at(param).point.distance(turned) < 1e-12);
+            let turned = curve.at(param + curve.period(), 0).point;
+            assert!(curve.at(param, 6).point.distance(turned) < 1e-12);
             assert!((turned.length() - 1.0).abs() < 1e-3);
         }
         // First across the first vertex, and then too far across it.
-        assert!(curve.is_near([-0.5 * edge, 0.1 * edge, 0.6 * edge]));
-        assert!(!curve.is_near([-3.5 * edge, -3.0 * edge, 3.0 * edge]));
-        let before = curve.at(-0.25 * edge).point;
+        assert!(curve.is_near([-0.5 * edge, 0.1 * edge, 0.6 * edge], 4));
+        assert!(!curve.is_near([-3.5 * edge, -3.0 * edge, 3.0 * edge], 4));
+        let before = curve.at(-0.25 * edge, 0).point;
         assert!((curve.find(before, 0, 1e-12).unwrap() + 0.25 * edge).abs() < 1e-9);
     }
 }

@@ -44,6 +44,8 @@ pub(crate) struct Rule<'a> {
 /// Limit of the distance between a sliding vertex and its given position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
+    /// Index of the vertex on its curve.
+    pub(crate) vertex: usize,
     /// Curve parameter of the given position.
     pub(crate) start: f64,
     /// Largest distance from the given position, in the unit of the mesh; infinite for no bound.
@@ -53,8 +55,8 @@ pub(crate) struct Reach {
 impl Reach {
     /// Returns whether the curve point at a parameter is in reach of the given position.
     pub(crate) fn allows(self, curve: &Curve, at: f64) -> bool {
-        self.most.is_infinite()
-            || curve.at(at).point.distance(curve.at(self.start).point) <= self.most
+        let point = |param| curve.at(param, self.vertex).point;
+        self.most.is_infinite() || point(at).distance(point(self.start)) <= self.most
     }
 
     /// Returns a step `way` from the parameter `at`, shortened to end in reach if the curve is straight.
@@ -89,7 +91,7 @@ pub(crate) fn visit(
             on_curves.push(OnCurve { side, here, patch });
         }
     }
-    let objective = CurveObjective { problem, on_curves, window, reach, step: rule.step };
+    let objective = CurveObjective { problem, on_curves, k, window, reach, step: rule.step };
     let Window { low, at, high } = window;
     let ([to, _], has_stepped) = step_alone(&objective, [at, 0.0], &SearchRule::CURVE);
     (has_stepped && to != at && low < to && to < high).then_some(to)
@@ -108,6 +110,8 @@ struct OnCurve<'a> {
 struct CurveObjective<'a> {
     problem: &'a Problem,
     on_curves: Vec<OnCurve<'a>>,
+    /// Index of the vertex in its track.
+    k: usize,
     window: Window,
     reach: Reach,
     step: &'a SweepParams,
@@ -125,7 +129,7 @@ impl Objective<f64> for CurveObjective<'_> {
     fn expansion(&self, [at, _]: [f64; 2]) -> Dual {
         let (mut value, mut slope, mut curvature) = (0.0, 0.0, 0.0);
         for OnCurve { side, here, patch } in &self.on_curves {
-            let Place { first, second, .. } = side.at(self.problem, at);
+            let Place { first, second, .. } = side.at(self.problem, at, self.k);
             let transformed = self.metric(patch).expansion(here.to_array());
             let gradient = DVec2::from(transformed.gradient);
             let [xx, xy, yy] = transformed.hessian;
@@ -151,12 +155,12 @@ impl Objective<f64> for CurveObjective<'_> {
         let mut sum = 0.0;
         for OnCurve { side, patch, .. } in &self.on_curves {
             let curve = &side.curve;
-            if !curve.is_near([self.window.low, to, self.window.high])
+            if !curve.is_near([self.window.low, to, self.window.high], self.k)
                 || !self.reach.allows(curve, to)
             {
                 return (sum, false);
             }
-            let point = side.at(self.problem, to).point.to_array();
+            let point = side.at(self.problem, to, self.k).point.to_array();
             let (value, is_feasible) = self.metric(patch).trial(point, max_imr);
             if !is_feasible {
                 return (sum, false);

@@ -42,10 +42,10 @@ impl BoundaryCurve {
     }
 
     /// Returns the point at a parameter and its derivatives by the parameter, in the normalized coordinates of the
-    /// problem.
-    pub(crate) fn at(&self, problem: &Problem, param: f64) -> Place {
+    /// problem. See [`Curve::at`] for `near`.
+    pub(crate) fn at(&self, problem: &Problem, param: f64, near: usize) -> Place {
         let (center, scale) = problem.normalization();
-        let Place { point, first, second } = self.curve.at(param);
+        let Place { point, first, second } = self.curve.at(param, near);
         Place { point: (point - center) * scale, first: first * scale, second: second * scale }
     }
 

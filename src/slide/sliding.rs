@@ -71,10 +71,7 @@ impl Sliding {
 
     /// Replaces vertex indices in the mesh by indices in the problem. The mesh has `vertices` vertices.
     pub(crate) fn numbered(mut self, problem: &Problem, vertices: usize) -> Self {
-        let mut number = vec![u32::MAX; vertices];
-        for (new, &v) in (0..).zip(problem.vertices()) {
-            number[v as usize] = new;
-        }
+        let number = problem.numbers(vertices);
         let sides = self.tracks.iter_mut().flat_map(|track| &mut track.sides);
         for fan in sides.flat_map(|side| &mut side.fans).flatten() {
             fan.renumber(&number);
@@ -113,9 +110,10 @@ impl Sliding {
     /// the mesh.
     pub(crate) fn moved(&self, params: &Params) -> Vec<(u32, [f64; 2])> {
         let of_side = |(side, params): (&BoundaryCurve, &[f64])| {
-            let all = side.vertices.iter().zip(params).zip(side.curve.params());
-            let moved = all.filter(|((_, now), was)| now != was);
-            moved.map(|((&v, &now), _)| (v, side.curve.at(now).point.into())).collect::<Vec<_>>()
+            let all = side.vertices.iter().zip(params).zip(side.curve.params()).enumerate();
+            let moved = all.filter(|(_, ((_, now), was))| now != was);
+            let there = |(k, ((&v, &now), _))| (v, side.curve.at(now, k).point.into());
+            moved.map(there).collect::<Vec<_>>()
         };
         self.sides(params).flat_map(of_side).collect()
     }
@@ -170,7 +168,7 @@ impl Sliding {
             let is_sound = |params: &[f64], k: usize| {
                 let Window { low, at, high } = track.window(params, k);
                 let is_sound = |side: &BoundaryCurve| {
-                    side.curve.is_near([low, at, high])
+                    side.curve.is_near([low, at, high], k)
                         && track.reach(reach, k).allows(&side.curve, at)
                 };
                 low < at && at < high && track.sides.iter().all(is_sound)
@@ -208,10 +206,10 @@ impl Sliding {
         let of_track = |(track, params): (&Track, &Vec<f64>)| {
             let edges = (0..params.len()).filter(|&k| track.slides(k) || k == 0);
             let next = |k| track.neighbor(k, 1, |i| params.get(i).copied());
-            let off = |low: f64, high: f64| {
-                track.sides.iter().map(|side| side.curve.off(low, high)).fold(0.0, f64::max)
+            let off = |low: f64, high: f64, k: usize| {
+                track.sides.iter().map(|side| side.curve.off(low, high, k)).fold(0.0, f64::max)
             };
-            edges.filter_map(|k| next(k).map(|next| off(params[k], next))).fold(0.0, f64::max)
+            edges.filter_map(|k| next(k).map(|next| off(params[k], next, k))).fold(0.0, f64::max)
         };
         self.tracks.iter().zip(params).map(of_track).fold(0.0, f64::max)
     }
@@ -335,7 +333,7 @@ impl Track {
     fn follow(&self, problem: &Problem, k: usize, param: f64, positions: &mut [DVec2]) {
         for side in &self.sides {
             if let Some(fan) = &side.fans[k] {
-                positions[fan.own() as usize] = side.at(problem, param).point;
+                positions[fan.own() as usize] = side.at(problem, param, k).point;
             }
         }
     }
@@ -351,7 +349,7 @@ impl Track {
 
     /// Returns the bound on the distance of vertex `k` from its given position.
     fn reach(&self, reach: &[f64], k: usize) -> Reach {
-        Reach { start: self.start()[k], most: reach[k] }
+        Reach { vertex: k, start: self.start()[k], most: reach[k] }
     }
 
     /// Returns the parameters of vertex `k` and of its two neighbors.

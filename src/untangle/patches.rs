@@ -7,25 +7,14 @@ use glam::DVec2;
 use crate::layout::Problem;
 use crate::metric::{Dual, Own, Real};
 use crate::parallel::{for_each_chunk, map_parts};
-use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, with_instructions};
-use crate::patch::{Objective, SearchRule, newton_step};
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, numbers, points, with_instructions};
+use crate::patch::{Objective, SearchRule, VertexBatch, newton_step};
 use crate::untangle::energy::Corner;
 
-/// Number of groups of four vertices in one parallel task.
+/// Number of batches of vertices in one parallel task.
 const FOURS: usize = 256;
 /// Number of triangles in one parallel task.
 const TRIANGLES: usize = 1 << 12;
-
-/// Four free vertices with equally many neighbors. Lanes beyond the last vertex of a group repeat the last vertex.
-pub(super) type VertexBatch = [u32; LANES];
-
-/// Returns vertices in groups of four, in the given order. Consecutive vertices of equal degree form the groups.
-pub(super) fn fours(problem: &Problem, vertices: impl Iterator<Item = u32>) -> Vec<VertexBatch> {
-    let vertices: Vec<u32> = vertices.collect();
-    let alike = vertices.chunk_by(|&v, &k| problem.ring_of(v).len() == problem.ring_of(k).len());
-    let fours = alike.flat_map(|alike| alike.chunks(LANES));
-    fours.map(|four| std::array::from_fn(|lane| four[lane.min(four.len() - 1)])).collect()
-}
 
 /// A mesh with its present positions and target areas, for one pass of untangling.
 #[derive(Clone, Copy)]
@@ -39,28 +28,28 @@ pub(super) struct Tangle<'a> {
 impl Tangle<'_> {
     /// Returns the position of each vertex after a Newton step with a line search. No two of the vertices may be
     /// neighbors.
-    pub(super) fn steps(&self, fours: &[VertexBatch], epsilon: f64) -> Vec<[DVec2; LANES]> {
-        self.visits::<true>(fours, epsilon)
+    pub(super) fn steps(&self, batches: &[VertexBatch], epsilon: f64) -> Vec<[DVec2; LANES]> {
+        self.visits::<true>(batches, epsilon)
     }
 
     /// Returns the gradient of the energy by the position of each vertex.
-    pub(super) fn gradients(&self, fours: &[VertexBatch], epsilon: f64) -> Vec<[DVec2; LANES]> {
-        self.visits::<false>(fours, epsilon)
+    pub(super) fn gradients(&self, batches: &[VertexBatch], epsilon: f64) -> Vec<[DVec2; LANES]> {
+        self.visits::<false>(batches, epsilon)
     }
 
     /// Returns positions after steps if `STEPS`, and gradients otherwise.
     fn visits<const STEPS: bool>(
         &self,
-        fours: &[VertexBatch],
+        batches: &[VertexBatch],
         epsilon: f64,
     ) -> Vec<[DVec2; LANES]> {
-        let mut found = vec![[DVec2::ZERO; LANES]; fours.len()];
+        let mut found = vec![[DVec2::ZERO; LANES]; batches.len()];
         for_each_chunk(&mut found, FOURS, |first, found| {
             with_instructions!(Level::new(), simd => {
                 let mut scratch = Vec::new();
-                for (found, &four) in found.iter_mut().zip(&fours[first..]) {
-                    let at = points(simd, self.positions, four);
-                    let patches = EnergyRings::gather(simd, self, four, epsilon, &mut scratch);
+                for (found, &batch) in found.iter_mut().zip(&batches[first..]) {
+                    let at = points(simd, self.positions, batch);
+                    let patches = EnergyRings::gather(simd, self, batch, epsilon, &mut scratch);
                     let [x, y] = match STEPS {
                         true => {
                             let going = Mask::splat(simd, true);
@@ -97,9 +86,9 @@ impl Tangle<'_> {
             let p = points(simd, self.positions, first);
             let q = points(simd, self.positions, second);
             let r = points(simd, self.positions, third);
-            let targets = lanes(simd, self.targets, first)
-                + lanes(simd, self.targets, second)
-                + lanes(simd, self.targets, third);
+            let targets = numbers(simd, self.targets, first)
+                + numbers(simd, self.targets, second)
+                + numbers(simd, self.targets, third);
             sum += corner(p, [q, r], targets).energy(epsilon);
         }
         let last: f64 = rest.iter().map(|t| self.triangle(t).energy(epsilon)).sum();
@@ -127,14 +116,6 @@ fn edges<T: Real>(at: [T; 2], [p, q]: [[T; 2]; 2]) -> [[T; 2]; 2] {
     [[p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]]
 }
 
-/// Gathers the `numbers` of four vertices into lanes.
-#[inline(always)]
-fn lanes<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES]) -> Lanes<S> {
-    let [a, b, c, d] = vertices;
-    let (a, b) = (numbers[a as usize], numbers[b as usize]);
-    Lanes::simd_from(simd, [a, b, numbers[c as usize], numbers[d as usize]])
-}
-
 /// The one-rings of four vertices, with the energy of their triangles as an objective.
 struct EnergyRings<'r, S: Simd> {
     /// Regularization width ε of the energy, in units of the target area.
@@ -150,11 +131,11 @@ impl<'r, S: Simd> EnergyRings<'r, S> {
     fn gather(
         simd: S,
         tangle: &Tangle<'_>,
-        four: VertexBatch,
+        batch: VertexBatch,
         epsilon: f64,
         scratch: &'r mut Vec<(Points<S>, Lanes<S>)>,
     ) -> Self {
-        let [a, b, c, d] = four;
+        let [a, b, c, d] = batch;
         let a = tangle.problem.ring_of(a);
         let degree = a.len();
         let b = &tangle.problem.ring_of(b)[..degree];
@@ -163,11 +144,11 @@ impl<'r, S: Simd> EnergyRings<'r, S> {
         scratch.clear();
         for i in 0..degree {
             let neighbors = [a[i], b[i], c[i], d[i]];
-            let target = lanes(simd, tangle.targets, neighbors);
+            let target = numbers(simd, tangle.targets, neighbors);
             scratch.push((points(simd, tangle.positions, neighbors), target));
         }
         scratch.push(scratch[0]);
-        let own = lanes(simd, tangle.targets, four);
+        let own = numbers(simd, tangle.targets, batch);
         for i in 0..degree {
             scratch[i].1 = own.constant(3.0) / (own + scratch[i].1 + scratch[i + 1].1);
         }

@@ -5,9 +5,10 @@ use glam::{DVec2, Vec2};
 use crate::cpu::correction;
 use crate::layout::Problem;
 use crate::parallel::{collect, for_each_chunk, map_parts, map_ranges};
+use crate::patch::{VertexBatch, batches};
 use crate::run::multilevel::{Hierarchy, Search};
 use crate::untangle::cuts::{Short, cut};
-use crate::untangle::patches::{Tangle, VertexBatch, fours};
+use crate::untangle::patches::Tangle;
 
 /// Number of vertices or triangles in one parallel task.
 pub(super) const CHUNK: usize = 1 << 12;
@@ -47,7 +48,7 @@ impl Assessment {
 
 /// The vertices of a sweep, and all triangles whose shape the sweep changes.
 pub(crate) struct Region {
-    /// Vertices by color, in groups of four.
+    /// Batches of vertices, by color.
     vertices: Vec<Vec<VertexBatch>>,
     /// Indices of the triangles in the problem.
     triangles: Vec<u32>,
@@ -82,7 +83,7 @@ impl Region {
             vertices: problem
                 .colors()
                 .iter()
-                .map(|color| fours(problem, color.clone().filter(|&v| moves(v))))
+                .map(|color| batches(problem, color.clone().filter(|&v| moves(v))))
                 .collect(),
             triangles: (0..triangles.len() as u32)
                 .filter(|&t| triangles[t as usize].iter().any(|&v| moves(v)))
@@ -93,7 +94,7 @@ impl Region {
     /// Returns the region of all free vertices and all triangles of the problem.
     pub(crate) fn whole(problem: &Problem) -> Region {
         Region {
-            vertices: problem.colors().iter().map(|c| fours(problem, c.clone())).collect(),
+            vertices: problem.colors().iter().map(|c| batches(problem, c.clone())).collect(),
             triangles: (0..problem.triangles().len() as u32).collect(),
         }
     }
@@ -122,10 +123,10 @@ impl<'p> State<'p> {
 
     /// Visits every vertex of the region once, color by color, with a Newton step each.
     pub(crate) fn sweep(&mut self, region: &Region, epsilon: f64) {
-        for fours in &region.vertices {
-            let moved = self.tangle(&self.positions).steps(fours, epsilon);
-            for (four, to) in fours.iter().zip(moved) {
-                for (&v, to) in four.iter().zip(to) {
+        for batches in &region.vertices {
+            let moved = self.tangle(&self.positions).steps(batches, epsilon);
+            for (batch, to) in batches.iter().zip(moved) {
+                for (&v, to) in batch.iter().zip(to) {
                     self.positions[v as usize] = to;
                 }
             }
@@ -192,10 +193,10 @@ impl<'p> State<'p> {
     /// Returns the gradient of the energy by the positions of the free vertices, zero outside the region.
     pub(super) fn gradient(&self, region: &Region, epsilon: f64) -> Vec<DVec2> {
         let mut gradient = vec![DVec2::ZERO; self.problem.free_count()];
-        for fours in &region.vertices {
-            let found = self.tangle(&self.positions).gradients(fours, epsilon);
-            for (four, found) in fours.iter().zip(found) {
-                for (&v, found) in four.iter().zip(found) {
+        for batches in &region.vertices {
+            let found = self.tangle(&self.positions).gradients(batches, epsilon);
+            for (batch, found) in batches.iter().zip(found) {
+                for (&v, found) in batch.iter().zip(found) {
                     gradient[v as usize] = found;
                 }
             }

@@ -2,15 +2,12 @@
 
 use glam::DVec2;
 
+use crate::cpu::steps_at_bound;
 use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::Mesh;
-use crate::metric::{AnyFormulas, Dual, Smoothing};
-use crate::parallel::map_parts;
-use crate::patch::{
-    Circle, Direction, Fan, FanPatch, MetricObjective, Objective, SearchRule, step_alone,
-};
+use crate::patch::{Circle, batches};
 use crate::precision::Precision;
 use crate::run::records::{Reader, Writer};
 use crate::run::{StopRule, SweepParams};
@@ -23,8 +20,6 @@ use crate::whole::stage::{Judgment, Period, PeriodRule, Stage, Worked};
 const SWEEPS: u32 = 3;
 /// Number of times that a period visits the held vertices, which are at their bound.
 const VISITS: u32 = 3;
-/// Number of vertices at their bound that one task visits.
-const CHUNK: usize = 256;
 /// Largest number of halvings of a period's move, until the move lowers f and keeps triangles sound.
 const MAX_HALVINGS: u32 = 5;
 /// Distance from the start at which a vertex is held, as a share of the bound.
@@ -37,7 +32,6 @@ pub(crate) struct MoveLimitStage<'s> {
     all: Vec<f64>,
     /// Largest distance of each free vertex from its start, normalized.
     bounds: Vec<f64>,
-    fans: Vec<Fan>,
     rule: PeriodRule,
 }
 
@@ -64,18 +58,11 @@ impl<'s> MoveLimitStage<'s> {
         };
         let all: Vec<f64> = mesh.points.iter().zip(&edges).map(bound).collect();
         let (_, scale) = problem.normalization();
-        let number = problem.numbers(mesh.points.len());
         let free = &problem.vertices()[..problem.free_count()];
-        let fan = |&v: &u32| {
-            let mut fan = Fan::new(topology, v);
-            fan.renumber(&number);
-            fan
-        };
         Self {
             problem,
             bounds: free.iter().map(|&v| all[v as usize] * scale).collect(),
             all,
-            fans: free.iter().map(fan).collect(),
             rule: PeriodRule::new(rule),
         }
     }
@@ -126,67 +113,19 @@ impl<'s> MoveLimitStage<'s> {
         false
     }
 
-    /// Takes a step at each held vertex by [`SearchRule::BOUND`]. Held vertices are at their bound.
+    /// Takes a step at each held vertex by [`SearchRule::BOUND`](crate::patch::SearchRule::BOUND). Held vertices are at
+    /// their bound.
     fn visit_held(&self, host: &mut Host<'_>, step: &SweepParams) {
-        let SweepParams { metric, sharpness, shape_guard, .. } = *step;
-        let (formulas, smoothing) = (metric.formulas(), Smoothing::of(sharpness));
         // Vertices of a color are not neighbors, so no step reads a position that another step of the color changes.
         for color in self.problem.colors() {
-            let held: Vec<usize> =
-                color.clone().map(|v| v as usize).filter(|&v| host.held[v]).collect();
-            let Host { problem, positions, .. } = &*host;
-            let stepped = |&v: &usize| -> DVec2 {
-                let patch = &self.fans[v].patch(problem, positions, 0.0);
-                let metric = MetricObjective { patch, formulas, smoothing, shape_guard };
-                let objective = BoundObjective { metric, bound: self.bound(v) };
-                step_alone(&objective, positions[v].to_array(), &SearchRule::BOUND).0.into()
-            };
-            let moved = map_parts(held.chunks(CHUNK), |_, chunk| {
-                chunk.iter().map(stepped).collect::<Vec<_>>()
-            });
-            for (v, to) in held.iter().zip(moved.into_iter().flatten()) {
-                host.positions[*v] = to;
+            let held = color.clone().filter(|&v| host.held[v as usize]);
+            let batches = batches(&host.problem, held);
+            let steps =
+                steps_at_bound(&host.problem, &host.positions, &batches, &self.bounds, step);
+            for (v, to) in batches.iter().flatten().zip(steps.iter().flatten()) {
+                host.positions[*v as usize] = *to;
             }
         }
-    }
-}
-
-/// The objective of a held vertex, at the circle of its bound. Trials beyond the bound are projected to the circle.
-struct BoundObjective<'a> {
-    metric: MetricObjective<'a, FanPatch, AnyFormulas>,
-    bound: Circle,
-}
-
-impl Objective<f64> for BoundObjective<'_> {
-    fn expansion(&self, at: [f64; 2]) -> Dual {
-        self.metric.expansion(at)
-    }
-
-    /// Returns the negative gradient, divided by the largest curvature. Steps move a vertex along its bound as well as
-    /// inward.
-    fn direction(&self, here: &Dual, _: f64) -> Direction<f64> {
-        let ([x, y], [xx, xy, yy]) = (here.gradient, here.hessian);
-        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let most = mean.abs() + (half * half + xy * xy).sqrt();
-        let vector = [-x / most, -y / most];
-        let slope = vector[0] * x + vector[1] * y;
-        Direction { vector, slope, descends: vector.iter().all(|x| x.is_finite()) }
-    }
-
-    fn point(&self, on_line: [f64; 2]) -> [f64; 2] {
-        self.bound.nearest(on_line.into()).to_array()
-    }
-
-    fn trial(&self, to: [f64; 2], max_imr: f64) -> (f64, bool) {
-        self.metric.trial(to, max_imr)
-    }
-
-    fn shape_guard(&self) -> f64 {
-        self.metric.shape_guard
-    }
-
-    fn worst_shape(&self, at: [f64; 2]) -> f64 {
-        self.metric.worst_shape(at)
     }
 }
 
