@@ -43,6 +43,16 @@ impl Group {
         &self.vertices
     }
 
+    /// Returns whether both groups consist of the same elements. False for groups without vertices.
+    fn equals(&self, other: &Group) -> bool {
+        let elements =
+            |group: &Group| (group.dimension, group.points, group.lines, group.quadrilaterals);
+        !self.vertices.is_empty()
+            && elements(self) == elements(other)
+            && self.vertices == other.vertices
+            && self.triangles == other.triangles
+    }
+
     /// Returns the word for the group's dimension: `point`, `line` or `surface`.
     pub fn dimension_name(&self) -> &'static str {
         match self.dimension {
@@ -123,10 +133,12 @@ impl Groups {
         self.groups.iter().map(own).collect()
     }
 
-    /// Returns the group to which `name` refers, with or without prefixes.
+    /// Returns the group to which `name` refers, with or without prefixes. Of several groups with the same elements, such
+    /// as an entity of gmsh and the physical group that consists of it, returns the first.
     ///
     /// # Errors
-    /// [`GroupError::Unknown`] if no group has the name, [`GroupError::Ambiguous`] if several groups share the name.
+    /// [`GroupError::Unknown`] if no group has the name, [`GroupError::Ambiguous`] if groups of different elements share
+    /// the name.
     pub fn find(&self, name: &str) -> Result<&Group, GroupError> {
         let fits = |group: &Group| {
             // Each spelling ends in the name or tag. This cheap test excludes most groups, of which a file may have
@@ -139,7 +151,11 @@ impl Groups {
         let found: Vec<usize> =
             (0..self.len()).filter(|&index| fits(&self.groups[index])).collect();
         match found[..] {
-            [index] => Ok(&self.groups[index]),
+            [first, ref rest @ ..]
+                if rest.iter().all(|&k| self.groups[k].equals(&self.groups[first])) =>
+            {
+                Ok(&self.groups[first])
+            }
             [] => {
                 let mut known = self.unique_names();
                 known.sort_by_cached_key(|own| distance(own, name));
@@ -264,6 +280,21 @@ mod tests {
         assert_eq!(candidates, ["inlet", "steel", "entity:line:1", "entity:surface:1"]);
         let Err(GroupError::Ambiguous { candidates, .. }) = groups.find("line:1") else { panic!() };
         assert_eq!(candidates, ["inlet", "entity:line:1"]);
+    }
+
+    #[test]
+    fn a_name_of_several_groups_with_the_same_elements_is_not_ambiguous() {
+        let with = |group: Group, triangles: &[u32]| {
+            let vertices = triangles.iter().flat_map(|t| [*t, t + 1, t + 2]).collect();
+            Group { triangles: triangles.to_vec(), vertices, ..group }
+        };
+        let [physical, entity] = ["physical", "entity"].map(|kind| group(kind, 2, None, Some(3)));
+        let find = |own: &[u32], other: &[u32]| {
+            let groups = vec![with(physical.clone(), own), with(entity.clone(), other)];
+            Groups { groups }.find("3").map(|group| group.kind.clone())
+        };
+        assert_eq!(find(&[0, 4], &[0, 4]).unwrap(), "physical");
+        assert!(matches!(find(&[0, 4], &[0]), Err(GroupError::Ambiguous { .. })));
     }
 
     #[test]
