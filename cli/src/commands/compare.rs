@@ -63,10 +63,15 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     {
         list.push(format!("{place}: triangle {}", place.id));
     }
-    if slide.is_none() && !held.is_empty() {
-        list.push(
-            "if they slid along lines in a run with --slide, give --slide here too".to_owned(),
-        );
+    if !held.is_empty() {
+        let hint = match slide {
+            None => "if they slid along lines in a run with --slide, give --slide here too",
+            Some(_) => {
+                "if they slid in a run with other options of --slide (--corner-angle, --hausdorff, --periodic), \
+                 give the same options here, as the options determine the lines"
+            }
+        };
+        list.push(hint.to_owned());
     }
     if explain::are_across(&after, bad) {
         list.push("--surface sphere continues longitudes across the meridian at which longitudes wrap, such as 180 degrees".to_owned());

@@ -10,6 +10,8 @@ mod browser;
 mod compare;
 mod convert;
 mod destinations;
+#[cfg(unix)]
+mod documented;
 #[cfg(target_os = "linux")]
 mod drivers;
 mod files;

@@ -25,6 +25,10 @@ pub(super) fn square() -> (Mesh, Vec<i32>) {
 /// Returns the square as a Medit file in text.
 fn medit() -> String {
     let (mesh, materials) = square();
+    medit_of(&mesh, &materials)
+}
+
+fn medit_of(mesh: &Mesh, materials: &[i32]) -> String {
     let points = mesh.points.iter().map(|[x, y]| format!("{x} {y} 0\n"));
     let triangles = mesh.triangles.iter().zip(materials);
     let triangles = triangles.map(|([a, b, c], m)| format!("{} {} {} {m}\n", a + 1, b + 1, c + 1));
@@ -62,6 +66,25 @@ fn a_mesh_that_slid_is_reported_and_compared() {
     // A vertex in the box of --fix-box has moved.
     let fixed = "compare -q in.mesh out.mesh --slide --fix-box 0.5,-1,2.5,0.5";
     folder.line(fixed).refused(&["2 vertices have moved that must not"]);
+}
+
+/// On a curved line, the options of a run determine the curve along which vertices slide.
+#[test]
+fn a_comparison_without_the_run_s_options_of_sliding_says_which_options_to_give() {
+    let (mut mesh, materials) = square();
+    for (row, x) in [4.15, 3.85, 4.15].into_iter().enumerate() {
+        mesh.points[9 * (row + 1) + 4] = [x, row as f64 + 1.2];
+    }
+    let folder = Folder::new(&[("in.mesh", &medit_of(&mesh, &materials))]);
+    let options = "--slide --corner-angle 80 --hausdorff 0.02";
+    let run = folder.line(&format!("in.mesh out.mesh --engine cpu {options}"));
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    folder.line(&format!("compare in.mesh out.mesh {options}")).clean();
+    folder.line("compare in.mesh out.mesh --slide --corner-angle 80").refused(&[
+        "moved that must not",
+        "other options of --slide",
+        "--hausdorff",
+    ]);
 }
 
 #[test]
