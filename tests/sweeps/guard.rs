@@ -1,8 +1,8 @@
 //! The guard of the worst element, `--guard worst`, on both engines.
 
 use crate::support::{self, check};
-use crate::{backends, history, name, run, with_points};
-use gpu_smooth::{Guard, Metric, Options, Smoother, Stop};
+use crate::{backends, history, name, plate, run, with_points};
+use gpu_smooth::{Guard, Metric, Options, Slide, Smoother, Stop};
 
 /// On a mesh graded to a point and slightly perturbed, metrics of size would trade bad shapes for even
 /// sizes.
@@ -39,4 +39,23 @@ fn the_worst_element_does_not_get_worse_by_any_metric() {
     }
     // Without the guard, the worst element becomes worse.
     assert!(risen >= 2, "{risen}");
+}
+
+/// The first period of a run with sliding leaves a better worst triangle than the given mesh has. By equal areas, later
+/// periods lower f with a worse triangle again, which the guard of the given mesh allows.
+#[test]
+fn the_guard_of_a_run_in_periods_is_that_of_the_given_mesh() {
+    let mesh = support::perturb_random(&plate(500), 0.6, 5);
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_slide(Some(&Slide::default())).unwrap();
+    let worst = |points: &[[f64; 2]]| support::worst_imr(&with_points(&mesh, points));
+    for backend in backends() {
+        let [first, last] = [3, 12].map(|max_sweeps| {
+            let options = Options { scheme: Metric::Area.into(), max_sweeps, ..Options::default() };
+            worst(&run(&smoother, &options, backend).points)
+        });
+        let (given, label) = (worst(&mesh.points), name(backend));
+        assert!(first < 0.9 * given && last > 1.2 * first, "{label}: {given} {first} {last}");
+        assert!(last <= given, "{label}: {given} {last}");
+    }
 }
