@@ -66,7 +66,7 @@ pub enum MeshError {
     /// An edge-connected part of the mesh has no boundary: a closed surface in space, which no placement of vertices in
     /// the plane untangles.
     #[error(
-        "the part of the mesh with triangle {triangle} has no boundary: a closed surface in space"
+        "the connected part of the mesh around triangle {triangle} has no boundary: it is a closed surface in space"
     )]
     Closed {
         /// The first triangle of the part.
@@ -263,7 +263,9 @@ pub enum GpuError {
     #[error("the application's buffer cannot be used: {0}")]
     Buffer(String),
     /// The queue and the device come from different calls of `request_device`.
-    #[error("queue and device are no pair: take both from one call of request_device")]
+    #[error(
+        "queue and device are no pair: pass the device and the queue of one call of request_device"
+    )]
     Queue,
     /// The call would block the thread, and browsers forbid blocking calls.
     #[error(

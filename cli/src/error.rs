@@ -182,9 +182,8 @@ impl From<WriteError> for CliError {
             }
             WriteError::Changed { path } => {
                 let problem = "another program has changed this file after the file was read, so the file is not replaced";
-                Self::output(format!("{}: {problem}", path.display())).with_remedy(
-                    "Give OUT another name, or run again to smooth the mesh as it is now",
-                )
+                Self::output(format!("{}: {problem}", path.display()))
+                    .with_remedy("Give OUT another name, or run again to smooth the present mesh")
             }
             WriteError::Points { .. } => Self::run(error.to_string()),
         }

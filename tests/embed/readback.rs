@@ -19,7 +19,8 @@ fn the_latest_values_are_those_of_the_last_frame_that_is_done() {
     let mesh = bad_plate(300);
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
-    let numbers = app.buffer(64, Usage::STORAGE | Usage::COPY_SRC);
+    let numbers =
+        app.buffer(8 + size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
     let objective = sweeps.bind_objective(&numbers, 8).unwrap();
     let vertices = Vertices::usual(&app, &mesh);
     let bound = vertices.bind(&device_mesh);

@@ -1,10 +1,9 @@
 //! Refused requests and their messages. Errors that wgpu reports during a refused call must not reach the application's
 //! error handler, which [`App`] checks when dropped.
 
-use gpu_smooth::Goal;
 use gpu_smooth::{
-    Gpu, GpuError, Guard, Mesh, MeshError, Method, Options, SmoothError, Stopping,
-    gpu::{DeviceMesh, Sweeps, VertexBuffer},
+    Goal, Gpu, GpuError, Guard, Mesh, MeshError, Method, Options, SmoothError, Stopping,
+    gpu::{DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer},
     options::{Paper, Relaxed},
     wgpu,
 };
@@ -117,11 +116,13 @@ fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
 
 #[test]
 fn a_buffer_for_objectives_is_checked_like_a_vertex_buffer() {
-    let storage = Usage::STORAGE;
-    assert_objective_refused(64, Usage::COPY_DST, 0, "and needs STORAGE as well");
-    assert_objective_refused(24, storage, 0, "it has 24 bytes, and 56 from byte 0 are needed");
-    assert_objective_refused(64, storage, 40, "it has 64 bytes, and 56 from byte 40 are needed");
-    assert_objective_refused(64, storage, 2, "the offset is 2 bytes, not a multiple of 4");
+    let (storage, needed) = (Usage::STORAGE, size_of::<ObjectiveValues>() as u64);
+    assert_objective_refused(needed, Usage::COPY_DST, 0, "and needs STORAGE as well");
+    for (bytes, offset) in [(24, 0), (needed + 8, 40)] {
+        let text = format!("it has {bytes} bytes, and {needed} from byte {offset} are needed");
+        assert_objective_refused(bytes, storage, offset, &text);
+    }
+    assert_objective_refused(needed + 4, storage, 2, "the offset is 2 bytes, not a multiple of 4");
 }
 
 #[test]

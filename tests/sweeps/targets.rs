@@ -56,7 +56,7 @@ fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_be
             assert!((f[1] / f[0] - 1.0).abs() < 3e-6, "{label}: {f:?}");
             assert_eq!(other.stop, Stop::Converged, "{label}");
             // In single precision, stretching amplifies rounding, so a run detects its end later.
-            let more = if matches!(backend, Backend::Cpu) { 3 } else { 60 };
+            let more = if matches!(backend, Backend::Cpu) { 3 } else { 100 };
             assert!(other.sweeps <= one.sweeps + more, "{label}: {} {}", one.sweeps, other.sweeps);
             // Distances divided by the stretching. An edge is approximately a thirtieth of the plate.
             let apart = one.points.iter().zip(&other.points).map(|(&p, &q)| {

@@ -104,7 +104,7 @@ impl InterpolatedFields {
         match self.data().is_empty() {
             true => Ok(()),
             false => Err(CliError::input(
-                "--interpolate takes data from triangles that are not inverted, and some of this mesh are: \
+                "--interpolate takes data from a mesh without inverted triangles, and this mesh has inverted triangles: \
                  untangle it without --interpolate, and interpolate in a second run",
             )),
         }
@@ -192,12 +192,12 @@ impl InterpolatedFields {
     pub(crate) fn implausible(&self, other: &InterpolatedFields, moved: &[u32]) -> Vec<String> {
         let mut problems = Vec::new();
         if self.data != other.data {
-            problems.push("it does not have the same data of vertices".to_owned());
+            problems.push("the file has other vertex data than before".to_owned());
         }
         for (old, new) in self.data().iter().zip(other.data()) {
             let (name, each) = (old.name(), old.components().max(1));
             if new.name() != name || new.values().len() != old.values().len() {
-                problems.push(format!("{name} does not have as many numbers as before"));
+                problems.push(format!("{name} has another number of values than before"));
                 continue;
             }
             let (mut held, mut beyond) = (0, 0);

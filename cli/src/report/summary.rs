@@ -11,7 +11,7 @@ use crate::report::{
 use crate::terminal::numbers::{percent, sig6};
 
 /// The message of a run ended by a sweep whose objective was infinite or NaN.
-const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a defect of this program or of the GPU driver; the mesh is of the last good state";
+const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a defect of this program or of the GPU driver; the mesh has the positions of the last finite state";
 
 /// If more than one vertex in twenty changes its size by more than this factor, the summary mentions `--target
 /// keep-size`.

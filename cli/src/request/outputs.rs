@@ -208,7 +208,7 @@ impl Outputs {
         let (text, remedy) = match self.mesh {
             MeshOutput::Smoothed if self.checkpoint.is_some() => (
                 format!("{path}: a checkpoint continues a run only while IN is unchanged"),
-                "With a checkpoint, OUT must be another file",
+                "A run with checkpoints needs an OUT that differs from IN",
             ),
             MeshOutput::OfMany => (
                 format!("{path}: the mesh itself would be replaced"),
@@ -230,7 +230,7 @@ impl Outputs {
             if role == Role::Checkpoint {
                 self.check_checkpoint(path, head.as_deref())?;
             } else if let Some(format) = head.as_deref().and_then(Format::name_of_content) {
-                let text = format!("{}: there is a mesh in this file ({format})", path.display());
+                let text = format!("{}: the file is a mesh ({format})", path.display());
                 return Err(CliError::output(text).with_remedy(role.remedy()));
             }
             let cannot = |error| CliError::from(error).within(role.cannot_be_written());
@@ -255,7 +255,7 @@ impl Outputs {
             _ if is_continued => Ok(()),
             None => Ok(()),
             Some(true) => {
-                let text = format!("{name}: this file is the checkpoint of another run");
+                let text = format!("{name}: the file is a checkpoint of another run");
                 let remedy = format!(
                     "Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file"
                 );

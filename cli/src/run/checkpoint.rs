@@ -23,7 +23,7 @@ pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => CliError::input(format!(
-            "{name}: there is no such file. A run that came to its end has removed its checkpoint"
+            "{name}: the file does not exist. A completed run removes its checkpoint"
         ))
         .with_remedy(WITHOUT_CONTINUE),
         _ => CliError::input(format!("{name}: {error}")),
@@ -67,7 +67,7 @@ impl<'a, 'f> CheckpointSaver<'a, 'f> {
     pub(crate) fn left(&self) {
         if let (true, Some(plan)) = (self.saved.get(), self.plan) {
             let path = plan.file.display();
-            let text = format!("to go on with the run from here, add --continue {path}");
+            let text = format!("to continue the run, add --continue {path}");
             self.remark(&text);
         }
     }

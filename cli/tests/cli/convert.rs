@@ -100,7 +100,7 @@ fn conversions_that_cannot_work_are_refused() {
     folder.line("convert plain.2dm out.node").refused(&["out.poly: exists, and cannot be read"]);
     folder
         .line("convert plain.2dm out.node --force")
-        .refused(&["out.poly of another mesh is there"]);
+        .refused(&["out.poly exists, belongs to another mesh"]);
     assert!(!folder.path("out.node").exists());
 }
 

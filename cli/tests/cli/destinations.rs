@@ -63,7 +63,7 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
         ("in.node out.msh", &["out.msh: the ending belongs to gmsh", "end the name in .node"]),
         ("in.msh out.node", &["out.node: the ending belongs to Triangle", "end the name in .msh"]),
         ("in.msh out.vtk", &["out.vtk: the ending belongs to legacy VTK", "or convert the mesh"]),
-        ("in.node locked", &["locked.ele: the file is read-only", "Make it writable"]),
+        ("in.node locked", &["locked.ele: the file is read-only", "Make the file writable"]),
         ("in.node dir", &["dir: not the name of a file. Add a name like out.node"]),
         ("in.node out --report none/r.json", &["the report", "none: no such directory", "Create"]),
         ("in.node out --report dir", &["the report cannot be written: dir: ", "name of a file"]),
@@ -131,8 +131,8 @@ fn files_that_are_read_or_hold_a_mesh_are_not_replaced_by_other_files() {
     }
     let before = folder.content();
     for (options, part) in [
-        ("--report kept.json", "kept.json: there is a mesh in this file (gmsh)"),
-        ("--html kept.html", "kept.html: there is a mesh in this file (gmsh). Give --html another"),
+        ("--report kept.json", "kept.json: the file is a mesh (gmsh)"),
+        ("--html kept.html", "kept.html: the file is a mesh (gmsh). Give --html another"),
     ] {
         folder.line(&format!("in out --engine cpu {options}")).refused(&[part]);
     }

@@ -302,7 +302,7 @@ fn an_interrupted_call_of_many_meshes_leaves_whole_ones() {
     drop(pipe);
     let (code, out, err) = run.end();
     assert_eq!(code, Some(130), "{err}");
-    assert_holds(&err, &["interrupted: meshes that are being smoothed are given up"]);
+    assert_holds(&err, &["interrupted: unfinished meshes are not written"]);
     let told: serde_json::Value = serde_json::from_str(&out).unwrap();
     let statuses = [0, 1].map(|i| told[i]["status"].as_str().unwrap());
     assert_eq!(statuses, ["interrupted", "smoothed"], "{out}");

@@ -65,7 +65,7 @@ fn a_run_ended_by_the_time_limit_writes_its_mesh_and_goes_on() {
     let Run { code, out, err } = folder.line(&limited);
     assert_eq!(code, Some(0), "{err}");
     assert_holds(&out, &["\nended by --time-limit after "]);
-    assert_holds(&err, &["to go on with the run from here, add --continue run.ckpt"]);
+    assert_holds(&err, &["to continue the run, add --continue run.ckpt"]);
     assert_eq!(folder.json("r.json")["stop"], "time-limit");
     assert_smoothed(&support::mesh_of(&before), &folder.mesh("out"));
     assert_ne!(folder.text("out.node"), expected);
@@ -90,7 +90,7 @@ fn an_interrupted_run_goes_on() {
     run.signal("-INT");
     let (code, _, err) = run.end();
     // The run may have ended before the signal came.
-    if err.contains("to go on with the run from here, add --continue run.ckpt") {
+    if err.contains("to continue the run, add --continue run.ckpt") {
         assert_eq!(code, Some(130));
         folder.line(&format!("{LONG} --continue run.ckpt")).clean();
     }
@@ -113,7 +113,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     // The run would overwrite the checkpoint of another run.
     refused(
         &limited,
-        &["run.ckpt: this file is the checkpoint of another run", "--continue run.ckpt"],
+        &["run.ckpt: the file is a checkpoint of another run", "--continue run.ckpt"],
     );
     refused(
         &format!("{LONG} --continue run.ckpt --omega 1.2"),
@@ -126,7 +126,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
         &format!("{LONG} --continue run.ckpt --fix-box 0,0,6,6 -q"),
         &["run.ckpt: the checkpoint cannot be used: mesh, held vertices"],
     );
-    refused(&format!("{LONG} --continue none"), &["none: there is no such file"]);
+    refused(&format!("{LONG} --continue none"), &["none: the file does not exist"]);
     fs::write(folder.path("foreign"), "no checkpoint").unwrap();
     folder
         .line(&format!("{LONG} --continue foreign"))

@@ -125,7 +125,7 @@ impl Conversion {
         }
         if let Some(left) = destinations.get(contents.len()).filter(|left| left.exists()) {
             let problem = format!(
-                "{} of another mesh is there, and would be read with this one",
+                "{} exists, belongs to another mesh, and would be read with the new files",
                 left.display()
             );
             return refused(problem, "Remove it, or take another name");

@@ -122,7 +122,7 @@ pub fn ensure_writable(path: &Path) -> Result<(), WriteError> {
             return Err(WriteError::Io {
                 path: target,
                 source: io::Error::new(ErrorKind::PermissionDenied, "the file is read-only"),
-                remedy: "Make it writable, or write to another name".into(),
+                remedy: "Make the file writable, or write to another name".into(),
             });
         }
         _ => {}
@@ -132,7 +132,7 @@ pub fn ensure_writable(path: &Path) -> Result<(), WriteError> {
         return Err(WriteError::Io {
             path: directory.to_owned(),
             source: io::Error::new(ErrorKind::NotFound, "no such directory"),
-            remedy: "Create the directory first, or write to another one".into(),
+            remedy: "Create the directory first, or write to another directory".into(),
         });
     }
     Temporary::create(&OsFileSystem, directory)
@@ -143,7 +143,7 @@ pub fn ensure_writable(path: &Path) -> Result<(), WriteError> {
 fn refused(path: &Path, source: io::Error) -> WriteError {
     let remedy = match source.kind() {
         ErrorKind::IsADirectory => "Give the name of a file",
-        ErrorKind::NotFound => "Create the directory first, or write to another one",
+        ErrorKind::NotFound => "Create the directory first, or write to another directory",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "Write to a directory that you may change"
         }

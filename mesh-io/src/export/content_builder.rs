@@ -85,7 +85,10 @@ impl ContentBuilder {
             let fits = data.components > 0
                 && Some(data.values.len()) == count.checked_mul(data.components);
             if !fits {
-                left_out.push(format!("{}, which has not a tuple for each vertex", data.name));
+                left_out.push(format!(
+                    "{}, whose number of values does not fit the number of vertices",
+                    data.name
+                ));
             }
             fits
         });

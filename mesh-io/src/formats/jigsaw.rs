@@ -133,8 +133,8 @@ fn check_kind(cursor: &Cursor<'_>, kind: &[u8]) -> Result<(), ReadError> {
     if kind.is_empty() || kind.eq_ignore_ascii_case(b"EUCLIDEAN-MESH") {
         return Ok(());
     }
-    let problem = format!("a mesh of the kind {} is not read", quoted(kind));
-    Err(cursor.error(problem, "Only meshes of the plane are read: save a EUCLIDEAN-MESH"))
+    let problem = format!("meshes of kind {} are not supported", quoted(kind));
+    Err(cursor.error(problem, "Save a plane mesh (EUCLIDEAN-MESH)"))
 }
 
 /// Returns the whole number `value` from the row of the keyword `key`.

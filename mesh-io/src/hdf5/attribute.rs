@@ -81,7 +81,7 @@ fn read<'a>(
     let flags = bytes.byte()?;
     let sizes = [bytes.count(2)?, bytes.count(2)?, bytes.count(2)?];
     if version > 3 || version == 0 || (version > 1 && flags & 3 != 0) {
-        return Err(bytes.unread("an attribute of a type that stands elsewhere"));
+        return Err(bytes.unread("an attribute with a shared datatype"));
     }
     bytes.skip(if version == 3 { 1 } else { 0 })?;
     let mut part = |size: usize| {

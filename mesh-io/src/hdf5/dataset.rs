@@ -73,7 +73,7 @@ fn type_of(raw: &FileBytes<'_>, header: &Header, at: usize) -> Result<Datatype, 
     let (version, kind) = (bytes.byte()?, bytes.byte()?);
     bytes.skip(if version == 1 { 6 } else { 0 })?;
     if version == 3 && kind != 2 {
-        return Err(bytes.unread("a dataset whose type stands in a heap"));
+        return Err(bytes.unread("a dataset whose datatype is stored in a heap"));
     }
     let header = Header::read(raw, bytes.address()?.ok_or_else(damaged)?)?;
     let message = header.of(TYPE).find(|message| !message.is_shared).ok_or_else(damaged)?;
@@ -195,11 +195,8 @@ impl DatasetStorage {
         if let Some(range) = self.whole() {
             return Ok(Cow::Borrowed(&file[range]));
         }
-        let damaged = || Hdf5Error {
-            at,
-            problem: "a dataset with a chunk that is damaged".into(),
-            remedy: DAMAGED,
-        };
+        let damaged =
+            || Hdf5Error { at, problem: "a dataset with a damaged chunk".into(), remedy: DAMAGED };
         let mut all: Vec<u8> = Vec::new();
         for (wave, chunks) in self.chunks.chunks(CHUNKS_PER_BATCH).enumerate() {
             let unpacked = map_parts(chunks, |_, chunk| self.chunk(file, chunk));

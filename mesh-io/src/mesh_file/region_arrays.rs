@@ -60,7 +60,7 @@ pub(super) fn find(
 /// Returns the remedy that lists the cell data of a mesh.
 fn known(parsed: &ParsedMesh) -> String {
     match &parsed.cell_arrays[..] {
-        [] => "It has no cell data of one number for each cell".to_owned(),
+        [] => "The file has no cell data with one number per cell".to_owned(),
         names => format!("Its cell data are `{}`", names.join("`, `")),
     }
 }

@@ -167,7 +167,7 @@ fn vertices_between_sections_are_held() {
     let shell = section("B").replace("SOLID", "shell");
     assert_eq!(between(&[sets, &section("Left"), &shell].concat()), [4]);
     let text = [&one[..], &section("elsewhere")].concat();
-    assert!(remarks(&read(&text))[0].contains("set ELSEWHERE, which is not here"));
+    assert!(remarks(&read(&text))[0].contains("set ELSEWHERE, which the file lacks"));
 }
 
 /// meshio writes sets without sections, and element lists without sets.
@@ -257,11 +257,11 @@ fn included_files_must_not_hold_a_part_of_the_mesh() {
     assert_eq!(with(&"*INCLUDE, INPUT=more.inp\n".repeat(50)), Ok(vec![]));
     let two = read(&[&main[..], "*INCLUDE, INPUT=other.inp\n*INCLUDE, INPUT=other.inp\n"].concat());
     assert!(
-        remarks(&two)[0].starts_with("2 files such as more.inp, which are included, are not there")
+        remarks(&two)[0].starts_with("2 files such as more.inp, which are included, do not exist")
     );
     assert_eq!(
         remarks(&read(&main)),
-        ["more.inp, which is included, is not there: no part of the mesh is taken to be in it"]
+        ["more.inp, which is included, does not exist: its content is not part of the mesh"]
     );
 }
 
@@ -285,7 +285,7 @@ fn coordinates_are_written_in_20_characters() {
         deck().replace("5, 1., 1.\n", "5, -1.23456789012345678e-03, 1.23456789012345678e+00\n");
     let file = read(&long);
     assert_eq!(file.precision(), Precision::Text20);
-    let note = "1 node has a coordinate of more than 20 characters: CalculiX reads the first 20 only, and so another number";
+    let note = "1 node has a coordinate of more than 20 characters: CalculiX reads only the first 20 characters, which are another number";
     assert_eq!(remarks(&file), [note]);
     assert_eq!(remarks(&read(&deck())), [""; 0]);
     assert_eq!(file.points()[4], [-1.234_567_890_123_457e-3, 1.234_567_890_123_456_7]);

@@ -52,7 +52,7 @@ fn missing_files_beside_a_mesh_are_errors() {
     let path = folder.path(sample.name);
     let text = fs::read_to_string(&path).unwrap();
     let bytes = text.clone().into_bytes();
-    refused(MeshFile::from_bytes(&path, bytes), &["dolfin.h5, a file beside it", "Name the file"]);
+    refused(MeshFile::from_bytes(&path, bytes), &["in the file dolfin.h5", "Name the file"]);
     let read = |text: String| {
         fs::write(&path, text).unwrap();
         MeshFile::read(&path)
@@ -60,7 +60,7 @@ fn missing_files_beside_a_mesh_are_errors() {
     let with = |to: &str| read(text.replace("dolfin.h5:/Mesh/mesh/geometry", to));
     refused(
         with("gone.h5:/a"),
-        &["dolfin.xdmf:10: its numbers are in gone.h5, and this file does not exist"],
+        &["dolfin.xdmf:10: its numbers are in gone.h5, which does not exist"],
     );
     refused(with("dolfin.xdmf:/a"), &["it names itself"]);
     refused(with("dolfin.h5:/Mesh/b"), &["dolfin.xdmf:10: dolfin.h5 has no dataset /Mesh/b"]);

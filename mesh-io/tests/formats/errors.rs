@@ -199,7 +199,7 @@ fn destinations_that_cannot_work_are_refused_and_left_alone() {
     refused("la.1", "", &["not the name of a file", "out.node"]);
     refused("a.msh", "out.ele", &["belongs to Triangle", "end the name in .msh"]);
     refused("a.msh", "none/out.msh", &["none: no such directory", "Create the directory first"]);
-    refused("a.msh", "locked", &["locked: the file is read-only", "Make it writable"]);
+    refused("a.msh", "locked", &["locked: the file is read-only", "Make the file writable"]);
     assert_eq!(folder.text("old.node"), "old");
     assert_eq!(folder.text("locked"), "old");
 

@@ -79,19 +79,19 @@ fn sides_of_triangles_begin_with_two_faces_in_space_and_with_edges_in_the_plane(
 fn a_mesh_in_space_is_written_with_the_sides_of_triangles_in_space() {
     let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"shore\"\n$EndPhysicalNames\n\
         $Nodes\n4\n1 0 0 1\n2 1 0 1\n3 1 1 2\n4 0 1 1\n$EndNodes\n\
-        $Elements\n3\n1 1 2 7 7 2 3\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4\n$EndElements\n";
+        $Elements\n4\n1 1 2 7 7 2 3\n2 1 2 7 7 3 4\n3 2 2 1 1 1 2 3\n4 2 2 1 1 1 3 4\n$EndElements\n";
     let folder = Folder::new(&[("in.msh", text)]);
     let file = folder.read("in.msh");
     let conversion = Conversion::new(&file, Format::Exodus).unwrap().unwrap();
     conversion.write(&folder.path("out.exo")).unwrap();
     let bytes = fs::read(folder.path("out.exo")).unwrap();
-    // Element 1, side 4: the second edge after two faces.
-    let set: Vec<u8> = [1_i32, 4].iter().flat_map(|number| number.to_be_bytes()).collect();
-    let sides = bytes.windows(8).filter(|part| **part == *set).count();
+    // Elements 1 and 2, both with side 4: the second edge after two faces.
+    let set: Vec<u8> = [1_i32, 2, 4, 4].iter().flat_map(|number| number.to_be_bytes()).collect();
+    let count = bytes.windows(16).filter(|part| **part == *set).count();
     let groups = folder.read("out.exo").groups().unwrap();
     let shore = groups.find("shore").unwrap();
-    assert_eq!((shore.lines, shore.vertices()), (1, &[1, 2][..]));
-    assert_eq!(sides, 1, "no side 4 of element 1");
+    assert_eq!((shore.lines, shore.vertices()), (2, &[1, 2, 3][..]));
+    assert_eq!(count, 1, "no side 4 of elements 1 and 2");
 }
 
 #[test]

@@ -148,7 +148,7 @@ fn items_of_medit_stand_anywhere_on_lines() {
         assert!(error.contains(part), "no {part:?} in {error:?}");
     }
     let few =
-        "a.mesh:8: `0` stands where a keyword should. Correct the count of the list before it";
+        "a.mesh:8: `0` stands where a keyword should. Correct the count of the preceding list";
     assert_refused("a.mesh", &MEDIT.replace("Vertices\n4", "Vertices\n3"), &[few]);
     // A single row of the list lacks a number.
     let missing = "a.mesh:7: the reference of a vertex is missing. Correct the line";

@@ -26,7 +26,8 @@ fn a_mesh_is_not_written_where_another_file_would_be_read_with_it() {
     let folder = Folder::new(&[("in.node", NODE), ("in.ele", ELE), ("out.poly", POLY)]);
     fs::write(folder.path("plain"), "something else").unwrap();
     let file = folder.read("in.node");
-    for (out, part) in [("out.node", "out.poly of another mesh"), ("plain", "a file of this name")]
+    for (out, part) in
+        [("out.node", "out.poly exists, belongs to another mesh"), ("plain", "a file of this name")]
     {
         let error = file.write(&folder.path(out), file.points()).unwrap_err().to_string();
         assert!(error.contains(part), "{error}");

@@ -85,7 +85,7 @@ fn other_contents_of_known_formats_are_refused() {
         assert_refused("a.vtk", format!("# vtk DataFile Version 3.0\nt\n{rest}"), parts);
     };
     for kind in ["STRUCTURED_POINTS", "STRUCTURED_GRID", "RECTILINEAR_GRID", "FIELD"] {
-        let named = format!("a.vtk:4: a dataset of the kind {kind} has no triangles");
+        let named = format!("a.vtk:4: datasets of kind {kind} have no triangles");
         vtk(
             &format!("ASCII\nDATASET {kind}\nDIMENSIONS 2 2 1\n"),
             &[&named, "Save as an unstructured grid"],
@@ -145,7 +145,10 @@ fn damaged_meshes_of_coasts_are_refused_with_place_and_reason() {
     mfem("2\nvertices\n3\n\nnodes\nFiniteElementSpace\n", &["a.mesh:7: the points are those of a"]);
     mfem("2\nelements\n0\n", &["a.mesh: it has no vertices. Save the mesh again"]);
     let jigsaw = |text: &str, parts: &[&str]| assert_refused("a.msh", text, parts);
-    jigsaw("MSHID=3;EUCLIDEAN-GRID\n", &["a.msh:1: a mesh of the kind EUCLIDEAN-GRID is not read"]);
+    jigsaw(
+        "MSHID=3;EUCLIDEAN-GRID\n",
+        &["a.msh:1: meshes of kind EUCLIDEAN-GRID are not supported"],
+    );
     jigsaw("MSHID=3\nPOINT=four\n", &["a.msh:2: POINT= is followed by `four`, not a whole number"]);
     jigsaw("MSHID=3\nNDIMS=4\nPOINT=1\n", &["a.msh:3: the points have 4 coordinates. Those of 2"]);
     jigsaw("MSHID=3\nPOINT=1\n0;x;0\n", &["a.msh:3: y of a point is `x`, not a finite number"]);

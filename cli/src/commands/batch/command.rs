@@ -118,7 +118,8 @@ impl Watch for Watched<'_> {
 
     fn interrupted(&mut self) {
         tell::leave_bar();
-        let text = "interrupted: meshes that are being smoothed are given up (interrupt again to end at once)";
+        let text =
+            "interrupted: unfinished meshes are not written (interrupt again to end at once)";
         tell::note(self.verbosity.quiet, text);
     }
 }

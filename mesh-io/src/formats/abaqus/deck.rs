@@ -140,7 +140,6 @@ impl<'a> Deck<'a> {
                 count => format!("{count} files such as {first}, which are included, {several}"),
             })
         };
-        const NONE: &str = "there: no part of the mesh is taken to be in";
         self.notes.extend(told(
             &with_sets,
             "has sets, sections or surfaces: they are not read",
@@ -148,8 +147,8 @@ impl<'a> Deck<'a> {
         ));
         self.notes.extend(told(
             &unknown,
-            &format!("is not {NONE} it"),
-            &format!("are not {NONE} them"),
+            "does not exist: its content is not part of the mesh",
+            "do not exist: their content is not part of the mesh",
         ));
         Ok(())
     }

@@ -55,7 +55,7 @@ impl ElementGroups {
             of_sections.iter().find(|&n| !listed.contains(n) && !of_lists.contains(n))
         {
             let name = quoted(name);
-            visitor.remark(Remark::Text(format!("a section is of the set {name}, which is not here: vertices at its ends are no constraints")));
+            visitor.remark(Remark::Text(format!("a section is of the set {name}, which the file lacks: vertices at the ends of the section are not fixed")));
         }
         // If all sections name sets of element lists (`*ELEMENT, ELSET=`), regions follow from the lists alone.
         let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));

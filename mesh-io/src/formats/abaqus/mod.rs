@@ -138,7 +138,7 @@ impl Nodes {
             let nodes =
                 format!("{} node{s} {have} a coordinate of more than 20 characters", counted.long);
             visitor.remark(Remark::Text(format!(
-                "{nodes}: CalculiX reads the first 20 only, and so another number"
+                "{nodes}: CalculiX reads only the first 20 characters, which are another number"
             )));
         }
         z_values.send("z", numbers.into(), visitor);

@@ -52,7 +52,10 @@ impl FormatReader for Exodus {
                 return Err(start.error(problem, remedy));
             }
             let problem = "netCDF that holds no mesh of Exodus II (it has no dimension num_nodes) or UGRID (no variable with the cf_role mesh_topology)";
-            return Err(start.error(problem, "Save the mesh as one of these, or in another format"));
+            return Err(start.error(
+                problem,
+                "Save the mesh in one of these formats or in another supported format",
+            ));
         };
         start.check_vertex_count(nodes)?;
         if let Some(error) =

@@ -112,7 +112,7 @@ impl FormatReader for Medit {
                 b"RequiredTriangles" => numbers(cursor, &mut required)?,
                 keyword if !is_keyword(keyword) => {
                     let problem = format!("`{}` stands where a keyword should", quoted(keyword));
-                    let remedy = "Correct the count of the list before it, or write the mesh again";
+                    let remedy = "Correct the count of the preceding list, or write the mesh again";
                     return Err(cursor.error(problem, remedy));
                 }
                 keyword if is_of_higher_order(keyword) => {

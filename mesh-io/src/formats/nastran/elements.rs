@@ -56,7 +56,7 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
         let first = quoted(name_bytes(first));
         visitor.unsupported(&match others.len() - 1 {
             0 => format!("the contents of {first}"),
-            more => format!("the contents of {first} and of {more} more kinds of cards"),
+            more => format!("the contents of {first} and of {more} other kinds of cards"),
         });
     }
     send_constrained_nodes(rows, held, visitor)

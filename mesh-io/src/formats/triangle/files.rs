@@ -125,14 +125,17 @@ pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, W
     }
     if path.is_file() && !is_named_as_triangle(path) {
         let name = path.display();
-        let problem =
-            format!("a file of this name is there, and would be read in place of {name}.node");
+        let problem = format!(
+            "a file of this name exists, and readers would take the file for the mesh instead of {name}.node"
+        );
         return refused(problem, "End the name in .node, or take another");
     }
     let Names { node: to_node, ele, poly } = Names::of(path);
     if node.companions.len() == 1 && poly.exists() {
-        let problem =
-            format!("{} of another mesh is there, and would be read with this one", poly.display());
+        let problem = format!(
+            "{} exists, belongs to another mesh, and would be read with the new files",
+            poly.display()
+        );
         return refused(problem, "Remove it, or take another name");
     }
     Ok([to_node, ele, poly].into_iter().take(1 + node.companions.len()).collect())

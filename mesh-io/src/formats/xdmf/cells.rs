@@ -125,7 +125,7 @@ impl<'a> File<'a> {
             return Ok(CellNumbers::Text(cursor));
         };
         let Some((size, order)) = numbers.whole() else {
-            let problem = "a Topology of numbers that are not whole";
+            let problem = "a Topology with fractions";
             return Err(self.cursor(item).error(problem, "Save the mesh again"));
         };
         let whole = IntArray::binary(std::mem::take(&mut numbers.bytes), size, order);

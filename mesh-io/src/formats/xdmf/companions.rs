@@ -52,13 +52,17 @@ pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), 
             Err(_) if !path.exists() => {
                 let place = Location::Line(main.line_of(at.start));
                 let shown = quoted(name.as_bytes());
-                let problem = format!("its numbers are in {shown}, and this file does not exist");
-                return Err(main.error_at(place, problem, "Put the file beside it"));
+                let problem = format!("its numbers are in {shown}, which does not exist");
+                return Err(main.error_at(
+                    place,
+                    problem,
+                    &format!("Put {shown} beside the mesh file"),
+                ));
             }
             loaded => loaded?,
         };
         if source.compressed.is_some() {
-            let problem = "it is compressed, but one of the files of a mesh";
+            let problem = "the file is compressed, which only meshes in a single file may be";
             return Err(source.error(problem, "Decompress it first (gunzip, unzstd)"));
         }
         main.companions.push(Companion { names: vec![name], named_at: vec![at], source });

@@ -83,9 +83,9 @@ impl<'a> HeavyData<'a> {
             Content::Hdf5 { file, .. } | Content::Raw { file, .. } => file,
         };
         let Some(index) = self.file(name) else {
-            let problem =
-                format!("its numbers are in {}, a file that was not read", quoted(name.as_bytes()));
-            return Err(cursor.error(problem, "Put the file beside it"));
+            let shown = quoted(name.as_bytes());
+            let problem = format!("its numbers are in {shown}, a file that was not read");
+            return Err(cursor.error(problem, &format!("Put {shown} beside the mesh file")));
         };
         let (companion, tree) = &self.files[index];
         let source = &companion.source;

@@ -43,8 +43,11 @@ impl FormatReader for Xdmf {
             None => Ok(()),
             Some(reference) => {
                 let name = quoted(reference.name.as_bytes());
-                let problem = format!("its numbers are in {name}, a file beside it");
-                Err(source.error(problem, "Name the file, so that both are read"))
+                let problem = format!("its numbers are in the file {name}");
+                Err(source.error(
+                    problem,
+                    "Name the file instead of its content, so that both files are read",
+                ))
             }
         }
     }

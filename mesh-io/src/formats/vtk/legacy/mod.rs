@@ -144,7 +144,7 @@ fn dataset(cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
     match kind.to_ascii_uppercase().as_slice() {
         b"UNSTRUCTURED_GRID" | b"POLYDATA" => Ok(()),
         other => {
-            let problem = format!("a dataset of the kind {} has no triangles", quoted(other));
+            let problem = format!("datasets of kind {} have no triangles", quoted(other));
             Err(cursor.error(problem, "Save as an unstructured grid (UNSTRUCTURED_GRID)"))
         }
     }
