@@ -26,18 +26,21 @@ pub(super) fn sizes(
 
 /// Returns the maps under which the triangles of the mesh are equilateral and of equal size.
 pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
-    let of = |t: &[u32; 3]| {
-        let [a, b] = edges(t, points);
-        // A W⁻¹ maps the equilateral triangle to the given triangle, so the target map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
-        let second = [(2.0 * b[0] - a[0]) * W, (2.0 * b[1] - a[1]) * W];
-        let square = Tensor::of_columns([a, second]);
-        match square.is_positive() {
-            true => square.ln().times(-0.5),
-            // The triangle is flat except for rounding, and only its length is known.
-            false => Tensor::isotropic(-0.5 * square.eigenvalues()[1].max(f64::MIN_POSITIVE).ln()),
-        }
-    };
-    averaged(triangles, points.len(), rings, of)
+    averaged(triangles, points.len(), rings, |t| shape_logarithm(t, points, [1.0; 2]))
+}
+
+/// Returns the logarithm of the map under which a triangle is equilateral with edges of length 1. `lengths` are the
+/// lengths of a unit of each coordinate.
+pub(super) fn shape_logarithm(t: &[u32; 3], points: &[[f64; 2]], lengths: [f64; 2]) -> Tensor {
+    let [a, b] = edges(t, points).map(|[x, y]| [x * lengths[0], y * lengths[1]]);
+    // A W⁻¹ maps the equilateral triangle to the given triangle, so the target map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
+    let second = [(2.0 * b[0] - a[0]) * W, (2.0 * b[1] - a[1]) * W];
+    let square = Tensor::of_columns([a, second]);
+    match square.is_positive() {
+        true => square.ln().times(-0.5),
+        // The triangle is flat except for rounding, and only its length is known.
+        false => Tensor::isotropic(-0.5 * square.eigenvalues()[1].max(f64::MIN_POSITIVE).ln()),
+    }
 }
 
 /// Returns the two edges of a triangle that start at its first corner.

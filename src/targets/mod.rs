@@ -1,5 +1,6 @@
 //! Targets: the wanted size, stretching and orientation of elements, vertex by vertex.
 
+mod adaptation;
 mod field;
 mod keep;
 mod surface;
@@ -7,6 +8,7 @@ mod tensor;
 
 use crate::error::MeshError;
 use crate::topology::Topology;
+pub use adaptation::Adaptation;
 pub use field::{OutsideReport, TargetField};
 pub use surface::Surface;
 pub(crate) use tensor::Tensor;

@@ -145,12 +145,15 @@ fn an_application_gets_the_same_results_part_by_part() {
 #[test]
 fn a_mesh_that_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated() {
     // A mesh whose positions would need three bindings.
-    let large = lattice(53, 53);
+    let side = ((BOUND / 8) as f64).sqrt() as usize + 1;
+    let large = lattice(side - 1, side - 1);
     let [_, app] = devices(&mesh());
     let error = app.gpu.check_size(size(&large)).unwrap_err();
     let text = format!(
-        "the buffer of vertex positions (2916 vertices) needs 23328, \
-         but the device's max_storage_buffer_binding_size is {BOUND}"
+        "the buffer of vertex positions ({} vertices) needs {}, \
+         but the device's max_storage_buffer_binding_size is {BOUND}",
+        side * side,
+        8 * side * side,
     );
     assert_eq!(error.to_string(), text);
     // Counts allocations after a poll, in which the device frees unused memory.

@@ -1,8 +1,15 @@
 //! Remarks on a mesh after reading.
 
+use gpu_smooth::targets::Adaptation;
 use mesh_io::{Format, Remark};
 
 use crate::load::LoadedMesh;
+
+/// Stretching above which a mesh counts as adapted. Averages of meshes that are merely poor stay below 2.
+const STRETCHED: f64 = 2.5;
+/// Gradation above which a mesh counts as graded. Sizes then change by up to a third of themselves in a run without
+/// targets.
+const GRADED: f64 = 4.0;
 
 /// Returns the remarks on a mesh, one line each. If `slides` is true, no remark says that vertices between regions stay
 /// fixed.
@@ -42,6 +49,23 @@ fn with_effect(remark: &Remark) -> String {
         },
         _ => remark.to_string(),
     }
+}
+
+/// Returns a remark on an adapted mesh, which a run without targets would make less adapted; `None` for other meshes.
+pub(crate) fn adapted(adaptation: Adaptation) -> Option<String> {
+    let Adaptation { stretching, gradation, .. } = adaptation;
+    if stretching > STRETCHED {
+        return Some(format!(
+            "the mesh is adapted: around one vertex in twenty, triangles are stretched {stretching:.1}-fold or more; they \
+             become equilateral unless --target keep-shape keeps their stretching and sizes"
+        ));
+    }
+    (gradation > GRADED).then(|| {
+        format!(
+            "the mesh is graded: sizes differ {gradation:.0}-fold from fine to coarse parts; they become more even unless \
+             --target keep-size keeps them"
+        )
+    })
 }
 
 /// Returns a remark if a file says that its coordinates are longitude and latitude, or if a mesh in a format of coastal

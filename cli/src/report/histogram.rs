@@ -22,11 +22,10 @@ fn edges(measure: Measure) -> Vec<f64> {
     let definition = measure.definition();
     let [least, most] = definition.range;
     if most.is_finite() {
-        // Bins of angles are 5° or 10° wide, other bins of bounded measures 0.1.
-        let bins = if most - least == 60.0 || most - least == 120.0 {
-            12
-        } else {
-            (10.0 * (most - least)) as u32
+        // Bins of angles are 5° or 10° wide, other bins of bounded measures 0.1, or narrower in a range shorter than 1.
+        let bins = match definition.unit {
+            "°" => 12,
+            _ => ((10.0 * (most - least)) as u32).max(10),
         };
         let edge = |i| least + (most - least) * f64::from(i) / f64::from(bins);
         return (0..=bins).map(edge).collect();

@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
+use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother, targets::Adaptation};
 
 use crate::error::CliError;
-use crate::load::explain;
 use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection};
+use crate::load::{explain, remarks};
 use crate::report::Failure;
-use crate::request::SmoothRequest;
+use crate::request::{SmoothRequest, TargetRequest};
 use crate::run::engine::{self, OpenEngine};
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
@@ -120,6 +120,15 @@ pub(super) fn set_up<'a>(
     }
     if let Some(remark) = request.target.set(file, &mut smoother, points, surface)? {
         follow.remark(&remark);
+    }
+    // A metric of sizes is chosen to make sizes even.
+    let is_of_shapes = request.scheme().base().is_scale_invariant();
+    let has_target = !matches!(request.target, TargetRequest::Equilateral);
+    if is_of_shapes && !has_target && mended.is_none() {
+        let adaptation = Adaptation::of(smoother.topology(), points, surface)?;
+        if let Some(remark) = remarks::adapted(adaptation) {
+            follow.remark(&remark);
+        }
     }
     if let Some(slide) = &request.slide {
         follow.remark(&slide.set(file, &mut smoother)?);

@@ -171,7 +171,7 @@ fn options_that_make_no_sense_are_refused() {
         ("--threshold min-angle<<20", "a number"),
         ("--threshold min-angle<==20", "a measure, < or >, and a number"),
         ("--threshold min-angle<nan", "'nan' is not a number"),
-        ("--threshold angle<20", "no measure is called 'angle'; there are min-angle"),
+        ("--threshold angle<20", "no measure is called 'angle'; there are "),
         ("-m roundness", "no measure is called 'roundness'"),
         ("--json --csv", "--csv"),
         ("--worst -1", "-1"),

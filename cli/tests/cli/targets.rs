@@ -1,6 +1,6 @@
 //! Target sizes and shapes: kept, given, or measured on the sphere.
 
-use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
+use super::{Folder, assert_holds, assert_smoothed, disturbed, number, support};
 use gpu_smooth::Mesh;
 use mesh_io::MeshFile;
 use std::fmt::Write;
@@ -47,6 +47,26 @@ fn targets_are_kept_and_reported_on_both_engines() {
             assert!(after < before, "{told}");
             assert!((number(&report["history"][0]["f"]) - before).abs() <= 1e-12 * before);
         }
+    }
+}
+
+/// Poor meshes without adaptation get no note; see [`Run::clean`](super::Run::clean) in other tests.
+#[test]
+fn the_target_that_keeps_an_adapted_mesh_is_named_before_the_run() {
+    for (mesh, part) in [
+        (support::layered(24, 60.0), "--target keep-shape keeps their stretching"),
+        (support::graded(12, 0.05), "--target keep-size keeps them"),
+    ] {
+        let [node, ele] = node_ele(&mesh);
+        let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+        let run = folder.line("in out --engine cpu");
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let remarks: Vec<&str> =
+            run.err.lines().filter(|line| line.contains("the mesh is ")).collect();
+        assert!(remarks.len() == 1 && remarks[0].contains(part), "{remarks:?}");
+        let target = part.split_whitespace().nth(1).unwrap();
+        let run = folder.line(&format!("in out --engine cpu --target {target} --force"));
+        assert!(!run.err.contains("the mesh is "), "{}", run.err);
     }
 }
 
