@@ -20,12 +20,27 @@ pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// Polls a device. Returns [`GpuError::Lost`] if wgpu panics or the poll fails.
+/// Returns the error of wgpu calls that panicked: [`GpuError::Lost`] if the device is lost, [`GpuError::Refused`] if the
+/// device still works.
+fn failed(device: &wgpu::Device, text: String) -> GpuError {
+    if is_lost(device) { GpuError::Lost(text) } else { GpuError::Refused(text) }
+}
+
+/// Returns [`GpuError::Lost`] if the device is lost, for calls whose wgpu calls succeed on a lost device. In a browser,
+/// where wgpu reports errors later, every device passes.
+pub(crate) fn check_alive(device: &wgpu::Device) -> Result<(), GpuError> {
+    match is_lost(device) {
+        true => Err(GpuError::Lost("no buffer can be created".into())),
+        false => Ok(()),
+    }
+}
+
+/// Polls a device. Returns [`GpuError::Lost`] if the poll fails or wgpu panics on a lost device.
 pub(crate) fn poll(
     device: &wgpu::Device,
     what: wgpu::PollType,
 ) -> Result<wgpu::PollStatus, GpuError> {
-    let polled = caught(|| device.poll(what)).map_err(GpuError::Lost)?;
+    let polled = caught(|| device.poll(what)).map_err(|text| failed(device, text))?;
     polled.map_err(|error| GpuError::Lost(error.to_string()))
 }
 
@@ -36,14 +51,14 @@ pub(crate) fn scoped<T>(_: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T
     Ok(calls())
 }
 
-/// Runs wgpu calls in error scopes. Returns [`GpuError::OutOfMemory`], [`GpuError::Lost`] if the device is lost or wgpu
-/// panics, and [`GpuError::Refused`] for any other error that wgpu reports.
+/// Runs wgpu calls in error scopes. Returns [`GpuError::OutOfMemory`], [`GpuError::Lost`] if the device is lost, and
+/// [`GpuError::Refused`] for any other error that wgpu reports or panics with.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn scoped<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> Result<T, GpuError> {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let value = caught(calls).map_err(GpuError::Lost);
+    let value = caught(calls).map_err(|text| failed(device, text));
     let internal = pollster::block_on(internal.pop());
     let memory = pollster::block_on(memory.pop());
     let validation = pollster::block_on(validation.pop());
@@ -72,10 +87,22 @@ pub(crate) fn scoped_to_buffer<T>(
     })
 }
 
+/// Browsers report a lost device to the device's callback alone.
+#[cfg(target_arch = "wasm32")]
+fn is_lost(_: &wgpu::Device) -> bool {
+    false
+}
+
 /// Returns whether the device is lost, by trying to create a mapped buffer. On a lost device the buffer cannot be
 /// mapped, and no lack of memory is reported.
 #[cfg(not(target_arch = "wasm32"))]
 fn is_lost(device: &wgpu::Device) -> bool {
+    // A panic of these calls means that the driver is gone.
+    caught(|| cannot_map(device)).unwrap_or(true)
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn cannot_map(device: &wgpu::Device) -> bool {
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {

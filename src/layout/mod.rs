@@ -12,6 +12,8 @@ mod smallest_last;
 pub use coloring::Coloring;
 pub use prepare::prepare;
 pub(crate) use prepare::prepare_to_slide;
+#[cfg(feature = "gpu")]
+pub(crate) use prepare::prepare_to_untangle;
 pub use problem::Problem;
 pub(crate) use sizes::target_areas;
 pub use smallest_last::UNCOLORED;

@@ -30,6 +30,28 @@ pub(crate) fn prepare_to_slide(mesh: &Mesh) -> Result<(Topology<'_>, Problem), M
     }
 }
 
+/// Prepares a mesh as [`prepare`] does, but accepts inverted and flat triangles, and triangles that overlap around a
+/// vertex.
+///
+/// # Errors
+/// [`MeshError`] if the mesh cannot be smoothed once it is untangled.
+#[cfg(feature = "gpu")]
+pub(crate) fn prepare_to_untangle(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
+    let topology = Topology::new(mesh)?;
+    let is_finite = |&v: &u32| mesh.points[v as usize].iter().all(|x| x.is_finite());
+    if let Some(&vertex) = topology.triangles().as_flattened().iter().find(|v| !is_finite(v)) {
+        return Err(MeshError::NotFinite { vertex });
+    }
+    match topology.check_smoothable(&mesh.points) {
+        Ok(()) | Err(MeshError::Infeasible { .. } | MeshError::OverlappingStar { .. }) => {}
+        Err(error) => return Err(error),
+    }
+    if !topology.free().contains(&true) {
+        return Err(MeshError::NothingFree { vertices: mesh.points.len() });
+    }
+    Ok(laid_out(mesh, topology))
+}
+
 fn laid_out<'m>(mesh: &'m Mesh, topology: Topology<'m>) -> (Topology<'m>, Problem) {
     let curve = along_curve(mesh, &topology);
     let coloring = Coloring::along(&topology, &curve);

@@ -77,7 +77,8 @@ fn required_limits_are_raised_as_far_as_a_large_mesh_needs() {
     };
     let limits = Gpu::required_limits(Limits::default(), size, &most).unwrap();
     assert_eq!(limits.max_storage_buffer_binding_size, 1_200_000_000);
-    assert_eq!(limits.max_buffer_size, 1_200_000_000);
+    // A move of all vertices has 24 bytes for each triangle, more than a buffer of this device.
+    assert_eq!(limits.max_buffer_size, 2_147_483_648);
     // If a limit is below the size of a buffer, the buffer is bound in parts. Positions in two bindings
     // need an eighth binding.
     for (bound, bindings) in [(1_199_999_999, 7), (800_000_000, 7), (799_999_999, 8)] {
@@ -115,6 +116,18 @@ fn a_device_with_exactly_the_required_limits_smooths() {
     });
     let points = app.points(&device_mesh);
     assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
+}
+
+#[test]
+fn a_device_with_exactly_the_required_limits_moves_all_vertices() {
+    let mesh = bad_plate(3000);
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let app = App::with_limits(least_limits(size)).unwrap();
+    let device_mesh = app.mesh(&mesh);
+    let all: Vec<u32> = (0..size.vertices as u32).collect();
+    let [targets, share] =
+        [8 * size.vertices as u64, 4].map(|bytes| app.buffer(bytes, wgpu::BufferUsages::STORAGE));
+    device_mesh.bind_move(&all, &VertexBuffer::new(&targets, 8), 8.0, (&share, 0)).unwrap();
 }
 
 #[test]

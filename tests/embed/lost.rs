@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 use gpu_smooth::{
     Backend, CheckpointPolicy, Gpu, GpuError, Mesh, Options, Outcome, Progress, Quality, Scheme,
     Slide, Smoother, Stop, Stopping,
-    gpu::{DeviceMesh, Readback, Sweeps, VertexBuffer},
+    gpu::{Budget, DeviceMesh, Readback, Sweeps, VertexBuffer},
     wgpu,
 };
 
-use crate::app::{App, Vertices, bad_plate, gpu_error};
+use crate::app::{App, Vertices, bad_plate, gpu_error, interior};
 use crate::support::{SplitMix64, check, f_imr};
 
 /// Executes `work` on another thread, and fails after a minute without result.
@@ -298,12 +298,18 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         });
         let (device, queue) = (app.device().clone(), app.gpu.queue().clone());
         // The queue of a lost device must not be mistaken for that of another device.
-        assert!(!matches!(Gpu::new(device, queue), Err(GpuError::Queue)));
-        let _ = device_mesh.pin(&[1]);
+        assert_lost(&Gpu::new(device, queue).err().unwrap());
+        let free = interior(&mesh)[0];
+        assert_lost(&gpu_error(device_mesh.pin(&[free]).unwrap_err()));
+        assert_lost(&gpu_error(device_mesh.set_pinned(&[]).unwrap_err()));
+        assert_lost(&gpu_error(app.gpu.prepare(&Options::default()).unwrap_err()));
         judged.restart();
         let _ = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 56)).map(drop);
         let _ = device_mesh.bind_mask(&words, 0).map(drop);
-        let _ = Readback::<f32>::new(&app.gpu, &published, 0, 1).map(drop);
+        assert_lost(&Readback::<f32>::new(&app.gpu, &published, 0, 1).err().unwrap());
+        if app.device().features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+            assert_lost(&Budget::micros(100).timed_by(&app.gpu).err().unwrap());
+        }
         assert_lost(&device_mesh.read_points().unwrap_err());
         match DeviceMesh::new(&app.gpu, &mesh) {
             Err(error) => assert_lost(&gpu_error(error)),

@@ -6,7 +6,7 @@ use gpu_smooth::{
 };
 
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
-use crate::support::{SplitMix64, orientations};
+use crate::support::{SplitMix64, orientations, tangle};
 
 /// Counts the inverted or flat triangles, by exact predicates.
 fn bad(mesh: &Mesh, points: &[[f64; 2]]) -> usize {
@@ -88,6 +88,20 @@ fn beyond(mesh: &Mesh, v: u32, share: f64) -> [f64; 2] {
 fn hole(mesh: &Mesh) -> Vec<u32> {
     let on_hole = |p: [f64; 2]| (p[0] - 1.2).hypot(p[1] - 1.0) < 0.5001;
     (0..mesh.points.len() as u32).filter(|&v| on_hole(mesh.points[v as usize])).collect()
+}
+
+#[test]
+fn a_mesh_that_is_tangled_from_the_start_is_untangled() {
+    let mesh = tangle::noisy(&plate(800), 1.0, 7);
+    let app = App::new();
+    assert!(bad(&mesh, &mesh.points) > 100 && DeviceMesh::new(&app.gpu, &mesh).is_err());
+    let device_mesh = DeviceMesh::tangled(&app.gpu, &mesh).unwrap();
+    let mut frames = Frames::of(app, mesh, device_mesh);
+    let count = frames.frames_until_valid();
+    assert_eq!(bad(&frames.mesh, &frames.points()), 0, "{count} frames");
+    let mut broken = frames.mesh.clone();
+    broken.points[3][0] = f64::NAN;
+    assert!(DeviceMesh::tangled(&frames.app.gpu, &broken).is_err());
 }
 
 #[test]

@@ -155,7 +155,8 @@ fn open(mesh: &Mesh) -> Result<Gpu> {
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     let size = MeshSize { vertices: 4 * mesh.points.len(), triangles: 4 * mesh.triangles.len() };
     let own = wgpu::Limits {
-        max_storage_buffer_binding_size: VertexBuffer::binding_size(size.vertices, STRIDE, 0),
+        max_storage_buffer_binding_size: VertexBuffer::binding_size(size.vertices, STRIDE, 0)
+            .max(wgpu::Limits::default().max_storage_buffer_binding_size),
         ..wgpu::Limits::default()
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {

@@ -11,7 +11,7 @@ use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::row::User;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::scope::poll;
+use crate::gpu::scope::{check_alive, poll};
 use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::run::Plan;
@@ -52,8 +52,9 @@ impl Gpu {
     ///
     /// # Errors
     /// [`GpuError::Limit`], with the name of the limit, if the device has lower limits than the kernels need.
-    /// [`GpuError::Queue`] if the queue belongs to another device.
+    /// [`GpuError::Queue`] if the queue belongs to another device, [`GpuError::Lost`] if the device is lost.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        check_alive(&device)?;
         if !is_own(&queue, &device) {
             return Err(GpuError::Queue);
         }
@@ -112,7 +113,8 @@ impl Gpu {
         for kernel in kernels {
             self.pipelines.get(&self.device, &kernel, Positions::Whole)?;
         }
-        Ok(())
+        // Kernels that were compiled earlier need no call of wgpu, which would fail.
+        Ok(check_alive(&self.device)?)
     }
 
     /// Returns the device, a handle that the caller may clone.
@@ -164,7 +166,8 @@ impl Gpu {
     /// let size = MeshSize { vertices: 100_000, triangles: 200_000 };
     /// // A vertex buffer with 32 bytes for each vertex.
     /// let own = wgpu::Limits {
-    ///     max_storage_buffer_binding_size: VertexBuffer::binding_size(size.vertices, 32, 0),
+    ///     max_storage_buffer_binding_size: VertexBuffer::binding_size(size.vertices, 32, 0)
+    ///         .max(wgpu::Limits::default().max_storage_buffer_binding_size),
     ///     ..wgpu::Limits::default()
     /// };
     /// let (device, queue) = adapter

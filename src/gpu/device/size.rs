@@ -75,6 +75,12 @@ impl MeshSize {
         self.needs(positions).iter().map(|need| need.bytes).fold(0, u64::max)
     }
 
+    /// Returns the size of the largest buffer for a move of all vertices, in bytes.
+    pub(crate) fn largest_of_move(self) -> u64 {
+        // A row for each vertex, and a row for each target.
+        row_bytes(self.vertices.saturating_mul(2)).max(moved_triangle_bytes(self.triangles))
+    }
+
     /// Returns [`GpuError::TooLarge`] if the kernels cannot number the vertices or triangles, and [`GpuError::Limit`]
     /// if a buffer exceeds the limits even when bound in parts.
     pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {
@@ -109,10 +115,20 @@ impl MeshSize {
     }
 }
 
+/// Returns the size of a buffer of positions and targets with this number of rows, in bytes.
+fn row_bytes(rows: usize) -> u64 {
+    (rows as u64).saturating_mul(POSITION).saturating_add(ALIGNMENT)
+}
+
+/// Returns the size of the triangles around moved vertices, in bytes.
+pub(crate) fn moved_triangle_bytes(triangles: usize) -> u64 {
+    (triangles as u64).saturating_mul(size_of::<[u32; 6]>() as u64)
+}
+
 /// Returns [`GpuError::Limit`] if a buffer with this number of rows, each as large as a position, exceeds the limits
 /// even in two bindings.
 pub(crate) fn check_rows(rows: usize, limits: &wgpu::Limits) -> Result<(), GpuError> {
-    let bytes = (rows as u64).saturating_mul(POSITION).saturating_add(ALIGNMENT);
+    let bytes = row_bytes(rows);
     let what = || format!("the buffer of positions and targets ({rows} rows)");
     check_limit("max_buffer_size", limits.max_buffer_size, &what, bytes - ALIGNMENT)?;
     let at_once = match Positions::of(rows, limits) {

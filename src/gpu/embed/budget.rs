@@ -9,7 +9,7 @@ use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
 use crate::gpu::embed::Readback;
-use crate::gpu::scope::scoped;
+use crate::gpu::scope::{check_alive, scoped};
 
 /// A limit on the device's time for sweeps in each frame. Times of earlier frames determine the number of sweeps in the
 /// next frame: at least one sweep, and at most double the last measured frame's sweeps.
@@ -81,7 +81,9 @@ impl Budget {
     /// [`GpuError::Feature`] if the device was created without `TIMESTAMP_QUERY`; see [`Gpu::optional_features`].
     /// Another [`GpuError`] if the device fails.
     pub fn timed_by(self, gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { clock: Some(Clock::new(gpu)?), ..self })
+        let clock = Some(Clock::new(gpu)?);
+        check_alive(&gpu.device)?;
+        Ok(Self { clock, ..self })
     }
 
     /// Returns the number of sweeps for which the next frame has time; 1 before the first measurement.

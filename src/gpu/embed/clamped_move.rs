@@ -5,7 +5,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled;
-use crate::gpu::device::size::check_limit;
+use crate::gpu::device::size::{check_limit, moved_triangle_bytes};
 use crate::gpu::embed::vertex_buffer::{Coordinates, VertexBuffer};
 use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
@@ -105,7 +105,7 @@ impl BoundMove {
         let most = gpu.device.limits().max_storage_buffer_binding_size;
         let what =
             || format!("the buffer of the {} triangles around moved vertices", corners.len());
-        let bytes = corners.len() as u64 * size_of::<[u32; 6]>() as u64;
+        let bytes = moved_triangle_bytes(corners.len());
         check_limit("max_storage_buffer_binding_size", most, &what, bytes)?;
         let movement = Movement {
             zero: 0,

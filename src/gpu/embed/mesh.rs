@@ -22,7 +22,7 @@ use crate::gpu::kernels::uniforms::join;
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::layout::prepare;
+use crate::layout::{prepare, prepare_to_untangle};
 use crate::mesh::{Mesh, MeshSize};
 use crate::options::{Feature, Options};
 use crate::run::Plan;
@@ -65,6 +65,18 @@ impl DeviceMesh {
     /// fails.
     pub fn new(gpu: &Gpu, mesh: &Mesh) -> Result<Self, SmoothError> {
         Self::made(gpu, mesh, None)
+    }
+
+    /// Prepares and uploads a mesh like [`new`](Self::new), but accepts inverted and flat triangles, for
+    /// [`UntanglingSweeps`](crate::gpu::UntanglingSweeps). Lengths are scaled by the area within the boundary. If the
+    /// mesh stays tangled, [`LastValid`] returns it to the tangled state of the upload.
+    ///
+    /// # Errors
+    /// The errors of [`new`](Self::new), except for inverted, flat and overlapping triangles.
+    pub fn tangled(gpu: &Gpu, mesh: &Mesh) -> Result<Self, SmoothError> {
+        let unconstrained = unconstrained(mesh);
+        let (_, problem) = prepare_to_untangle(&unconstrained)?;
+        Self::uploaded(gpu, mesh, problem)
     }
 
     /// Prepares and uploads a mesh like [`new`](Self::new), with a target shape and size for each vertex. Targets take

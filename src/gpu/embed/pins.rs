@@ -16,7 +16,7 @@ use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{HELD, Mask};
 use crate::gpu::mesh::MeshBuffers;
-use crate::gpu::scope::{scoped, scoped_to_buffer};
+use crate::gpu::scope::{check_alive, scoped, scoped_to_buffer};
 use crate::layout::Problem;
 
 /// Vertices that the host holds in place, by device number.
@@ -100,7 +100,8 @@ impl Pins {
             return Ok(());
         }
         self.send(gpu, problem, mesh, &flags, &changed)?;
-        mesh.changes.count(gpu)
+        mesh.changes.count(gpu)?;
+        check_alive(&gpu.device)
     }
 
     /// Sends ring starts and bits of the vertices in `changed`, which is in ascending order, to the device.

@@ -9,7 +9,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
-use crate::gpu::scope::{scoped, scoped_to_buffer};
+use crate::gpu::scope::{check_alive, scoped, scoped_to_buffer};
 
 /// Limit of the copies in flight. A device with three copies in flight gets no further copy.
 const COPIES: usize = 3;
@@ -127,15 +127,16 @@ impl<T: Pod> Readback<T> {
             encoder.copy_buffer_to_buffer(buffer, offset, &copies[0].staging, 0, bytes);
             drop(encoder.finish());
         })?;
+        check_alive(&gpu.device)?;
         let (source, encoded, latest, arrived) = (buffer.clone(), 0, Vec::new(), None);
         Ok(Self { source, offset, bytes, copies, encoded, latest, arrived })
     }
 
-    /// Encodes a copy of the bound range at this point of the command buffer. Does nothing while three copies are in
-    /// flight, because the device is behind or nobody polls the device. Copies in encoders that are never submitted
-    /// have no effect.
-    pub fn encode_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        self.encode(encoder);
+    /// Encodes a copy of the bound range at this point of the command buffer, and returns true. Encodes nothing and
+    /// returns false while three copies are in flight, because the device is behind or nobody polls the device. Copies
+    /// in encoders that are never submitted have no effect.
+    pub fn encode_readback(&mut self, encoder: &mut wgpu::CommandEncoder) -> bool {
+        self.encode(encoder).is_some()
     }
 
     /// Encodes a copy and returns its number, counted from 0; `None` while three copies are in flight.
