@@ -56,7 +56,7 @@ pub(super) fn load(main: &mut Source, references: Vec<Reference>) -> Result<(), 
                 return Err(main.error_at(
                     place,
                     problem,
-                    &format!("Put {shown} beside the mesh file"),
+                    format!("Put {shown} beside the mesh file"),
                 ));
             }
             loaded => loaded?,

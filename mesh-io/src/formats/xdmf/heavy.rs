@@ -85,7 +85,7 @@ impl<'a> HeavyData<'a> {
         let Some(index) = self.file(name) else {
             let shown = quoted(name.as_bytes());
             let problem = format!("its numbers are in {shown}, a file that was not read");
-            return Err(cursor.error(problem, &format!("Put {shown} beside the mesh file")));
+            return Err(cursor.error(problem, format!("Put {shown} beside the mesh file")));
         };
         let (companion, tree) = &self.files[index];
         let source = &companion.source;
