@@ -1,5 +1,7 @@
 //! Encoded sweeps with corrections from coarser levels, whose line search runs on the device.
 
+use std::path::Path;
+
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, OptionError, Options, SmoothError, Smoother, Stopping, Targets,
     gpu::{DeviceMesh, ObjectiveValues, Sweeps},
@@ -9,7 +11,7 @@ use gpu_smooth::{
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior, plate};
-use crate::support::{distort_smooth, lattice, orientations};
+use crate::support::{distort_smooth, graded, lattice, orientations, perturb_random, read_mesh};
 
 fn corrected(metric: Metric) -> Options {
     Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
@@ -315,4 +317,26 @@ fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
     });
     let left = f64::from(app.objective(&sweeps).of(Metric::Imr)) / limit(&mesh, Metric::Imr) - 1.0;
     assert!(left < 1e-5, "{left}");
+}
+
+/// Levels built for the triangles of a rough mesh never fit the mesh that sweeps make of it: a former defect.
+#[test]
+fn a_rough_mesh_is_near_the_limit_after_a_dozen_corrected_sweeps() {
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
+    let fish = read_mesh(&meshes.join("fish.node"));
+    let cases = [
+        ("plate", read_mesh(&meshes.join("plate.node"))),
+        ("fish", perturb_random(&fish, 1.0, 2)),
+        ("ring", perturb_random(&graded(150, 0.3), 1.0, 1)),
+    ];
+    for (name, mesh) in &cases {
+        let limit = limit(mesh, Metric::Imr);
+        let count = |options: &Options| {
+            let (f, _) = frames(mesh, options, 60);
+            f.iter().position(|f| f / limit - 1.0 < 1e-5).map_or(usize::MAX, |frame| frame + 1)
+        };
+        let plain = Options { method: Method::RELAXED, ..corrected(Metric::Imr) };
+        let [with, without] = [corrected(Metric::Imr), plain].map(|options| count(&options));
+        assert!(with <= 14 && with < without, "{name}: {with} and {without}");
+    }
 }

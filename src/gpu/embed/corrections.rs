@@ -5,15 +5,22 @@ use crate::error::GpuError;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::embed::DeviceMesh;
 use crate::gpu::encode::Passes;
+use crate::gpu::encode::sealed::Target;
 use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::layouts::SearchBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::SEARCH_TRIALS;
+use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::{Dispatches, Fitting, Levels, stiffness};
 use crate::gpu::scope::scoped;
 use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
+use crate::run::{Plan, SweepParams};
+
+/// Number of sweeps before the levels are built. In a mesh of poor triangles, the stiffness of a few vertices exceeds
+/// that of all others by far. Aggregates from such a stiffness never fit the mesh that sweeps make of it.
+const SWEEPS: u32 = 10;
 
 /// Coarser levels of a mesh on the device, and a line search along their corrections that reads nothing back. The
 /// search encodes a fixed number of trials; surplus trials do nothing.
@@ -24,19 +31,29 @@ pub(crate) struct EncodedCorrections {
     bind_group: wgpu::BindGroup,
 }
 
+/// A copy of a mesh on the device, after some sweeps.
+struct Swept {
+    buffers: MeshBuffers,
+    dispatches: Dispatches,
+}
+
 impl EncodedCorrections {
-    /// Builds the levels for the positions on the device, after waiting for all submitted work.
+    /// Builds the levels for the mesh as it would be after [`SWEEPS`] sweeps by `step`, and after all submitted work, for
+    /// which the function waits.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the levels are too large for the device, or another [`GpuError`] if the device fails.
     pub(crate) async fn new(
         mesh: &DeviceMesh,
         dispatches: &Dispatches,
+        step: &SweepParams,
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
         let (free, smoothing) = (problem.free_count() as u32, Smoothing::of(0));
-        let roots = stiffness::roots(gpu, buffers, dispatches, free, smoothing, waiting).await?;
+        let Swept { buffers: copy, dispatches: of_copy } = swept(mesh, &dispatches.plan, step)?;
+        let roots = stiffness::roots(gpu, &copy, &of_copy, free, smoothing, waiting).await?;
+        drop((copy, of_copy));
         let hierarchy = Hierarchy::new(problem, roots);
         let levels = Levels::new(gpu, problem, buffers, dispatches, &hierarchy, Fitting::EachTime)?;
         let whole = Positions::Whole;
@@ -71,4 +88,27 @@ impl EncodedCorrections {
             pass.dispatch_workgroups(1, 1, 1);
         });
     }
+}
+
+/// Returns a copy of the mesh after [`SWEEPS`] sweeps by the step of a plan, with the dispatches of the copy. Frames
+/// that other threads submit meanwhile do not see the sweeps.
+fn swept(mesh: &DeviceMesh, plan: &Plan, step: &SweepParams) -> Result<Swept, GpuError> {
+    let DeviceMesh { gpu, problem, buffers, .. } = mesh;
+    let copy = buffers.with_positions(gpu, problem, problem.positions())?;
+    let plan = plan.clone().endless();
+    let dispatches = Dispatches::new(gpu, problem, &copy, plan, vec![*step], false)?;
+    scoped(&gpu.device, || {
+        let (from, to) = (&buffers.positions, &copy.positions);
+        let label = "gpu-smooth sweeps before levels";
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size());
+        let mut passes = encoder.passes(label);
+        for _ in 0..SWEEPS {
+            dispatches.encode_sweep(&mut passes, step);
+        }
+        drop(passes);
+        gpu.queue.submit([encoder.finish()]);
+    })?;
+    Ok(Swept { buffers: copy, dispatches })
 }

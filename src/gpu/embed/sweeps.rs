@@ -56,9 +56,11 @@ impl Sweeps {
     /// lowers f, inverts no triangle and breaks no shape guard; corrections pause while a triangle is inverted. EDGE
     /// and alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)).
     ///
-    /// The call builds the levels for the positions on the device, after it has waited for all submitted work and read
-    /// back a number for each free vertex. The aggregates of the levels never change; each correction fits the levels
-    /// to the present sizes of elements. Levels take some 70 bytes on the device per vertex.
+    /// The call builds the levels on the host, after it has waited for all submitted work and read back a number for each
+    /// free vertex. The numbers come from a copy of the mesh after ten sweeps, so levels of a rough mesh fit the mesh
+    /// that the first sweeps make of it. The aggregates of the levels never change; each correction fits the levels to
+    /// the present sizes of elements. Levels take some 70 bytes on the device per vertex, and the copy another 50 bytes
+    /// during the call.
     ///
     /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] compiles kernels beforehand. Any thread may call
     /// this function.
@@ -141,7 +143,10 @@ impl Sweeps {
         let run = Run { dispatches, evaluation, changes, triangles };
         let judged = run.is_judged().then(|| SelfStopping::new(gpu, &run)).transpose()?;
         let corrections = match is_corrected {
-            true => Some(EncodedCorrections::new(mesh, &run.dispatches, waiting).await?),
+            true => {
+                let step = between(&run.dispatches.plan);
+                Some(EncodedCorrections::new(mesh, &run.dispatches, &step, waiting).await?)
+            }
             false => None,
         };
         Ok(Self { gpu: gpu.clone(), run, judged, corrections, done: 0 })

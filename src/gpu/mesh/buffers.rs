@@ -64,7 +64,12 @@ impl MeshBuffers {
         let parts = self.parts.clone();
         let positions = laid_out(positions, problem.targets(), parts.low_positions);
         scoped(&gpu.device, || Self {
-            positions: filled(gpu, "further positions", &positions, Usage::STORAGE),
+            positions: filled(
+                gpu,
+                "further positions",
+                &positions,
+                Usage::STORAGE | Usage::COPY_DST,
+            ),
             ring_start: self.ring_start.clone(),
             ring: self.ring.clone(),
             triangles: self.triangles.clone(),
