@@ -84,32 +84,35 @@ impl Topology<'_> {
     /// boundary. A part without boundary edges is a closed surface, such as a sphere. However the vertices of a closed
     /// surface are placed in the plane, some of its triangles are inverted or flat.
     pub fn closed_part(&self) -> Option<usize> {
-        let mut seen = vec![false; self.triangles().len()];
-        let mut part = Vec::new();
-        for first in 0..seen.len() {
-            if seen[first] {
+        let parts = self.edge_parts();
+        let mut is_closed = vec![true; parts.len()];
+        for side in self.boundary_sides() {
+            is_closed[parts[side.triangle as usize] as usize] = false;
+        }
+        (0..parts.len()).find(|&t| parts[t] as usize == t && is_closed[t])
+    }
+
+    /// Returns for each triangle the first triangle of its edge-connected part.
+    pub(super) fn edge_parts(&self) -> Vec<u32> {
+        let mut parts = vec![u32::MAX; self.triangles().len()];
+        let mut front = Vec::new();
+        for first in 0..parts.len() as u32 {
+            if parts[first as usize] != u32::MAX {
                 continue;
             }
-            seen[first] = true;
-            part.push(first as u32);
-            let mut is_closed = true;
-            while let Some(triangle) = part.pop() {
+            parts[first as usize] = first;
+            front.push(first);
+            while let Some(triangle) = front.pop() {
                 for corner in 0..3 {
-                    match self.across(BoundaryEdge { triangle, corner }) {
-                        None => is_closed = false,
-                        Some(other) if !seen[other as usize] => {
-                            seen[other as usize] = true;
-                            part.push(other);
-                        }
-                        Some(_) => {}
+                    let other = self.across(BoundaryEdge { triangle, corner });
+                    if let Some(other) = other.filter(|&other| parts[other as usize] == u32::MAX) {
+                        parts[other as usize] = first;
+                        front.push(other);
                     }
                 }
             }
-            if is_closed {
-                return Some(first);
-            }
         }
-        None
+        parts
     }
 
     /// Returns the boundary edge that follows `side`. The search turns around the end vertex of `side`, from triangle

@@ -8,6 +8,7 @@ mod connectivity;
 mod crossings;
 mod enclosed_area;
 mod hanging;
+mod nesting;
 pub(crate) mod predicates;
 mod stars;
 mod turns;

@@ -22,9 +22,10 @@ pub(super) struct Judge<'m> {
 }
 
 impl Judge<'_> {
-    /// Returns the triangles of the mesh that are inverted or flat with the vertices at `points`, in ascending order.
-    /// Triangles with a free vertex that are too flat for double precision count as flat.
-    pub(super) fn bad_triangles(&self, points: &[[f64; 2]]) -> Vec<BadTriangle> {
+    /// Returns the triangles of the mesh that are inverted or flat with the vertices at `points`, in ascending order, and
+    /// the number of triangles that exact predicates find inverted or flat. Triangles with a free vertex that are too
+    /// flat for double precision are in the list too.
+    pub(super) fn bad_triangles(&self, points: &[[f64; 2]]) -> (Vec<BadTriangle>, usize) {
         let triangles = self.topology.triangles();
         let mut bad = bad_triangles(points, triangles);
         let exact: HashSet<usize> = bad.iter().map(|bad| bad.triangle).collect();
@@ -35,7 +36,7 @@ impl Judge<'_> {
             }
         }
         bad.sort_unstable_by_key(|bad| bad.triangle);
-        bad
+        (bad, exact.len())
     }
 
     /// Judges normalized positions of the problem, converted to the units of the mesh and rounded to `stored`.
@@ -45,12 +46,12 @@ impl Judge<'_> {
             *x = self.stored.rounded(*x);
         }
         let triangles = self.topology.triangles();
-        let left = self.bad_triangles(&points);
+        let (left, exactly_bad) = self.bad_triangles(&points);
         let overlapping = match left.is_empty() {
             true => overlapping_star(&points, triangles, self.topology.free()).map(|(v, _)| v),
             false => None,
         };
-        Judgment { points, left, overlapping }
+        Judgment { points, left, exactly_bad, overlapping }
     }
 }
 
@@ -60,6 +61,8 @@ pub(super) struct Judgment {
     pub(super) points: Vec<[f64; 2]>,
     /// Inverted and flat triangles, see [`Judge::bad_triangles`].
     pub(super) left: Vec<BadTriangle>,
+    /// Number of triangles that exact predicates find inverted or flat.
+    pub(super) exactly_bad: usize,
     /// If `left` is empty: the first free vertex around which triangles wind more than once. `None` if there is no such
     /// vertex.
     pub(super) overlapping: Option<u32>,

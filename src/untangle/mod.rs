@@ -102,7 +102,7 @@ pub fn untangle(
     let topology = Topology::by_area(mesh)?;
     let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
     let judge = Judge { mesh, topology: &topology, problem: &problem, stored };
-    let before = judge.bad_triangles(&mesh.points);
+    let (before, exactly_bad) = judge.bad_triangles(&mesh.points);
     if !before.is_empty()
         && let Some(triangle) = topology.closed_part()
     {
@@ -122,7 +122,7 @@ pub fn untangle(
     if result.left.len() == result.hopeless.len() {
         return Ok(result);
     }
-    Work::new(judge).run(&mut result, observe);
+    Work::new(judge, exactly_bad == 0).run(&mut result, observe);
     let differs = |(now, was): &(&[f64; 2], &[f64; 2])| now != was;
     result.moved = result.points.iter().zip(&mesh.points).filter(differs).count();
     Ok(result)
@@ -130,6 +130,9 @@ pub fn untangle(
 
 struct Work<'m> {
     judge: Judge<'m>,
+    /// Whether exact predicates find no triangle of the given mesh inverted or flat. Then no result may have such a
+    /// triangle either.
+    was_valid: bool,
     problem: &'m Problem,
     state: State<'m>,
     /// Coarser levels of all free vertices. `None` until [`Start::Means`] builds the levels.
@@ -143,19 +146,22 @@ struct Work<'m> {
 }
 
 impl<'m> Work<'m> {
-    fn new(judge: Judge<'m>) -> Self {
+    fn new(judge: Judge<'m>, was_valid: bool) -> Self {
         let problem = judge.problem;
         let targets = target_areas(problem, problem.positions());
         let state = State::new(problem, targets);
-        Self { judge, problem, state, levels: None, tried: Vec::new(), ends: Vec::new() }
+        let (levels, tried, ends) = (None, Vec::new(), Vec::new());
+        Self { judge, was_valid, problem, state, levels, tried, ends }
     }
 
     /// Judges the present positions, and stores the points in `result` if fewer triangles are bad than before. Returns
     /// true if only hopeless triangles of `result` are bad, and no triangles wind twice around a vertex.
     fn is_done(&self, result: &mut Untangled) -> bool {
-        let Judgment { points, left, overlapping } = self.judge.judged(&self.state.positions);
+        let Judgment { points, left, exactly_bad, overlapping } =
+            self.judge.judged(&self.state.positions);
         let separates = result.overlapping.is_some() && overlapping.is_none();
-        if left.len() < result.left.len() || left.is_empty() && separates {
+        let is_better = left.len() < result.left.len() || left.is_empty() && separates;
+        if is_better && !(self.was_valid && exactly_bad > 0) {
             result.points = points;
             result.left = left;
             result.overlapping = overlapping;

@@ -297,3 +297,43 @@ fn a_surface_without_boundary_is_refused_at_once() {
     let error = untangle(&closed, Precision::Double, &mut |_| ControlFlow::Continue(()));
     assert_eq!(error.err(), Some(MeshError::Closed { triangle: 0 }));
 }
+
+/// Exact predicates find no triangle of the meshes inverted, but some triangles are too flat for double precision. After
+/// rounding to single precision, a vertex is beyond an edge.
+#[test]
+fn a_valid_mesh_gets_no_inverted_triangle_by_untangling_that_is_ended() {
+    let mut rest = 0;
+    for seed in [17, 31, 2, 3] {
+        let mesh = with_vertices_on_edges(seed);
+        assert!(support::is_ccw(&mesh), "{seed}");
+        let result = untangle(&mesh, Precision::Single, &mut |_| ControlFlow::Break(())).unwrap();
+        rest += usize::from(!result.left.is_empty());
+        let after = Mesh { points: result.points, ..mesh };
+        assert!(support::is_ccw(&after), "{seed}");
+    }
+    assert!(rest >= 2);
+}
+
+/// Places some vertices on edges between two of their neighbors, inside by as little as coordinates allow.
+fn with_vertices_on_edges(seed: u64) -> Mesh {
+    let mut mesh = support::disturb::beyond_double_precision();
+    let mut rng = SplitMix64::new(seed);
+    let held = support::check::held(&mesh);
+    for v in (0..mesh.points.len()).filter(|&v| !held[v]) {
+        if rng.range(0.0, 1.0) > 0.3 || v == 40 {
+            continue;
+        }
+        let (given, [w, u]) = (mesh.points[v], [v + 1, v + 9].map(|v| mesh.points[v]));
+        let share = rng.range(0.2, 0.8);
+        mesh.points[v] = [0, 1].map(|i| w[i] + share * (u[i] - w[i]));
+        for _ in 0..20 {
+            if !support::is_ccw(&mesh) {
+                mesh.points[v][0] = mesh.points[v][0].next_down();
+            }
+        }
+        if !support::is_ccw(&mesh) {
+            mesh.points[v] = given;
+        }
+    }
+    mesh
+}

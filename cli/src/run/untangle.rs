@@ -47,6 +47,10 @@ pub(crate) fn untangle_input(
         let path = file.source.path().display().to_string();
         return Err(crossings.clone().within(&path).with_remedy(remedy));
     }
+    let misplaced = topology.misplaced_loop(&mesh.points).map_err(explained)?;
+    if let (Some(vertices), false) = (misplaced, keeps_going) {
+        return Err(misplaced_loop(file, &vertices));
+    }
     let mut ended = None;
     let mut observe = |progress: &Untangling| {
         if verbosity.verbose {
@@ -92,6 +96,18 @@ pub(crate) fn untangle_input(
         Ok(()) => format!("The best mesh found was written: {}", out.display()),
         Err(error) => error.to_string(),
     }))
+}
+
+/// Returns the error for a boundary that no positions of the free vertices make valid.
+fn misplaced_loop(file: &LoadedMesh, vertices: &[u32]) -> CliError {
+    let place = file.vertex_place(vertices.first().copied().unwrap_or_default());
+    CliError::input(format!(
+        "{place}: the boundary loop of {} vertices through vertex {} is turned over, lies outside of the outer boundary, or lies \
+         inside another hole, so no move of interior vertices untangles the mesh",
+        vertices.len(),
+        place.id
+    ))
+    .with_remedy("Correct the positions of the loop; --keep-going writes the best mesh found")
 }
 
 const KEPT: &str = "; --keep-going writes the best mesh found";

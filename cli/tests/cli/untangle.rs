@@ -3,7 +3,7 @@
 use super::{Folder, assert_holds, disturbed, support};
 use gpu_smooth::{Mesh, Metric};
 use std::fs;
-use support::check;
+use support::{boundaries, check};
 
 fn folder(mesh: &Mesh) -> Folder {
     let folder = Folder::new(&[]);
@@ -210,4 +210,27 @@ fn the_time_limit_ends_untangling() {
     folder.line(line).refused(parts);
     assert!(!folder.path("out.node").exists());
     folder.line("in.node out.node --untangle --engine cpu").clean();
+}
+
+#[test]
+fn a_hole_that_is_turned_over_is_refused_at_once() {
+    let plate = boundaries::holes(1, 300);
+    // The hole is around (1.5, 1.5).
+    let mesh = boundaries::dragged(&plate, |[x, y]| {
+        let is_hole = (x - 1.5).hypot(y - 1.5) < 1.0;
+        if is_hole { [3.0 - x, y] } else { [x, y] }
+    });
+    let [node, ele] = support::triangle_text(&mesh, "");
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    let before = folder.content();
+    folder.line("in out --untangle").refused(&[
+        "in.node:",
+        "the boundary loop of 36 vertices",
+        "is turned over",
+        "--keep-going",
+    ]);
+    assert_eq!(folder.content(), before);
+    // The file is written, with fewer triangles inverted.
+    let run = folder.line("in out --untangle --keep-going");
+    assert!(run.code == Some(1) && folder.path("out.node").exists(), "{}", run.err);
 }
