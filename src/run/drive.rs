@@ -98,18 +98,16 @@ pub(crate) struct Session<E> {
 }
 
 impl<E: Engine> Session<E> {
-    /// Begins a run by `plan` on an engine at its start, or after the sweeps in `log`.
+    /// Begins a run by `plan` on an engine at its start, or after the sweeps in `log`. Without `corrections`, the run makes
+    /// sweeps alone.
     pub(crate) fn new(
         engine: E,
-        problem: &Problem,
         plan: &Plan,
-        corrected: bool,
+        corrections: Option<Corrections>,
         log: &[Objectives],
     ) -> Self {
-        let strategy = match corrected {
-            true => Strategy::Corrected(Box::new(Corrections::new(problem, plan))),
-            false => Strategy::Sweeps,
-        };
+        let strategy = corrections
+            .map_or(Strategy::Sweeps, |corrections| Strategy::Corrected(Box::new(corrections)));
         let history = History::resumed(plan, log, None);
         Self { engine, plan: plan.clone(), strategy, history, batch: 1 }
     }

@@ -29,6 +29,7 @@ pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::RunFingerprint;
 pub use checkpoint_policy::CheckpointPolicy;
 pub(crate) use checkpoint_policy::{Checkpointer, NoCheckpoints, PeriodSource};
+pub(crate) use corrections::Corrections;
 pub(crate) use drive::{Counts, DriveError, Leg, Session, steps};
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{EXCLUSION_PASSES, Engine, Proposal};

@@ -14,8 +14,8 @@ use crate::outcome::DeviceFault;
 use crate::resume;
 use crate::run::opening::{self, DoublePrelude, Obstacle};
 use crate::run::{
-    CPU, Checkpoint, Checkpointer, Counts, DriveError, Engine, History, Leg, Objectives, Observer,
-    PeriodSource, Phase, Plan, Saved, Session, Stop, steps,
+    CPU, Checkpoint, Checkpointer, Corrections, Counts, DriveError, Engine, History, Leg,
+    Objectives, Observer, PeriodSource, Phase, Plan, Saved, Session, Stop, steps,
 };
 use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;
@@ -214,7 +214,8 @@ impl<'s> Live<'s> {
         if !held.is_empty() {
             engine.hold(held)?;
         }
-        let mut session = Session::new(engine, problem, plan, corrected, log);
+        let corrections = corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged));
+        let mut session = Session::new(engine, plan, corrections, log);
         if let Some(saved) = saved {
             session.restore(saved)?;
         }

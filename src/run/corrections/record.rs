@@ -3,7 +3,7 @@
 use super::state::{Correcting, Corrections, ESTIMATES, Stage};
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
-use crate::run::stop::{MIN_SCALE, NOISE, Stop, StopRule};
+use crate::run::stop::{JITTER, MIN_SCALE, NOISE, Stop, StopRule};
 
 /// Window longer than any history, which turns off the tests of the stop rule that depend on the decay.
 const NO_ESTIMATE: usize = 1 << 30;
@@ -11,6 +11,11 @@ const NO_ESTIMATE: usize = 1 << 30;
 /// Number of successive estimates that end a run by EDGE if all are below the tolerance. Fewer than [`ESTIMATES`]
 /// suffice, as the estimates are of a p-norm near f.
 const ESTIMATES_FOR_EDGE: usize = 2;
+/// Number of sweeps in the longer window of estimates, for runs with more than twice as many corrections. In a slow
+/// decay, the gains of several successive sweeps may be small by chance.
+const WINDOW: usize = 8;
+/// Share of the tolerance. If the longer window gained less, its estimate does not count.
+const SMALL: f64 = 0.2;
 const STEADY: f64 = 0.3;
 /// Factor on the estimates. In some runs, each correction gained half as much as the previous one, and modes remained
 /// that the last corrections had not touched. With three estimates and without the factor, 5 of 21 runs from hard
@@ -53,6 +58,21 @@ impl Corrections {
             let most = self.estimates.iter().rev().take(asked).copied().fold(0.0, f64::max);
             remaining = Some(most).filter(|most| most.is_finite());
             judged = if most <= rule.tolerance { window } else { NO_ESTIMATE };
+        }
+        let is_decay = self.metric().is_smooth() && !self.is_staged;
+        if is_decay && self.taken as usize > 2 * WINDOW {
+            let f = history.f();
+            let over_window = rule.remaining(f, WINDOW);
+            let last = f[f.len() - 1];
+            let gained = (f[f.len() - 1 - WINDOW] - last) / last.max(MIN_SCALE);
+            // On a device, gains below the jitter are errors of single precision, which do not decay.
+            if gained > (SMALL * rule.tolerance).max(JITTER) {
+                let left = over_window.unwrap_or(f64::INFINITY);
+                remaining = remaining.map(|least| least.max(left)).filter(|left| left.is_finite());
+                if left > rule.tolerance {
+                    judged = NO_ESTIMATE;
+                }
+            }
         }
         let mut of_decay = rule.judge(of_stage, least(of_stage), judged);
         if self.settled && self.is_sharpest() {

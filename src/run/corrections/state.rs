@@ -17,6 +17,8 @@ pub(super) const ESTIMATES: usize = 4;
 pub(crate) struct Corrections {
     pub(super) problem: Problem,
     pub(super) plan: Plan,
+    /// Whether stages of the driver change positions between sweeps, so that the history of f is not a decay.
+    pub(super) is_staged: bool,
     pub(super) stage: Stage,
     /// Number of times that a stage of corrections has begun.
     pub(super) attempts: u32,
@@ -82,10 +84,12 @@ pub(super) enum Stage {
 
 impl Corrections {
     /// Creates the state at the start of a run.
-    pub(crate) fn new(problem: &Problem, plan: &Plan) -> Self {
+    /// Creates the state before the first sweep. `is_staged` is whether stages work between sweeps.
+    pub(crate) fn new(problem: &Problem, plan: &Plan, is_staged: bool) -> Self {
         Self {
             problem: problem.clone(),
             plan: plan.clone(),
+            is_staged,
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
