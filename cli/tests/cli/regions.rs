@@ -278,6 +278,24 @@ fn an_option_chooses_the_cell_data_of_regions() {
     }
 }
 
+/// Numbers that cannot be read hide no later array, whether the later array has a usual name or not.
+#[test]
+fn regions_are_found_behind_cell_data_that_are_damaged() {
+    let mesh = disturbed();
+    let half = mesh.triangles.len() / 2;
+    let numbers: Vec<f64> = (0..2 * half).map(|t| f64::from(u8::from(t >= half)) + 1.0).collect();
+    for name in ["MaterialIds", "partition"] {
+        let errors = vec![0.4375; 2 * half];
+        let arrays = [("error", true, errors), (name, false, numbers.clone())];
+        let text = with_cell_data(&mesh, &arrays).swap_remove(0).1;
+        let folder = Folder::new(&[("in.vtk", &text.replacen("0.4375 ", "none ", 1))]);
+        let run = folder.line("in.vtk out.vtk --engine cpu");
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.err, &[NOTE]);
+        assert_middle_row_held(&folder.mesh("in.vtk"), &folder.mesh("out.vtk"));
+    }
+}
+
 /// Each piece of the mesh has the triangles of the other piece as ghosts.
 #[test]
 fn vertices_that_pieces_of_a_mesh_have_in_common_stay() {

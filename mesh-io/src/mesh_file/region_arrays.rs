@@ -38,12 +38,14 @@ pub(super) fn find(
         parsed.regions = regions.iter().any(|&region| region != 0).then_some(regions);
         return Ok(());
     }
-    if parsed.regions.is_some() || parsed.cell_arrays.is_empty() {
+    let is_whole = |name: &&String| !parsed.fractional.contains(*name);
+    let names: Vec<String> = parsed.cell_arrays.iter().filter(is_whole).cloned().collect();
+    if parsed.regions.is_some() || names.is_empty() {
         return Ok(());
     }
-    let all = triangle_values(reader, source, &parsed.cell_arrays)?;
+    let all = triangle_values(reader, source, &names)?;
     let (mut used, mut others) = (None, Vec::new());
-    for (name, values) in parsed.cell_arrays.iter().zip(all) {
+    for (name, values) in names.iter().zip(all) {
         match numbered(&values).filter(|regions| looks_like_regions(regions, &parsed.triangles)) {
             Some(regions) if used.is_none() => used = Some((name.clone(), regions)),
             Some(_) => others.push(name.clone()),

@@ -9,7 +9,7 @@ use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::ghosts::vtk_ghosts;
-use crate::visit::items::{CellKind, Element, PeriodicNodes};
+use crate::visit::items::{CellKind, Element, PeriodicNodes, RegionAttribute};
 use crate::visit::locate::{ItemList, ItemLocation, locate};
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
@@ -46,7 +46,8 @@ pub(crate) fn parse_by(
     let has_z = assembler.has_z;
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
-    let MeshBuilder { quadrilaterals, mut remarks, data, cell_arrays, on_lower, .. } = assembler;
+    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
+    let MeshBuilder { cell_arrays, fractional, .. } = assembler;
     if quadrilaterals > 0 {
         remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
     }
@@ -84,6 +85,7 @@ pub(crate) fn parse_by(
         remarks,
         data,
         cell_arrays,
+        fractional,
         has_parameters,
         has_centers,
         has_z,
@@ -110,6 +112,12 @@ struct MeshBuilder {
     named: HashSet<String>,
     /// Names of the cell data with one number for each cell, except marks of ghosts. Each name is listed once.
     cell_arrays: Vec<String>,
+    /// Names among `cell_arrays` of data with a fraction, which cannot number regions.
+    fractional: HashSet<String>,
+    /// Name of the cell data whose numbers come next.
+    announced: Option<String>,
+    /// Whether elements may have regions under usual names.
+    has_usual_regions: bool,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
     has_centers: bool,
@@ -265,7 +273,13 @@ impl MeshVisitor for MeshBuilder {
         true
     }
 
-    fn cell_array(&mut self, name: &[u8], components: u64, _: bool) -> bool {
+    fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
+        self.has_usual_regions |= !columns.is_empty();
+    }
+
+    /// Asks for real numbers, as cell data with a fraction need no second reading of the file.
+    fn cell_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
+        self.announced = None;
         let is_ghosts = vtk_ghosts(name).is_some();
         let name = String::from_utf8_lossy(name).into_owned();
         // Beyond this number, an array without a usual name is not looked for among the others.
@@ -274,9 +288,16 @@ impl MeshVisitor for MeshBuilder {
             && self.cell_arrays.len() < MAX_CELL_ARRAYS
             && !self.cell_arrays.contains(&name)
         {
-            self.cell_arrays.push(name);
+            self.cell_arrays.push(name.clone());
+            self.announced = Some(name).filter(|_| is_real && !self.has_usual_regions);
         }
-        false
+        self.announced.is_some()
+    }
+
+    fn cell_numbers(&mut self, numbers: Vec<f64>, _: Option<Vec<u64>>) {
+        // A fraction of NaN is NaN, which stands for a missing value.
+        let is_fractional = numbers.iter().any(|number| number.fract().abs() > 0.0);
+        self.fractional.extend(self.announced.take().filter(|_| is_fractional));
     }
 
     fn z_array(&mut self, name: &[u8]) -> bool {

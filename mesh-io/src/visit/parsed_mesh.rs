@@ -4,6 +4,7 @@ use crate::content::constraints::Constraints;
 use crate::content::remark::Remark;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, Offsets};
 use crate::format::Format;
+use std::collections::HashSet;
 
 /// Mesh of a file, with the encoding and the offsets of its coordinates.
 pub(crate) struct ParsedMesh {
@@ -31,6 +32,8 @@ pub(crate) struct ParsedMesh {
     pub(crate) data: Vec<String>,
     /// Names of the arrays of one number for each cell, except those of regions, each once.
     pub(crate) cell_arrays: Vec<String>,
+    /// Names among `cell_arrays` of data with a fraction, as far as the reader passed the numbers.
+    pub(crate) fractional: HashSet<String>,
     /// Whether vertices have parameters on surfaces of a model (gmsh 4), which can be replaced.
     pub(crate) has_parameters: bool,
     /// Whether the file stores centers of faces or edges (UGRID).

@@ -163,8 +163,13 @@ impl Data<'_> {
             && self.visitor.asks_for_cell_arrays()
             && self.visitor.cell_array(name, components, precision.is_some())
         {
-            let numbers = self.numbers(cursor, kind, count)?.numbers;
-            self.visitor.cell_numbers(numbers, None);
+            // Numbers that cannot be read hide no later array.
+            let start = cursor.clone();
+            let Some(found) = self.numbers(cursor, kind, count) else {
+                *cursor = start;
+                return skip_section(cursor, self.binary, kind, count).ok();
+            };
+            self.visitor.cell_numbers(found.numbers, None);
             return Some(());
         }
         if !(self.of_cells && of_all && is_region) {
