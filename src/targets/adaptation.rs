@@ -1,16 +1,16 @@
 //! The adaptation of a mesh: sizes and stretching that neighboring triangles have in common.
 
 use crate::error::MeshError;
-use crate::parallel::{collect, map_ranges};
+use crate::parallel::{map_parts, map_ranges};
 use crate::targets::keep::shape_logarithm;
 use crate::targets::surface::Surface;
 use crate::targets::tensor::Tensor;
 use crate::topology::Topology;
 
 /// Largest number of vertices around which shapes are averaged.
-const SAMPLES: usize = 1024;
-/// Approximate number of triangles within two rings of a vertex.
-const TRIANGLES: usize = 24;
+const SAMPLES: usize = 128;
+/// Number of triangles that one task searches.
+const CHUNK: usize = 1 << 14;
 
 /// How much the sizes and the stretching of triangles vary over a mesh, for choosing between
 /// [`Targets::keep_size`](crate::Targets::keep_size), [`Targets::keep_shape`](crate::Targets::keep_shape) and no
@@ -20,8 +20,7 @@ const TRIANGLES: usize = 24;
 #[non_exhaustive]
 pub struct Adaptation {
     /// Ratio of the lengths along and across the mean stretching around a vertex, at the 95th percentile of the free
-    /// vertices. 1 if triangles are not stretched, at most 1.6 in meshes that are merely poor, above 2.5 in meshes with
-    /// boundary layers or anisotropic adaptation.
+    /// vertices. 1 if triangles are not stretched.
     pub stretching: f64,
     /// Ratio of the sizes around vertices (square roots of areas) at the 95th and at the 5th percentile of the free
     /// vertices. 1 if sizes do not vary.
@@ -29,7 +28,7 @@ pub struct Adaptation {
 }
 
 impl Adaptation {
-    /// Measures the adaptation of a mesh on a surface, around at most 1,024 free vertices. Both ratios are 1 if no
+    /// Measures the adaptation of a mesh on a surface, around at most 128 free vertices. Both ratios are 1 if no
     /// vertex is free.
     ///
     /// # Errors
@@ -41,27 +40,25 @@ impl Adaptation {
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         let triangles = topology.triangles();
-        let logarithm = |t: u32| {
-            let t = &triangles[t as usize];
-            shape_logarithm(t, points, surface.lengths_in(points, t))
-        };
-        // In small meshes, each triangle is within two rings of several samples.
-        let all: Vec<Tensor> = match triangles.len() <= TRIANGLES * SAMPLES {
-            true => collect(triangles.len(), |t| logarithm(t as u32)),
-            false => Vec::new(),
-        };
-        let free: Vec<u32> =
-            (0..).zip(topology.free()).filter(|&(_, &is_free)| is_free).map(|(v, _)| v).collect();
-        let stride = free.len().div_ceil(SAMPLES).max(1);
-        let samples: Vec<u32> = free.into_iter().step_by(stride).collect();
-        let shapes = map_ranges(samples.len(), 64, |range| {
+        let free = topology.free();
+        let count = free.iter().filter(|&&is_free| is_free).count();
+        let free = (0..).zip(free).filter(|&(_, &is_free)| is_free).map(|(v, _)| v);
+        let samples: Vec<u32> = free.step_by(count.div_ceil(SAMPLES).max(1)).collect();
+        // Two searches for the triangles at some vertices take less time than the stars of all vertices.
+        let stars = Stars::of(&samples, triangles, points.len());
+        let ring = |v: u32| stars.at(v).flat_map(|t| triangles[t as usize]);
+        let neighbors: Vec<u32> = samples.iter().flat_map(|&v| ring(v)).collect();
+        let wider = Stars::of(&neighbors, triangles, points.len());
+        let shapes = map_ranges(samples.len(), 32, |range| {
             let shape = |&v: &u32| {
-                let ring = topology.star(v).iter().flat_map(|&t| triangles[t as usize]);
-                let mut near: Vec<u32> = ring.flat_map(|w| topology.star(w)).copied().collect();
+                let mut near: Vec<u32> = ring(v).flat_map(|w| wider.at(w)).collect();
                 near.sort_unstable();
                 near.dedup();
-                let of = |&t: &u32| all.get(t as usize).copied().unwrap_or_else(|| logarithm(t));
-                let sum = near.iter().map(of).fold(Tensor::default(), Tensor::plus);
+                let logarithm = |&t: &u32| {
+                    let t = &triangles[t as usize];
+                    shape_logarithm(t, points, surface.lengths_in(points, t))
+                };
+                let sum = near.iter().map(logarithm).fold(Tensor::default(), Tensor::plus);
                 sum.times(1.0 / near.len() as f64)
             };
             samples[range].iter().map(shape).collect::<Vec<_>>()
@@ -80,6 +77,31 @@ impl Adaptation {
             stretching: of_all(&|shape| ratio(shape.exp().eigenvalues()))[1],
             gradation: ratio(of_all(&|shape| (-0.5 * (shape.0[0] + shape.0[2])).exp())),
         })
+    }
+}
+
+/// The triangles at some vertices of a mesh, as pairs of vertex and triangle in ascending order.
+struct Stars(Vec<[u32; 2]>);
+
+impl Stars {
+    /// Searches the triangles of a mesh with `count` vertices.
+    fn of(vertices: &[u32], triangles: &[[u32; 3]], count: usize) -> Self {
+        let mut is_wanted = vec![false; count];
+        vertices.iter().for_each(|&v| is_wanted[v as usize] = true);
+        let parts = map_parts(triangles.chunks(CHUNK), |part, triangles| {
+            let numbered = (part * CHUNK..).zip(triangles);
+            let pairs = numbered.flat_map(|(t, corners)| corners.map(|v| [v, t as u32]));
+            pairs.filter(|&[v, _]| is_wanted[v as usize]).collect::<Vec<_>>()
+        });
+        let mut pairs = parts.concat();
+        pairs.sort_unstable();
+        Self(pairs)
+    }
+
+    /// Returns the triangles at a vertex.
+    fn at(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        let first = self.0.partition_point(|&[v, _]| v < vertex);
+        self.0[first..].iter().take_while(move |&&[v, _]| v == vertex).map(|&[_, t]| t)
     }
 }
 

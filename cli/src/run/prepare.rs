@@ -124,7 +124,7 @@ pub(super) fn set_up<'a>(
     // A metric of sizes is chosen to make sizes even.
     let is_of_shapes = request.scheme().base().is_scale_invariant();
     let has_target = !matches!(request.target, TargetRequest::Equilateral);
-    if is_of_shapes && !has_target && mended.is_none() {
+    if is_of_shapes && !has_target && mended.is_none() && request.max_sweeps() > 0 {
         let adaptation = Adaptation::of(smoother.topology(), points, surface)?;
         if let Some(remark) = remarks::adapted(adaptation) {
             follow.remark(&remark);
