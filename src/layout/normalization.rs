@@ -8,8 +8,8 @@ use crate::parallel::map_parts;
 use crate::topology::predicates::orientation;
 use crate::topology::{EnclosedArea, Topology};
 
-/// Share of the sum of the triangles' areas, each without its sign, below which the sum with signs is taken from the
-/// boundary. Vertices far away then leave few digits of the sum over triangles.
+/// Ratio of the signed sum to the absolute sum of the triangles' areas, below which the boundary replaces the signed sum.
+/// Vertices far away then leave few digits of the signed sum.
 const TANGLED: f64 = 1e-3;
 
 /// Returns the center to subtract, the power of two that brings the mean area into [0.5, 2], and the mean area after
@@ -28,7 +28,8 @@ pub(super) fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64
     });
     let [mut area, size] = [0, 1].map(|k| areas.iter().map(|part| part[k]).sum::<f64>());
     if area.is_nan() || area < TANGLED * size {
-        area = 0.5 * enclosed_area(mesh, topology) / extent / extent;
+        let enclosed = EnclosedArea::of_edges(&mesh.points, topology.boundary_edges());
+        area = 0.5 * enclosed / extent / extent;
     }
     let mean = area / topology.triangles().len() as f64;
     let length = mean.sqrt() * extent;
@@ -36,19 +37,10 @@ pub(super) fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64
     (center, scale, (length * scale).powi(2))
 }
 
-/// Returns twice the area within the boundary of the mesh.
-fn enclosed_area(mesh: &Mesh, topology: &Topology<'_>) -> f64 {
-    let mut area = EnclosedArea::default();
-    for edge in topology.boundary_edges() {
-        area.add(&mesh.points, edge);
-    }
-    area.doubled().unwrap_or(f64::NAN)
-}
-
 /// Returns a center that can be subtracted without rounding from all coordinates between `low` and `high`. If no
 /// coordinate exceeds twice another, the result is the center of the range (Sterbenz' lemma). Otherwise the result is
-/// 0: subtracting the center of the range would cost digits of small elements near the origin. The gain would be
-/// little, as coordinates are then at most twice the extent.
+/// 0: subtracting the center of the range would cost digits of small elements near the origin. Coordinates are
+/// then at most twice the extent, so a center would save one binary digit.
 fn exact_center(low: f64, high: f64) -> f64 {
     let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
     if low.signum() == high.signum() && most <= 2.0 * least { low * 0.5 + high * 0.5 } else { 0.0 }

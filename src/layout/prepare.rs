@@ -46,6 +46,7 @@ pub(crate) fn prepare_to_untangle(mesh: &Mesh) -> Result<(Topology<'_>, Problem)
         Ok(()) | Err(MeshError::Infeasible { .. } | MeshError::OverlappingStar { .. }) => {}
         Err(error) => return Err(error),
     }
+    // A tangled mesh is refused for its triangles before the free vertices are counted.
     if !topology.free().contains(&true) {
         return Err(MeshError::NothingFree { vertices: mesh.points.len() });
     }

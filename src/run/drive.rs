@@ -98,8 +98,8 @@ pub(crate) struct Session<E> {
 }
 
 impl<E: Engine> Session<E> {
-    /// Begins a run by `plan` on an engine at its start, or after the sweeps in `log`. Without `corrections`, the run makes
-    /// sweeps alone.
+    /// Begins a run by `plan` on an engine at its start, or after the sweeps in `log`. Without `corrections`, the run
+    /// makes sweeps alone.
     pub(crate) fn new(
         engine: E,
         plan: &Plan,

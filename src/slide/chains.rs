@@ -191,7 +191,7 @@ fn turn_between(a: DVec2, v: DVec2, b: DVec2) -> Turn {
 /// Edges of curves as (start, end), in both directions, in ascending order.
 struct Edges {
     all: Vec<(u32, u32)>,
-    /// The edges of the given lines. An edge of a line may be an edge of the boundary too.
+    /// Edges of the given lines, boundary edges included.
     of_lines: Vec<(u32, u32)>,
 }
 

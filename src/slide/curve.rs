@@ -8,7 +8,7 @@ use crate::slide::options::Slide;
 /// The maximum of u (1 - u)² over u from 0 to 1.
 const MAX_CUBIC: f64 = 4.0 / 27.0;
 
-/// Number of knots that a search passes, one after another, before it bisects all knots.
+/// Number of steps from knot to knot, after which a search bisects the list of knots.
 const NEAR: usize = 8;
 
 /// A curve through given vertices, in the unit of the mesh. The parameter at a vertex is the summed length of the lines

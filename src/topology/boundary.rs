@@ -92,7 +92,7 @@ impl Topology<'_> {
         (0..parts.len()).find(|&t| parts[t] as usize == t && is_closed[t])
     }
 
-    /// Returns for each triangle the first triangle of its edge-connected part.
+    /// Labels the edge-connected parts: returns, per triangle, the index of the first triangle of its part.
     pub(super) fn edge_parts(&self) -> Vec<u32> {
         let mut parts = vec![u32::MAX; self.triangles().len()];
         let mut front = Vec::new();

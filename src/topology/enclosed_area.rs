@@ -27,6 +27,13 @@ impl EnclosedArea {
         self.doubled = sum;
     }
 
+    /// Returns twice the area that edges enclose, NaN without an edge.
+    pub(crate) fn of_edges(points: &[[f64; 2]], edges: impl IntoIterator<Item = [u32; 2]>) -> f64 {
+        let mut area = Self::default();
+        edges.into_iter().for_each(|edge| area.add(points, edge));
+        area.doubled().unwrap_or(f64::NAN)
+    }
+
     /// Returns twice the enclosed area, `None` without a boundary edge.
     pub(crate) fn doubled(&self) -> Option<f64> {
         self.origin.map(|_| self.doubled + self.lost)

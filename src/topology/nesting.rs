@@ -27,7 +27,7 @@ impl Topology<'_> {
         let mut loops: BTreeMap<u32, Vec<Loop>> = BTreeMap::new();
         for vertices in self.boundary_loops() {
             let Some(triangle) = self.beside(&vertices) else { continue };
-            let area = area(points, &vertices);
+            let area = EnclosedArea::of_edges(points, edges(&vertices));
             loops.entry(parts[triangle as usize]).or_default().push(Loop { vertices, area });
         }
         Ok(loops.into_values().find_map(|mut loops| {
@@ -46,12 +46,11 @@ impl Topology<'_> {
     /// Returns the triangle at the first edge of a boundary loop.
     fn beside(&self, vertices: &[u32]) -> Option<u32> {
         let &[from, to, ..] = vertices else { return None };
-        let star = self.star(from).iter().copied();
         let has_edge = |t: &u32| {
             let corners = self.triangles()[*t as usize];
             (0..3).any(|k| [corners[k], corners[(k + 1) % 3]] == [from, to])
         };
-        star.into_iter().find(has_edge)
+        self.star(from).iter().copied().find(has_edge)
     }
 }
 
@@ -62,21 +61,9 @@ struct Loop {
     area: f64,
 }
 
-impl Loop {
-    fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
-        edges(&self.vertices)
-    }
-}
-
+/// Returns the edges of a loop of vertices.
 fn edges(vertices: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     vertices.iter().zip(vertices.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
-}
-
-/// Returns twice the area that a loop encloses.
-fn area(points: &[[f64; 2]], vertices: &[u32]) -> f64 {
-    let mut area = EnclosedArea::default();
-    edges(vertices).for_each(|edge| area.add(points, edge));
-    area.doubled().unwrap_or(f64::NAN)
 }
 
 /// Returns how often the other loops of a part wind around loop `k`, by exact predicates. `None` if the number differs
@@ -96,7 +83,7 @@ fn winding_of_others(points: &[[f64; 2]], loops: &[Loop], k: usize) -> Option<i3
 fn winding(points: &[[f64; 2]], around: &Loop, vertex: u32) -> Option<i32> {
     let [x, y] = points[vertex as usize];
     let mut winding = 0;
-    for [a, b] in around.edges() {
+    for [a, b] in edges(&around.vertices) {
         let ([ax, ay], [bx, by]) = (points[a as usize], points[b as usize]);
         let is_beside = (ay.min(by)..=ay.max(by)).contains(&y);
         if !is_beside {

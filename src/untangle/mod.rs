@@ -130,8 +130,7 @@ pub fn untangle(
 
 struct Work<'m> {
     judge: Judge<'m>,
-    /// Whether exact predicates find no triangle of the given mesh inverted or flat. Then no result may have such a
-    /// triangle either.
+    /// Whether exact predicates find the given mesh valid. A valid mesh is replaced only by valid results.
     was_valid: bool,
     problem: &'m Problem,
     state: State<'m>,

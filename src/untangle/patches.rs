@@ -12,7 +12,7 @@ use crate::patch::{Objective, SearchRule, VertexBatch, newton_step};
 use crate::untangle::energy::Corner;
 
 /// Number of batches of vertices in one parallel task.
-const FOURS: usize = 256;
+const BATCHES: usize = 256;
 /// Number of triangles in one parallel task.
 const TRIANGLES: usize = 1 << 12;
 
@@ -44,7 +44,7 @@ impl Tangle<'_> {
         epsilon: f64,
     ) -> Vec<[DVec2; LANES]> {
         let mut found = vec![[DVec2::ZERO; LANES]; batches.len()];
-        for_each_chunk(&mut found, FOURS, |first, found| {
+        for_each_chunk(&mut found, BATCHES, |first, found| {
             with_instructions!(Level::new(), simd => {
                 let mut scratch = Vec::new();
                 for (found, &batch) in found.iter_mut().zip(&batches[first..]) {

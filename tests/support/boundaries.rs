@@ -84,8 +84,7 @@ pub fn holes(count: usize, vertices: usize) -> Mesh {
     triangulate(&Outline::parse(&outline).unwrap(), vertices).unwrap()
 }
 
-/// Moves each of the [`holes`] to the place of the next hole, moves the last hole to the place of the first, and rotates
-/// every hole.
+/// Permutes the [`holes`] cyclically, and rotates every hole by a random angle.
 pub fn permuted(mesh: &Mesh, count: usize, seed: u64) -> Mesh {
     let mut rng = SplitMix64::new(seed);
     let center = |i: usize| [1.5 + 2.5 * (i % count) as f64, 1.5];

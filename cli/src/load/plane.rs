@@ -25,7 +25,7 @@ impl Plane {
         let frame = Frame::of(&space, file.precision()).map_err(|Farthest { vertex, distance }| {
             let place = file.vertex_location(vertex as u32);
             CliError::input(format!(
-                "{place}: the mesh is not plane: vertex {} is at a distance of {} from the plane nearest to all vertices",
+                "{place}: the mesh is not planar: vertex {} is at a distance of {} from the plane nearest to all vertices",
                 place.id,
                 sig6(distance)
             ))

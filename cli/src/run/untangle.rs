@@ -47,8 +47,9 @@ pub(crate) fn untangle_input(
         let path = file.source.path().display().to_string();
         return Err(crossings.clone().within(&path).with_remedy(remedy));
     }
-    let misplaced = topology.misplaced_loop(&mesh.points).map_err(explained)?;
-    if let (Some(vertices), false) = (misplaced, keeps_going) {
+    if !keeps_going
+        && let Some(vertices) = topology.misplaced_loop(&mesh.points).map_err(explained)?
+    {
         return Err(misplaced_loop(file, &vertices));
     }
     let mut ended = None;

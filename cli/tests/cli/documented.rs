@@ -47,7 +47,7 @@ fn documents() -> Vec<(PathBuf, Vec<Vec<String>>)> {
         .collect()
 }
 
-/// Number of vertices in a row and in a column of the lattices.
+/// Vertices of a lattice: columns and rows.
 const COUNTS: [usize; 2] = [9, 7];
 
 /// Returns a lattice of squares, each cut in two, whose inner vertices are displaced by `share` of an edge.

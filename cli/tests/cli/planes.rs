@@ -128,7 +128,7 @@ fn mean_imr_squared(triangles: &[[u32; 3]], points: &[Point]) -> f64 {
 fn a_curved_surface_is_refused_unless_z_is_data() {
     let curved = obj(|[x, y]| [x, y, 0.05 * x * x + 0.02 * y]);
     let folder = Folder::new(&[("in.obj", &curved)]);
-    let parts = ["in.obj:", "the mesh is not plane", "add --z data"];
+    let parts = ["in.obj:", "the mesh is not planar", "add --z data"];
     folder.line("in.obj out.obj --engine cpu").refused(&parts);
     folder.line("quality in.obj").refused(&parts);
     let run = folder.line("in.obj out.obj --engine cpu --z data");

@@ -4,8 +4,8 @@ use std::fmt;
 
 /// Fact about a mesh file for the user of the mesh. [`Display`](fmt::Display) states the fact in one line.
 ///
-/// This crate does not decide which vertices move. A program may state its own treatment of the vertices in place of
-/// [`Display`](fmt::Display), for all variants but the last.
+/// This crate does not decide which vertices move. Programs may word every variant except `Text` by their treatment of
+/// the vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remark {

@@ -134,7 +134,7 @@ fn check_kind(cursor: &Cursor<'_>, kind: &[u8]) -> Result<(), ReadError> {
         return Ok(());
     }
     let problem = format!("meshes of kind {} are not supported", quoted(kind));
-    Err(cursor.error(problem, "Save a plane mesh (EUCLIDEAN-MESH)"))
+    Err(cursor.error(problem, "Save a planar mesh (EUCLIDEAN-MESH)"))
 }
 
 /// Returns the whole number `value` from the row of the keyword `key`.

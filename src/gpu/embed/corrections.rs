@@ -18,8 +18,8 @@ use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Plan, SweepParams};
 
-/// Number of sweeps before the levels are built. In a mesh of poor triangles, the stiffness of a few vertices exceeds
-/// that of all others by far. Aggregates from such a stiffness never fit the mesh that sweeps make of it.
+/// Number of sweeps before the levels are built. In a mesh of poor triangles, a few vertices are far stiffer than all
+/// others. Aggregates by this stiffness do not fit the smoothed mesh.
 const SWEEPS: u32 = 10;
 
 /// Coarser levels of a mesh on the device, and a line search along their corrections that reads nothing back. The
@@ -94,15 +94,13 @@ impl EncodedCorrections {
 /// that other threads submit meanwhile do not see the sweeps.
 fn swept(mesh: &DeviceMesh, plan: &Plan, step: &SweepParams) -> Result<Swept, GpuError> {
     let DeviceMesh { gpu, problem, buffers, .. } = mesh;
-    let copy = buffers.with_positions(gpu, problem, problem.positions())?;
+    let copy = buffers.copied(gpu)?;
     let plan = plan.clone().endless();
     let dispatches = Dispatches::new(gpu, problem, &copy, plan, vec![*step], false)?;
     scoped(&gpu.device, || {
-        let (from, to) = (&buffers.positions, &copy.positions);
         let label = "gpu-smooth sweeps before levels";
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size());
         let mut passes = encoder.passes(label);
         for _ in 0..SWEEPS {
             dispatches.encode_sweep(&mut passes, step);

@@ -59,7 +59,7 @@ impl Sweeps {
     /// The call builds the levels on the host, after it has waited for all submitted work and read back a number for each
     /// free vertex. The numbers come from a copy of the mesh after ten sweeps, so levels of a rough mesh fit the mesh
     /// that the first sweeps make of it. The aggregates of the levels never change; each correction fits the levels to
-    /// the present sizes of elements. Levels take some 70 bytes on the device per vertex, and the copy another 50 bytes
+    /// the present sizes of elements. Levels take some 70 bytes on the device per vertex, and the copy another 16 bytes
     /// during the call.
     ///
     /// Compiles kernels that are not compiled yet; [`Gpu::prepare`] compiles kernels beforehand. Any thread may call

@@ -5,7 +5,7 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::buffers::{bytes, filled, rows, write_by_pieces};
+use crate::gpu::device::buffers::{bytes, filled, rows, write_by_pieces, zeroed};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
 use crate::gpu::kernels::layouts::BoundPositions;
@@ -61,21 +61,38 @@ impl MeshBuffers {
         problem: &Problem,
         positions: &[DVec2],
     ) -> Result<Self, GpuError> {
-        let parts = self.parts.clone();
-        let positions = laid_out(positions, problem.targets(), parts.low_positions);
-        scoped(&gpu.device, || Self {
-            positions: filled(
-                gpu,
-                "further positions",
-                &positions,
-                Usage::STORAGE | Usage::COPY_DST,
-            ),
+        let positions = laid_out(positions, problem.targets(), self.parts.low_positions);
+        scoped(&gpu.device, || {
+            self.at(gpu, filled(gpu, "further positions", &positions, Usage::STORAGE))
+        })
+    }
+
+    /// Creates a mesh at the positions that this mesh has on the device after all submitted work.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`], or another [`GpuError`] if the device fails.
+    pub(crate) fn copied(&self, gpu: &Gpu) -> Result<Self, GpuError> {
+        scoped(&gpu.device, || {
+            let (bytes, usage) = (self.positions.size(), Usage::STORAGE | Usage::COPY_DST);
+            let positions = zeroed(gpu, "copied positions", bytes, usage);
+            let descriptor = wgpu::CommandEncoderDescriptor { label: Some("gpu-smooth copy") };
+            let mut encoder = gpu.device.create_command_encoder(&descriptor);
+            encoder.copy_buffer_to_buffer(&self.positions, 0, &positions, 0, bytes);
+            gpu.queue.submit([encoder.finish()]);
+            self.at(gpu, positions)
+        })
+    }
+
+    /// Returns a mesh with its own positions and counters of changes, which shares all other buffers.
+    fn at(&self, gpu: &Gpu, positions: wgpu::Buffer) -> Self {
+        Self {
+            positions,
             ring_start: self.ring_start.clone(),
             ring: self.ring.clone(),
             triangles: self.triangles.clone(),
             changes: Changes::new(gpu),
-            parts,
-        })
+            parts: self.parts.clone(),
+        }
     }
 
     /// Returns the binding of the positions, or both bindings if the positions take two.

@@ -14,8 +14,9 @@ const ESTIMATES_FOR_EDGE: usize = 2;
 /// Number of sweeps in the longer window of estimates, for runs with more than twice as many corrections. In a slow
 /// decay, the gains of several successive sweeps may be small by chance.
 const WINDOW: usize = 8;
-/// Share of the tolerance. If the longer window gained less, its estimate does not count.
+/// Share of the tolerance that the gain over the longer window must exceed, or the estimate of the window is ignored.
 const SMALL: f64 = 0.2;
+/// Ratio of two successive gains of f, below which f decays steadily and a single estimate suffices.
 const STEADY: f64 = 0.3;
 /// Factor on the estimates. In some runs, each correction gained half as much as the previous one, and modes remained
 /// that the last corrections had not touched. With three estimates and without the factor, 5 of 21 runs from hard

@@ -83,8 +83,7 @@ pub(super) enum Stage {
 }
 
 impl Corrections {
-    /// Creates the state at the start of a run.
-    /// Creates the state before the first sweep. `is_staged` is whether stages work between sweeps.
+    /// Creates the state at the start of a run. `is_staged` is whether stages work between sweeps.
     pub(crate) fn new(problem: &Problem, plan: &Plan, is_staged: bool) -> Self {
         Self {
             problem: problem.clone(),

@@ -123,8 +123,8 @@ impl Hierarchy {
         self
     }
 
-    /// Returns the data from which [`of_build_log`](Self::of_build_log) builds equal levels: the roots of the build, and then
-    /// the roots of each fit, in order.
+    /// Returns the data from which [`of_build_log`](Self::of_build_log) builds equal levels: the roots of the first
+    /// build, followed by the roots of every fit.
     pub(crate) fn build_log(&self) -> Vec<Vec<f32>> {
         self.earlier.iter().chain([&self.root]).cloned().collect()
     }
