@@ -189,6 +189,11 @@ impl LoadedMesh {
         self.mesh.fixed.truncate(self.mesh.fixed.len() - held.len());
     }
 
+    /// Returns whether vertices between regions are fixed because they lie there.
+    pub(crate) fn interfaces_are_held(&self) -> bool {
+        !self.has_free_interfaces
+    }
+
     /// Returns the vertices between regions that are fixed for a further reason, ascending.
     pub(crate) fn held_interface_vertices(&self) -> Vec<u32> {
         let mut is_held = vec![false; self.mesh.points.len()];

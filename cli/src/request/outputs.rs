@@ -106,6 +106,11 @@ impl Outputs {
         Ok(Self { picture: PictureRequest::of(args)?, ..Self::of_mesh(MeshOutput::None) })
     }
 
+    /// Returns the paths of the files that a run writes beside its mesh.
+    pub(crate) fn files_beside_mesh(&self) -> impl Iterator<Item = &Path> {
+        self.beside_mesh().map(|(_, path)| path)
+    }
+
     /// Lists the paths of the report, picture, page and checkpoint.
     fn beside_mesh(&self) -> impl Iterator<Item = (Role, &Path)> {
         let picture = self.picture.as_ref().map(|picture| &picture.path);

@@ -44,6 +44,8 @@ pub(crate) struct SmoothRequest {
     pub(crate) continue_from: Option<PathBuf>,
     /// Whether a run that neither converges nor reaches its goal is an error.
     pub(crate) is_strict: bool,
+    /// Whether the run ends before its first sweep, and writes no file.
+    pub(crate) is_dry_run: bool,
     pub(crate) outputs: Outputs,
 }
 
@@ -138,6 +140,7 @@ impl SmoothRequest {
             untangle: args.untangle.then_some(UntangleRequest { keeps_going: args.keep_going }),
             continue_from: args.continued,
             is_strict: args.strict,
+            is_dry_run: args.dry_run,
             outputs,
         })
     }

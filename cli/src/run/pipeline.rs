@@ -20,12 +20,12 @@ use crate::run::sweeps::smooth;
 use crate::terminal::progress::Stage;
 
 /// A mesh after reading, with the selection of movable vertices and interpolated fields.
-struct ReadMesh {
-    file: LoadedMesh,
-    choice: MovableSelection,
-    fields: InterpolatedFields,
+pub(super) struct ReadMesh {
+    pub(super) file: LoadedMesh,
+    pub(super) choice: MovableSelection,
+    pub(super) fields: InterpolatedFields,
     /// Size of the input file in bytes; 0 if the input is not a file.
-    bytes: u64,
+    pub(super) bytes: u64,
     /// Time at the end of reading.
     at: Instant,
 }
@@ -75,7 +75,10 @@ pub(crate) fn run_pipeline<T>(
 
 /// Reads a mesh, and applies the options that select vertices and fields. Passes remarks on the mesh to the
 /// observer.
-fn read(task: &SmoothJob<'_>, follow: &mut dyn PipelineObserver) -> Result<ReadMesh, CliError> {
+pub(super) fn read(
+    task: &SmoothJob<'_>,
+    follow: &mut dyn PipelineObserver,
+) -> Result<ReadMesh, CliError> {
     let request = task.request;
     let bytes = size_of(task.input);
     follow.stage(Stage::Reading { bytes });

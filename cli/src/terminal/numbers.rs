@@ -21,7 +21,7 @@ pub(crate) fn coordinate(x: f64, length: f64) -> String {
         _ => return format!("{x}"),
     };
     match x.abs() {
-        a if a == 0.0 => "0".into(),
+        0.0 => "0".into(),
         a if (1e-4..1e15).contains(&a) || a < 1.0 && last >= -9 => {
             format!("{x:.*}", (-last).max(0) as usize)
         }

@@ -12,6 +12,7 @@ mod convert;
 mod destinations;
 #[cfg(target_os = "linux")]
 mod drivers;
+mod dry_run;
 mod files;
 mod formats;
 mod groups;

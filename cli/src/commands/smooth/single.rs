@@ -10,6 +10,7 @@ use mesh_io::atomic;
 use serde::Serialize;
 use serde_json::json;
 
+use crate::commands::smooth::dry_run;
 use crate::load::overwrite::{self, Likeness};
 use crate::load::streams;
 use crate::render::html;
@@ -21,6 +22,7 @@ use crate::request::{Outputs, SmoothRequest};
 use crate::run::checkpoint;
 use crate::run::engine;
 use crate::run::observer::PipelineObserver;
+use crate::run::rehearsal;
 use crate::run::run_pipeline;
 use crate::terminal::Verbosity;
 use crate::terminal::interrupt;
@@ -53,13 +55,22 @@ pub(crate) fn run(
                 None => engine::choose(request, size),
             }))
         };
+        if request.is_dry_run {
+            let rehearsal = rehearsal::rehearse(&task, engine, &mut follow)?;
+            display.clear();
+            dry_run::print(&task, &rehearsal);
+            return Ok(());
+        }
         run_pipeline(&task, engine, &mut follow, |done| {
             display.clear();
             finish(&task, &done)
         })
     });
     display.clear();
-    done.map_err(|failure| error_with_report(&request.outputs, failure))
+    done.map_err(|failure| match request.is_dry_run {
+        true => failure.error,
+        false => error_with_report(&request.outputs, failure),
+    })
 }
 
 /// Observer that shows a run on the terminal and checks its output files.
