@@ -3,7 +3,7 @@
 use crate::load::LoadedMesh;
 use gpu_smooth::Topology;
 
-/// The reason for which a vertex is not free. If several reasons apply, a vertex has the first one in this order.
+/// The reason why a vertex is fixed. If several reasons apply, a vertex has the first one in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FixedBy {
     /// No triangle has the vertex.

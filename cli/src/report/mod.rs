@@ -15,5 +15,6 @@ pub(crate) use run::{
     ChangeReport, EngineReport, FaultReport, GoalReport, MeshReport, QualityReport, Refusal,
     Report, Seconds, SlideReport, UntangleReport, history,
 };
+pub(crate) use summary::change_of;
 pub(crate) use target::TargetReport;
 pub(crate) use task::{Done, Failure, SmoothJob};

@@ -60,6 +60,8 @@ fn contradiction(cli: &Cli) -> Option<String> {
         Some(Command::Convert(args)) => conflicts::first(OF_CONVERT, args),
         Some(
             Command::Groups(_)
+            // The tried runs are checked one by one.
+            | Command::Try(_)
             | Command::Adapters(_)
             | Command::Metrics
             | Command::Completions(_)

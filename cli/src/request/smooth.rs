@@ -44,9 +44,19 @@ pub(crate) struct SmoothRequest {
     pub(crate) continue_from: Option<PathBuf>,
     /// Whether a run that neither converges nor reaches its goal is an error.
     pub(crate) is_strict: bool,
-    /// Whether the run ends before its first sweep, and writes no file.
-    pub(crate) is_dry_run: bool,
+    pub(crate) extent: RunExtent,
     pub(crate) outputs: Outputs,
+}
+
+/// The part of a run that is carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RunExtent {
+    /// The mesh is smoothed and written.
+    Whole,
+    /// The mesh is smoothed, and no file is written.
+    Unwritten,
+    /// The run ends before its first sweep, and no file is written.
+    Prepared,
 }
 
 /// The meshes of a request.
@@ -140,7 +150,10 @@ impl SmoothRequest {
             untangle: args.untangle.then_some(UntangleRequest { keeps_going: args.keep_going }),
             continue_from: args.continued,
             is_strict: args.strict,
-            is_dry_run: args.dry_run,
+            extent: match args.dry_run {
+                true => RunExtent::Prepared,
+                false => RunExtent::Whole,
+            },
             outputs,
         })
     }

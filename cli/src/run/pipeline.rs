@@ -10,11 +10,12 @@ use crate::load::remarks;
 use crate::load::streams;
 use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, lay_out};
 use crate::report::{Done, Failure, SmoothJob};
+use crate::request::RunExtent;
 use crate::run::engine::OpenEngine;
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
 use crate::run::prepare::{Prepared, Subject, open, set_up};
-use crate::run::result::{measure, write};
+use crate::run::result::{Written, measure, write};
 use crate::run::run_report;
 use crate::run::sweeps::smooth;
 use crate::terminal::progress::Stage;
@@ -54,7 +55,10 @@ pub(crate) fn run_pipeline<T>(
     let ran = smooth(&input, &ready, follow)?;
     follow.has_smoothed()?;
     let measured = measure(&input, &ready, &ran, &mut fields, follow)?;
-    let written = write(&input, &ready, &ran, &fields, follow)?;
+    let written = match task.request.extent {
+        RunExtent::Unwritten => Written { certificate: None, at: measured.at },
+        RunExtent::Whole | RunExtent::Prepared => write(&input, &ready, &ran, &fields, follow)?,
+    };
     let seconds = run_report::Clock {
         began,
         read: at,

@@ -1,4 +1,4 @@
-//! The part of a run before its first sweep, for `--dry-run`.
+//! Reading and preparation of a mesh without sweeps, for `--dry-run`.
 
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ use crate::run::prepare::{self, Ready, Subject};
 use crate::run::untangle;
 use crate::terminal::progress::Stage;
 
-/// The facts of a run that are known before its first sweep.
+/// Numbers of free and fixed vertices, and the engine of a run.
 pub(crate) struct Rehearsal {
     pub(crate) format: String,
     pub(crate) vertices: usize,

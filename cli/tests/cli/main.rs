@@ -42,6 +42,7 @@ mod slide;
 mod sphere;
 mod streams;
 mod targets;
+mod trial;
 mod untangle;
 mod worst;
 

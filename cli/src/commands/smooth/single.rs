@@ -18,7 +18,7 @@ use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::Failure;
 use crate::report::{Done, SmoothJob};
 use crate::report::{Refusal, Report};
-use crate::request::{Outputs, SmoothRequest};
+use crate::request::{Outputs, RunExtent, SmoothRequest};
 use crate::run::checkpoint;
 use crate::run::engine;
 use crate::run::observer::PipelineObserver;
@@ -55,7 +55,7 @@ pub(crate) fn run(
                 None => engine::choose(request, size),
             }))
         };
-        if request.is_dry_run {
+        if request.extent == RunExtent::Prepared {
             let rehearsal = rehearsal::rehearse(&task, engine, &mut follow)?;
             display.clear();
             dry_run::print(&task, &rehearsal);
@@ -67,9 +67,9 @@ pub(crate) fn run(
         })
     });
     display.clear();
-    done.map_err(|failure| match request.is_dry_run {
-        true => failure.error,
-        false => error_with_report(&request.outputs, failure),
+    done.map_err(|failure| match request.extent {
+        RunExtent::Whole => error_with_report(&request.outputs, failure),
+        RunExtent::Unwritten | RunExtent::Prepared => failure.error,
     })
 }
 

@@ -1,0 +1,7 @@
+//! The command `gpu-smooth try MESH`, which compares runs with several targets.
+
+mod best;
+mod command;
+mod table;
+
+pub(crate) use command::run;
