@@ -45,6 +45,10 @@ pub(crate) struct QualityArgs {
     /// Draw in ASCII, which is the default where standard output is not a terminal
     #[arg(long)]
     pub(crate) ascii: bool,
+    /// Write a page for a browser, in one file that needs nothing else: the mesh, histograms, statistics and the worst
+    /// triangles. Several meshes have one page, with a picture of each
+    #[arg(long, value_name = "FILE")]
+    pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]

@@ -18,6 +18,7 @@ use crate::load::explain::{self, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
 use crate::load::{as_in_file, lay_out};
+use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::{Histogram, QualityReport, histogram};
 use crate::request::{PictureRequest, ThirdCoordinate};
@@ -47,6 +48,8 @@ pub(crate) struct MeshQuality {
     pub(crate) hanging_nodes: usize,
     pub(crate) duplicate_vertices: usize,
     pub(crate) unused_vertices: usize,
+    /// The part of the mesh in the page; `None` without `--html`.
+    pub(crate) page: Option<MeshPart>,
 }
 
 /// A region of the file: a class of triangles.
@@ -121,15 +124,27 @@ impl MeshQuality {
             PictureSubject { file: &file, topology: &topology, surface },
             &[state],
         )?;
+        let remarks: Vec<String> = remarks::remarks(&file, false)
+            .into_iter()
+            .chain(laid_out)
+            .chain(explain::hanging(&file, &hanging))
+            .collect();
+        let page = args.html.as_ref().map(|_| {
+            MeshPart::new(MeshDescription {
+                file: &file,
+                measured: &measured,
+                histograms: args.histograms(),
+                worst: args.worst,
+                is_alone: args.meshes.len() == 1,
+                sentences: sentences(&file, &topology, bad.len(), &remarks),
+            })
+        });
+        let page = page.transpose()?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),
             format: file.source.format().to_string(),
-            remarks: remarks::remarks(&file, false)
-                .into_iter()
-                .chain(laid_out)
-                .chain(explain::hanging(&file, &hanging))
-                .collect(),
+            remarks,
             vertices: file.source.points().len(),
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
@@ -148,8 +163,29 @@ impl MeshQuality {
             hanging_nodes: hanging.len(),
             duplicate_vertices: measured.duplicate_vertices().len(),
             unused_vertices: unused(&file, &measured),
+            page,
         })
     }
+}
+
+/// Returns the sentences on a mesh at the top of a page.
+fn sentences(
+    file: &LoadedMesh,
+    topology: &Topology<'_>,
+    bad: usize,
+    remarks: &[String],
+) -> Vec<String> {
+    let (vertices, triangles) = (file.source.points().len(), topology.triangles().len());
+    let (format, free) = (file.source.format(), topology.free_count());
+    let mut sentences =
+        vec![format!("{format}: {vertices} vertices ({free} free), {triangles} triangles")];
+    sentences.push(match bad {
+        0 => "No triangle is inverted or flat".to_owned(),
+        1 => "1 triangle is inverted or flat".to_owned(),
+        n => format!("{n} triangles are inverted or flat"),
+    });
+    sentences.extend_from_slice(remarks);
+    sentences
 }
 
 /// Counts the vertices of the file that no triangle uses. On the sphere, triangles at a pole or at a cut of the globe

@@ -11,6 +11,7 @@ use crate::commands::quality::bars::{self, Style};
 use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region, Worst};
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
+use crate::report::DistinctMeasures;
 use crate::terminal::numbers::{coordinate, fit8, sig6};
 
 /// Width of a table's first column, in characters.
@@ -54,8 +55,8 @@ fn table(qualities: &[MeshQuality], style: &Style) -> String {
     let mut text = head(style);
     let Some(first) = qualities.first() else { return text };
     let measures: Vec<Measure> = first.statistics.iter().map(|row| row.measure).collect();
-    let twin = |measure: Measure| measure.equal_to().filter(|twin| measures.contains(twin));
-    let shown = measures.iter().enumerate().filter(|(_, measure)| twin(**measure).is_none());
+    let DistinctMeasures { shown, equal } = DistinctMeasures::of(&measures);
+    let shown = measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure));
     for (i, measure) in shown {
         match qualities {
             [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i], style)),
@@ -68,8 +69,6 @@ fn table(qualities: &[MeshQuality], style: &Style) -> String {
             }
         }
     }
-    let equal = |measure: &Measure| Some(format!("{measure} equals {}", twin(*measure)?));
-    let equal: Vec<String> = measures.iter().filter_map(equal).collect();
     if !equal.is_empty() {
         let _ = writeln!(text, "Not listed: {}", equal.join(", "));
     }
