@@ -324,7 +324,7 @@ impl LoadedMesh {
     /// Writes the file with the vertices of the mesh at `points` and the values of `fields`.
     ///
     /// # Errors
-    /// Returns the errors of [`MeshFile::write_with`].
+    /// Returns the errors of [`MeshFile::write_with_fields`].
     pub(crate) fn write_with(
         &self,
         path: &Path,
@@ -338,7 +338,7 @@ impl LoadedMesh {
     /// stream in messages.
     ///
     /// # Errors
-    /// Returns the errors of [`MeshFile::write_to_with`].
+    /// Returns the errors of [`MeshFile::write_to_with_fields`].
     pub(crate) fn write_to_with(
         &self,
         name: &Path,

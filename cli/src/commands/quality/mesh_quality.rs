@@ -48,7 +48,7 @@ pub(crate) struct MeshQuality {
     pub(crate) hanging_nodes: usize,
     pub(crate) duplicate_vertices: usize,
     pub(crate) unused_vertices: usize,
-    /// The part of the mesh in the page; `None` without `--html`.
+    /// Section of the mesh for the page; `None` without `--html`.
     pub(crate) page: Option<MeshPart>,
 }
 

@@ -3,6 +3,7 @@
 use crate::args::TryArgs;
 use crate::commands::trial::best::{self, Best};
 use crate::commands::trial::table;
+use crate::commands::trial::tried::Tried;
 use crate::error::CliError;
 use crate::load::{LoadedMesh, streams};
 use crate::report::{Report, SmoothJob};
@@ -14,12 +15,6 @@ use crate::terminal::Verbosity;
 use crate::terminal::progress::{Display, Stage};
 use crate::terminal::tell;
 use gpu_smooth::Progress;
-
-/// A tried run with its result.
-pub(super) struct Tried<'a> {
-    pub(super) run: &'a TrialRun,
-    pub(super) result: Result<Report, CliError>,
-}
 
 /// Smooths the mesh with the options of each run, and prints a table of the results. Writes no mesh.
 ///

@@ -3,5 +3,6 @@
 mod best;
 mod command;
 mod table;
+mod tried;
 
 pub(crate) use command::run;

@@ -6,11 +6,12 @@ use serde_json::{Value, json};
 
 use crate::args::TryArgs;
 use crate::commands::trial::best::{ABOUT_LEAST, Best, Gains, MAX_MOVE, MAX_SIZE_CHANGE};
-use crate::commands::trial::command::Tried;
+use crate::commands::trial::tried::Tried;
 use crate::render::columns::{left, right};
 use crate::report::{MeshReport, QualityReport, Report, change_of};
 use crate::request::TrialRun;
 use crate::terminal::numbers::sig6;
+use crate::terminal::shell_words;
 
 const COLUMNS: [&str; 6] = ["f imr", "min angle", "worst imr", "sizes", "moved", "s"];
 const WIDTHS: [usize; 6] = [10, 10, 10, 11, 8, 8];
@@ -26,19 +27,11 @@ pub(super) fn label(run: &TrialRun) -> String {
 
 /// Returns the command line of a run, in which words are quoted for a shell.
 fn command(run: &TrialRun) -> String {
-    let words = run.words.iter().map(|word| quoted(&word.to_string_lossy()));
+    let words = run.words.iter().map(|word| shell_words::quoted(word));
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Quotes a word for a shell if the word has characters of special meaning.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "_-./:=,+@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
-}
-
+/// Returns the table of the runs, the rule, and the command line of the best run.
 pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> String {
     let reports: Vec<&Report> =
         tried.iter().filter_map(|tried| tried.result.as_ref().ok()).collect();
@@ -114,6 +107,7 @@ fn rule(best: Best) -> String {
     }
 }
 
+/// Returns the runs as JSON, with the rule and the command line of the best run.
 pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> Value {
     let mut before = Value::Null;
     let mut rows = Vec::new();
@@ -145,18 +139,4 @@ pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> V
         "rule": best.map(|best| rule(best).replace("\n  ", " ")),
         "command": best.map(|best| command(tried[best.row].run)),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_of_special_meaning_are_quoted() {
-        let cases =
-            [("a/b.msh", "a/b.msh"), ("a b.msh", "'a b.msh'"), ("it's", "'it'\\''s'"), ("", "''")];
-        for (word, expected) in cases {
-            assert_eq!(quoted(word), expected);
-        }
-    }
 }

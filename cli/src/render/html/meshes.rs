@@ -20,7 +20,7 @@ use crate::report::{Histogram, histogram};
 /// Longer side of the picture of each of several meshes, in pixels.
 const PIXELS: u32 = 1200;
 
-/// Description of a mesh for its part of the page.
+/// A mesh with the choices of its sections in the page.
 pub(crate) struct MeshDescription<'a> {
     pub(crate) file: &'a LoadedMesh,
     pub(crate) measured: &'a Measured<'a>,
@@ -34,7 +34,7 @@ pub(crate) struct MeshDescription<'a> {
     pub(crate) sentences: Vec<String>,
 }
 
-/// The part of a mesh in the page. The mesh itself is not stored.
+/// Sentences, drawing, tables and charts of a mesh as HTML. The mesh itself is not stored.
 pub(crate) struct MeshPart {
     sentences: Vec<String>,
     view: MeshView,
@@ -85,7 +85,7 @@ impl MeshPart {
     }
 }
 
-/// A mesh with its name, its part of the page, and statistics for the table of all meshes.
+/// A mesh of a page: name, section, and statistics for the common table.
 pub(crate) struct PageEntry<'a> {
     pub(crate) name: String,
     pub(crate) part: &'a MeshPart,
