@@ -96,6 +96,13 @@ fn the_best_row_keeps_a_boundary_layer_and_improves_an_even_mesh() {
 }
 
 #[test]
+fn a_mesh_without_bad_triangles_is_not_tried() {
+    let folder = small();
+    let run = folder.line("try in --only-bad 1000 --engine cpu");
+    run.refused(&["nothing to do: no triangle has an imr above 1000"]);
+}
+
+#[test]
 fn a_mesh_that_no_run_can_smooth_is_refused_once() {
     let [node, ele] = INVERTED;
     let folder = Folder::new(&[("in.node", node), ("in.ele", ele)]);

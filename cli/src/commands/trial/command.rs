@@ -19,7 +19,8 @@ use gpu_smooth::Progress;
 /// Smooths the mesh with the options of each run, and prints a table of the results. Writes no mesh.
 ///
 /// # Errors
-/// Returns the error of the first run if all runs fail.
+/// Returns the error of the first run, as an error of the mesh occurs in all runs. Returns an error too if no vertex has to
+/// move.
 pub(crate) fn run(args: &TryArgs, verbosity: Verbosity) -> Result<(), CliError> {
     if streams::is_standard(&args.mesh) {
         return Err(CliError::usage(
@@ -39,13 +40,15 @@ pub(crate) fn run(args: &TryArgs, verbosity: Verbosity) -> Result<(), CliError> 
         let mut follow = Shown::new(run, verbosity, number == 1);
         let result = smooth(args, run, &engines, &mut follow);
         follow.display.clear();
-        // What is wrong with the mesh is wrong in every run.
-        if number == 1
-            && let Err(error) = result
-        {
-            return Err(error);
+        match result {
+            // An error of the mesh occurs in every run.
+            Err(error) if number == 1 => return Err(error),
+            Ok(Report { nothing_to_do: Some(reason), .. }) => {
+                let path = args.mesh.display();
+                return Err(CliError::run(format!("{path}: nothing to do: {reason}")));
+            }
+            result => tried.push(Tried { run, result }),
         }
-        tried.push(Tried { run, result });
     }
     let gains: Vec<_> =
         tried.iter().map(|tried| tried.result.as_ref().ok().map(Into::into)).collect();
