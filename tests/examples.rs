@@ -23,6 +23,13 @@ fn luminance([red, green, blue, _]: [u8; 4]) -> f64 {
 }
 
 #[test]
+fn examples_find_their_mesh_from_any_directory() {
+    for path in [Path::new(embed::DEFAULT_MESH), &outside::default_mesh()] {
+        assert!(path.is_absolute() && path.is_file(), "{}", path.display());
+    }
+}
+
+#[test]
 fn embed_draws_a_better_mesh_within_the_same_boundary() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate.node");
     let mesh = support::read_mesh(&path);

@@ -187,6 +187,28 @@ fn measures_do_not_depend_on_size_place_and_rotation() {
 }
 
 #[test]
+fn measures_have_equal_values_only_if_their_rows_say_so() {
+    let mut random = SplitMix64::new(5);
+    // Metrics of sizes need triangles of several sizes.
+    let points: Vec<[f64; 2]> = (0..60).map(|_| [0; 2].map(|_| random.unit())).collect();
+    let triangles = (0..20).map(|t| [0, 1, 2].map(|corner| 3 * t + corner)).collect();
+    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let topology = Topology::new(&mesh).unwrap();
+    let measured = Measured::new(&mesh.points, &topology).unwrap();
+    for (i, &measure) in Measure::ALL.iter().enumerate() {
+        let is_close = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-9 * b.abs();
+        let is_equal = |other: &&Measure| {
+            (0..20).all(|t| is_close(measured.value(measure, t), measured.value(**other, t)))
+        };
+        assert_eq!(
+            measure.equal_to(),
+            Measure::ALL[..i].iter().find(is_equal).copied(),
+            "{measure}"
+        );
+    }
+}
+
+#[test]
 fn inverted_and_flat_triangles_are_as_in_verdict() {
     use Measure::*;
     let inverted = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];

@@ -18,7 +18,9 @@ mod terminal;
 use std::process::ExitCode;
 
 use args::{Cli, Command, LogForm, SmoothArgs};
-use commands::{adapters, batch, bench, compare, convert, groups, metrics, quality, shell, smooth};
+use commands::{
+    adapters, batch, bench, compare, convert, groups, metrics, quality, shell, smooth, trial,
+};
 use error::CliError;
 use request::{Meshes, SmoothRequest, mistyped};
 use terminal::{Verbosity, interrupt, panics, tell};
@@ -39,6 +41,7 @@ fn run() -> ExitCode {
     interrupt::survive_large_files();
     let done = match command {
         Some(Command::Quality(args)) => quality::run(&args),
+        Some(Command::Try(args)) => trial::run(&args, (&output).into()),
         Some(Command::Groups(args)) => groups::run(&args),
         Some(Command::Compare(args)) => compare::run(args, &output),
         Some(Command::Convert(args)) => convert::run(&args, &output),

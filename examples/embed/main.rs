@@ -27,9 +27,12 @@ pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 /// Vertex of the application: x, y, z, and the darkness of edges. The smoother reads and writes only x and y.
 pub(crate) type Vertex = [f32; 4];
 
+/// The mesh of a command line without MESH. The path is absolute, so that the example runs in any directory.
+pub(crate) const DEFAULT_MESH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/plate.node");
+
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1).map(PathBuf::from);
-    let mesh = args.next().unwrap_or("meshes/plate.node".into());
+    let mesh = args.next().unwrap_or(DEFAULT_MESH.into());
     let out = args.next().unwrap_or(".".into());
 
     let file = MeshFile::read(&mesh)?;

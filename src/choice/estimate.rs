@@ -30,6 +30,9 @@ pub(super) fn choose(
     options: &Options,
     try_drivers: impl FnOnce() -> Result<(), GpuError>,
 ) -> (Backend, Reason) {
+    if options.max_sweeps == 0 {
+        return (Backend::Cpu, Reason::NoSweeps);
+    }
     let (cores, sweeps) = (rayon::current_num_threads(), expected_sweeps(options));
     let best = pays_from(FASTEST, cores, sweeps);
     if best.is_none_or(|least| size.vertices < least) {
@@ -134,6 +137,14 @@ mod tests {
     #[test]
     fn a_software_adapter_never_pays() {
         assert_eq!(pays_from("CPU", 1, 1e6), None);
+    }
+
+    #[test]
+    fn a_run_without_sweeps_is_on_the_cpu_for_that_reason() {
+        let size = MeshSize { vertices: 100_000_000, triangles: 200_000_000 };
+        let options = Options { max_sweeps: 0, ..Options::default() };
+        let (backend, reason) = choose(size, &options, || panic!("no driver is needed"));
+        assert!(matches!((backend, &reason), (Backend::Cpu, Reason::NoSweeps)), "{reason}");
     }
 
     #[test]

@@ -11,6 +11,8 @@ use crate::error::GpuError;
 pub enum Reason {
     /// The library was built without its GPU engine, the feature `gpu`.
     OnlyCpu,
+    /// The options allow no sweep, so no engine would be faster than another.
+    NoSweeps,
     /// The CPU is estimated to finish before a GPU.
     CpuIsFaster {
         /// The GPU that was found. `None` if no driver was started, as the mesh is too small for any GPU to be faster.
@@ -33,6 +35,7 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OnlyCpu => write!(f, "built without the GPU engine"),
+            Self::NoSweeps => write!(f, "no sweep is to be made"),
             Self::CpuIsFaster { pays_from: Some(least), adapter: None } => {
                 write!(f, "fewer than {} vertices", grouped(*least))
             }

@@ -208,6 +208,15 @@ impl Measure {
         all
     };
 
+    /// Returns the measure of an earlier row with equal values, up to rounding; `None` if no earlier row has equal values.
+    pub const fn equal_to(self) -> Option<Measure> {
+        match self {
+            Measure::Metric(Metric::Edge) => Some(Measure::EdgeRatio),
+            Measure::Metric(Metric::Imr | Metric::Ar) => Some(Measure::Condition),
+            _ => None,
+        }
+    }
+
     /// Returns the name on the command line.
     pub const fn name(self) -> &'static str {
         self.definition().name

@@ -10,6 +10,7 @@ use mesh_io::{Conversion, Format};
 use crate::args::names;
 use crate::args::{
     BenchArgs, FieldArgs, MoveArgs, QualityArgs, ReadArgs, SlideArgs, SmoothArgs, SurfaceArgs,
+    TryArgs,
 };
 
 /// Smooths a 2D triangle mesh: moves interior vertices until element quality is optimal, and never inverts a triangle.
@@ -92,6 +93,12 @@ pub(crate) enum Command {
         gpu-smooth quality before.su2 after.su2 --csv\n  \
         gpu-smooth quality part.msh --threshold 'min-angle<20' --threshold 'size-ratio>4'")]
     Quality(QualityArgs),
+    /// Smooths a mesh with several targets, without writing it, and prints a table of the results and the command of the
+    /// best run
+    #[command(after_help = "Examples:\n  \
+        gpu-smooth try coast.msh\n  \
+        gpu-smooth try wing.su2 --fix airfoil --slide --json")]
+    Try(TryArgs),
     /// Lists the names in a mesh file that options accept: physical groups, markers, references, materials and the
     /// like, and data of vertices
     #[command(after_help = "Example:\n  gpu-smooth groups wing.su2")]

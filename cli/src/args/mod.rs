@@ -13,6 +13,7 @@ mod sliding;
 mod smooth;
 mod surface;
 mod target;
+mod trial;
 mod worst;
 
 pub(crate) use bench::BenchArgs;
@@ -32,4 +33,5 @@ pub(crate) use smooth::{
 };
 pub(crate) use surface::{SurfaceArg, SurfaceArgs, ZArg};
 pub(crate) use target::{Owner, Target, TargetArgs};
+pub(crate) use trial::TryArgs;
 pub(crate) use worst::{WorstArgs, WorstChoice};

@@ -85,7 +85,8 @@ pub(crate) fn measure_help() -> String {
     let own = Measure::ALL.iter().filter(|measure| !matches!(measure, Measure::Metric(_)));
     let names: Vec<_> = own.map(|measure| measure.name()).collect();
     format!(
-        "Measures to draw histograms of; the first also ranks the worst triangles: {}, or a metric",
+        "Measures with statistics and a histogram; the first also ranks the worst triangles: {}, or a metric [default: statistics of \
+         all measures, histograms of shape and min-angle]",
         names.join(", ")
     )
 }

@@ -21,7 +21,6 @@ pub(crate) struct QualityArgs {
         long,
         value_name = "NAME,...",
         value_delimiter = ',',
-        default_value = "shape,min-angle",
         value_parser = names::measures(),
         hide_possible_values = true,
         help = names::measure_help()
@@ -46,12 +45,38 @@ pub(crate) struct QualityArgs {
     /// Draw in ASCII, which is the default where standard output is not a terminal
     #[arg(long)]
     pub(crate) ascii: bool,
+    /// Write a page for a browser, in one file that needs nothing else: the mesh, histograms, statistics and the worst
+    /// triangles. Several meshes have one page, with a picture of each
+    #[arg(long, value_name = "FILE")]
+    pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
+}
+
+impl QualityArgs {
+    /// Returns the measures with a histogram, the first of which ranks triangles.
+    pub(crate) fn histograms(&self) -> &[Measure] {
+        match &self.measure[..] {
+            [] => &[Measure::Shape, Measure::MinAngle],
+            named => named,
+        }
+    }
+
+    /// Returns the measures with statistics: those of `--measure`, or all, each once.
+    pub(crate) fn statistics(&self) -> Vec<Measure> {
+        let all = if self.measure.is_empty() { Measure::ALL } else { &self.measure };
+        let mut measures: Vec<Measure> = Vec::new();
+        all.iter().for_each(|measure| {
+            if !measures.contains(measure) {
+                measures.push(*measure);
+            }
+        });
+        measures
+    }
 }
 
 /// A range of bad values of a measure, as in `min-angle<20`. If a triangle has a value in the range, the exit code

@@ -153,6 +153,10 @@ pub(crate) struct SmoothArgs {
     #[arg(long, requires = "untangle", help_heading = "Untangling")]
     pub(crate) keep_going: bool,
 
+    /// Read and check the mesh and the options, and print how many vertices would move, which are fixed for which reason,
+    /// and the engine. Neither smooth nor write anything
+    #[arg(long, help_heading = "Output", conflicts_with = "out_dir")]
+    pub(crate) dry_run: bool,
     /// Replace OUT even if OUT holds another mesh than IN, or no mesh. Without --force, OUT must be new or empty, be IN
     /// itself, or hold a mesh with the triangles and the fixed vertices of IN
     #[arg(long, help_heading = "Output")]

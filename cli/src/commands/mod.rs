@@ -10,3 +10,4 @@ pub(crate) mod metrics;
 pub(crate) mod quality;
 pub(crate) mod shell;
 pub(crate) mod smooth;
+pub(crate) mod trial;

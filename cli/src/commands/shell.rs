@@ -1,15 +1,17 @@
 //! The commands `gpu-smooth completions` and `gpu-smooth man`, which derive completions and manual pages from
 //! the definitions of the options.
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
-use clap::{Command, CommandFactory};
+use clap::parser::ValueSource;
+use clap::{Args, Command, CommandFactory};
 use clap_complete::env::{CompleteEnv, Shells};
 use clap_mangen::Man;
 use mesh_io::atomic;
 
-use crate::args::{Cli, CompletionsArgs, ManArgs};
+use crate::args::{Cli, CompletionsArgs, ManArgs, OutputArgs, SmoothArgs};
 use crate::error::CliError;
 use crate::terminal::tell;
 
@@ -21,7 +23,26 @@ const VARIABLE: &str = "GPU_SMOOTH_COMPLETE";
 
 /// Answers a script of a shell that asks for completions, and ends the program. Does nothing in all other calls.
 pub(crate) fn complete() {
-    CompleteEnv::with_factory(Cli::command).var(VARIABLE).bin(PROGRAM).complete();
+    // The script passes the words of the command line after `--`. The last word is incomplete.
+    let mut words: Vec<OsString> = std::env::args_os().skip_while(|word| word != "--").collect();
+    words.pop();
+    let program = move || program_after(words.get(1..).unwrap_or_default());
+    CompleteEnv::with_factory(program).var(VARIABLE).bin(PROGRAM).complete();
+}
+
+/// Returns the definition of the program for the completion of the word after `words`, the first of which is the name
+/// of the program. Commands precede meshes, so the definition has no commands if the words have a mesh.
+fn program_after(words: &[OsString]) -> Command {
+    let matches = Cli::command().ignore_errors(true).try_get_matches_from(words);
+    let has_mesh =
+        matches.is_ok_and(|found| found.value_source("input") == Some(ValueSource::CommandLine));
+    match has_mesh {
+        true => {
+            let program = Command::new(PROGRAM).version(env!("CARGO_PKG_VERSION"));
+            OutputArgs::augment_args(SmoothArgs::augment_args(program))
+        }
+        false => Cli::command(),
+    }
 }
 
 /// Prints the script by which a shell asks the program for completions.

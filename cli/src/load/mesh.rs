@@ -189,6 +189,11 @@ impl LoadedMesh {
         self.mesh.fixed.truncate(self.mesh.fixed.len() - held.len());
     }
 
+    /// Returns whether vertices between regions are fixed because they lie there.
+    pub(crate) fn interfaces_are_held(&self) -> bool {
+        !self.has_free_interfaces
+    }
+
     /// Returns the vertices between regions that are fixed for a further reason, ascending.
     pub(crate) fn held_interface_vertices(&self) -> Vec<u32> {
         let mut is_held = vec![false; self.mesh.points.len()];
@@ -319,7 +324,7 @@ impl LoadedMesh {
     /// Writes the file with the vertices of the mesh at `points` and the values of `fields`.
     ///
     /// # Errors
-    /// Returns the errors of [`MeshFile::write_with`].
+    /// Returns the errors of [`MeshFile::write_with_fields`].
     pub(crate) fn write_with(
         &self,
         path: &Path,
@@ -333,7 +338,7 @@ impl LoadedMesh {
     /// stream in messages.
     ///
     /// # Errors
-    /// Returns the errors of [`MeshFile::write_to_with`].
+    /// Returns the errors of [`MeshFile::write_to_with_fields`].
     pub(crate) fn write_to_with(
         &self,
         name: &Path,

@@ -2,6 +2,7 @@
 
 pub(crate) mod explain;
 mod fields;
+mod fixed;
 mod frame;
 mod mesh;
 mod movable;
@@ -14,6 +15,7 @@ mod surface;
 mod targets;
 
 pub(crate) use fields::InterpolatedFields;
+pub(crate) use fixed::FixedBy;
 pub(crate) use mesh::LoadedMesh;
 pub(crate) use movable::MovableSelection;
 pub(crate) use surface::{as_in_file, lay_out};

@@ -73,13 +73,12 @@ impl SlideRequest {
         Ok(())
     }
 
-    /// Sets the sliding vertices of a smoother. Returns a remark that counts sliding vertices and
-    /// periodic pairs.
+    /// Sets the sliding vertices of a smoother.
     pub(crate) fn set(
         &self,
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
-    ) -> Result<String, CliError> {
+    ) -> Result<SlidingVertices, CliError> {
         let slide = self.slide(file)?;
         let count = smoother.set_slide(Some(&slide))?;
         let [pairs, unlike] = smoother.pairs();
@@ -106,8 +105,15 @@ impl SlideRequest {
                 );
             }
         }
-        Ok(text)
+        Ok(SlidingVertices { count, remark: text })
     }
+}
+
+/// The sliding vertices of a mesh.
+pub(crate) struct SlidingVertices {
+    pub(crate) count: usize,
+    /// A sentence with the numbers of sliding vertices and periodic pairs.
+    pub(crate) remark: String,
 }
 
 /// Returns whether the file declares its model periodic, but no pair of vertices is known.

@@ -1,6 +1,7 @@
 //! The report of a run: its data, its certificate, and its summary in words.
 
 mod certificate;
+mod distinct;
 mod histogram;
 mod improved;
 mod run;
@@ -9,11 +10,13 @@ mod target;
 mod task;
 
 pub(crate) use certificate::{Certificate, FileHash};
+pub(crate) use distinct::DistinctMeasures;
 pub(crate) use histogram::{Histogram, histogram};
 pub(crate) use improved::ImprovedReport;
 pub(crate) use run::{
     ChangeReport, EngineReport, FaultReport, GoalReport, MeshReport, QualityReport, Refusal,
     Report, Seconds, SlideReport, UntangleReport, history,
 };
+pub(crate) use summary::change_of;
 pub(crate) use target::TargetReport;
 pub(crate) use task::{Done, Failure, SmoothJob};

@@ -295,7 +295,7 @@ impl Report {
 }
 
 /// Describes a factor of sizes: a change in percent, or a number of times.
-fn change_of(factor: f64) -> String {
+pub(crate) fn change_of(factor: f64) -> String {
     match 100.0 * (factor - 1.0) {
         change if change < 99.5 => format!("{change:.0} %"),
         _ if factor < 1e5 => format!("{factor:.1} times"),

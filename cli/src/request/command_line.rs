@@ -7,7 +7,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
 use crate::args::{Cli, Command, OutputArgs};
-use crate::request::conflicts::{self, OF_BENCH, OF_CONVERT, OF_QUALITY, OF_RUN};
+use crate::request::conflicts::{self, OF_BENCH, OF_COMPARE, OF_CONVERT, OF_QUALITY, OF_RUN};
 use crate::terminal::Verbosity;
 
 /// Parses the command line of this process. If the command line is invalid, or asks for help or the version,
@@ -56,10 +56,12 @@ fn contradiction(cli: &Cli) -> Option<String> {
         }
         Some(Command::Quality(args)) => conflicts::first(OF_QUALITY, args),
         Some(Command::Bench(args)) => conflicts::first(OF_BENCH, args),
+        Some(Command::Compare(args)) => conflicts::first(OF_COMPARE, args),
         Some(Command::Convert(args)) => conflicts::first(OF_CONVERT, args),
         Some(
             Command::Groups(_)
-            | Command::Compare(_)
+            // The tried runs are checked one by one.
+            | Command::Try(_)
             | Command::Adapters(_)
             | Command::Metrics
             | Command::Completions(_)

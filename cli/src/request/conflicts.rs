@@ -5,8 +5,8 @@ use mesh_io::Format;
 
 use crate::args::names;
 use crate::args::{
-    BenchArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, QualityArgs, SmoothArgs,
-    SurfaceArg, Target,
+    BenchArgs, CompareArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, MoveArgs,
+    QualityArgs, ReadArgs, SmoothArgs, SurfaceArg, Target,
 };
 use crate::request::smooth::options;
 use crate::request::target::TargetRequest;
@@ -73,7 +73,15 @@ pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
     row(["--engine cpu", "--adapter"], idle, |a| {
         a.engine == EngineChoice::Cpu && a.adapter.is_some()
     }),
+    row(REGIONS_OF_FREE, idle, |a| has_free_regions(&a.reading, &a.moving)),
 ];
+
+/// Conflicts between options of `compare`.
+pub(super) const OF_COMPARE: &[Conflict<CompareArgs>] =
+    &[row(REGIONS_OF_FREE, idle, |a| has_free_regions(&a.reading, &a.moving))];
+
+/// Regions have no other effect than to fix the vertices between them.
+const REGIONS_OF_FREE: [&str; 2] = ["--free-interfaces", "--regions"];
 
 /// Conflicts between options of `quality`.
 pub(super) const OF_QUALITY: &[Conflict<QualityArgs>] = &[
@@ -184,6 +192,10 @@ fn several_files<A>(_: [&str; 2], _: &A) -> String {
     "a Triangle mesh has several files and cannot go to standard output: name OUT".to_owned()
 }
 
+fn has_free_regions(reading: &ReadArgs, moving: &MoveArgs) -> bool {
+    reading.regions.is_some() && moving.free_interfaces
+}
+
 fn has_finite_differences(args: &SmoothArgs) -> bool {
     args.derivatives == DerivativesChoice::FiniteDifference
 }
@@ -217,7 +229,7 @@ mod tests {
             ("--target-of", _) => "--target-of vertex".to_owned(),
             ("--target-rings" | "--inner", _) => format!("{option} 3"),
             ("--omega", _) => format!("{option} 0.5"),
-            ("--adapter", _) => format!("{option} name"),
+            ("--adapter" | "--regions", _) => format!("{option} name"),
             ("--picture", _) => "--picture p.png".to_owned(),
             ("--picture-arrows", _) => "--picture p.png --picture-arrows".to_owned(),
             ("several meshes", _) => "another".to_owned(),
@@ -270,6 +282,10 @@ mod tests {
     fn each_pair_of_another_command_is_refused_by_its_own_words() {
         check(OF_QUALITY, &["gpu-smooth", "quality", "in"], |cli| match &cli.command {
             Some(Command::Quality(args)) => args,
+            _ => panic!("another command"),
+        });
+        check(OF_COMPARE, &["gpu-smooth", "compare", "in", "out"], |cli| match &cli.command {
+            Some(Command::Compare(args)) => args,
             _ => panic!("another command"),
         });
         check(OF_BENCH, &["gpu-smooth", "bench"], |cli| match &cli.command {

@@ -13,13 +13,15 @@ mod smooth;
 mod target;
 #[cfg(test)]
 mod tests;
+mod trial;
 
 pub(crate) use command_line::command_line;
 pub(crate) use movable::{FieldsRequest, MovableRequest, NearBad, SlideRequest};
 pub(crate) use outputs::{CheckpointPlan, MeshOutput, Outputs, is_checkpoint};
 pub(crate) use picture::{PictureFormat, PictureRequest};
 pub(crate) use read::ReadRequest;
-pub(crate) use smooth::{Batch, EngineRequest, Meshes, SmoothRequest, TableForm};
+pub(crate) use smooth::{Batch, EngineRequest, Meshes, RunExtent, SmoothRequest, TableForm};
 pub(crate) use target::{
     ElementProperty, TargetNumbers, TargetRequest, TargetSource, ThirdCoordinate,
 };
+pub(crate) use trial::TrialRun;

@@ -98,12 +98,21 @@ impl Outputs {
         })
     }
 
-    /// Returns the outputs of a command that only draws a picture.
+    /// Returns the outputs of a command that draws a picture and writes a page, but no mesh.
     ///
     /// # Errors
     /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`.
-    pub(crate) fn of_picture(args: &PictureArgs) -> Result<Self, CliError> {
-        Ok(Self { picture: PictureRequest::of(args)?, ..Self::of_mesh(MeshOutput::None) })
+    pub(crate) fn of_drawings(
+        args: &PictureArgs,
+        page: Option<&PathBuf>,
+    ) -> Result<Self, CliError> {
+        let (picture, page) = (PictureRequest::of(args)?, page.cloned());
+        Ok(Self { picture, page, ..Self::of_mesh(MeshOutput::None) })
+    }
+
+    /// Returns the paths of the files that a run writes beside its mesh.
+    pub(crate) fn files_beside_mesh(&self) -> impl Iterator<Item = &Path> {
+        self.beside_mesh().map(|(_, path)| path)
     }
 
     /// Lists the paths of the report, picture, page and checkpoint.

@@ -44,7 +44,19 @@ pub(crate) struct SmoothRequest {
     pub(crate) continue_from: Option<PathBuf>,
     /// Whether a run that neither converges nor reaches its goal is an error.
     pub(crate) is_strict: bool,
+    pub(crate) extent: RunExtent,
     pub(crate) outputs: Outputs,
+}
+
+/// The part of a run that is carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RunExtent {
+    /// The mesh is smoothed and written.
+    Whole,
+    /// The mesh is smoothed, and no file is written.
+    Unwritten,
+    /// The run ends before its first sweep, and no file is written.
+    Prepared,
 }
 
 /// The meshes of a request.
@@ -138,6 +150,10 @@ impl SmoothRequest {
             untangle: args.untangle.then_some(UntangleRequest { keeps_going: args.keep_going }),
             continue_from: args.continued,
             is_strict: args.strict,
+            extent: match args.dry_run {
+                true => RunExtent::Prepared,
+                false => RunExtent::Whole,
+            },
             outputs,
         })
     }

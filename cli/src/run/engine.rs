@@ -67,7 +67,7 @@ pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> OpenEngine {
 /// Describes the reason of a choice, with the option that overrides the choice.
 fn describe(reason: &Reason) -> String {
     match reason {
-        Reason::GpuFails(_) => reason.to_string(),
+        Reason::GpuFails(_) | Reason::NoSweeps => reason.to_string(),
         Reason::GpuIsFaster { .. } => format!("{reason}; --engine cpu to use the CPU"),
         _ => format!("{reason}; --engine gpu to force"),
     }

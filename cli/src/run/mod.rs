@@ -8,6 +8,7 @@ pub(crate) mod observer;
 mod pipeline;
 mod prepare;
 pub(crate) mod proof;
+pub(crate) mod rehearsal;
 mod result;
 mod run_report;
 mod sweeps;

@@ -10,22 +10,23 @@ use crate::load::remarks;
 use crate::load::streams;
 use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, lay_out};
 use crate::report::{Done, Failure, SmoothJob};
+use crate::request::RunExtent;
 use crate::run::engine::OpenEngine;
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
 use crate::run::prepare::{Prepared, Subject, open, set_up};
-use crate::run::result::{measure, write};
+use crate::run::result::{Written, measure, write};
 use crate::run::run_report;
 use crate::run::sweeps::smooth;
 use crate::terminal::progress::Stage;
 
 /// A mesh after reading, with the selection of movable vertices and interpolated fields.
-struct ReadMesh {
-    file: LoadedMesh,
-    choice: MovableSelection,
-    fields: InterpolatedFields,
+pub(super) struct ReadMesh {
+    pub(super) file: LoadedMesh,
+    pub(super) choice: MovableSelection,
+    pub(super) fields: InterpolatedFields,
     /// Size of the input file in bytes; 0 if the input is not a file.
-    bytes: u64,
+    pub(super) bytes: u64,
     /// Time at the end of reading.
     at: Instant,
 }
@@ -54,7 +55,10 @@ pub(crate) fn run_pipeline<T>(
     let ran = smooth(&input, &ready, follow)?;
     follow.has_smoothed()?;
     let measured = measure(&input, &ready, &ran, &mut fields, follow)?;
-    let written = write(&input, &ready, &ran, &fields, follow)?;
+    let written = match task.request.extent {
+        RunExtent::Unwritten => Written { certificate: None, at: measured.at },
+        RunExtent::Whole | RunExtent::Prepared => write(&input, &ready, &ran, &fields, follow)?,
+    };
     let seconds = run_report::Clock {
         began,
         read: at,
@@ -75,7 +79,10 @@ pub(crate) fn run_pipeline<T>(
 
 /// Reads a mesh, and applies the options that select vertices and fields. Passes remarks on the mesh to the
 /// observer.
-fn read(task: &SmoothJob<'_>, follow: &mut dyn PipelineObserver) -> Result<ReadMesh, CliError> {
+pub(super) fn read(
+    task: &SmoothJob<'_>,
+    follow: &mut dyn PipelineObserver,
+) -> Result<ReadMesh, CliError> {
     let request = task.request;
     let bytes = size_of(task.input);
     follow.stage(Stage::Reading { bytes });

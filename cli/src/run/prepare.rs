@@ -40,6 +40,8 @@ pub(super) struct Ready<'a> {
     pub(super) taken: OpenEngine,
     /// Quality of the mesh before the run, and before untangling.
     pub(super) before: Quality,
+    /// Number of sliding vertices; `None` without `--slide`.
+    pub(super) sliding: Option<usize>,
     /// Time at the end of the preparation.
     pub(super) at: Instant,
 }
@@ -130,15 +132,21 @@ pub(super) fn set_up<'a>(
             follow.remark(&remark);
         }
     }
+    let mut sliding = None;
     if let Some(slide) = &request.slide {
-        follow.remark(&slide.set(file, &mut smoother)?);
+        let vertices = slide.set(file, &mut smoother)?;
+        follow.remark(&vertices.remark);
+        sliding = Some(vertices.count);
     }
     let before = Quality::on(surface, &mesh.points, smoother.topology())?;
-    Ok(Ready { smoother, mended, taken, before, at: Instant::now() })
+    Ok(Ready { smoother, mended, taken, before, sliding, at: Instant::now() })
 }
 
 /// Prepares a mesh for smoothing. Returns [`MeshError::NothingFree`] if no vertex is free and none can slide.
-fn smoother<'f>(request: &SmoothRequest, file: &'f LoadedMesh) -> Result<Smoother<'f>, MeshError> {
+pub(super) fn smoother<'f>(
+    request: &SmoothRequest,
+    file: &'f LoadedMesh,
+) -> Result<Smoother<'f>, MeshError> {
     let mut smoother = Smoother::new(file.mesh())?;
     if smoother.topology().free_count() == 0 {
         let slide = request.slide.as_ref().and_then(|slide| slide.slide(file).ok());
@@ -152,7 +160,7 @@ fn smoother<'f>(request: &SmoothRequest, file: &'f LoadedMesh) -> Result<Smoothe
 
 /// Returns the failure of a mesh that cannot be smoothed, with all inverted and flat triangles if a report is
 /// requested.
-fn refusal(
+pub(super) fn refusal(
     request: &SmoothRequest,
     choice: &MovableSelection,
     file: &LoadedMesh,

@@ -4,6 +4,7 @@ pub(crate) mod interrupt;
 pub(crate) mod numbers;
 pub(crate) mod panics;
 pub(crate) mod progress;
+pub(crate) mod shell_words;
 pub(crate) mod tell;
 mod verbosity;
 

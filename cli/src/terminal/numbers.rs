@@ -13,6 +13,26 @@ pub(crate) fn sig6(x: f64) -> String {
     }
 }
 
+/// Formats a coordinate with digits down to a thousandth of `length`, a length of the mesh at that point.
+pub(crate) fn coordinate(x: f64, length: f64) -> String {
+    // The power of ten of the last digit. Digits of an infinite or zero length would have no end.
+    let last = match length.abs().log10() {
+        power if power.is_finite() => power.floor() as i32 - 3,
+        _ => return format!("{x}"),
+    };
+    match x.abs() {
+        0.0 => "0".into(),
+        a if (1e-4..1e15).contains(&a) || a < 1.0 && last >= -9 => {
+            format!("{x:.*}", (-last).max(0) as usize)
+        }
+        a => {
+            let first = a.log10().floor() as i32;
+            // A number in double precision has at most 17 digits.
+            format!("{x:.*e}", first.saturating_sub(last).clamp(0, 16) as usize)
+        }
+    }
+}
+
 /// Formats a fraction in percent, rounded down so that no goal seems reached early.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.2}", (share * 1e4).floor() / 1e2)
@@ -35,6 +55,24 @@ pub(crate) fn fit8(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coordinates_have_digits_down_to_a_thousandth_of_the_length() {
+        let cases = [
+            (6_736_951.264, 48.0, "6736951.26"),
+            (-6_736_951.264, 0.5, "-6736951.2640"),
+            (6_736_951.264, 5e4, "6736951"),
+            (0.5, 0.01, "0.50000"),
+            (1.25e-7, 1.0, "0.000"),
+            (1.25e-7, 1e-9, "1.25000e-7"),
+            (1.25e20, 1e16, "1.2500000e20"),
+            (0.0, 1.0, "0"),
+            (0.25, 0.0, "0.25"),
+        ];
+        for (x, length, text) in cases {
+            assert_eq!(coordinate(x, length), text, "{x} {length}");
+        }
+    }
 
     #[test]
     fn numbers_fit_their_column() {

@@ -47,7 +47,21 @@ fn a_mesh_of_the_user_is_measured_and_printed_as_text() {
     assert_holds(&run.out, &["copies", "A sweep by imr", "M updates/s", "cpu, ", &vertices]);
     assert!(!run.out.contains("kernel"), "{}", run.out);
     let run = folder.line("bench in --engine gpu --seconds 0").clean();
-    assert_holds(&run.out, &["sweep imr", "by its clock", "whole, without the clock"]);
+    assert_holds(&run.out, &["sweep imr", "by its clock", "a sweep without clock"]);
+    // The shares are of the sum of the kernels, which a row below them has.
+    let field = |name: &str, column: usize| -> f64 {
+        let row = run.out.lines().find(|row| row.trim_start().starts_with(name)).unwrap();
+        let numbers = row.trim_start()[name.len()..].split_whitespace();
+        numbers.filter_map(|word| word.parse().ok()).nth(column).unwrap()
+    };
+    let kernels = ["sweep imr", "objective", "finish"];
+    let sum: f64 = kernels.iter().map(|name| field(name, 1)).sum();
+    let told = field("all, one after another", 0);
+    assert!((sum - told).abs() < 0.3 && told > 0.0, "{}", run.out);
+    let shares: f64 = kernels.iter().map(|name| field(name, 2)).sum();
+    assert!((shares - 100.0).abs() < 0.3, "{}", run.out);
+    // Only an application copies objectives to a buffer of its own.
+    assert!(!run.out.contains("write_objective"), "{}", run.out);
     assert!(!run.out.contains("cpu, "), "{}", run.out);
 }
 
@@ -103,7 +117,7 @@ fn times_of_kernels_are_printed_as_markdown() {
     let out = folder.line("bench in --engine gpu --seconds 0 --markdown").clean().out;
     let rows = table(&out);
     let sweep = rows.iter().find(|row| row[0] == "sweep imr").unwrap();
-    assert_eq!((sweep.len(), rows[3][0].as_str()), (5, "kernel"));
+    assert_eq!((sweep.len(), rows[3][0].as_str()), (6, "kernel"));
 }
 
 #[test]

@@ -54,6 +54,19 @@ fn picture(folder: &Folder, fragment: &str, theme: &str, size: [usize; 2]) -> Pi
     Picture { width: info.width as usize, pixels }
 }
 
+#[test]
+#[ignore = "needs a browser: GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored"]
+fn a_browser_draws_a_mesh_without_a_run() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    folder.line(&format!("quality {plate} --html page.html")).clean();
+    let whole = picture(&folder, "", LIGHT, [1200, 1100]);
+    let drawn = |picture: &Picture| picture.count(|pixel| pixel.iter().any(|&x| x < 240));
+    assert!(drawn(&whole) > whole.pixels.len() / 5);
+    let spot = picture(&folder, "#spot-2", LIGHT, [1200, 1100]);
+    assert!(spot.difference(&whole) > whole.pixels.len() / 10);
+}
+
 const DARK: &str = "0";
 const LIGHT: &str = "1";
 

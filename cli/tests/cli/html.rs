@@ -13,7 +13,12 @@ use std::fs;
 
 /// Returns the text of the page, and the data drawn by the script.
 fn page(folder: &Folder, args: &str) -> (String, Value) {
-    let run = folder.line(&format!("{args} --html page.html --engine cpu"));
+    page_of(folder, &format!("{args} --engine cpu"))
+}
+
+/// Returns the text and the data of the page of any command.
+fn page_of(folder: &Folder, args: &str) -> (String, Value) {
+    let run = folder.line(&format!("{args} --html page.html"));
     assert_eq!(run.code, Some(0), "{}", run.err);
     let page = folder.text("page.html");
     let data = page.split("<script type=\"application/json\" id=\"data\">").nth(1).unwrap();
@@ -109,7 +114,10 @@ fn a_page_needs_nothing_else_and_tells_all_of_the_run() {
         assert_eq!(page.matches(&format!("<h2>{title}</h2>")).count(), 1, "{title}");
     }
     for measure in Measure::ALL {
-        assert_holds(&page, &[&format!(">{measure}")]);
+        match measure.equal_to() {
+            None => assert_holds(&page, &[&format!(">{measure}")]),
+            Some(twin) => assert_holds(&page, &[&format!("{measure} equals {twin}")]),
+        }
     }
     // Each link leads to the triangle shown by its picture.
     let links = page.matches("<a href=\"#spot-").count();
@@ -165,6 +173,63 @@ fn a_mesh_that_was_tangled_is_shown_as_it_was() {
 }
 
 #[test]
+fn a_page_without_a_run_shows_one_mesh() {
+    let folder = small();
+    let before = folder.content().len();
+    let (page, data) = page_of(&folder, "quality in.node --worst 7 -m min-angle,skewness");
+    assert_eq!(folder.content().len(), before + 1, "the page is the only new file");
+    let mesh = folder.mesh("in");
+    let topology = Topology::new(&mesh).unwrap();
+    assert_eq!(data["states"].as_array().unwrap().len(), 1);
+    assert_eq!(corners(&data, 0), of_mesh(&mesh, &topology));
+    // One view, and nothing of a run.
+    assert_eq!(page.matches("<canvas").count(), 1);
+    for word in ["before", "after the run", "that slid", "both views", "Convergence"] {
+        let body = page.split("<main>").nth(1).unwrap().split("<script").next().unwrap();
+        assert!(!body.contains(word), "{word}");
+    }
+    for part in ["http:", "https:", "src=", "@import", "url(", "fetch("] {
+        assert!(!page.contains(part), "{part}");
+    }
+    assert_holds(&page, &["<h1>in.node</h1>", "99 vertices (63 free), 160 triangles"]);
+    // The worst triangles of the page are those of the report.
+    let told = folder.line("quality in.node --worst 7 -m min-angle,skewness --json").clean().out;
+    let told: Value = serde_json::from_str(&told).unwrap();
+    let list = page.split("The worst by min-angle").nth(1).unwrap();
+    for (i, worst) in told["worst"].as_array().unwrap().iter().enumerate() {
+        assert_holds(list, &[&format!("href=\"#spot-{i}\"")]);
+        assert_holds(list, &[&format!(">{}</a>", worst["triangle"])]);
+    }
+    assert_eq!(list.matches("href=\"#spot-").count(), 7);
+    assert_eq!(page.matches("<svg").count(), 2);
+    let bars = page.split("<title>").skip(2).filter_map(|title| title.split(" triangles<").next());
+    let bars = bars.filter_map(|title| title.rsplit(' ').next()?.parse::<usize>().ok());
+    assert_eq!(bars.sum::<usize>(), 2 * 160);
+    let statistics = page.split("<h2>Statistics</h2>").nth(1).unwrap();
+    assert_eq!(statistics.matches("<tr>").count(), 3, "a head and two measures");
+}
+
+#[test]
+fn a_page_of_several_meshes_has_a_picture_of_each_and_one_table() {
+    let folder = small();
+    folder.line("in out --engine cpu").clean();
+    let run = folder.line("quality in.node out.node none.node --html page.html");
+    assert_eq!(run.code, Some(1));
+    assert_holds(&run.err, &["none.node: "]);
+    let page = folder.text("page.html");
+    assert_holds(&page, &["<h1>Quality of 2 meshes</h1>", "<h2>in.node</h2>", "<h2>out.node</h2>"]);
+    assert_eq!(page.matches("<img src=\"data:image/png;base64,").count(), 2);
+    assert!(!page.contains("<script") && !page.contains("#spot-"), "there is no viewer");
+    let statistics = page.split("<h2>Statistics</h2>").nth(1).unwrap();
+    let statistics = statistics.split("</table>").next().unwrap();
+    for name in ["in.node", "out.node"] {
+        let rows = statistics.matches(&format!("<td class=\"state\">{name}</td>")).count();
+        let own = Measure::ALL.iter().filter(|measure| measure.equal_to().is_none());
+        assert_eq!(rows, own.count());
+    }
+}
+
+#[test]
 fn pages_that_would_replace_something_are_refused() {
     let folder = small();
     fs::write(folder.path("other.html"), "old\n").unwrap();
@@ -176,6 +241,8 @@ fn pages_that_would_replace_something_are_refused() {
         folder.line(&format!("in out {options}")).misused(&[part]);
         assert!(!folder.path("out.node").exists());
     }
+    folder.line("quality in --html page.txt").misused(&["a page is HTML"]);
+    folder.line("quality in --html in.node").misused(&["in.node"]);
     folder.line("in out --html none/page.html").refused(&["the page cannot be written"]);
     assert!(!folder.path("out.node").exists());
     let run = folder.line("in.node other --out-dir d --html page.html");

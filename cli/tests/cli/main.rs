@@ -14,6 +14,7 @@ mod destinations;
 mod documented;
 #[cfg(target_os = "linux")]
 mod drivers;
+mod dry_run;
 mod files;
 mod formats;
 mod groups;
@@ -43,6 +44,7 @@ mod slide;
 mod sphere;
 mod streams;
 mod targets;
+mod trial;
 mod untangle;
 mod worst;
 

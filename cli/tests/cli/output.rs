@@ -30,9 +30,12 @@ fn quality_prints_what_the_report_says() {
 
         let text = folder.line(&format!("quality {mesh}")).clean().out;
         assert_holds(&text, &["99 vertices (63 free), 160 triangles\n", "\ninverted or flat"]);
-        for metric in Metric::ALL {
-            assert_holds(&text, &[&format!("\nf {metric} ")]);
-        }
+        // Metrics with equal objectives share a row.
+        let rows = text.lines().filter_map(|row| row.strip_prefix("f ")?.split("  ").next());
+        let names: Vec<&str> = rows.flat_map(|names| names.split(", ")).collect();
+        let mut expected: Vec<&str> = Metric::ALL.iter().map(|metric| metric.name()).collect();
+        expected.sort_by_key(|name| names.iter().position(|other| other == name));
+        assert_eq!(names, expected);
         let worst = text.lines().find(|row| row.starts_with("worst imr")).unwrap();
         assert_holds(worst, &["triangle ", &format!("{}.ele:", mesh.trim_end_matches(".node"))]);
     }

@@ -53,7 +53,14 @@ fn all_forms_tell_the_same_statistics() {
             "{row}"
         );
 
-        let row = text.lines().find(|row| row.split(' ').next() == Some(measure.name())).unwrap();
+        let row = text.lines().find(|row| row.split(' ').next() == Some(measure.name()));
+        // A measure with the values of another has no row of its own in a table for people.
+        let Some(row) = row else {
+            let twin = measure.equal_to().unwrap();
+            assert_holds(&text, &[&format!("{measure} equals {twin}")]);
+            continue;
+        };
+        assert_eq!(measure.equal_to(), None, "{row}");
         let [min, mean, max, low, median, high] = expected;
         let expected = [min, low, median, mean, high, max, deviation];
         let of_text = numbers(row);
@@ -230,10 +237,11 @@ fn regions_have_statistics_of_their_own() {
         let least = shapes[range.clone()].iter().copied().fold(1.0, f64::min);
         assert!((number(&region["measures"]["shape"]["min"]) / least - 1.0).abs() < 1e-12);
         // The group's name in the spelling for `--only`.
-        let group = region["groups"][0].as_str().unwrap();
         let groups = file.groups().unwrap();
-        let found = groups.find(group).unwrap();
-        let tag = found.tag.map_or_else(|| found.name.clone().unwrap(), |tag| tag.to_string());
+        let names = region["groups"].as_array().unwrap().iter().map(|name| name.as_str().unwrap());
+        let mut found = names.map(|name| (name, groups.find(name).unwrap()));
+        let (group, found) =
+            found.find(|(_, found)| found.triangles().len() == range.len()).unwrap();
         let only = folder.line(&format!("{input} out --only {group} --engine cpu"));
         assert_holds(&only.err, &[&format!("--only {group} (")]);
         let text = folder.line(&format!("quality {input} --by-region")).clean().out;
@@ -241,8 +249,9 @@ fn regions_have_statistics_of_their_own() {
             &text,
             &[
                 "\nshape by region\n",
-                &format!("\n{} {} {tag} ", i + 1, found.kind)[..16],
-                &format!("\nregion {}: {found}", i + 1),
+                &format!("\n{group} "),
+                &format!("\nregion {}: ", i + 1),
+                &format!(" {group} ({} {})", found.kind, found.dimension_name()),
                 &format!("; {} triangles, the first at ", range.len()),
                 &format!("the first at {list}{}\n", first.location),
             ],
@@ -259,7 +268,7 @@ fn regions_have_statistics_of_their_own() {
         .replace("$Nodes", "$PhysicalNames\n1\n2 1 \"outer wall\"\n$EndPhysicalNames\n$Nodes");
     fs::write(folder.path("named.msh"), named).unwrap();
     let text = folder.line("quality named.msh --by-region").clean().out;
-    let rows = ["\n1 outer wall ", "\nregion 1: physical surface outer wall"];
+    let rows = ["\nouter wall ", "\nregion 1: outer wall (physical surface)"];
     assert_holds(&text, &rows);
     // A mesh without regions is one region.
     let folder = small();
@@ -267,6 +276,62 @@ fn regions_have_statistics_of_their_own() {
         &folder.line("quality in --by-region").clean().out,
         &["\nregion 1: 160 triangles"],
     );
+}
+
+/// Two regions of one group cannot both have its name.
+#[test]
+fn each_row_of_regions_has_a_name_that_selects_the_region() {
+    let mesh = disturbed();
+    let regions: Vec<[i32; 2]> = (0..160).map(|t| if t < 60 { [4, 7] } else { [4, 8] }).collect();
+    let files = support::write_regions(&mesh, &regions);
+    let msh = files.iter().find(|files| files[0].0.ends_with(".msh")).unwrap();
+    let folder = Folder::new(&[]);
+    fs::write(folder.path("in.msh"), &msh[0].1).unwrap();
+    let text = folder.line("quality in.msh --by-region -m shape").clean().out;
+    let rows: Vec<&str> = text.split("shape by region\n").nth(1).unwrap().lines().collect();
+    for (row, triangles) in rows[1..3].iter().zip([60, 100]) {
+        let name = row.split_whitespace().next().unwrap();
+        let groups = json(&folder, "groups in.msh --json");
+        let named = |group: &&Value| group["group"] == name;
+        let group = groups["groups"].as_array().unwrap().iter().find(named).unwrap();
+        assert_eq!(group["triangles"], triangles, "{text}");
+    }
+}
+
+#[test]
+fn the_option_of_measures_narrows_the_tables() {
+    let folder = small();
+    let line = "quality in -m size-ratio,min-angle,size-ratio";
+    let text = folder.line(line).clean().out;
+    let table = text.split("\n\n").nth(1).unwrap();
+    let names: Vec<_> = table.lines().skip(1).map(|row| row.split(' ').next().unwrap()).collect();
+    assert_eq!(names, ["size-ratio", "min-angle"], "{text}");
+    let told = json(&folder, &format!("{line} --json"));
+    assert_eq!(told["measures"].as_object().unwrap().len(), 2);
+    assert_eq!(folder.line(&format!("{line} --csv")).clean().out.lines().count(), 3);
+    // A measure that is asked for has a row, though another measure has equal values.
+    let text = folder.line("quality in -m imr").clean().out;
+    assert_holds(&text, &["\nimr  "]);
+    assert!(!text.contains("Not listed"), "{text}");
+    assert_holds(&text, &["\nf imr, ar  "]);
+}
+
+/// A mesh in coordinates of UTM, in meters, is millions of meters from the origin.
+#[test]
+fn places_of_the_worst_triangles_have_digits_for_the_size_of_the_triangle() {
+    let mut mesh = disturbed();
+    mesh.points.iter_mut().for_each(|point| *point = [500_000.0 + point[0], 6.7e6 + point[1]]);
+    let [node, ele] = support::triangle_text(&mesh, "made for a test");
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    let told = json(&folder, "quality in --json --worst 1");
+    let corners = told["worst"][0]["corners"].as_array().unwrap();
+    let text = folder.line("quality in --worst 1").clean().out;
+    let place = text.split("; at ").nth(1).unwrap().split(';').next().unwrap();
+    for (axis, word) in place.split(' ').enumerate() {
+        let middle = corners.iter().map(|corner| number(&corner[axis]) / 3.0).sum::<f64>();
+        let told: f64 = word.parse().unwrap();
+        assert!((told - middle).abs() < 0.002, "{told} for {middle}");
+    }
 }
 
 #[test]

@@ -244,6 +244,17 @@ fn cell_data_under_any_name_that_look_like_regions_are_regions() {
 }
 
 #[test]
+fn regions_are_not_chosen_for_interfaces_that_are_free() {
+    let folder = Folder::new(&[]);
+    for line in ["in.vtk out.vtk", "compare in.vtk out.vtk"] {
+        let run = folder.line(&format!("{line} --regions zone --free-interfaces"));
+        assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{line}: {}", run.err);
+        let message = "--regions has no effect with --free-interfaces: drop one of them";
+        assert_holds(&run.err, &[message]);
+    }
+}
+
+#[test]
 fn an_option_chooses_the_cell_data_of_regions() {
     let mesh = disturbed();
     let m = mesh.triangles.len();

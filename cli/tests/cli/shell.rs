@@ -64,6 +64,16 @@ fn completions_and_manual_have_every_option() {
     let engines = offered(&folder, &["gpu-smooth", "part.msh", "out.msh", "--engine", ""]);
     assert_eq!(engines, ["auto", "gpu", "cpu"]);
     assert_eq!(offered(&folder, &["gpu-smooth", "par"]), ["part.msh"]);
+    // Commands precede meshes, so none is offered after a mesh.
+    let before = offered(&folder, &["gpu-smooth", "--log", "json", ""]);
+    assert!(["quality", "part.msh"].iter().all(|word| before.contains(&(*word).to_owned())));
+    for words in [&["gpu-smooth", "part.msh", ""][..], &["gpu-smooth", "part.msh", "-q", ""]] {
+        let after = offered(&folder, words);
+        let place = |word: &str| after.iter().position(|other| other == word).unwrap();
+        assert!(place("part.msh") < place("--scheme"), "{words:?}: {after:?}");
+        assert!(!after.contains(&"quality".to_owned()), "{words:?}: {after:?}");
+    }
+    assert!(offered(&folder, &["gpu-smooth", "part.msh", "qua"]).is_empty());
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = folder.line(&format!("completions {shell}")).clean().out;
         assert_holds(&text, &["GPU_SMOOTH_COMPLETE", "gpu-smooth"]);
@@ -160,7 +170,7 @@ fn every_command_has_a_page() {
 #[test]
 fn help_has_examples_for_each_command_with_options() {
     let folder = Folder::new(&[]);
-    for command in ["quality", "groups", "compare", "bench", "completions", "man"] {
+    for command in ["quality", "try", "groups", "compare", "bench", "completions", "man"] {
         let help = folder.line(&format!("{command} --help")).clean().out;
         assert!(help.contains("Example"), "{command}");
         assert_holds(&help, &[&format!("  gpu-smooth {command} ")]);

@@ -11,7 +11,7 @@
 
 mod scene;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
     Gpu, GpuError, Mesh, MeshSize, Topology, gpu::VertexBuffer, topology::signed_area, wgpu,
@@ -22,7 +22,7 @@ use scene::{STRIDE, Scene, Seen};
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 fn main() -> Result<()> {
-    let path = std::env::args().nth(1).map_or("meshes/plate.node".into(), PathBuf::from);
+    let path = std::env::args().nth(1).map_or_else(default_mesh, PathBuf::from);
     let file = MeshFile::read(&path)?;
     let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
     let mesh = Mesh { points, triangles, fixed: file.constraints().vertices.clone() };
@@ -30,6 +30,15 @@ fn main() -> Result<()> {
         println!("{act}: {told:?}");
     }
     Ok(())
+}
+
+/// Returns the mesh of a command line without MESH. The path is absolute, so that the example runs in any directory. The
+/// mesh is in the repository, above the folder of this crate.
+pub(crate) fn default_mesh() -> PathBuf {
+    let name = "meshes/plate.node";
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let mut paths = folders.map(|folder| folder.join(name));
+    paths.find(|path| path.is_file()).unwrap_or_else(|| name.into())
 }
 
 /// The result of an act, which consists of several frames.

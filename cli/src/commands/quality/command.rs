@@ -1,17 +1,20 @@
 //! The command `gpu-smooth quality MESH...`, which measures meshes.
 
+use std::path::Path;
+
 use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
 use crate::commands::quality::mesh_quality::MeshQuality;
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
+use crate::render::html::{self, PageEntry};
 use crate::request::Outputs;
 use crate::terminal::tell;
 
 /// Prints the quality of meshes. Returns an error if a mesh cannot be read, or if triangles violate a
 /// threshold.
 pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
-    let outputs = Outputs::of_picture(&args.picture)?;
+    let outputs = Outputs::of_drawings(&args.picture, args.html.as_ref())?;
     outputs.check(&args.meshes, &[])?;
     let style = Style::of_terminal(args.ascii);
     let (mut qualities, mut errors) = (Vec::new(), Vec::new());
@@ -24,6 +27,7 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
     }
     if !qualities.is_empty() {
         print(&qualities, args, &style)?;
+        write_page(&qualities, outputs.page.as_deref())?;
     }
     if let Some(last) = errors.pop() {
         errors.iter().for_each(tell::error);
@@ -46,6 +50,25 @@ fn print(qualities: &[MeshQuality], args: &QualityArgs, style: &Style) -> Result
         tell::say(&text::text(qualities, style));
     }
     Ok(())
+}
+
+/// Writes the page of the measured meshes if requested.
+fn write_page(qualities: &[MeshQuality], path: Option<&Path>) -> Result<(), CliError> {
+    let Some(path) = path else { return Ok(()) };
+    let is_alone = qualities.len() == 1;
+    let entries: Vec<PageEntry<'_>> =
+        qualities.iter().filter_map(|quality| entry(quality, is_alone)).collect();
+    html::write_meshes(path, &entries)
+}
+
+/// Returns the entry of a mesh in the page, with the name of its file, or with its path if the page has several meshes.
+fn entry(quality: &MeshQuality, is_alone: bool) -> Option<PageEntry<'_>> {
+    let path = &quality.path;
+    let name = match is_alone {
+        true => path.file_name().unwrap_or_default().display().to_string(),
+        false => path.display().to_string(),
+    };
+    Some(PageEntry { name, part: quality.page.as_ref()?, statistics: &quality.statistics })
 }
 
 /// Returns a sentence for each threshold that triangles of a mesh violate.

@@ -39,7 +39,7 @@ fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
         let regions = quality.regions.iter().map(|region| {
             let mut object = placed("first_triangle", &region.first);
             object.insert("groups".into(), json!(spellings(region)));
-            object.insert("triangles".into(), region.statistics[0].count.into());
+            object.insert("triangles".into(), region.triangles.into());
             object.insert("measures".into(), measures(&region.statistics));
             Value::from(object)
         });

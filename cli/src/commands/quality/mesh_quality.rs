@@ -18,6 +18,7 @@ use crate::load::explain::{self, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
 use crate::load::{as_in_file, lay_out};
+use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::{Histogram, QualityReport, histogram};
 use crate::request::{PictureRequest, ThirdCoordinate};
@@ -34,11 +35,11 @@ pub(crate) struct MeshQuality {
     pub(crate) report: QualityReport,
     /// Location of the triangle with the largest inverse mean ratio.
     pub(crate) worst_place: SourceLocation,
-    /// Statistics of all measures, in the order of `Measure::ALL`.
+    /// Statistics of the measures of `--measure`, or of all measures.
     pub(crate) statistics: Vec<Statistics>,
     pub(crate) regions: Vec<Region>,
     pub(crate) histograms: Vec<Histogram>,
-    /// The worst triangles by the first measure of `--measure`, worst first.
+    /// The worst triangles by the first measure with a histogram, worst first.
     pub(crate) worst: Vec<Worst>,
     pub(crate) violations: Vec<Violation>,
     /// Inverted and flat triangles: all for JSON, otherwise the first [`explain::TOLD`].
@@ -47,6 +48,8 @@ pub(crate) struct MeshQuality {
     pub(crate) hanging_nodes: usize,
     pub(crate) duplicate_vertices: usize,
     pub(crate) unused_vertices: usize,
+    /// Section of the mesh for the page; `None` without `--html`.
+    pub(crate) page: Option<MeshPart>,
 }
 
 /// A region of the file: a class of triangles.
@@ -55,18 +58,21 @@ pub(crate) struct Region {
     pub(crate) first: SourceLocation,
     /// The groups that contain the region's triangles, named groups first.
     pub(crate) groups: Vec<GroupNames>,
-    /// Statistics of all measures in the region, in the order of `Measure::ALL`.
+    /// Number of triangles.
+    pub(crate) triangles: usize,
+    /// Statistics of the region by the measures of `MeshQuality::statistics`.
     pub(crate) statistics: Vec<Statistics>,
 }
 
 /// Names of a group of the file.
+#[derive(Clone)]
 pub(crate) struct GroupNames {
-    /// The name in the spelling that options accept.
+    /// The name in the spelling that options accept, such as `--only`.
     pub(crate) spelling: String,
-    /// Full designation: the group's kind, followed by the name or tag.
-    pub(crate) full: String,
-    /// Short designation: the group's name, or kind and tag for groups without a name.
-    pub(crate) short: String,
+    /// Kind and dimension, such as `physical surface`.
+    pub(crate) kind: String,
+    /// Whether the group has triangles of one region only.
+    pub(crate) is_of_one_region: bool,
 }
 
 /// One of the worst triangles, in the terms of its file.
@@ -77,7 +83,9 @@ pub(crate) struct Worst {
     /// Corners in coordinates of the file, without continued longitudes. `at` is the centroid.
     pub(crate) corners: [[f64; 2]; 3],
     pub(crate) at: [f64; 2],
-    /// Values of the measures of `--measure`, in the given order.
+    /// Length of the longest edge.
+    pub(crate) length: f64,
+    /// Values of the measures with a histogram.
     pub(crate) values: Vec<(Measure, f64)>,
     /// Whether the triangle has a free vertex.
     pub(crate) can_move: bool,
@@ -116,23 +124,38 @@ impl MeshQuality {
             PictureSubject { file: &file, topology: &topology, surface },
             &[state],
         )?;
+        let remarks: Vec<String> = remarks::remarks(&file, false)
+            .into_iter()
+            .chain(laid_out)
+            .chain(explain::hanging(&file, &hanging))
+            .collect();
+        let page = args.html.as_ref().map(|_| {
+            MeshPart::new(MeshDescription {
+                file: &file,
+                measured: &measured,
+                histograms: args.histograms(),
+                worst: args.worst,
+                is_alone: args.meshes.len() == 1,
+                sentences: sentences(&file, &topology, bad.len(), &remarks),
+            })
+        });
+        let page = page.transpose()?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),
             format: file.source.format().to_string(),
-            remarks: remarks::remarks(&file, false)
-                .into_iter()
-                .chain(laid_out)
-                .chain(explain::hanging(&file, &hanging))
-                .collect(),
+            remarks,
             vertices: file.source.points().len(),
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
             report: QualityReport::from(&quality),
             worst_place: file.source.triangle_location(quality.worst_triangle),
-            statistics: measured.statistics(Measure::ALL),
-            regions: if args.by_region { regions(&file, &measured)? } else { Vec::new() },
-            histograms: args.measure.iter().map(|&m| histogram(&measured, m)).collect(),
+            statistics: measured.statistics(&args.statistics()),
+            regions: match args.by_region {
+                true => regions(&file, &measured, &args.statistics())?,
+                false => Vec::new(),
+            },
+            histograms: args.histograms().iter().map(|&m| histogram(&measured, m)).collect(),
             worst: worst(&file, &topology, &measured, args),
             violations: args.threshold.iter().map(|t| violation(&file, &measured, t)).collect(),
             bad: explain::bad_triangles(&file, &bad[..listed]),
@@ -140,8 +163,29 @@ impl MeshQuality {
             hanging_nodes: hanging.len(),
             duplicate_vertices: measured.duplicate_vertices().len(),
             unused_vertices: unused(&file, &measured),
+            page,
         })
     }
+}
+
+/// Returns the sentences on a mesh at the top of a page.
+fn sentences(
+    file: &LoadedMesh,
+    topology: &Topology<'_>,
+    bad: usize,
+    remarks: &[String],
+) -> Vec<String> {
+    let (vertices, triangles) = (file.source.points().len(), topology.triangles().len());
+    let (format, free) = (file.source.format(), topology.free_count());
+    let mut sentences =
+        vec![format!("{format}: {vertices} vertices ({free} free), {triangles} triangles")];
+    sentences.push(match bad {
+        0 => "No triangle is inverted or flat".to_owned(),
+        1 => "1 triangle is inverted or flat".to_owned(),
+        n => format!("{n} triangles are inverted or flat"),
+    });
+    sentences.extend_from_slice(remarks);
+    sentences
 }
 
 /// Counts the vertices of the file that no triangle uses. On the sphere, triangles at a pole or at a cut of the globe
@@ -155,7 +199,11 @@ fn unused(file: &LoadedMesh, measured: &Measured<'_>) -> usize {
     unused.iter().filter(|v| !used.contains(v)).count()
 }
 
-fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, CliError> {
+fn regions(
+    file: &LoadedMesh,
+    measured: &Measured<'_>,
+    measures: &[Measure],
+) -> Result<Vec<Region>, CliError> {
     let zeros;
     let regions = match file.source.regions() {
         Some(regions) => regions,
@@ -166,18 +214,23 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, Cl
     };
     let count = regions.iter().max().map_or(0, |&most| most as usize + 1);
     let mut first = vec![None; count];
+    let mut triangles = vec![0; count];
     for (t, &region) in regions.iter().enumerate() {
         first[region as usize].get_or_insert(t);
+        triangles[region as usize] += 1;
     }
     let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
     let places = file.source.triangle_locations(first.iter().copied());
-    let statistics = measured.statistics_by_region(Measure::ALL, regions, count);
+    let statistics = measured.statistics_by_region(measures, regions, count);
     let groups = file.source.groups()?;
-    let region = |((first, statistics), groups): ((&usize, Vec<Statistics>), Vec<GroupNames>)| {
-        Region { first: places[first].clone(), groups, statistics }
+    let mut named = groups_of(&first, &groups).into_iter();
+    let region = |((first, triangles), statistics): ((&usize, usize), Vec<Statistics>)| Region {
+        first: places[first].clone(),
+        triangles,
+        groups: named.next().unwrap_or_default(),
+        statistics,
     };
-    let named = groups_of(&first, &groups);
-    Ok(first.iter().zip(statistics).zip(named).map(region).collect())
+    Ok(first.iter().zip(triangles).zip(statistics).map(region).collect())
 }
 
 /// Returns the groups of each triangle in `triangles`, named groups first. All triangles of a region belong to equal
@@ -185,26 +238,22 @@ fn regions(file: &LoadedMesh, measured: &Measured<'_>) -> Result<Vec<Region>, Cl
 fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<GroupNames>> {
     // One pass over each group's triangles suffices, though the mesh may have as many regions as groups.
     let asked: HashMap<u32, usize> = triangles.iter().map(|&t| t as u32).zip(0..).collect();
-    let mut found: Vec<Vec<(&Group, String)>> = vec![Vec::new(); triangles.len()];
+    let mut found: Vec<Vec<(&Group, GroupNames)>> = vec![Vec::new(); triangles.len()];
     for (group, spelling) in groups.iter().zip(groups.unique_names()) {
-        for &region in group.triangles().iter().filter_map(|t| asked.get(t)) {
-            found[region].push((group, spelling.clone()));
+        let regions: Vec<usize> =
+            group.triangles().iter().filter_map(|t| asked.get(t)).copied().collect();
+        for &region in &regions {
+            let kind = format!("{} {}", group.kind, group.dimension_name());
+            let spelling = spelling.clone();
+            let names = GroupNames { spelling, kind, is_of_one_region: regions.len() == 1 };
+            found[region].push((group, names));
         }
     }
-    let named = |(group, spelling): (&Group, String)| {
-        let tag = group.tag.map(|tag| tag.to_string());
-        let short = match group.name.clone().or(tag).unwrap_or_default() {
-            // A name that is only a number would be mistaken for the number of a region.
-            number if number.parse::<f64>().is_ok() => format!("{} {number}", group.kind),
-            name => name,
-        };
-        GroupNames { spelling, full: group.to_string(), short }
-    };
-    let told = |mut found: Vec<(&Group, String)>| {
+    let sorted = |mut found: Vec<(&Group, GroupNames)>| {
         found.sort_by_key(|(group, _)| group.name.is_none());
-        found.into_iter().map(named).collect()
+        found.into_iter().map(|(_, names)| names).collect()
     };
-    found.into_iter().map(told).collect()
+    found.into_iter().map(sorted).collect()
 }
 
 fn worst(
@@ -214,7 +263,7 @@ fn worst(
     args: &QualityArgs,
 ) -> Vec<Worst> {
     let mesh = file.mesh();
-    let Some(&measure) = args.measure.first() else { return Vec::new() };
+    let Some(&measure) = args.histograms().first() else { return Vec::new() };
     let found = measured.worst(measure, args.worst);
     let places = file.source.triangle_locations(found.iter().map(|found| found.0));
     let names = file.vertex_places(found.iter().flat_map(|found| mesh.triangles[found.0]));
@@ -223,10 +272,16 @@ fn worst(
         vertices: mesh.triangles[t].map(|v| names[&v].id),
         corners: file.source.triangles()[t].map(|v| file.positions()[v as usize]),
         at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
-        values: args.measure.iter().map(|&m| (m, measured.value(m, t))).collect(),
+        length: longest_edge(mesh.triangles[t].map(|v| mesh.points[v as usize])),
+        values: args.histograms().iter().map(|&m| (m, measured.value(m, t))).collect(),
         can_move: topology.can_move(t),
     };
     found.iter().map(one).collect()
+}
+
+fn longest_edge([p, q, r]: [[f64; 2]; 3]) -> f64 {
+    let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+    length(p, q).max(length(q, r)).max(length(r, p))
 }
 
 fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {

@@ -8,10 +8,11 @@ use gpu_smooth::{
 };
 
 use crate::commands::quality::bars::{self, Style};
-use crate::commands::quality::mesh_quality::{MeshQuality, Region, Worst};
+use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region, Worst};
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
-use crate::terminal::numbers::{fit8, sig6};
+use crate::report::DistinctMeasures;
+use crate::terminal::numbers::{coordinate, fit8, sig6};
 
 /// Width of a table's first column, in characters.
 const NAME: usize = 17;
@@ -48,11 +49,15 @@ pub(crate) fn text(qualities: &[MeshQuality], style: &Style) -> String {
     text.trim_end().to_owned()
 }
 
-/// Writes a table with the statistics of all measures: one row per measure, or one row per measure
-/// and file.
+/// Writes a table of statistics: one row per measure, or one row per measure and file. Measures with equal values share
+/// a row, and a sentence below the table names them.
 fn table(qualities: &[MeshQuality], style: &Style) -> String {
     let mut text = head(style);
-    for (i, measure) in Measure::ALL.iter().enumerate() {
+    let Some(first) = qualities.first() else { return text };
+    let measures: Vec<Measure> = first.statistics.iter().map(|row| row.measure).collect();
+    let DistinctMeasures { shown, equal } = DistinctMeasures::of(&measures);
+    let shown = measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure));
+    for (i, measure) in shown {
         match qualities {
             [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i], style)),
             several => {
@@ -63,6 +68,9 @@ fn table(qualities: &[MeshQuality], style: &Style) -> String {
                 }
             }
         }
+    }
+    if !equal.is_empty() {
+        let _ = writeln!(text, "Not listed: {}", equal.join(", "));
     }
     text
 }
@@ -110,9 +118,8 @@ fn details(quality: &MeshQuality, style: &Style) -> String {
         text.push('\n');
     }
     let report = &quality.report;
-    for metric in Metric::ALL {
-        let _ =
-            writeln!(text, "{:<22}{:>12}", format!("f {metric}"), sig6(report.f[metric.name()]));
+    for (name, metric) in objectives() {
+        let _ = writeln!(text, "{name:<22}{:>12}", sig6(report.f[metric.name()]));
     }
     let (worst, place) = (sig6(report.worst_imr), &quality.worst_place);
     let at = format!("  triangle {} ({place})", place.id);
@@ -136,29 +143,51 @@ fn details(quality: &MeshQuality, style: &Style) -> String {
     text
 }
 
-/// Writes a table by region for each measure of `--measure`, then the list of regions.
+/// Returns the metrics whose objectives are listed, each with the names of all metrics with equal objectives.
+fn objectives() -> Vec<(String, Metric)> {
+    let mut rows: Vec<(String, Metric)> = Vec::new();
+    for &metric in Metric::ALL {
+        let twin = |metric| Measure::Metric(metric).equal_to();
+        let is_twin =
+            |row: &&mut (String, Metric)| twin(metric).is_some() && twin(row.1) == twin(metric);
+        match rows.iter_mut().find(is_twin) {
+            Some((name, _)) => *name += &format!(", {metric}"),
+            None => rows.push((format!("f {metric}"), metric)),
+        }
+    }
+    rows
+}
+
+/// Writes a table by region for each measure with a histogram, then the list of regions. Regions have the names that
+/// `--only` accepts.
 fn by_region(quality: &MeshQuality, style: &Style) -> String {
     let mut text = String::new();
     for histogram in quality.histograms.iter().filter(|_| !quality.regions.is_empty()) {
-        let measure = histogram.measure;
-        let at = Measure::ALL.iter().position(|&other| other == measure).unwrap_or_default();
-        let _ = writeln!(text, "{} by region", named(measure, style));
+        let _ = writeln!(text, "{} by region", named(histogram.measure, style));
         text.push_str(&head(style));
         for (number, region) in (1..).zip(&quality.regions) {
-            let name = match region.groups.first() {
-                Some(group) => format!("{number} {}", group.short),
+            // A group of several regions does not name any of them.
+            let name = match region.groups.iter().find(|group| group.is_of_one_region) {
+                Some(group) => shortened(&group.spelling, NAME - 1),
                 None => format!("region {number}"),
             };
-            text.push_str(&row(&shortened(&name, NAME - 1), &region.statistics[at], style));
+            let of_measure = |row: &&Statistics| row.measure == histogram.measure;
+            if let Some(statistics) = region.statistics.iter().find(of_measure) {
+                text.push_str(&row(&name, statistics, style));
+            }
         }
         text.push('\n');
     }
     for (number, region) in (1..).zip(&quality.regions) {
-        let Region { first, groups, statistics } = region;
-        let groups: Vec<&str> = groups.iter().map(|group| &*group.full).collect();
+        let Region { first, triangles, groups, .. } = region;
+        let full = |group: &GroupNames| format!("{} ({})", group.spelling, group.kind);
+        let groups: Vec<String> = groups.iter().map(full).collect();
         let named = if groups.is_empty() { String::new() } else { groups.join(", ") + "; " };
-        let count = statistics[0].count;
-        let _ = writeln!(text, "region {number}: {named}{count} triangles, the first at {first}");
+        let _ =
+            writeln!(text, "region {number}: {named}{triangles} triangles, the first at {first}");
+    }
+    if quality.regions.len() > 1 && quality.regions.iter().all(|region| region.groups.is_empty()) {
+        text.push_str("The file has no groups, so --only accepts no name of a region\n");
     }
     if !quality.regions.is_empty() {
         text.push('\n');
@@ -168,12 +197,13 @@ fn by_region(quality: &MeshQuality, style: &Style) -> String {
 
 /// Writes the location of a triangle, its values, and whether smoothing can improve the triangle.
 fn worst_line(worst: &Worst, style: &Style) -> String {
-    let Worst { place, at: [x, y], values, can_move, .. } = worst;
+    let Worst { place, at, values, can_move, .. } = worst;
+    let [x, y] = at.map(|x| coordinate(x, worst.length));
     let values: Vec<String> =
         values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();
     let movable = if *can_move { "can move" } else { "all its vertices are fixed" };
     let (label, values) = (place.id, values.join(", "));
-    format!("  triangle {label} ({place}): {values}; at {} {}; {movable}\n", sig6(*x), sig6(*y))
+    format!("  triangle {label} ({place}): {values}; at {x} {y}; {movable}\n")
 }
 
 /// Formats a value with the name and unit of its measure.

@@ -10,6 +10,7 @@ use mesh_io::atomic;
 use serde::Serialize;
 use serde_json::json;
 
+use crate::commands::smooth::dry_run;
 use crate::load::overwrite::{self, Likeness};
 use crate::load::streams;
 use crate::render::html;
@@ -17,10 +18,11 @@ use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::Failure;
 use crate::report::{Done, SmoothJob};
 use crate::report::{Refusal, Report};
-use crate::request::{Outputs, SmoothRequest};
+use crate::request::{Outputs, RunExtent, SmoothRequest};
 use crate::run::checkpoint;
 use crate::run::engine;
 use crate::run::observer::PipelineObserver;
+use crate::run::rehearsal;
 use crate::run::run_pipeline;
 use crate::terminal::Verbosity;
 use crate::terminal::interrupt;
@@ -53,13 +55,22 @@ pub(crate) fn run(
                 None => engine::choose(request, size),
             }))
         };
+        if request.extent == RunExtent::Prepared {
+            let rehearsal = rehearsal::rehearse(&task, engine, &mut follow)?;
+            display.clear();
+            dry_run::print(&task, &rehearsal);
+            return Ok(());
+        }
         run_pipeline(&task, engine, &mut follow, |done| {
             display.clear();
             finish(&task, &done)
         })
     });
     display.clear();
-    done.map_err(|failure| error_with_report(&request.outputs, failure))
+    done.map_err(|failure| match request.extent {
+        RunExtent::Whole => error_with_report(&request.outputs, failure),
+        RunExtent::Unwritten | RunExtent::Prepared => failure.error,
+    })
 }
 
 /// Observer that shows a run on the terminal and checks its output files.

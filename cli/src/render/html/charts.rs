@@ -174,33 +174,46 @@ pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]
     text + "</svg></figure>"
 }
 
-/// Draws two bars for each bin: the percentages of triangles before and after.
-pub(crate) fn bars(title: &str, edges: &[f64], counts: [&[usize]; 2]) -> String {
+/// Numbers of triangles by bins, drawn as bars of one color.
+pub(crate) struct Series<'a> {
+    /// Class of the bars in the style of the page.
+    pub(crate) class: &'static str,
+    /// Name in the legend; `None` for a chart without a legend.
+    pub(crate) name: Option<&'static str>,
+    pub(crate) counts: &'a [usize],
+}
+
+/// Draws a bar for each bin of each series: the percentage of triangles. The series have equal numbers of bins and of
+/// triangles.
+pub(crate) fn bars(title: &str, edges: &[f64], series: &[Series<'_>]) -> String {
     let mut text = open(title);
     let [left, right] = x_axis(0.0, WIDTH);
     let bottom = HEIGHT - MARGIN[3];
-    let total = counts[0].iter().sum::<usize>().max(1) as f64;
+    let bins = edges.len().saturating_sub(1);
+    let total =
+        series.first().map_or(0, |series| series.counts.iter().sum::<usize>()).max(1) as f64;
     let percent = |count: usize| 100.0 * count as f64 / total;
-    let most = counts.iter().flat_map(|counts| counts.iter()).copied().max().unwrap_or(0);
+    let most = series.iter().flat_map(|series| series.counts).copied().max().unwrap_or(0);
     let y = Axis::new([0.0, percent(most).max(1.0)].into_iter(), false, bottom, MARGIN[2] + 8.0);
     for value in y.ticks() {
         across(&mut text, y.place(value), &format!("{} %", tick(value)));
     }
-    let bins = counts[0].len().max(1);
-    let width = (right - left) / bins as f64;
-    for i in 0..counts[0].len() {
-        for (state, (class, name)) in [("before", "before"), ("after", "after")].iter().enumerate()
-        {
-            let count = counts[state][i];
+    let width = (right - left) / bins.max(1) as f64;
+    // The bars of a bin fill 84 % of its width.
+    let bar = 0.84 / series.len().max(1) as f64;
+    for i in 0..bins {
+        for (place, Series { class, name, counts }) in series.iter().enumerate() {
+            let count = counts.get(i).copied().unwrap_or(0);
             let top = y.place(percent(count));
-            let start = left + (i as f64 + 0.08 + 0.42 * state as f64) * width;
+            let start = left + (i as f64 + 0.08 + bar * place as f64) * width;
             // A nonempty bin is at least 1 pixel high, to remain visible.
             let height = (bottom - top).max(if count > 0 { 1.0 } else { 0.0 });
+            let name = name.map(|name| format!(" {name}")).unwrap_or_default();
             let _ = write!(
                 text,
-                "<rect class=\"{class}\" x=\"{start:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{height:.1}\"><title>{} to {}: {count} triangles {name}</title></rect>",
+                "<rect class=\"{class}\" x=\"{start:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{height:.1}\"><title>{} to {}: {count} triangles{name}</title></rect>",
                 bottom - height,
-                0.42 * width,
+                bar * width,
                 tick(edges[i]),
                 if edges[i + 1].is_finite() { tick(edges[i + 1]) } else { "any".into() }
             );
@@ -215,15 +228,23 @@ pub(crate) fn bars(title: &str, edges: &[f64], counts: [&[usize]; 2]) -> String 
     {
         below(&mut text, left + i as f64 * width, &tick(*edge));
     }
-    let _ = write!(
-        text,
-        "<g class=\"legend\"><rect class=\"before\" x=\"{0}\" y=\"6\" width=\"10\" height=\"10\"/><text class=\"number\" x=\"{1}\" y=\"15\">before</text><rect class=\"after\" x=\"{2}\" y=\"6\" width=\"10\" height=\"10\"/><text class=\"number\" x=\"{3}\" y=\"15\">after</text></g></svg></figure>",
-        right - 112.0,
-        right - 98.0,
-        right - 48.0,
-        right - 34.0
-    );
-    text
+    text += &legend(series, right);
+    text + "</svg></figure>"
+}
+
+/// Draws the legend of the named series, which ends at `right`.
+fn legend(series: &[Series<'_>], right: f64) -> String {
+    let mut text = String::from("<g class=\"legend\">");
+    for (place, Series { class, name, .. }) in series.iter().rev().enumerate() {
+        let Some(name) = name else { continue };
+        let left = right - 48.0 - 64.0 * place as f64;
+        let _ = write!(
+            text,
+            "<rect class=\"{class}\" x=\"{left}\" y=\"6\" width=\"10\" height=\"10\"/><text class=\"number\" x=\"{}\" y=\"15\">{name}</text>",
+            left + 14.0
+        );
+    }
+    text + "</g>"
 }
 
 #[cfg(test)]

@@ -47,26 +47,28 @@ pub(crate) fn caption(triangles: usize) -> String {
     }
 }
 
-/// Returns the JSON that the page's script reads.
+/// Returns the JSON that the page's script reads: of the mesh before and after a run, or of one mesh. `states` must not
+/// be empty.
 pub(crate) fn data(
     file: &LoadedMesh,
-    states: [&Measured<'_>; 2],
+    states: &[&Measured<'_>],
     spots: &[WorstTriangle],
     bounds: &Bounds,
 ) -> Result<Value, CliError> {
-    let topology = states[0].topology();
+    let (first, last) = (states[0], states[states.len() - 1]);
+    let topology = first.topology();
     let is_whole = topology.triangles().len() <= bounds.most;
     let outlines = Outlines::of(
         topology,
         &file.mesh().fixed,
         file.source.regions(),
-        states.map(|state| state.points()),
+        [first, last].map(|state| state.points()),
     );
     let shown = match is_whole {
         true => (0..topology.triangles().len()).collect(),
         false => around(topology, spots),
     };
-    let extent = Extent::of(topology.triangles(), &states.map(|state| state.points()));
+    let extent = Extent::of(topology.triangles(), &[first.points(), last.points()]);
     let mut part = Part::new(file.mesh().points.len());
     let corners = shown.iter().flat_map(|&t| topology.triangles()[t]);
     let triangles: Vec<u32> = corners.map(|v| part.number(v)).collect();
@@ -95,7 +97,7 @@ pub(crate) fn data(
         })
     });
     let mut both = Vec::new();
-    for state in states {
+    for &state in states {
         let picture = match is_whole {
             true => None,
             false => Some(picture(topology, state, extent, bounds.pixels)?),
@@ -250,7 +252,7 @@ mod tests {
         let topology = Topology::new(file.mesh()).unwrap();
         let state = Measured::new(&file.mesh().points, &topology).unwrap();
         let spots = worst::spots(&file, [&state; 2]);
-        let of = |most| data(&file, [&state; 2], &spots, &Bounds { most, pixels: 300 }).unwrap();
+        let of = |most| data(&file, &[&state; 2], &spots, &Bounds { most, pixels: 300 }).unwrap();
         let count = |data: &Value, key: &str| {
             BASE64_STANDARD.decode(data[key].as_str().unwrap()).unwrap().len() / 4
         };

@@ -1,11 +1,13 @@
-//! The page of a run in a single file, for `--html`.
+//! Pages in a single file, for `--html`: of a run, and of measured meshes.
 
 mod charts;
 mod mesh;
+mod meshes;
 mod page;
 mod run;
 mod tables;
 mod worst;
 mod write;
 
+pub(crate) use meshes::{MeshDescription, MeshPart, PageEntry, write_meshes};
 pub(crate) use write::write;

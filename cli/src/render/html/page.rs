@@ -4,6 +4,50 @@ const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("viewer.js");
 const VIEWER: &str = include_str!("viewer.html");
 
+/// The views of the mesh viewer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum View {
+    /// The mesh before and after a run, side by side.
+    Run,
+    /// One mesh.
+    Mesh,
+}
+
+impl View {
+    /// Returns the figures of the viewer as HTML.
+    fn figures(self) -> String {
+        let figure = |caption: &str, label: &str| {
+            format!(
+                "<figure>{caption}<canvas tabindex=\"0\" aria-label=\"{label}\"></canvas></figure>\n"
+            )
+        };
+        match self {
+            Self::Mesh => figure("", "the mesh"),
+            Self::Run => ["before", "after"]
+                .map(|state| {
+                    let caption = format!("<figcaption>{state}</figcaption>");
+                    figure(&caption, &format!("the mesh {state} the run"))
+                })
+                .concat(),
+        }
+    }
+
+    /// Fills the template of the viewer.
+    fn fill(self, caption: &str) -> String {
+        let (class, together, slid) = match self {
+            Self::Mesh => ("one", "", ""),
+            Self::Run => (
+                "two",
+                "; both views move together",
+                "<li><span class=\"sign slid\"></span>vertex that slid</li>",
+            ),
+        };
+        let text = VIEWER.replace("{views}", &self.figures()).replace("{class}", class);
+        let text = text.replace("{together}", together).replace("{slid}", slid);
+        text.replace("{caption}", &escape(caption))
+    }
+}
+
 /// A page under construction.
 pub(crate) struct Page {
     title: String,
@@ -29,8 +73,8 @@ impl Page {
     }
 
     /// Adds the section with the mesh viewer. `data` is the JSON that the script draws.
-    pub(crate) fn mesh(&mut self, caption: &str, data: &serde_json::Value) {
-        let content = VIEWER.replace("{caption}", &escape(caption));
+    pub(crate) fn mesh(&mut self, caption: &str, view: View, data: &serde_json::Value) {
+        let content = view.fill(caption);
         self.body += &format!("<section id=\"mesh\"><h2>Mesh</h2>\n{content}</section>\n");
         // Without `<`, no text in the JSON can end the script element.
         self.data = data.to_string().replace('<', "\\u003c");
@@ -38,12 +82,18 @@ impl Page {
 
     pub(crate) fn finish(self) -> String {
         let Self { title, body, data } = self;
+        // The script draws the data of the viewer.
+        let scripts = match data.is_empty() {
+            true => String::new(),
+            false => format!(
+                "<script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n{SCRIPT}</script>\n"
+            ),
+        };
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta name=\"color-scheme\" content=\"light dark\">\n\
-             <title>{title} - gpu-smooth</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</main>\n\
-             <script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n"
+             <title>{title} - gpu-smooth</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</main>\n{scripts}</body>\n</html>\n"
         )
     }
 }

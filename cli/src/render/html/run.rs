@@ -1,6 +1,5 @@
 //! The section on the run: command, versions, engine, and the checks of the result.
 
-use std::ffi::OsStr;
 use std::fmt::Write;
 use std::time::SystemTime;
 
@@ -9,10 +8,11 @@ use crate::render::html::page::escape;
 use crate::render::picture::slid;
 use crate::report::{Done, SmoothJob};
 use crate::terminal::numbers::sig6;
+use crate::terminal::shell_words;
 
 /// Writes the command, the versions, the engine, and the certificate as HTML.
 pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliError> {
-    let command: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
+    let command: Vec<String> = std::env::args_os().map(|word| shell_words::quoted(&word)).collect();
     let engine = &done.report.engine;
     let on = match (&engine.adapter, &engine.driver) {
         (Some(adapter), Some(driver)) => format!("{adapter} ({driver})"),
@@ -98,16 +98,6 @@ fn date(seconds: u64) -> String {
     format!("{year}-{month:02}-{:02} {:02}:{:02} UTC", days + 1, minutes / 60, minutes % 60)
 }
 
-/// Quotes a word for a shell if it needs quotes.
-fn quoted(word: &OsStr) -> String {
-    let word = word.to_string_lossy();
-    let is_plain = |c: char| c.is_alphanumeric() || "-_=+./,:@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.into_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,15 +113,6 @@ mod tests {
         ];
         for (seconds, text) in cases {
             assert_eq!(date(seconds), text);
-        }
-    }
-
-    #[test]
-    fn words_are_quoted_for_a_shell() {
-        let cases =
-            [("in.msh", "in.msh"), ("", "''"), ("a b", "'a b'"), ("it's<5", r"'it'\''s<5'")];
-        for (word, expected) in cases {
-            assert_eq!(quoted(OsStr::new(word)), expected);
         }
     }
 }

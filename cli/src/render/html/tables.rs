@@ -5,7 +5,7 @@ use std::fmt::Write;
 use gpu_smooth::measure::{Measure, Measured, Statistics};
 
 use crate::render::html::page::escape;
-use crate::report::{Report, Seconds};
+use crate::report::{DistinctMeasures, Report, Seconds};
 use crate::terminal::numbers::{fit8, sig6};
 
 /// Writes the summary of the terminal as HTML: subject, and table of values before and after.
@@ -29,27 +29,46 @@ pub(crate) fn summary(report: &Report) -> String {
 /// Writes a table with the statistics of all measures, in pairs of rows before and after a run.
 pub(crate) fn statistics(states: [&Measured<'_>; 2]) -> String {
     let [before, after] = states.map(|state| state.statistics(Measure::ALL));
-    let mut text = String::from(
-        "<div class=\"wide\"><table class=\"pairs\"><thead><tr><th>measure</th><th></th>",
-    );
+    statistics_of_meshes(&[("before", &before), ("after", &after)])
+}
+
+/// Writes a table of statistics. Each mesh has a name and statistics by the same measures, and a row for each measure. A
+/// single mesh has no column of names.
+pub(crate) fn statistics_of_meshes(meshes: &[(&str, &[Statistics])]) -> String {
+    let is_alone = meshes.len() == 1;
+    let class = if is_alone { "one" } else { "pairs" };
+    let mut text =
+        format!("<div class=\"wide\"><table class=\"{class}\"><thead><tr><th>measure</th>");
+    text += if is_alone { "" } else { "<th></th>" };
     for column in ["min", "5 %", "median", "mean", "95 %", "max", "sd"] {
         let _ = write!(text, "<th>{column}</th>");
     }
     text += "</tr></thead><tbody>";
-    for (before, after) in before.iter().zip(&after) {
-        let name = escape(&measure_name(before.measure));
-        let source = escape(before.measure.definition().formula);
-        let _ = write!(text, "<tr><th rowspan=\"2\" title=\"{source}\">{name}</th>");
-        row(&mut text, "before", before);
-        text += "<tr>";
-        row(&mut text, "after", after);
+    let first = meshes.first().map_or(&[][..], |(_, statistics)| statistics);
+    let measures: Vec<Measure> = first.iter().map(|statistics| statistics.measure).collect();
+    let DistinctMeasures { shown, equal } = DistinctMeasures::of(&measures);
+    for (i, measure) in measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure)) {
+        let (name, source) =
+            (escape(&measure_name(*measure)), escape(measure.definition().formula));
+        let rows = meshes.len();
+        let _ = write!(text, "<tr><th rowspan=\"{rows}\" title=\"{source}\">{name}</th>");
+        for (number, (name, statistics)) in meshes.iter().enumerate() {
+            text += if number == 0 { "" } else { "<tr class=\"more\">" };
+            if !is_alone {
+                let _ = write!(text, "<td class=\"state\">{}</td>", escape(name));
+            }
+            statistics.get(i).inspect(|statistics| row(&mut text, statistics));
+        }
     }
-    text + "</tbody></table></div><p>docs/quality.md of the program defines each measure.</p>"
+    let equal = if equal.is_empty() { String::new() } else { format!("{}. ", equal.join(", ")) };
+    text + "</tbody></table></div><p>"
+        + &equal
+        + "docs/quality.md of the program defines each measure.</p>"
 }
 
-fn row(text: &mut String, state: &str, statistics: &Statistics) {
+/// Writes the numbers of a row of statistics, and ends the row.
+fn row(text: &mut String, statistics: &Statistics) {
     let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
-    let _ = write!(text, "<td class=\"state\">{state}</td>");
     for number in [min, low, median, mean, high, max, deviation] {
         let _ = write!(text, "<td>{}</td>", escape(&fit8(*number)));
     }

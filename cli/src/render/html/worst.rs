@@ -7,7 +7,8 @@ use gpu_smooth::measure::{Measure, Measured};
 
 use crate::load::as_in_file;
 use crate::render::html::page::escape;
-use crate::terminal::numbers::fit8;
+use crate::render::html::tables::measure_name;
+use crate::terminal::numbers::{coordinate, fit8};
 
 /// Largest number of triangles in a list.
 const LISTED: usize = 8;
@@ -37,7 +38,7 @@ pub(crate) struct WorstTriangle {
     pub(crate) at: [f64; 2],
     at_in_file: [f64; 2],
     pub(crate) size: f64,
-    /// Shape and smallest angle in degrees, before and after the run.
+    /// The ranking measure and the smallest angle in degrees, before and after the run.
     values: [[f64; 2]; 2],
     can_move: bool,
 }
@@ -46,7 +47,6 @@ pub(crate) struct WorstTriangle {
 /// ones.
 pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<WorstTriangle> {
     let topology = states[0].topology();
-    let corners = |t: usize| topology.triangles()[t];
     let mut listed = Vec::new();
     for (list, &(_, state, only_movable)) in LISTS.iter().enumerate() {
         let most = if only_movable { CANDIDATES } else { LISTED };
@@ -58,13 +58,38 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<WorstT
             listed.push((list, found));
         }
     }
-    let places =
-        file.source.triangle_locations(listed.iter().flat_map(|(_, found)| found).copied());
-    let spot = |list: usize, triangle: usize| {
+    let listed: Vec<(usize, usize)> =
+        listed.iter().flat_map(|(list, found)| found.iter().map(|&t| (*list, t))).collect();
+    located(file, states, Measure::Shape, &listed)
+}
+
+/// Finds the worst triangles of one mesh by a measure.
+pub(crate) fn spots_of_mesh(
+    file: &LoadedMesh,
+    measured: &Measured<'_>,
+    measure: Measure,
+    count: usize,
+) -> Vec<WorstTriangle> {
+    let found = measured.worst(measure, count);
+    let listed: Vec<(usize, usize)> = found.into_iter().map(|(t, _)| (0, t)).collect();
+    located(file, [measured; 2], measure, &listed)
+}
+
+/// Measures and locates triangles, each given with the index of its list.
+fn located(
+    file: &LoadedMesh,
+    states: [&Measured<'_>; 2],
+    measure: Measure,
+    listed: &[(usize, usize)],
+) -> Vec<WorstTriangle> {
+    let topology = states[0].topology();
+    let places = file.source.triangle_locations(listed.iter().map(|(_, triangle)| *triangle));
+    let spot = |&(list, triangle): &(usize, usize)| {
         let state = LISTS[list].1;
-        let [p, q, r] = corners(triangle).map(|v| states[state].points()[v as usize]);
+        let corners = topology.triangles()[triangle];
+        let [p, q, r] = corners.map(|v| states[state].points()[v as usize]);
         let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
-        let measures = [Measure::Shape, Measure::MinAngle];
+        let measures = [measure, Measure::MinAngle];
         let place = &places[&triangle];
         let at = [0, 1].map(|axis| p[axis] / 3.0 + q[axis] / 3.0 + r[axis] / 3.0);
         WorstTriangle {
@@ -80,8 +105,45 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<WorstT
             can_move: topology.can_move(triangle),
         }
     };
-    let all = listed.iter().flat_map(|(list, found)| found.iter().map(|&t| (*list, t)));
-    all.map(|(list, triangle)| spot(list, triangle)).collect()
+    listed.iter().map(spot).collect()
+}
+
+/// Writes the worst triangles of one mesh, found by `measure`, as an HTML table. With `links`, each triangle has a link that
+/// shows it in the viewer.
+pub(crate) fn list_of_mesh(spots: &[WorstTriangle], measure: Measure, links: bool) -> String {
+    if spots.is_empty() {
+        return String::new();
+    }
+    let measures = [measure, Measure::MinAngle];
+    // The least angle is not listed twice.
+    let shown = if measure == Measure::MinAngle { 1 } else { 2 };
+    let mut text = format!(
+        "<div class=\"lists\"><div class=\"wide\"><table><caption>The worst by {measure}</caption><thead><tr><th>triangle</th>"
+    );
+    for measure in &measures[..shown] {
+        let _ = write!(text, "<th>{}</th>", escape(&measure_name(*measure)));
+    }
+    text += "<th>x</th><th>y</th></tr></thead><tbody>";
+    for (i, spot) in spots.iter().enumerate() {
+        let WorstTriangle { label, place, at_in_file, size, can_move, .. } = spot;
+        let held = if *can_move { "" } else { " (fixed)" };
+        let title = escape(place);
+        let _ = match links {
+            true => write!(
+                text,
+                "<tr><td><a href=\"#spot-{i}\" title=\"{title}\">{label}</a>{held}</td>"
+            ),
+            false => write!(text, "<tr><td><span title=\"{title}\">{label}</span>{held}</td>"),
+        };
+        let numbers = spot.values[0][..shown].iter().map(|value| fit8(*value));
+        for number in numbers.chain(at_in_file.iter().map(|x| coordinate(*x, *size))) {
+            let _ = write!(text, "<td>{number}</td>");
+        }
+        text += "</tr>";
+    }
+    text +=
+        "</tbody></table></div></div><p>Triangles marked as fixed have no vertex that may move.";
+    text + if links { " Click a triangle to see it in the mesh.</p>" } else { "</p>" }
 }
 
 /// Writes the lists as HTML tables.
@@ -109,41 +171,11 @@ pub(crate) fn lists(spots: &[WorstTriangle]) -> String {
                 fit8(after[0]),
                 fit8(before[1]),
                 fit8(after[1]),
-                coordinate(*x),
-                coordinate(*y),
+                coordinate(*x, spot.size),
+                coordinate(*y, spot.size),
             );
         }
         text += "</tbody></table></div>";
     }
     text + "</div><p>Click a triangle to see it in the mesh. Triangles marked as fixed have no vertex that may move.</p>"
-}
-
-/// Formats a coordinate with about seven significant digits.
-fn coordinate(x: f64) -> String {
-    match x.abs() {
-        a if (1e-3..1e10).contains(&a) || a == 0.0 => {
-            let before_point = a.max(1.0).log10().floor() as usize + 1;
-            format!("{x:.*}", 7usize.saturating_sub(before_point))
-        }
-        _ => format!("{x:.5e}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn coordinates_keep_seven_digits() {
-        let cases = [
-            (976_188.46, "976188.5"),
-            (-6_737_012.3, "-6737012"),
-            (0.25, "0.250000"),
-            (0.0, "0.000000"),
-            (1.5e-7, "1.50000e-7"),
-        ];
-        for (x, text) in cases {
-            assert_eq!(coordinate(x), text);
-        }
-    }
 }

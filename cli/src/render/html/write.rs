@@ -6,7 +6,7 @@ use gpu_smooth::measure::{Measure, Measured};
 use mesh_io::atomic;
 
 use crate::error::CliError;
-use crate::render::html::page::{Page, escape};
+use crate::render::html::page::{Page, View, escape};
 use crate::render::html::tables::measure_name;
 use crate::render::html::{charts, mesh, run, tables, worst};
 use crate::report::{Done, SmoothJob};
@@ -41,8 +41,8 @@ fn page(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliError> {
         page.lead(&warning);
     }
     page.section("Summary", &tables::summary(&done.report));
-    let data = mesh::data(done.file, states, &spots, &mesh::BOUNDS)?;
-    page.mesh(&mesh::caption(topology.triangles().len()), &data);
+    let data = mesh::data(done.file, &states, &spots, &mesh::BOUNDS)?;
+    page.mesh(&mesh::caption(topology.triangles().len()), View::Run, &data);
     page.section("Worst triangles", &worst::lists(&spots));
     page.section("Distribution", &histograms(states));
     page.section("Convergence", &convergence(done));
@@ -58,7 +58,9 @@ fn histograms(states: [&Measured<'_>; 2]) -> String {
     for measure in HISTOGRAMS {
         let [before, after] = states.map(|state| histogram(state, measure));
         let Histogram { edges, counts, .. } = before;
-        text += &charts::bars(&measure_name(measure), &edges, [&counts, &after.counts]);
+        let series = |name, counts| charts::Series { class: name, name: Some(name), counts };
+        let series = [series("before", &counts), series("after", &after.counts)];
+        text += &charts::bars(&measure_name(measure), &edges, &series);
     }
     text + "</div>"
 }

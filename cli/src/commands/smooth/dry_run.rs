@@ -1,0 +1,54 @@
+//! `--dry-run`: the facts of a run that writes nothing.
+
+use std::path::Path;
+
+use crate::load::streams;
+use crate::report::SmoothJob;
+use crate::run::rehearsal::Rehearsal;
+
+/// Prints the facts of a run before its first sweep.
+pub(super) fn print(task: &SmoothJob<'_>, rehearsal: &Rehearsal) {
+    streams::say_beside(task.out, &text(task, rehearsal));
+}
+
+fn text(task: &SmoothJob<'_>, rehearsal: &Rehearsal) -> String {
+    let request = task.request;
+    let Rehearsal { format, vertices, triangles, free, sliding, fixed, bad, .. } = rehearsal;
+    let input = task.input.display();
+    let mut lines = vec![format!("{input}: {format}, {vertices} vertices, {triangles} triangles")];
+    let slide = match sliding {
+        Some(count) => format!(", and up to {count} would slide along lines"),
+        None => String::new(),
+    };
+    match &rehearsal.nothing_to_do {
+        Some(reason) => lines.push(format!("no vertex would move: {reason}")),
+        None => lines.push(format!("up to {free} vertices would move{slide}")),
+    }
+    if *bad > 0 {
+        lines.push(format!(
+            "{bad} inverted or flat triangles would be untangled first; the run fails if they cannot be"
+        ));
+    }
+    let held: usize = fixed.iter().map(|(_, count)| count).sum();
+    if held > 0 {
+        let width = held.to_string().len();
+        lines.push(format!("{held} vertices are not free:"));
+        lines.extend(fixed.iter().map(|(reason, count)| {
+            format!("  {count:>width$} {}", reason.words(request.slide.is_some()))
+        }));
+    }
+    let engine = match &rehearsal.adapter {
+        None => "the CPU".to_owned(),
+        Some(name) => format!("the GPU ({name})"),
+    };
+    let reason = rehearsal.reason.as_ref().map(|reason| format!(": {reason}")).unwrap_or_default();
+    let (scheme, target) = (request.scheme(), request.target.name());
+    lines.push(format!("scheme {scheme}, target {target}, on {engine}{reason}"));
+    let files: Vec<String> = std::iter::once(task.out)
+        .chain(request.outputs.files_beside_mesh())
+        .map(|path: &Path| path.display().to_string())
+        .collect();
+    lines.push(format!("would write {}", files.join(", ")));
+    lines.push("nothing was written (--dry-run)".to_owned());
+    lines.join("\n")
+}

@@ -1,0 +1,112 @@
+//! The rule by which one of the tried runs is the best.
+
+use crate::report::Report;
+
+/// Largest distance that 19 of 20 vertices move in a run that keeps the mesh, in mean lengths of the edges around each
+/// vertex. A vertex that moves farther is nearer to the old position of a neighbor than to its own, so that refined
+/// places move away from the coast or the wall for which they are refined.
+pub(super) const MAX_MOVE: f64 = 0.5;
+/// Largest factor by which 19 of 20 vertices change the size of the elements around them in a run that keeps the mesh.
+pub(super) const MAX_SIZE_CHANGE: f64 = 1.25;
+/// Two values of the worst imr within this factor count as equal.
+const EQUAL: f64 = 1.01;
+/// If no run keeps the mesh, the best is one of the runs that move vertices at most this many times as far as any run.
+pub(super) const ABOUT_LEAST: f64 = 1.1;
+
+/// The best of the tried runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Best {
+    /// Index of the run.
+    pub(super) row: usize,
+    /// Whether the best run keeps the mesh. False if no run keeps the mesh.
+    pub(super) keeps_mesh: bool,
+}
+
+/// The values of a run on which the rule depends.
+#[derive(Clone, Copy)]
+pub(super) struct Gains {
+    /// f by imr, before and after.
+    f: [f64; 2],
+    /// The worst inverse mean ratio of the triangles with a free vertex, after the run.
+    worst_imr: f64,
+    /// Values that 19 of 20 vertices do not exceed: the move in lengths of an edge, and the factor of sizes.
+    moved: f64,
+    size: f64,
+}
+
+impl From<&Report> for Gains {
+    fn from(report: &Report) -> Self {
+        Self {
+            f: [report.before.f["imr"], report.after.f["imr"]],
+            worst_imr: report.after.worst_movable_imr,
+            moved: report.change.moved.p95,
+            size: report.change.size.p95,
+        }
+    }
+}
+
+impl Gains {
+    /// Returns whether the run lowers f, and leaves sizes and positions about as they are.
+    pub(super) fn keeps_mesh(self) -> bool {
+        let lowers = self.f[1] <= self.f[0];
+        lowers && self.moved <= MAX_MOVE && self.size <= MAX_SIZE_CHANGE
+    }
+}
+
+/// Returns the best of the runs; `None` for a run that failed. Of the runs that keep the mesh, or of those that move
+/// vertices about as little as any, the best has the least worst imr, and if several are within 1 % of it, the least f.
+pub(super) fn best(runs: &[Option<Gains>]) -> Option<Best> {
+    let ended: Vec<(usize, Gains)> =
+        runs.iter().enumerate().filter_map(|(row, gains)| Some((row, (*gains)?))).collect();
+    let keeps_mesh = ended.iter().any(|(_, gains)| gains.keeps_mesh());
+    let least_move = least(ended.iter().map(|(_, gains)| gains.moved));
+    let is_candidate = |gains: &Gains| match keeps_mesh {
+        true => gains.keeps_mesh(),
+        false => gains.moved <= ABOUT_LEAST * least_move,
+    };
+    let candidates = || ended.iter().filter(|(_, gains)| is_candidate(gains));
+    let least_imr = least(candidates().map(|(_, gains)| gains.worst_imr));
+    let equal = candidates().filter(|(_, gains)| gains.worst_imr <= EQUAL * least_imr);
+    let (row, _) = equal.min_by(|(_, a), (_, b)| a.f[1].total_cmp(&b.f[1]))?;
+    Some(Best { row: *row, keeps_mesh })
+}
+
+fn least(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gains(f: f64, worst_imr: f64, moved: f64, size: f64) -> Option<Gains> {
+        Some(Gains { f: [1.3, f], worst_imr, moved, size })
+    }
+
+    fn row(runs: &[Option<Gains>]) -> Option<(usize, bool)> {
+        best(runs).map(|best| (best.row, best.keeps_mesh))
+    }
+
+    #[test]
+    fn the_best_run_has_the_least_worst_imr_of_those_that_keep_the_mesh() {
+        let far = gains(1.1, 1.2, 0.7, 1.1);
+        let coarse = gains(1.1, 1.2, 0.3, 1.3);
+        let rising = gains(1.4, 1.2, 0.3, 1.1);
+        let (good, better) = (gains(1.20, 1.500, 0.2, 1.1), gains(1.21, 1.490, 0.2, 1.1));
+        assert_eq!(row(&[far, coarse, rising, good]), Some((3, true)));
+        // The values of imr are within 1 %, so f decides.
+        assert_eq!(row(&[far, better, good]), Some((2, true)));
+        assert_eq!(row(&[gains(1.20, 1.6, 0.2, 1.1), better, None]), Some((1, true)));
+        // The first of equal rows has the fewest options.
+        assert_eq!(row(&[good, good]), Some((0, true)));
+    }
+
+    #[test]
+    fn a_run_that_moves_vertices_little_is_best_if_none_keeps_the_mesh() {
+        let far = gains(1.1, 1.2, 6.0, 1.3);
+        let (near, nearly) = (gains(1.2, 1.4, 0.60, 1.2), gains(1.2, 1.3, 0.65, 1.2));
+        assert_eq!(row(&[None, far, near]), Some((2, false)));
+        assert_eq!(row(&[far, near, nearly]), Some((2, false)));
+        assert_eq!(row(&[None, None]), None);
+    }
+}

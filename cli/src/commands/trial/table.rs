@@ -1,0 +1,142 @@
+//! The table of the tried runs, as text and as JSON.
+
+use std::fmt::Write;
+
+use serde_json::{Value, json};
+
+use crate::args::TryArgs;
+use crate::commands::trial::best::{ABOUT_LEAST, Best, Gains, MAX_MOVE, MAX_SIZE_CHANGE};
+use crate::commands::trial::tried::Tried;
+use crate::render::columns::{left, right};
+use crate::report::{MeshReport, QualityReport, Report, change_of};
+use crate::request::TrialRun;
+use crate::terminal::numbers::sig6;
+use crate::terminal::shell_words;
+
+const COLUMNS: [&str; 6] = ["f imr", "min angle", "worst imr", "sizes", "moved", "s"];
+const WIDTHS: [usize; 6] = [10, 10, 10, 11, 8, 8];
+const EMPTY: [&str; 6] = [""; 6];
+
+/// Returns the options of a run as a row of the table names them.
+pub(super) fn label(run: &TrialRun) -> String {
+    match run.options {
+        [] => "without options".to_owned(),
+        options => options.join(" "),
+    }
+}
+
+/// Returns the command line of a run, in which words are quoted for a shell.
+fn command(run: &TrialRun) -> String {
+    let words = run.words.iter().map(|word| shell_words::quoted(word));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// Returns the table of the runs, the rule, and the command line of the best run.
+pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> String {
+    let reports: Vec<&Report> =
+        tried.iter().filter_map(|tried| tried.result.as_ref().ok()).collect();
+    let Some(first) = reports.first() else { return String::new() };
+    let name = |tried: &Tried<'_>| label(tried.run).len();
+    let width = 2 + tried.iter().map(name).max().unwrap_or_default();
+    let MeshReport { format, vertices, triangles, free, .. } = &first.mesh;
+    let mut text = format!(
+        "{}: {format}, {vertices} vertices ({free} free), {triangles} triangles\n\n",
+        args.mesh.display()
+    );
+    let mut line = |name: &str, fields: [&str; 6]| {
+        text += &left(name, width);
+        for (field, width) in fields.iter().zip(WIDTHS) {
+            text += &right(field, width);
+        }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    };
+    line("", COLUMNS);
+    let [f, angle, imr] = quality(&first.before);
+    line("  before", [&f, &angle, &imr, "", "", ""]);
+    for (row, tried) in tried.iter().enumerate() {
+        let is_best = best.is_some_and(|best| best.row == row);
+        let name = format!("{} {}", if is_best { "*" } else { " " }, label(tried.run));
+        match &tried.result {
+            Ok(report) => {
+                let [f, angle, imr] = quality(&report.after);
+                let sizes = change_of(report.change.size.p95);
+                let moved = format!("{:.2}", report.change.moved.p95);
+                let seconds = format!("{:.3}", report.seconds.total);
+                line(&name, [&f, &angle, &imr, &sizes, &moved, &seconds]);
+            }
+            Err(_) => line(&format!("{name} failed"), EMPTY),
+        }
+    }
+    for tried in tried {
+        if let Err(error) = &tried.result {
+            let _ = writeln!(text, "{}: {error}", label(tried.run));
+        }
+    }
+    let _ = write!(
+        text,
+        "\nworst imr: of the triangles with a free vertex. sizes, moved: 19 of 20 vertices change the size of the elements\n\
+         around them, and move in lengths of an edge, by no more\n"
+    );
+    if let Some(best) = best {
+        let _ = writeln!(text, "* the best row: {}\n", rule(best));
+        let _ = write!(text, "{}", command(tried[best.row].run));
+    }
+    text.trim_end().to_owned()
+}
+
+/// Returns f by imr, the least angle, and the worst imr of the triangles with a free vertex.
+fn quality(report: &QualityReport) -> [String; 3] {
+    let angle = format!("{:.2}°", report.min_angle);
+    [sig6(report.f["imr"]), angle, sig6(report.worst_movable_imr)]
+}
+
+/// Returns the rule by which a run is the best.
+fn rule(best: Best) -> String {
+    let sizes = change_of(MAX_SIZE_CHANGE);
+    match best.keeps_mesh {
+        true => format!(
+            "of the rows that lower f, with sizes up to {sizes} and moved up to {MAX_MOVE}, the row with the least worst imr, and\n  \
+             of rows within 1 % of that, the row with the least f"
+        ),
+        false => format!(
+            "no row lowers f with sizes up to {sizes} and moved up to {MAX_MOVE}. Of the rows with about the least moved (within\n  \
+             {:.0} %), the row with the least worst imr, and of rows within 1 % of that, the row with the least f",
+            100.0 * (ABOUT_LEAST - 1.0)
+        ),
+    }
+}
+
+/// Returns the runs as JSON, with the rule and the command line of the best run.
+pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> Value {
+    let mut before = Value::Null;
+    let mut rows = Vec::new();
+    for (row, tried) in tried.iter().enumerate() {
+        let mut object = json!({
+            "options": tried.run.options,
+            "command": command(tried.run),
+            "best": best.is_some_and(|best| best.row == row),
+        });
+        match &tried.result {
+            Ok(report) => {
+                before = json!(report.before);
+                object["after"] = json!(report.after);
+                object["change"] = json!(report.change);
+                object["keeps_mesh"] = Gains::from(report).keeps_mesh().into();
+                object["engine"] = json!(report.engine);
+                object["sweeps"] = report.sweeps.into();
+                object["stop"] = report.stop.into();
+                object["seconds"] = report.seconds.total.into();
+            }
+            Err(error) => object["error"] = error.to_string().into(),
+        }
+        rows.push(object);
+    }
+    json!({
+        "file": args.mesh.display().to_string(),
+        "before": before,
+        "runs": rows,
+        "rule": best.map(|best| rule(best).replace("\n  ", " ")),
+        "command": best.map(|best| command(tried[best.row].run)),
+    })
+}

@@ -1,0 +1,138 @@
+//! `quality --html`: measured meshes as one page in a single file. A single mesh has a viewer, several have a picture each.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use gpu_smooth::measure::{Measure, Measured, Statistics};
+use mesh_io::atomic;
+use serde_json::Value;
+
+use crate::error::CliError;
+use crate::load::LoadedMesh;
+use crate::render::html::page::{Page, View, escape};
+use crate::render::html::tables::measure_name;
+use crate::render::html::{charts, mesh, tables, worst};
+use crate::render::picture::{Extent, picture_of};
+use crate::report::{Histogram, histogram};
+
+/// Longer side of the picture of each of several meshes, in pixels.
+const PIXELS: u32 = 1200;
+
+/// A mesh with the choices of its sections in the page.
+pub(crate) struct MeshDescription<'a> {
+    pub(crate) file: &'a LoadedMesh,
+    pub(crate) measured: &'a Measured<'a>,
+    /// Measures of the histograms. The first ranks the worst triangles.
+    pub(crate) histograms: &'a [Measure],
+    /// Number of listed worst triangles.
+    pub(crate) worst: usize,
+    /// Whether the page has only this mesh.
+    pub(crate) is_alone: bool,
+    /// Sentences on the mesh, such as its numbers of vertices and triangles.
+    pub(crate) sentences: Vec<String>,
+}
+
+/// Sentences, drawing, tables and charts of a mesh as HTML. The mesh itself is not stored.
+pub(crate) struct MeshPart {
+    sentences: Vec<String>,
+    view: MeshView,
+    worst: String,
+    charts: String,
+}
+
+/// The drawing of a mesh.
+enum MeshView {
+    /// JSON for the viewer, and its caption.
+    Viewer { caption: String, data: Value },
+    /// A PNG as a data URL; `None` if all vertices have equal positions.
+    Picture(Option<String>),
+}
+
+impl MeshPart {
+    pub(crate) fn new(description: MeshDescription<'_>) -> Result<Self, CliError> {
+        let MeshDescription { file, measured, histograms, worst, is_alone, sentences } =
+            description;
+        let by = histograms.first().copied().unwrap_or(Measure::Shape);
+        let spots = worst::spots_of_mesh(file, measured, by, worst);
+        let topology = measured.topology();
+        let view = match is_alone {
+            true => MeshView::Viewer {
+                caption: mesh::caption(topology.triangles().len()),
+                data: mesh::data(file, &[measured], &spots, &mesh::BOUNDS)?,
+            },
+            false => {
+                let extent = Extent::of(topology.triangles(), &[measured.points()]);
+                let is_drawn = extent.size().into_iter().any(|length| length > 0.0);
+                let draw = || picture_of(topology, measured, Measure::Shape, extent, PIXELS);
+                let url = |png| format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png));
+                MeshView::Picture(is_drawn.then(draw).transpose()?.map(url))
+            }
+        };
+        let chart = |&measure: &Measure| {
+            let Histogram { edges, counts, .. } = histogram(measured, measure);
+            let series = charts::Series { class: "after", name: None, counts: &counts };
+            charts::bars(&measure_name(measure), &edges, &[series])
+        };
+        let charts: String = histograms.iter().map(chart).collect();
+        Ok(Self {
+            sentences,
+            view,
+            worst: worst::list_of_mesh(&spots, by, is_alone),
+            charts: format!("<div class=\"charts\">{charts}</div>"),
+        })
+    }
+}
+
+/// A mesh of a page: name, section, and statistics for the common table.
+pub(crate) struct PageEntry<'a> {
+    pub(crate) name: String,
+    pub(crate) part: &'a MeshPart,
+    pub(crate) statistics: &'a [Statistics],
+}
+
+/// Writes a page about measured meshes to `path`.
+pub(crate) fn write_meshes(path: &Path, meshes: &[PageEntry<'_>]) -> Result<(), CliError> {
+    let failed = |error: CliError| error.within("the page was not written");
+    atomic::write(path, page(meshes).as_bytes()).map_err(|error| failed(error.into()))
+}
+
+fn page(meshes: &[PageEntry<'_>]) -> String {
+    let statistics: Vec<_> = meshes.iter().map(|entry| (&*entry.name, entry.statistics)).collect();
+    let statistics = tables::statistics_of_meshes(&statistics);
+    let [PageEntry { name, part, .. }] = meshes else {
+        let mut page = Page::new(&format!("Quality of {} meshes", meshes.len()));
+        page.section("Statistics", &statistics);
+        for PageEntry { name, part, .. } in meshes {
+            page.section(name, &section(name, part));
+        }
+        return page.finish();
+    };
+    let mut page = Page::new(name);
+    part.sentences.iter().for_each(|sentence| page.lead(sentence));
+    if let MeshView::Viewer { caption, data } = &part.view {
+        page.mesh(caption, View::Mesh, data);
+    }
+    page.section("Worst triangles", &part.worst);
+    page.section("Distribution", &part.charts);
+    page.section("Statistics", &statistics);
+    page.finish()
+}
+
+/// Writes the section of one of several meshes.
+fn section(name: &str, part: &MeshPart) -> String {
+    let mut text = String::new();
+    for sentence in &part.sentences {
+        let _ = write!(text, "<p>{}</p>", escape(sentence));
+    }
+    if let MeshView::Picture(Some(url)) = &part.view {
+        let about = escape(&format!("{name}, colored by shape"));
+        let _ = write!(
+            text,
+            "<figure class=\"picture\"><img src=\"{url}\" alt=\"{about}\"><figcaption>Triangles by shape: yellow is equilateral, \
+             dark blue is flat, red is inverted</figcaption></figure>"
+        );
+    }
+    format!("{text}{}{}", part.worst, part.charts)
+}

@@ -1,0 +1,85 @@
+//! Reading and preparation of a mesh without sweeps, for `--dry-run`.
+
+use std::time::Instant;
+
+use gpu_smooth::{Backend, MeshSize, Topology};
+
+use crate::error::CliError;
+use crate::load::explain;
+use crate::load::{FixedBy, LoadedMesh};
+use crate::report::{Failure, SmoothJob};
+use crate::run::engine::OpenEngine;
+use crate::run::input::Input;
+use crate::run::observer::PipelineObserver;
+use crate::run::pipeline::{self, ReadMesh};
+use crate::run::prepare::{self, Ready, Subject};
+use crate::run::untangle;
+use crate::terminal::progress::Stage;
+
+/// Numbers of free and fixed vertices, and the engine of a run.
+pub(crate) struct Rehearsal {
+    pub(crate) format: String,
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    /// Number of vertices that would move.
+    pub(crate) free: usize,
+    /// Number of vertices that would slide; `None` without `--slide`, or if the mesh would be untangled first.
+    pub(crate) sliding: Option<usize>,
+    /// Numbers of vertices that are not free, by the reason.
+    pub(crate) fixed: Vec<(FixedBy, usize)>,
+    /// Number of inverted and flat triangles, which the run would untangle first.
+    pub(crate) bad: usize,
+    /// The reason why the run would do nothing; `None` if the run would smooth the mesh.
+    pub(crate) nothing_to_do: Option<String>,
+    /// Name of the GPU adapter; `None` for the CPU.
+    pub(crate) adapter: Option<String>,
+    /// The reason for the choice of the engine; `None` if the command line determined the engine.
+    pub(crate) reason: Option<String>,
+}
+
+/// Reads, checks and prepares a mesh as a run does, and opens the engine. Neither untangles nor smooths the mesh, and
+/// writes no file.
+pub(crate) fn rehearse(
+    task: &SmoothJob<'_>,
+    engine: impl FnOnce(MeshSize) -> Result<OpenEngine, CliError>,
+    follow: &mut dyn PipelineObserver,
+) -> Result<Rehearsal, Failure> {
+    let began = Instant::now();
+    let ReadMesh { file, choice, fields, bytes, .. } = pipeline::read(task, follow)?;
+    let input = Input { task, file: &file, choice: &choice, bytes, began };
+    let (request, mesh) = (task.request, file.mesh());
+    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    follow.stage(Stage::Preparing { vertices: size.vertices });
+    let smoother = prepare::smoother(request, &file);
+    if request.untangle.is_some() && untangle::can_mend(&smoother) {
+        fields.check_untangled()?;
+        let topology = Topology::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
+        let bad = topology.bad_triangles(&mesh.points).map_err(CliError::from)?.len();
+        let rehearsal = Rehearsal { bad, ..of_topology(&input, &topology, &engine(size)?) };
+        return Ok(rehearsal);
+    }
+    let smoother = smoother.map_err(|error| prepare::refusal(request, &choice, &file, &error))?;
+    let subject = Subject { smoother, mended: None };
+    let Ready { smoother, taken, sliding, .. } =
+        prepare::set_up(&input, subject, engine(size)?, follow)?;
+    Ok(Rehearsal { sliding, ..of_topology(&input, smoother.topology(), &taken) })
+}
+
+fn of_topology(input: &Input<'_>, topology: &Topology<'_>, taken: &OpenEngine) -> Rehearsal {
+    let file: &LoadedMesh = input.file;
+    Rehearsal {
+        format: file.source.format().to_string(),
+        vertices: file.source.points().len(),
+        triangles: file.mesh().triangles.len(),
+        free: topology.free_count(),
+        sliding: None,
+        fixed: FixedBy::counts(file, topology),
+        bad: 0,
+        nothing_to_do: input.choice.nothing_to_do.clone(),
+        adapter: match &*taken.backend {
+            Backend::Cpu => None,
+            Backend::Gpu(gpu) => Some(gpu.adapter().name.clone()),
+        },
+        reason: taken.reason.clone(),
+    }
+}
