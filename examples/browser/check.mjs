@@ -49,8 +49,9 @@ async function send(method, params = {}) {
   if (error) throw new Error(`${method}: ${error.message}`);
   return result;
 }
-async function evaluate(expression) {
-  const { result, exceptionDetails } = await send("Runtime.evaluate", { expression, returnByValue: true });
+async function evaluate(expression, awaitPromise = false) {
+  const { result, exceptionDetails } =
+    await send("Runtime.evaluate", { expression, awaitPromise, returnByValue: true });
   if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
   return result.value;
 }
@@ -104,6 +105,10 @@ try {
   }
   const [cpu, gpu] = Object.values(done).map(times => times[0].after);
   check("the engines agree", Math.abs(cpu / gpu - 1) < 1e-5);
+  const faults = await evaluate("page.faults()", true);
+  faults.forEach(text => console.log("fault:", text));
+  check("the errors of the browser reach the caller", faults.length === 3 && faults[0].includes("buffer")
+    && faults[1] === "no error" && faults[2].includes("lost"));
   await frames("settling");
   await still();
   check("frames come to the same f", Math.abs(await evaluate("seen.numbers[0]") / cpu - 1) < 1e-4);

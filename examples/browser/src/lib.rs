@@ -3,6 +3,7 @@
 //! The page generates its mesh. The CPU engine, compiled to WebAssembly, smooths the mesh, and so does the GPU through
 //! WebGPU. Then the mesh stays on the device for frames, in which the user can drag a hole and scatter vertices.
 
+mod faults;
 mod plate;
 mod scene;
 
@@ -81,6 +82,11 @@ impl Page {
         let smoother = Smoother::new(&self.plate.mesh)?;
         let outcome = smoother.run(&Options::default()).on(&Backend::Gpu(self.gpu()?.clone())).await?;
         Ok(told(&smoother, outcome)?)
+    }
+
+    /// Makes calls that the browser refuses, and returns the error that each caller receives.
+    pub async fn faults(&self) -> Result<Vec<String>, JsError> {
+        Ok(faults::all(&self.plate.mesh).await?)
     }
 
     /// Uploads the generated mesh to the device, for smoothing in frames.

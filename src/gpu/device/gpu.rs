@@ -1,7 +1,7 @@
 //! A device with its pipelines.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use crate::adapter::AdapterSummary;
@@ -11,7 +11,7 @@ use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::row::User;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::scope::{check_alive, poll};
+use crate::gpu::scope::{WatchedDevice, check_alive, poll};
 use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::run::Plan;
@@ -19,11 +19,10 @@ use crate::run::Plan;
 /// A device with compiled pipelines, created once for many meshes. Clones of the handle refer to the same device.
 #[derive(Clone)]
 pub struct Gpu {
-    pub(crate) device: wgpu::Device,
+    pub(crate) device: WatchedDevice,
     pub(crate) queue: wgpu::Queue,
     pub(crate) pipelines: Arc<Pipelines>,
     summary: Arc<AdapterSummary>,
-    lost: Arc<Mutex<Option<String>>>,
     /// Result of [`Gpu::check_arithmetic`]: the operation that the adapter computes wrongly, or `None` if all pass.
     /// Unset before the first check.
     pub(super) arithmetic: Arc<OnceLock<Option<&'static str>>>,
@@ -54,12 +53,13 @@ impl Gpu {
     /// [`GpuError::Limit`], with the name of the limit, if the device has lower limits than the kernels need.
     /// [`GpuError::Queue`] if the queue belongs to another device, [`GpuError::Lost`] if the device is lost.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        let device = WatchedDevice::of_application(device);
         check_alive(&device)?;
         if !is_own(&queue, &device) {
             return Err(GpuError::Queue);
         }
         let summary = AdapterSummary::new(&device.adapter_info());
-        Self::with(device, queue, summary, Arc::default())
+        Self::with(device, queue, summary)
     }
 
     /// Sets a pipeline cache of the application, with which kernels compile faster when the application is started
@@ -83,14 +83,13 @@ impl Gpu {
     }
 
     pub(super) fn with(
-        device: wgpu::Device,
+        device: WatchedDevice,
         queue: wgpu::Queue,
         summary: AdapterSummary,
-        lost: Arc<Mutex<Option<String>>>,
     ) -> Result<Self, GpuError> {
         limits::check(&device.limits())?;
         let (pipelines, arithmetic) = (Arc::new(Pipelines::default()), Arc::default());
-        Ok(Self { device, queue, pipelines, summary: Arc::new(summary), lost, arithmetic })
+        Ok(Self { device, queue, pipelines, summary: Arc::new(summary), arithmetic })
     }
 
     /// Compiles the kernels that an application's frames need with these options: sweeps, objectives, import and export
@@ -132,14 +131,18 @@ impl Gpu {
         &self.summary
     }
 
-    /// Returns [`GpuError::Lost`] if a device that this library opened was lost or has reported an uncaptured error.
-    /// Most wgpu calls on a lost device seem to succeed. An application's device always passes, as its callbacks are
-    /// the application's.
-    pub(crate) fn check(&self) -> Result<(), GpuError> {
-        match &*self.lost.lock().unwrap_or_else(PoisonError::into_inner) {
-            Some(message) => Err(GpuError::Lost(message.clone())),
-            None => Ok(()),
-        }
+    /// Waits until the browser has reported the errors of all earlier calls of this library on the device, and returns
+    /// the first error. Outside of a browser every call has returned its own errors, and nothing is waited for.
+    ///
+    /// In a browser, a call such as [`DeviceMesh::new`](crate::gpu::DeviceMesh::new) returns before the browser reports
+    /// its errors. The next call of this library on the device that is awaited, or the next
+    /// [`Readback::latest`](crate::gpu::Readback::latest), returns the error too. Each error is returned once.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`], [`GpuError::Buffer`] or [`GpuError::Refused`] for earlier calls, and
+    /// [`GpuError::Lost`] if the device is lost.
+    pub async fn errors_async(&self) -> Result<(), GpuError> {
+        self.device.check_async().await
     }
 }
 

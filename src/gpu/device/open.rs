@@ -1,14 +1,12 @@
 //! Opens adapters, and skips those whose arithmetic is wrong.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use crate::adapter::AdapterSummary;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::adapters::{ranked_adapters, ranked_adapters_async};
 use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::readback::Waiting;
-use crate::gpu::scope::caught;
+use crate::gpu::scope::{WatchedDevice, caught};
 
 impl Gpu {
     /// Opens the best adapter whose name contains `name` (case is ignored), or the best of all adapters for `None`.
@@ -65,18 +63,7 @@ impl Gpu {
         // wgpu's message ends with a period, but the sentence around it goes on.
         let said = |error: wgpu::RequestDeviceError| error.to_string().trim_end_matches('.').into();
         let (device, queue) = requested.await.map_err(|error| none(said(error)))?;
-        let lost = Arc::new(Mutex::new(None));
-        let flag = Arc::clone(&lost);
-        device.set_device_lost_callback(move |reason, message| {
-            let text = if message.is_empty() { format!("{reason:?}") } else { message };
-            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
-        });
-        // Every call is in an error scope. Without this handler, wgpu would panic on an error that still arrives.
-        let flag = Arc::clone(&lost);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            *flag.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
-        }));
-        let gpu = Self::with(device, queue, summary, lost)?;
+        let gpu = Self::with(WatchedDevice::of_library(device), queue, summary)?;
         // A browser polls its devices. On other targets only this library has the device, and polls it.
         let browser = cfg!(target_arch = "wasm32");
         let waiting = if browser { Waiting::Await } else { Waiting::Block };

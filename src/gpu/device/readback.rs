@@ -78,12 +78,16 @@ impl<T: Pod> Copied<'_, T> {
                 return Err(GpuError::WouldBlock);
             }
             let polled = poll(&gpu.device, wgpu::PollType::wait_indefinitely());
-            gpu.check()?;
+            gpu.device.check()?;
             polled?;
         }
         match arrival.receive().await {
-            Some(Ok(())) => gpu.check()?,
-            Some(Err(error)) => return Err(GpuError::Lost(error.to_string())),
+            Some(Ok(())) => gpu.device.check_async().await?,
+            Some(Err(error)) => {
+                // A refused copy leaves a buffer that cannot be mapped, and a browser reports the refusal itself.
+                gpu.device.check_async().await?;
+                return Err(GpuError::Lost(error.to_string()));
+            }
             None => return Err(GpuError::Lost("the readback was abandoned".into())),
         }
         let view =

@@ -9,7 +9,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
-use crate::gpu::scope::{check_alive, scoped, scoped_to_buffer};
+use crate::gpu::scope::{WatchedDevice, check_alive, scoped, scoped_to_buffer};
 
 /// Limit of the copies in flight. A device with three copies in flight gets no further copy.
 const COPIES: usize = 3;
@@ -36,6 +36,7 @@ const COPIES: usize = 3;
 /// ```
 #[derive(Debug)]
 pub struct Readback<T> {
+    device: WatchedDevice,
     source: wgpu::Buffer,
     offset: u64,
     bytes: u64,
@@ -128,8 +129,9 @@ impl<T: Pod> Readback<T> {
             drop(encoder.finish());
         })?;
         check_alive(&gpu.device)?;
-        let (source, encoded, latest, arrived) = (buffer.clone(), 0, Vec::new(), None);
-        Ok(Self { source, offset, bytes, copies, encoded, latest, arrived })
+        let (device, source) = (gpu.device.clone(), buffer.clone());
+        let (encoded, latest, arrived) = (0, Vec::new(), None);
+        Ok(Self { device, source, offset, bytes, copies, encoded, latest, arrived })
     }
 
     /// Encodes a copy of the bound range at this point of the command buffer, and returns true. Encodes nothing and
@@ -156,8 +158,10 @@ impl<T: Pod> Readback<T> {
     /// Returns the values of the latest copy that has arrived; `None` before the first arrival. Never waits.
     ///
     /// # Errors
-    /// [`GpuError::Lost`] if the device is lost.
+    /// [`GpuError::Lost`] if the device is lost. In a browser also the errors of earlier calls, as
+    /// [`Gpu::errors_async`] describes.
     pub fn latest(&mut self) -> Result<Option<&[T]>, GpuError> {
+        self.device.check()?;
         self.collect()?;
         Ok(self.arrived.is_some().then_some(&self.latest[..]))
     }

@@ -7,7 +7,7 @@ use crate::error::GpuError;
 use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::layouts::{BindLayout, Bindings};
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::scope::scoped;
+use crate::gpu::scope::{WatchedDevice, scoped};
 
 /// A kernel that is ready to run.
 #[derive(Clone)]
@@ -94,7 +94,7 @@ impl Pipelines {
     /// Returns the pipeline of a kernel for meshes of this form, compiled at the first request.
     pub(crate) fn get(
         &self,
-        device: &wgpu::Device,
+        device: &WatchedDevice,
         kernel: &Kernel,
         form: impl Into<MeshForm>,
     ) -> Result<Pipeline, GpuError> {

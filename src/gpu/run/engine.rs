@@ -65,7 +65,7 @@ impl<'a> GpuEngine<'a> {
         steps: Vec<SweepParams>,
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
-        gpu.check()?;
+        gpu.device.check()?;
         let mesh = MeshBuffers::new(gpu, problem, start)?;
         let keep_best = !plan.is_monotone();
         let dispatches = Dispatches::new(gpu, problem, &mesh, plan, steps, keep_best)?;
