@@ -33,12 +33,16 @@ impl ErrorKind {
         }
     }
 
-    /// Returns the exit code of the program: 2 for a wrong command line, as clap has it, else 1.
+    /// Returns the exit code of the program.
     pub(crate) fn exit_code(self) -> ExitCode {
-        match self {
-            Self::Usage => ExitCode::from(2),
-            _ => ExitCode::FAILURE,
-        }
+        ExitCode::from(match self {
+            Self::Run => 1,
+            // clap exits with 2 as well.
+            Self::Usage => 2,
+            Self::Input => 3,
+            Self::Output => 4,
+            Self::Device => 5,
+        })
     }
 }
 

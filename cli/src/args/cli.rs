@@ -37,7 +37,7 @@ fn after_help() -> String {
     format!(
         "Boundary vertices and those on constraint lines or between regions stay where they are, unless --slide is given. Formats, \
          as text or in binary: {}. STL needs --weld. Ctrl-C ends a run at the next sweep and writes the best mesh so far; a second \
-         one ends it at once.\n\n{EXAMPLES}",
+         one ends it at once.\n\n{EXAMPLES}\n\n{EXIT_CODES}",
         names::formats()
     )
 }
@@ -51,6 +51,16 @@ const EXAMPLES: &str = "Examples:
   gpu-smooth part.msh better.msh --html run.html
   gpu-smooth quality better.msh
   gpu-smooth bench";
+
+/// The exit codes of all commands.
+const EXIT_CODES: &str = "Exit codes:
+  0    the command has done its work
+  1    the result falls short: a value beyond --threshold, a mesh that stays tangled, files that differ, a failed run of several
+  2    the command line is wrong
+  3    a file that is read is missing or damaged, lacks a name, or has a mesh that cannot be smoothed
+  4    a file cannot be written
+  5    a GPU cannot be used, or has failed
+  130  Ctrl-C ended the run (143: SIGTERM, 129: SIGHUP)";
 
 /// Options of the amount and the form of messages, valid with every command.
 #[derive(Args)]

@@ -102,7 +102,7 @@ pub(crate) fn untangle_input(
 /// Returns the error for a boundary that no positions of the free vertices make valid.
 fn misplaced_loop(file: &LoadedMesh, vertices: &[u32]) -> CliError {
     let place = file.vertex_place(vertices.first().copied().unwrap_or_default());
-    CliError::input(format!(
+    CliError::run(format!(
         "{place}: the boundary loop of {} vertices through vertex {} is turned over, lies outside of the outer boundary, or lies \
          inside another hole, so no move of interior vertices untangles the mesh",
         vertices.len(),
@@ -118,7 +118,7 @@ const PERHAPS: &str = ". Perhaps fixed vertices leave no room, or the boundary w
 fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     let place = file.vertex_place(vertex);
     let vertex = place.id;
-    CliError::input(format!(
+    CliError::run(format!(
         "{place}: after {} of untangling no triangle is inverted, but those around vertex {vertex} wind more than once around \
          it{PERHAPS}{KEPT}",
         counted(sweeps)
@@ -162,7 +162,7 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
         if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") },
         explain::bad_triangles(file, &shown[..count.min(explain::TOLD)]),
     );
-    CliError::input(format!("{name}: {triangles} {why}")).with_details(explain::list(
+    CliError::run(format!("{name}: {triangles} {why}")).with_details(explain::list(
         &first,
         count,
         "gpu-smooth quality --json",

@@ -28,8 +28,9 @@ pub(crate) fn reporting_panics(work: impl FnOnce() -> ExitCode) -> ExitCode {
         Ok(code) => code,
         Err(_) if OF_WGPU.get() => {
             let error = CliError::device("the driver of the GPU failed");
+            let code = error.kind.exit_code();
             tell::error(&error.with_remedy("Use --engine cpu, or another driver"));
-            ExitCode::FAILURE
+            code
         }
         Err(payload) => panic::resume_unwind(payload),
     }

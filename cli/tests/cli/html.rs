@@ -214,7 +214,7 @@ fn a_page_of_several_meshes_has_a_picture_of_each_and_one_table() {
     let folder = small();
     folder.line("in out --engine cpu").clean();
     let run = folder.line("quality in.node out.node none.node --html page.html");
-    assert_eq!(run.code, Some(1));
+    assert_eq!(run.code, Some(3));
     assert_holds(&run.err, &["none.node: "]);
     let page = folder.text("page.html");
     assert_holds(&page, &["<h1>Quality of 2 meshes</h1>", "<h2>in.node</h2>", "<h2>out.node</h2>"]);

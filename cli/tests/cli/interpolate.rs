@@ -113,7 +113,7 @@ fn data_that_cannot_be_interpolated_are_refused() {
     let tangled = gr3(&disturbed()).replacen("\n35 ", "\n35 -9 ", 1);
     fs::write(folder.path("bad.gr3"), tangled).unwrap();
     let run = folder.line("bad.gr3 out.gr3 --untangle --interpolate all --engine cpu");
-    assert_eq!(run.code, Some(1));
+    assert_eq!(run.code, Some(3));
     assert_holds(&run.err, &["untangle it without --interpolate"]);
     assert!(!folder.path("out.gr3").exists());
     let folder = small();

@@ -142,7 +142,7 @@ fn a_mesh_that_another_program_has_changed_meanwhile_is_not_replaced() {
         let before = folder.content();
         run.signal("-INT");
         let (code, out, err) = run.end();
-        assert_eq!((code, out.as_str()), (Some(1), ""), "{err}");
+        assert_eq!((code, out.as_str()), (Some(4), ""), "{err}");
         let problem =
             format!("error: {name}: another program has changed this file after the file was read");
         assert_holds(&err, &[&problem, "Give OUT another name"]);

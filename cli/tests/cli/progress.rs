@@ -31,18 +31,19 @@ fn a_log_of_json_has_an_object_on_every_line() {
 
     let run = folder.line("none out --log json");
     let error = &self::events(&run.err)[1];
-    assert_eq!((run.code, &error["event"]), (Some(1), &"error".into()));
+    assert_eq!((run.code, &error["event"]), (Some(3), &"error".into()));
     assert_holds(error["message"].as_str().unwrap(), &["none: "]);
     assert_eq!(error["kind"], "input");
     assert_holds(error["remedy"].as_str().unwrap(), &["Check the name"]);
-    for (line, kind) in [
-        ("in none/out --engine cpu", "output"),
-        ("in out --engine cpu --strict --max-sweeps 1", "run"),
-        ("in out --adapter none-of-this-name", "device"),
-        ("convert in out.xyz", "usage"),
+    // The codes are those of the table in docs/guide.md.
+    for (line, kind, code) in [
+        ("in out --engine cpu --strict --max-sweeps 1", "run", 1),
+        ("convert in out.xyz", "usage", 2),
+        ("quality in none --threshold min-angle<90", "input", 3),
+        ("in none/out --engine cpu", "output", 4),
+        ("in out --adapter none-of-this-name", "device", 5),
     ] {
         let run = folder.line(&format!("{line} --log json"));
-        let code = if kind == "usage" { 2 } else { 1 };
         let error = &self::events(&run.err).pop().unwrap();
         assert_eq!((run.code, &error["kind"]), (Some(code), &kind.into()), "{line}: {error}");
     }

@@ -207,7 +207,7 @@ fn several_meshes_stand_in_one_table() {
     let csv = folder.line("quality in a-long-name-of-a-mesh --csv").clean().out;
     assert_eq!(csv.lines().count(), 1 + 2 * Measure::ALL.len());
     let run = folder.line("quality in none");
-    assert_eq!(run.code, Some(1));
+    assert_eq!(run.code, Some(3));
     assert!(run.out.starts_with("in: Triangle"), "{}", run.out);
     assert_holds(&run.err, &["none: "]);
 }
@@ -399,8 +399,9 @@ fn on_a_terminal_bars_are_of_blocks_unless_it_is_dumb() {
 fn a_mesh_that_cannot_be_read_does_not_hide_the_others() {
     let folder = small();
     fs::write(folder.path("broken.su2"), "NDIME= 3\n").unwrap();
-    let run = folder.line("quality none.msh in.node broken.su2");
-    assert_eq!(run.code, Some(1));
+    let run = folder.line("quality none.msh in.node broken.su2 --threshold min-angle<90");
+    assert_eq!(run.code, Some(3));
+    assert_holds(&run.err, &["in.node: 1", "have min-angle<90"]);
     assert_holds(&run.out, &["in.node: Triangle", "160 triangles"]);
     assert_holds(&run.err, &["error: none.msh: ", "error: broken.su2"]);
     assert_eq!(folder.line("quality none.msh broken.su2").out, "");

@@ -95,7 +95,7 @@ fn a_mesh_with_a_region_for_each_triangle_is_refused_with_the_way_to_smooth_it()
         let (folder, input) = (folder(&files), files[0].0);
         let output = input.replace("in", "out");
         let run = folder.run([input, &output, "--engine", "cpu"]);
-        assert_eq!((run.code, run.out.as_str()), (Some(1), ""));
+        assert_eq!((run.code, run.out.as_str()), (Some(3), ""));
         let error = run.err.lines().last().unwrap();
         assert_holds(
             error,
@@ -283,7 +283,7 @@ fn an_option_chooses_the_cell_data_of_regions() {
             ("error", "the cell data `error` are not a whole number for each triangle"),
         ] {
             let run = line(&format!("--regions {name}"));
-            assert_eq!(run.code, Some(1));
+            assert_eq!(run.code, Some(3));
             assert_holds(&run.err.replace("\n  ", " "), &[input, problem, all]);
         }
     }

@@ -132,7 +132,7 @@ fn vertices_are_counted_as_the_file_has_them() {
     let folder = Folder::new(&[("in.gr3", &band(COLUMNS, true))]);
     let count = (ROWS + 1) * COLUMNS + 1;
     let run = folder.line("in.gr3 out.gr3 --surface sphere --fix-box -180,0,180,90");
-    assert_eq!(run.code, Some(1));
+    assert_eq!(run.code, Some(3));
     assert_holds(&run.err, &[&format!("in.gr3: none of the {count} vertices is free to move.")]);
 }
 

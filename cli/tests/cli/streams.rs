@@ -45,7 +45,7 @@ fn a_mesh_goes_in_and_out_through_pipes() {
         assert!(fs::read(folder.path("out.msh")).unwrap() == out);
     }
     let (run, _) = piped(&folder, "- out.node", b"3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n");
-    assert_eq!(run.code, Some(1));
+    assert_eq!(run.code, Some(3));
     assert_holds(&run.err, &["standard input: the vertices of a Triangle mesh", "several files"]);
     let (run, told) = piped(&folder, "groups - --json", text.as_bytes());
     assert_eq!(run.code, Some(0), "{}", run.err);
@@ -57,12 +57,12 @@ fn a_mesh_goes_in_and_out_through_pipes() {
 fn pipes_without_a_mesh_are_errors() {
     let folder = small();
     let (run, out) = piped(&folder, "- - --engine cpu", b"");
-    assert_eq!((run.code, out.len()), (Some(1), 0));
+    assert_eq!((run.code, out.len()), (Some(3), 0));
     assert_holds(&run.err, &["error: standard input: the file is empty"]);
     let before = folder.content();
     folder.line("in.node - --engine cpu").refused(&["cannot go to standard output: name OUT"]);
     let (run, _) = piped(&folder, "- - --engine cpu", folder.text("in.node").as_bytes());
-    assert_eq!(run.code, Some(1), "{}", run.err);
+    assert_eq!(run.code, Some(3), "{}", run.err);
     assert!(folder.content() == before);
 }
 

@@ -29,15 +29,14 @@ pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
         print(&qualities, args, &style)?;
         write_page(&qualities, outputs.page.as_deref())?;
     }
-    if let Some(last) = errors.pop() {
-        errors.iter().for_each(tell::error);
-        return Err(last);
-    }
     let mut violations = qualities.iter().flat_map(|quality| violations(quality, &style));
-    match violations.next() {
-        None => Ok(()),
-        Some(first) => Err(CliError::run(first).with_details(violations.collect())),
-    }
+    let violated =
+        violations.next().map(|first| CliError::run(first).with_details(violations.collect()));
+    // The exit code is that of a mesh that cannot be read, as its triangles are not checked.
+    let mut errors: Vec<CliError> = violated.into_iter().chain(errors).collect();
+    let last = errors.pop();
+    errors.iter().for_each(tell::error);
+    last.map_or(Ok(()), Err)
 }
 
 /// Prints the quality of at least one mesh.
