@@ -163,7 +163,7 @@ pub(crate) struct SmoothArgs {
     pub(crate) force: bool,
     /// Write a JSON report with the history of every sweep and a certificate: the written mesh is read again, the
     /// statements of `gpu-smooth compare` are proved for it, and both files are hashed. If inverted or flat triangles
-    /// prevent smoothing, the report lists them
+    /// prevent smoothing, the report lists them. docs/report.md describes the keys
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) report: Option<PathBuf>,
     /// Which f the report's history holds: that of the first metric (base), or those of all metrics (all)

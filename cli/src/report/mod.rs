@@ -8,6 +8,7 @@ mod run;
 mod summary;
 mod target;
 mod task;
+mod versioned;
 
 pub(crate) use certificate::{Certificate, FileHash};
 pub(crate) use distinct::DistinctMeasures;
@@ -20,3 +21,4 @@ pub(crate) use run::{
 pub(crate) use summary::change_of;
 pub(crate) use target::TargetReport;
 pub(crate) use task::{Done, Failure, SmoothJob};
+pub(crate) use versioned::versioned_json;

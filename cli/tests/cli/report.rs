@@ -1,6 +1,8 @@
 //! The content of the JSON report.
 
-use super::{number, small};
+use std::collections::BTreeSet;
+
+use super::{disturbed, number, small, support};
 use gpu_smooth::Metric;
 use serde_json::Value;
 
@@ -30,6 +32,8 @@ fn report_holds_the_documented_keys() {
         assert_keys(
             &report,
             &[
+                "schema_version",
+                "program",
                 "engine",
                 "mesh",
                 "scheme",
@@ -186,4 +190,68 @@ fn the_certificate_holds_of_the_files() {
         let compared = folder.line(&format!("compare in out {choice}"));
         assert!(compared.out.contains(&sums), "{}{}", compared.out, compared.err);
     }
+}
+
+/// Adds the path of each key of `value` to `found`: `[]` stands for the entries of a list of texts or objects, METRIC
+/// for the name of a metric.
+fn add_paths(path: &str, value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                let key = if metrics().contains(&key.as_str()) { "METRIC" } else { key };
+                let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+                add_paths(&path, value, found);
+            }
+        }
+        Value::Array(values) if values.iter().any(|value| !value.is_number()) => {
+            values.iter().for_each(|value| add_paths(&format!("{path}[]"), value, found));
+        }
+        _ => _ = found.insert(path.to_owned()),
+    }
+}
+
+/// Returns the keys in the first column of the tables of docs/report.md.
+fn documented() -> BTreeSet<String> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/report.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let rows = page.lines().filter(|line| line.starts_with("| `"));
+    let keys = rows.flat_map(|row| row.split('|').nth(1).unwrap().split(','));
+    keys.map(|key| key.trim().trim_matches('`').to_owned()).collect()
+}
+
+#[test]
+fn every_key_of_a_report_is_documented_and_every_documented_key_is_in_a_report() {
+    let folder = small();
+    let mut mesh = disturbed();
+    let middle = mesh.points.len() / 2;
+    mesh.points[middle][0] += 2.5;
+    let [node, ele] = support::triangle_text(&mesh, "");
+    std::fs::write(folder.path("bad.node"), node).unwrap();
+    std::fs::write(folder.path("bad.ele"), ele).unwrap();
+    assert_eq!(folder.line("convert in in.gr3 --lossy").code, Some(0));
+    let mut found = BTreeSet::new();
+    for line in [
+        "in out --engine gpu --history all",
+        "in out --slide --improve-worst --target keep-size --fix-box 0,0,3,3",
+        "in out --fraction 0.9",
+        "in out --max-move 0.4",
+        "in out --time-limit 1e-6 --checkpoint r.ckpt",
+        "in out --continue r.ckpt",
+        "in.gr3 out.gr3 --interpolate all",
+        "bad out --untangle",
+    ] {
+        let run = folder.line(&format!("{line} --report r.json --force"));
+        assert_eq!(run.code, Some(0), "{line}: {}", run.err);
+        add_paths("", &folder.json("r.json"), &mut found);
+    }
+    folder.line("bad out --report r.json").refused(&["inverted"]);
+    add_paths("", &folder.json("r.json"), &mut found);
+    // A GPU that fails, and a binary file with bad triangles, have tests of their own.
+    let elsewhere = ["engine.fault.sweep", "engine.fault.error", "triangles[].byte"];
+    found.extend(elsewhere.map(str::to_owned));
+    let documented = documented();
+    let missing: Vec<_> = found.difference(&documented).collect();
+    let unknown: Vec<_> = documented.difference(&found).collect();
+    assert!(missing.is_empty() && unknown.is_empty(), "missing {missing:?}, unknown {unknown:?}");
+    assert_eq!(folder.json("r.json")["schema_version"], 1);
 }

@@ -9,7 +9,7 @@ use unicode_width::UnicodeWidthStr;
 use crate::commands::batch::entry::{BatchStatus, Entry};
 use crate::error::CliError;
 use crate::render::columns::{left, quoted, right, shortened};
-use crate::report::Report;
+use crate::report::{Report, versioned_json};
 use crate::terminal::numbers::fit8;
 
 /// Widths of the columns of numbers. A narrow terminal does not show the first two.
@@ -223,8 +223,7 @@ pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, CliError
         }
         meshes.push(object);
     }
-    let all = json!({ "meshes": meshes, "seconds": seconds });
-    Ok(serde_json::to_string_pretty(&all)? + "\n")
+    versioned_json(json!({ "meshes": meshes, "seconds": seconds }))
 }
 
 #[cfg(test)]

@@ -15,8 +15,8 @@ use crate::load::overwrite::{self, Likeness};
 use crate::load::streams;
 use crate::render::html;
 use crate::render::picture::{self, MeshState, PictureSubject};
-use crate::report::Failure;
 use crate::report::{Done, SmoothJob};
+use crate::report::{Failure, versioned_json};
 use crate::report::{Refusal, Report};
 use crate::request::{Outputs, RunExtent, SmoothRequest};
 use crate::run::checkpoint;
@@ -192,8 +192,7 @@ fn draw(
 
 fn write_report(outputs: &Outputs, report: &impl Serialize) -> Result<(), CliError> {
     let Some(path) = &outputs.report else { return Ok(()) };
-    let mut text = serde_json::to_string_pretty(report)?;
-    text.push('\n');
+    let text = versioned_json(report)?;
     atomic::write(path, text.as_bytes())
         .map_err(|error| CliError::from(error).within("the report was not written"))
 }
