@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use gpu_smooth::measure::Measure;
 
-use crate::args::names;
+use crate::args::{names, parse};
 
 #[derive(Args)]
 pub(crate) struct PictureArgs {
@@ -33,6 +33,16 @@ pub(crate) struct PictureArgs {
         value_parser = clap::value_parser!(u32).range(400..=8000)
     )]
     pub(crate) picture_size: u32,
+    /// Draw only the part of the mesh in this rectangle, between two opposite corners
+    #[arg(
+        long,
+        value_name = "X0,Y0,X1,Y1",
+        requires = "picture",
+        help_heading = "Picture",
+        value_parser = parse::corners,
+        allow_hyphen_values = true
+    )]
+    pub(crate) picture_box: Option<[[f64; 2]; 2]>,
     /// Draw how far the vertices of a run have moved, as arrows on the mesh after the run
     #[arg(long, requires = "picture", help_heading = "Picture")]
     pub(crate) picture_arrows: bool,

@@ -22,6 +22,8 @@ pub(crate) struct PictureRequest {
     pub(crate) measure: Measure,
     /// The width in pixels.
     pub(crate) width: u32,
+    /// Opposite corners of the drawn part; `None` for the whole mesh.
+    pub(crate) part: Option<[[f64; 2]; 2]>,
     /// Whether arrows show how far vertices have moved.
     pub(crate) with_arrows: bool,
 }
@@ -38,8 +40,25 @@ impl PictureRequest {
             format: format(path)?,
             measure: args.picture_measure,
             width: args.picture_size,
+            part: args.picture_box,
             with_arrows: args.picture_arrows,
         }))
+    }
+}
+
+impl PictureRequest {
+    /// Checks that the drawn part has a vertex of the mesh.
+    ///
+    /// # Errors
+    /// An input error if no vertex lies in the rectangle of `--picture-box`.
+    pub(crate) fn check_part(&self, points: &[[f64; 2]]) -> Result<(), CliError> {
+        let Some([p, q]) = self.part else { return Ok(()) };
+        let is_between = |axis: usize, x: f64| (x - p[axis]) * (x - q[axis]) <= 0.0;
+        match points.iter().any(|&[x, y]| is_between(0, x) && is_between(1, y)) {
+            true => Ok(()),
+            false => Err(CliError::input("no vertex lies in the rectangle of --picture-box")
+                .with_remedy("Give two opposite corners in coordinates of the mesh")),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Pictures (`--picture`): correct content, orientation and size.
 
 use super::output::INVERTED;
-use super::{Folder, assert_holds, finish, small};
+use super::{Folder, assert_holds, finish, small, support};
 use std::fs;
 
 /// An image, decoded to its pixels.
@@ -158,6 +158,62 @@ fn an_svg_has_every_triangle() {
         &["a&amp;b", "160 triangles; min-angle ", "min-angle, 60° is best", "boundary"],
     );
     assert_holds(&text, &["width=\"800\""]);
+}
+
+/// Returns the numbers that follow `key="` in an SVG, in their order.
+fn numbers(svg: &str, key: &str) -> Vec<f64> {
+    let key = format!(" {key}=\"");
+    svg.split(&key).skip(1).map(|rest| rest.split('"').next().unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn a_part_of_the_mesh_is_drawn_larger_with_its_worst_triangles_inside() {
+    let folder = small();
+    folder.line("in out --engine cpu --picture p.svg --force -q").clean();
+    let whole = folder.text("p.svg");
+    assert_holds(&whole, &[">in, before</text>", ">in, after</text>"]);
+    folder.line("in out --engine cpu --picture p.svg --picture-box 5,4,3,2 --force -q").clean();
+    let part = folder.text("p.svg");
+    // Rings mark triangles in the two panels, which are squares of equal size, and in the legend.
+    let (x, y) = (numbers(&part, "cx"), numbers(&part, "cy"));
+    let frame = part.split("<svg ").nth(2).unwrap().split(">").next().unwrap();
+    let [top, height] = ["y", "height"].map(|key| numbers(frame, key)[0]);
+    assert!((numbers(frame, "width")[0] / height - 1.0).abs() < 1e-3, "{frame}");
+    let legend = y.iter().copied().fold(0.0, f64::max);
+    let inside: Vec<f64> = y.iter().copied().filter(|&y| y < legend - 1.0).collect();
+    assert!(!inside.is_empty() && x.len() > inside.len());
+    assert!(inside.iter().all(|&y| (top..=top + height).contains(&y)), "{frame} {y:?}");
+    // A number is drawn after all rings of its panel, so that no ring hides the number.
+    let panel = whole.split(">in, before</text>").next().unwrap();
+    let first_number = panel.find(">1</text>").unwrap();
+    let [ring, number] = ["<circle", ">1</text>"].map(|sign| panel.rfind(sign).unwrap());
+    assert!(first_number == number && ring < number);
+    let before = folder.content();
+    folder
+        .line("in new --engine cpu --picture p.svg --picture-box 50,4,60,2")
+        .refused(&["no vertex lies in the rectangle of --picture-box"]);
+    assert!(folder.content() == before);
+}
+
+#[test]
+fn enlarged_triangles_have_outlines_and_a_bar_for_the_scale() {
+    let mesh = support::perturb_random(&support::lattice(60, 60), 0.2, 7);
+    let [node, ele] = support::triangle_text(&mesh, "");
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    folder.line("quality in --picture p.svg --picture-size 800").clean();
+    let svg = folder.text("p.svg");
+    // Seven longest edges fit an inset, and the bar is at most a third of the inset.
+    assert_holds(&svg, &[">1: shape ", ">2</text>"]);
+    let insets: Vec<&str> = svg.split("<svg ").skip(2).collect();
+    assert_eq!(insets.len(), 3);
+    for inset in insets {
+        let drawn = inset.split("</svg>").next().unwrap();
+        let outline = drawn.rsplit("<path ").next().unwrap();
+        assert!(
+            outline.contains("stroke=\"#000000\"") && outline.matches('M').count() == 3,
+            "{outline}"
+        );
+    }
 }
 
 #[test]

@@ -117,6 +117,9 @@ impl MeshQuality {
         let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
         let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
+        if let Some(picture) = picture {
+            picture.check_part(&mesh.points)?;
+        }
         let title = path.file_name().unwrap_or_default().display().to_string();
         let state = MeshState { title, points: &mesh.points };
         picture::write(

@@ -92,6 +92,9 @@ impl PipelineObserver for Shown<'_> {
         let SmoothRequest { outputs, reading, .. } = self.request;
         Outputs::check_companion(self.input, self.out, &file.paths())?;
         outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
+        if let Some(picture) = &outputs.picture {
+            picture.check_part(&file.mesh().points)?;
+        }
         if outputs.replaces_any {
             return Ok(());
         }
@@ -183,7 +186,8 @@ fn draw(
     smoother: &Smoother<'_>,
     outcome: &Outcome,
 ) -> Result<(), CliError> {
-    let state = |title: &str, points| MeshState { title: title.to_owned(), points };
+    let name = task.input.file_name().unwrap_or_default().display();
+    let state = |when: &str, points| MeshState { title: format!("{name}, {when}"), points };
     let states = [state("before", &file.mesh().points[..]), state("after", &outcome.points[..])];
     let SmoothRequest { outputs, surface, .. } = task.request;
     let mesh = PictureSubject { file, topology: smoother.topology(), surface: *surface };

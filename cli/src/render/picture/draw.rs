@@ -46,7 +46,8 @@ pub(crate) fn write(
 ) -> Result<(), CliError> {
     let Some(request) = request else { return Ok(()) };
     let failed = |error: CliError| error.within("the picture was not written");
-    let panels = states.iter().map(|state| panel(request.measure, mesh, state));
+    let part = request.part.map(Extent::between);
+    let panels = states.iter().map(|state| panel(request.measure, part, mesh, state));
     let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
     let (before, after) = match states {
         [first, .., last] => (first.points, last.points),
@@ -54,6 +55,7 @@ pub(crate) fn write(
     };
     let scene = Scene {
         measure: request.measure,
+        part,
         triangles: mesh.topology.triangles(),
         with_arrows: request.with_arrows,
         outlines: Outlines::of(
@@ -117,6 +119,7 @@ fn goodness_of(
 
 fn panel<'a>(
     measure: Measure,
+    part: Option<Extent>,
     mesh: PictureSubject<'_>,
     state: &MeshState<'a>,
 ) -> Result<Panel<'a>, MeshError> {
@@ -128,6 +131,16 @@ fn panel<'a>(
         let [min, mean, max] = [s.min, s.mean, s.max].map(fit8);
         format!("{} triangles; {measure} {min}{unit} to {max}{unit}, mean {mean}{unit}", s.count)
     });
-    let worst = measured.worst(measure, CANDIDATES);
+    let worst = match part {
+        None => measured.worst(measure, CANDIDATES),
+        Some(part) => {
+            let has_middle = |t: usize| {
+                let corners = mesh.topology.triangles()[t].map(|v| state.points[v as usize]);
+                part.has([0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum()))
+            };
+            let all = measured.worst(measure, goodness.len()).into_iter();
+            all.filter(|(t, _)| has_middle(*t)).take(CANDIDATES).collect()
+        }
+    };
     Ok(Panel { title: [state.title.clone(), numbers], points: state.points, goodness, worst })
 }

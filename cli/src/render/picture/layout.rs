@@ -25,6 +25,17 @@ impl Extent {
         Self { low, high }
     }
 
+    /// Returns the rectangle between two opposite corners.
+    pub(crate) fn between([p, q]: [[f64; 2]; 2]) -> Self {
+        let of = |choose: fn(f64, f64) -> f64| [0, 1].map(|axis| choose(p[axis], q[axis]));
+        Self { low: of(f64::min), high: of(f64::max) }
+    }
+
+    /// Returns whether a point lies in the rectangle.
+    pub(crate) fn has(&self, point: [f64; 2]) -> bool {
+        [0, 1].into_iter().all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
+    }
+
     /// Returns width and height. A smaller side than a thousandth of the larger side is enlarged to a thousandth.
     pub(crate) fn size(&self) -> [f64; 2] {
         let size = [0, 1].map(|axis| self.high[axis] - self.low[axis]);
@@ -76,6 +87,8 @@ pub(crate) struct Place {
     pub(crate) frame: Frame,
     /// Start of the title's first line, on the base line.
     pub(crate) title: Point,
+    /// Width for the title, in pixels.
+    pub(crate) width: f32,
     /// Rectangles for enlarged parts of the mesh; empty without insets.
     pub(crate) insets: Vec<[Point; 2]>,
 }
@@ -128,7 +141,8 @@ impl Layout {
                 [[left, top], [left + inset_width, top + inset_height]].map(|p| p.map(|x| x as f32))
             };
             let title = [left as f32, (top + text) as f32];
-            Place { frame, title, insets: (0..insets).map(inset).collect() }
+            let width = panel_width as f32;
+            Place { frame, title, width, insets: (0..insets).map(inset).collect() }
         };
         let below = count.div_ceil(columns) as f64 * panel_height + 1.5 * margin;
         Self {

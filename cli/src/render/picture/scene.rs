@@ -26,6 +26,8 @@ pub(crate) struct Panel<'a> {
 pub(crate) struct Scene<'a> {
     pub(crate) measure: Measure,
     pub(crate) triangles: &'a [[u32; 3]],
+    /// The drawn part of the plane; `None` for the whole mesh.
+    pub(crate) part: Option<Extent>,
     /// Whether panels show, by arrows, how far vertices have moved since the first panel.
     pub(crate) with_arrows: bool,
     pub(crate) outlines: Outlines,
@@ -43,7 +45,7 @@ impl Scene<'_> {
     /// Lays out the panels, with insets if a marked triangle is too small to be visible without.
     pub(crate) fn layout(&self, width: u32) -> Layout {
         let all: Vec<&[[f64; 2]]> = self.panels.iter().map(|panel| panel.points).collect();
-        let extent = Extent::of(self.triangles, &all);
+        let extent = self.part.unwrap_or_else(|| Extent::of(self.triangles, &all));
         let plain = Layout::new(extent, self.panels.len(), 0, width);
         let is_small = |(panel, place): (&Panel<'_>, &Place)| {
             let spots = self.spots(panel, &place.frame, plain.text);
@@ -59,13 +61,27 @@ impl Scene<'_> {
     pub(crate) fn draw(&self, layout: &Layout, canvas: &mut dyn Canvas) {
         let text = layout.text;
         for (panel, place) in self.panels.iter().zip(&layout.panels) {
-            self.draw_mesh(panel, &place.frame, text, canvas);
+            match self.part {
+                None => self.draw_mesh(panel, &place.frame, text, canvas),
+                Some(_) => {
+                    canvas.clip(Some(place.frame.corners));
+                    self.draw_mesh(panel, &place.frame, text, canvas);
+                    canvas.clip(None);
+                    around(place.frame.corners, text, canvas);
+                }
+            }
             let spots = self.spots(panel, &place.frame, text);
-            for (number, &(t, _)) in (1..).zip(&spots) {
-                let at = place.frame.place(self.middle(panel, t));
-                worst(at, text, canvas);
-                // Near the right end of the picture, the number is placed left of the mark.
-                let is_last = at[0] + 2.0 * text > layout.size[0] as f32;
+            let marks: Vec<Point> =
+                spots.iter().map(|&(t, _)| place.frame.place(self.middle(panel, t))).collect();
+            marks.iter().for_each(|&at| worst(at, text, canvas));
+            // Numbers are drawn after all rings, so that no ring hides a number.
+            for (number, at) in (1..).zip(marks) {
+                // Near the right end of the picture or of the drawn part, the number is placed left of the mark.
+                let end = match self.part {
+                    Some(_) => place.frame.corners[1][0],
+                    None => layout.size[0] as f32,
+                };
+                let is_last = at[0] + 2.0 * text > end;
                 let (aside, anchor) = match is_last {
                     true => (-0.85 * text, Anchor::End),
                     false => (0.85 * text, Anchor::Start),
@@ -82,8 +98,10 @@ impl Scene<'_> {
                 let frame = Frame::around(self.middle(panel, t), scale, corners);
                 canvas.clip(Some(corners));
                 self.draw_mesh(panel, &frame, text, canvas);
+                self.outline(panel, t, &frame, text, canvas);
                 canvas.clip(None);
                 around(corners, text, canvas);
+                scale_bar(&frame, text, canvas);
                 let (measure, unit) = (self.measure, self.measure.definition().unit);
                 let name = format!("{}: {measure} {}{unit}", i + 1, fit8(value));
                 canvas.text(
@@ -94,7 +112,8 @@ impl Scene<'_> {
                 );
             }
             let [x, y] = place.title;
-            canvas.text([x, y], text, Anchor::Start, &panel.title[0]);
+            let name = end_within(&panel.title[0], place.width, text, canvas);
+            canvas.text([x, y], text, Anchor::Start, &name);
             canvas.text([x, y + 1.25 * text], 0.85 * text, Anchor::Start, &panel.title[1]);
         }
         self.draw_legend(layout, canvas);
@@ -123,6 +142,21 @@ impl Scene<'_> {
         let [p, q, r] = self.triangles[t].map(|v| panel.points[v as usize]);
         let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
         length(p, q).max(length(q, r)).max(length(r, p))
+    }
+
+    /// Outlines a triangle: a black line on a white one.
+    fn outline(
+        &self,
+        panel: &Panel<'_>,
+        t: usize,
+        frame: &Frame,
+        text: f32,
+        canvas: &mut dyn Canvas,
+    ) {
+        let corners = self.triangles[t].map(|v| frame.place(panel.points[v as usize]));
+        let sides = [0, 1, 2].map(|i: usize| [corners[i], corners[(i + 1) % 3]]);
+        canvas.lines(&sides, text / 5.0, WHITE, 1.0);
+        canvas.lines(&sides, text / 10.0, BLACK, 1.0);
     }
 
     fn draw_mesh(&self, panel: &Panel<'_>, frame: &Frame, text: f32, canvas: &mut dyn Canvas) {
@@ -255,11 +289,52 @@ fn between_regions(segments: &[[Point; 2]], text: f32, canvas: &mut dyn Canvas) 
     canvas.lines(segments, (text / 12.0).max(1.5), WHITE, 1.0);
 }
 
-/// Draws a frame around an inset.
+/// Draws a frame around an inset, or around the drawn part of a mesh.
 fn around([[left, top], [right, bottom]]: [Point; 2], text: f32, canvas: &mut dyn Canvas) {
     let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
     let sides = [0, 1, 2, 3].map(|i: usize| [corners[i], corners[(i + 1) % 4]]);
     canvas.lines(&sides, text / 16.0, BLACK, 1.0);
+}
+
+/// Draws a bar of a round length, with the length in units of the mesh, at the lower left of an inset.
+fn scale_bar(frame: &Frame, text: f32, canvas: &mut dyn Canvas) {
+    let [[left, top], [right, bottom]] = frame.corners;
+    let Some(length) = round_length(f64::from(right - left) / (3.0 * frame.scale)) else { return };
+    let (width, y) = ((length * frame.scale) as f32, bottom - 0.6 * text);
+    if bottom - top < 4.0 * text {
+        return;
+    }
+    let from = left + 0.6 * text;
+    let bar = [[[from, y], [from + width, y]]];
+    canvas.lines(&bar, 0.35 * text, WHITE, 1.0);
+    canvas.lines(&bar, 0.15 * text, BLACK, 1.0);
+    canvas.text([from, y - 0.5 * text], 0.7 * text, Anchor::Start, &length_text(length));
+}
+
+/// Returns the largest of 1, 2 and 5 times a power of ten up to `most`; `None` if `most` is not a positive number.
+fn round_length(most: f64) -> Option<f64> {
+    if !(most > 0.0 && most.is_finite()) {
+        return None;
+    }
+    let power = 10_f64.powi(most.log10().floor() as i32);
+    [5.0, 2.0, 1.0].map(|factor| factor * power).into_iter().find(|&length| length <= most)
+}
+
+fn length_text(length: f64) -> String {
+    match (1e-3..1e5).contains(&length) {
+        true => color::short(length),
+        false => format!("{:e}", length as f32),
+    }
+}
+
+/// Returns the end of a text that is at most `width` pixels wide. Dots replace the beginning.
+fn end_within(name: &str, width: f32, size: f32, canvas: &dyn Canvas) -> String {
+    let mut shown = name.to_owned();
+    let mut rest = name.chars();
+    while canvas.width(size, &shown) > width && rest.next().is_some() {
+        shown = format!("...{}", rest.as_str());
+    }
+    shown
 }
 
 /// Returns whether points, or segments between them, may be visible in a rectangle, with a margin of `text` pixels.
