@@ -11,9 +11,9 @@ mod smallest_last;
 
 pub use coloring::Coloring;
 pub use prepare::prepare;
-pub(crate) use prepare::prepare_to_slide;
 #[cfg(feature = "gpu")]
 pub(crate) use prepare::prepare_to_untangle;
+pub(crate) use prepare::{laid_out, prepare_to_slide};
 pub use problem::Problem;
 pub(crate) use sizes::target_areas;
 pub use smallest_last::UNCOLORED;

@@ -15,7 +15,8 @@ use crate::topology::Topology;
 pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     topology.check_smoothable(&mesh.points)?;
-    Ok(laid_out(mesh, topology))
+    let problem = laid_out(mesh, &topology);
+    Ok((topology, problem))
 }
 
 /// Prepares a mesh as [`prepare`] does, but accepts a mesh without free vertices, whose boundary vertices may slide.
@@ -25,7 +26,10 @@ pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
 pub(crate) fn prepare_to_slide(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
     match topology.check_smoothable(&mesh.points) {
-        Ok(()) | Err(MeshError::NothingFree { .. }) => Ok(laid_out(mesh, topology)),
+        Ok(()) | Err(MeshError::NothingFree { .. }) => {
+            let problem = laid_out(mesh, &topology);
+            Ok((topology, problem))
+        }
         Err(error) => Err(error),
     }
 }
@@ -50,12 +54,13 @@ pub(crate) fn prepare_to_untangle(mesh: &Mesh) -> Result<(Topology<'_>, Problem)
     if !topology.free().contains(&true) {
         return Err(MeshError::NothingFree { vertices: mesh.points.len() });
     }
-    Ok(laid_out(mesh, topology))
+    let problem = laid_out(mesh, &topology);
+    Ok((topology, problem))
 }
 
-fn laid_out<'m>(mesh: &'m Mesh, topology: Topology<'m>) -> (Topology<'m>, Problem) {
-    let curve = along_curve(mesh, &topology);
-    let coloring = Coloring::along(&topology, &curve);
-    let problem = Problem::along(mesh, &topology, &coloring, &curve);
-    (topology, problem)
+/// Colors the free vertices of a mesh and lays the mesh out.
+pub(crate) fn laid_out(mesh: &Mesh, topology: &Topology<'_>) -> Problem {
+    let curve = along_curve(mesh, topology);
+    let coloring = Coloring::along(topology, &curve);
+    Problem::along(mesh, topology, &coloring, &curve)
 }

@@ -8,13 +8,15 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::layout::{Problem, prepare_to_slide};
+use crate::layout::{Problem, laid_out, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::slide::{Slide, Sliding};
-use crate::targets::{OutsideReport, TargetField, Targets};
+use crate::targets::{OutsideReport, Surface, TargetField, Targets};
 use crate::topology::{Topology, certify};
 use crate::whole::set_targets_of;
+
+use super::projection::Projection;
 
 /// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
@@ -28,6 +30,8 @@ pub struct Smoother<'a> {
     pairs: [usize; 2],
     /// Field of targets that belong to points of the plane; `None` if targets belong to vertices or are not set.
     pub(super) field: Option<TargetField>,
+    /// The mesh in the projection in which runs move vertices; `None` if runs move them in the coordinates of the mesh.
+    pub(super) projection: Option<Projection>,
     prepare: Duration,
 }
 
@@ -47,8 +51,9 @@ impl<'a> Smoother<'a> {
         // Runs need only the problem. The stars are computed again when a vertex has to be set back.
         topology.forget_stars();
         let (mesh, pairs) = (Cow::Borrowed(mesh), [0; 2]);
-        let (slide, sliding, field) = (None, None, None);
-        Self { mesh, topology, problem, slide, sliding, pairs, field, prepare: start.elapsed() }
+        let (slide, sliding, field, projection) = (None, None, None, None);
+        let prepare = start.elapsed();
+        Self { mesh, topology, problem, slide, sliding, pairs, field, projection, prepare }
     }
 
     /// Fails with [`MeshError::NothingFree`] if no vertex is free and no vertex slides.
@@ -70,7 +75,52 @@ impl<'a> Smoother<'a> {
             sliding: self.sliding,
             pairs: self.pairs,
             field: self.field,
+            projection: self.projection,
             prepare: self.prepare,
+        }
+    }
+
+    /// Lets further runs move the vertices of a mesh of longitudes and latitudes, in degrees, in the Mercator projection,
+    /// so that f is that of the triangles on the sphere wherever the vertices move. Runs still take and return longitudes
+    /// and latitudes, and no triangle is inverted in these coordinates. Removes the targets: set them afterwards, as lengths
+    /// in these coordinates ([`Targets::seen_on`]).
+    ///
+    /// Returns false, and changes nothing, if the projection would invert or flatten a triangle. Slivers may, as straight
+    /// edges have curved images. Runs that measure in the coordinates of the mesh refuse a projection: those with
+    /// [`set_slide`](Self::set_slide), [`set_target_field`](Self::set_target_field),
+    /// [`max_move`](crate::Options::max_move), [`keep_altitude`](crate::Options::keep_altitude) or
+    /// [`improve_worst`](crate::Options::improve_worst).
+    ///
+    /// # Errors
+    /// [`MeshError::Target`] if a vertex is not on the sphere.
+    pub fn project_from_sphere(&mut self) -> Result<bool, MeshError> {
+        Surface::Sphere.check(&self.mesh.points, self.topology.triangles())?;
+        let Some(projection) = Projection::new(&self.mesh, &self.topology) else {
+            return Ok(false);
+        };
+        self.problem = laid_out(&projection.mesh, &self.topology);
+        (self.field, self.projection) = (None, Some(projection));
+        Ok(true)
+    }
+
+    /// Returns the normalized positions of points given in the order and coordinates of the mesh. Reuses the memory of
+    /// `room`.
+    pub(super) fn positions_of(&self, points: &[[f64; 2]], room: Vec<DVec2>) -> Vec<DVec2> {
+        match &self.projection {
+            None => self.problem.normalized(points, room),
+            Some(projection) => self.problem.normalized(&projection.projected(points), room),
+        }
+    }
+
+    /// Converts normalized positions to the order and coordinates of the mesh. Vertices that have not moved keep their
+    /// bits.
+    pub(super) fn points_at(&self, positions: &[DVec2]) -> Vec<[f64; 2]> {
+        match &self.projection {
+            None => self.problem.denormalize(&self.mesh, positions),
+            Some(projection) => {
+                let images = self.problem.denormalize(&projection.mesh, positions);
+                projection.unprojected(&images, &self.mesh.points)
+            }
         }
     }
 
@@ -82,7 +132,13 @@ impl<'a> Smoother<'a> {
     /// [`MeshError::ValueCount`] if `targets` does not have one target per vertex.
     pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
         targets.check_count(self.mesh.points.len())?;
-        self.problem.set_targets(targets.maps());
+        match &self.projection {
+            None => self.problem.set_targets(targets.maps()),
+            Some(projection) => {
+                let targets = projection.targets(targets, &self.mesh.points);
+                self.problem.set_targets(targets.maps());
+            }
+        }
         self.field = None;
         Ok(())
     }
@@ -138,7 +194,7 @@ impl<'a> Smoother<'a> {
     /// that needs a target has an infinite or NaN coordinate.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
-        let positions = self.problem.normalized(points, Vec::new());
+        let positions = self.positions_of(points, Vec::new());
         let Some(field) = &self.field else { return Ok(self.objective(metric, &positions)) };
         let mut problem = self.problem.clone();
         set_targets_of(field, &self.mesh, &mut problem, &positions)?;

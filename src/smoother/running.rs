@@ -97,7 +97,9 @@ impl Smoother<'_> {
     fn about(&self, options: &Options) -> RunFingerprint {
         let of_slide = self.slide.as_ref().map(Slide::words);
         let of_field = self.field.as_ref().map(TargetField::words);
-        let more: Vec<u64> = of_slide.into_iter().chain(of_field).flatten().collect();
+        let of_projection = self.projection.as_ref().map(|_| vec![1]);
+        let words = of_slide.into_iter().chain(of_field).chain(of_projection);
+        let more: Vec<u64> = words.flatten().collect();
         resume::about(&self.mesh, self.problem.targets(), &more, options)
     }
 
@@ -107,6 +109,7 @@ impl Smoother<'_> {
             (Feature::Slide, self.sliding.is_some()),
             (Feature::Targets, self.problem.targets().is_some()),
             (Feature::TargetField, self.field.is_some()),
+            (Feature::Projection, self.projection.is_some()),
         ])
     }
 
@@ -168,7 +171,7 @@ impl Smoother<'_> {
         stages.set_targets_at(&mut problem, &ended.positions)?;
         let improving = Improvement::after(&mut ended, options, &problem, stages.bounds(), observe);
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
-        let mut points = self.problem.denormalize(&self.mesh, &ended.positions);
+        let mut points = self.points_at(&ended.positions);
         stages.slide_into(&mut points);
         for x in points.as_flattened_mut() {
             *x = options.stored.rounded(*x);
@@ -181,7 +184,7 @@ impl Smoother<'_> {
             low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
             returned += low + self.certify(&mut points)?;
         }
-        let judged = self.problem.normalized(&points, ended.positions);
+        let judged = self.positions_of(&points, ended.positions);
         stages.set_targets_at(&mut problem, &judged)?;
         let problem = &problem;
         let written = base.ideal_squared() + mean_excess(base, problem, &judged);

@@ -120,6 +120,16 @@ impl Targets {
         Ok(self)
     }
 
+    /// Converts targets in coordinates on a surface to targets in its conformal coordinates, in which a unit of either
+    /// coordinate has the length of a unit of the first one. The vertices are at `points`.
+    pub(crate) fn in_conformal_coordinates(&self, surface: Surface, points: &[[f64; 2]]) -> Self {
+        let map = |(map, &[_, y]): (&Tensor, &[f64; 2])| {
+            let [first, second] = surface.lengths(y);
+            map.squared().stretched([1.0, first / second]).sqrt()
+        };
+        Self { maps: self.maps.iter().zip(points).map(map).collect() }
+    }
+
     /// Fails with [`MeshError::ValueCount`] unless there is a target for each of the `vertices` vertices.
     pub(crate) fn check_count(&self, vertices: usize) -> Result<(), MeshError> {
         match self.maps.len() {

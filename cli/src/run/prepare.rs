@@ -113,6 +113,10 @@ pub(super) fn set_up<'a>(
         _ => taken,
     };
     let points = mended.map_or(&mesh.points, |mended| &mended.mesh.points);
+    if request.is_projected() {
+        // A mesh with slivers that the projection would invert is smoothed in longitude and latitude.
+        smoother.project_from_sphere().map_err(|error| explain::mesh_error(file, &error))?;
+    }
     if let Some(remark) = mended.and_then(|mended| mended.remark.as_ref()) {
         follow.remark(remark);
     }

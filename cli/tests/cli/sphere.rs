@@ -215,3 +215,92 @@ fn a_background_and_its_mesh_may_both_be_across_the_date_line() {
     let both = f("globe.gr3", "size=globe.gr3:depth");
     assert!(both[1] < both[0], "{both:?}");
 }
+
+/// A lattice of `FIELDS` by `FIELDS` squares of equal size in degrees, each of two triangles.
+const FIELDS: usize = 12;
+
+fn lattice(south: f64, north: f64) -> (Vec<[f64; 2]>, Vec<[usize; 3]>) {
+    let step = (north - south) / FIELDS as f64;
+    let at =
+        |k: usize| [step * (k % (FIELDS + 1)) as f64, south + step * (k / (FIELDS + 1)) as f64];
+    let points = (0..(FIELDS + 1).pow(2)).map(at).collect();
+    let fields =
+        (0..FIELDS).flat_map(|row| (0..FIELDS).map(move |column| row * (FIELDS + 1) + column));
+    let halves = |k| [[k, k + 1, k + FIELDS + 2], [k, k + FIELDS + 2, k + FIELDS + 1]];
+    (points, fields.flat_map(halves).collect())
+}
+
+/// Returns imr² of a triangle of longitudes and latitudes, whose longitudes have the lengths of those at its center.
+fn imr_squared(corners: [[f64; 2]; 3]) -> f64 {
+    let scale = (corners.iter().map(|p| p[1]).sum::<f64>() / 3.0).to_radians().cos();
+    let [p, q, r] = corners.map(|[x, y]| [scale * x, y]);
+    let area = 0.5 * ((q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]));
+    let squares =
+        [[p, q], [q, r], [r, p]].map(|[a, b]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2));
+    let imr = squares.iter().sum::<f64>() / (4.0 * 3_f64.sqrt() * area);
+    if area > 0.0 { imr * imr } else { f64::INFINITY }
+}
+
+/// Moves each inner vertex of a lattice to the least sum of imr² over its triangles, in a pattern search that evaluates
+/// only this sum, until no vertex moves by more than 1e-6 degrees.
+fn optimum(points: &mut [[f64; 2]], triangles: &[[usize; 3]]) {
+    let inner =
+        |v: &usize| [v % (FIELDS + 1), v / (FIELDS + 1)].iter().all(|k| (1..FIELDS).contains(k));
+    let mut step = 0.5;
+    while step > 1e-6 {
+        let mut has_moved = false;
+        for v in (0..points.len()).filter(inner) {
+            let around: Vec<_> =
+                triangles.iter().filter(|triangle| triangle.contains(&v)).collect();
+            let sum = |points: &[[f64; 2]]| -> f64 {
+                around.iter().map(|triangle| imr_squared(triangle.map(|v| points[v]))).sum()
+            };
+            for [x, y] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+                let (was, here) = (sum(points), points[v]);
+                points[v] = [here[0] + step * x, here[1] + step * y];
+                if sum(points) < was {
+                    has_moved = true;
+                } else {
+                    points[v] = here;
+                }
+            }
+        }
+        if !has_moved {
+            step *= 0.5;
+        }
+    }
+}
+
+#[test]
+fn a_mesh_of_high_latitudes_ends_at_the_optimum_on_the_sphere() {
+    // With the scale of longitudes frozen at the start, the excess is 0.015 and 0.06.
+    for (south, north) in [(40.0, 75.0), (60.0, 85.0)] {
+        let (points, triangles) = lattice(south, north);
+        let mut text = format!("lattice\n{} {}\n", triangles.len(), points.len());
+        for (i, [x, y]) in points.iter().enumerate() {
+            writeln!(text, "{} {x} {y} 1", i + 1).unwrap();
+        }
+        for (i, corners) in triangles.iter().enumerate() {
+            let [a, b, c] = corners.map(|v| v + 1);
+            writeln!(text, "{} 3 {a} {b} {c}", i + 1).unwrap();
+        }
+        let folder = Folder::new(&[("in.gr3", &(text + "0 = Number of open boundaries\n"))]);
+        let run = folder.line("in.gr3 out.gr3 --surface sphere --engine cpu");
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let written = folder.text("out.gr3");
+        let rows = written.lines().skip(2).take(points.len());
+        let point = |row: &str| -> [f64; 2] {
+            let mut words = row.split_whitespace().skip(1);
+            [(); 2].map(|()| words.next().unwrap().parse().unwrap())
+        };
+        let mut smoothed: Vec<[f64; 2]> = rows.map(point).collect();
+        let f = |points: &[[f64; 2]]| {
+            triangles.iter().map(|t| imr_squared(t.map(|v| points[v]))).sum::<f64>()
+                / triangles.len() as f64
+        };
+        let reached = f(&smoothed);
+        optimum(&mut smoothed, &triangles);
+        let excess = reached / f(&smoothed) - 1.0;
+        assert!(excess < 1e-4, "{south} to {north}: {excess} above the optimum");
+    }
+}
