@@ -210,12 +210,9 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             let mut ends = edge.map(name);
             ends.sort_unstable();
             let [a, b] = ends;
-            let remedy = match (has_twins(file, triangles), file.source.format()) {
-                (true, Format::Gmsh22 | Format::Gmsh22Binary) => {
-                    "Some of them have the same vertices: remove these, or save as gmsh 4.1 if version 2.2 lists triangles once for each physical group"
-                }
-                (true, _) => "Some of them have the same vertices: remove these",
-                (false, _) => "In a 2D mesh an edge has one or two: remove the others",
+            let remedy = match has_twins(file, triangles) {
+                true => "Some of them have the same vertices: remove these",
+                false => "In a 2D mesh an edge has one or two: remove the others",
             };
             CliError::input(format!(
                 "{}: the edge between vertices {a} and {b} belongs to {} triangles ({})",

@@ -53,9 +53,20 @@ impl TriangleRegions {
         self.triangles += 1;
     }
 
+    /// Replaces the region of the last triangle by the region that `next` returns for it.
+    pub(crate) fn replace_last(&mut self, next: impl FnOnce(u32) -> u32) {
+        if self.numbers.is_empty() {
+            self.numbers = vec![0; self.triangles];
+        }
+        if let Some(region) = self.numbers.last_mut() {
+            *region = next(*region);
+        }
+    }
+
     /// Returns the region of each triangle; `None` if all triangles have equal regions.
     pub(crate) fn finish(self) -> Option<Vec<u32>> {
-        (!self.numbers.is_empty()).then_some(self.numbers)
+        let first = self.numbers.first()?;
+        self.numbers.iter().any(|region| region != first).then_some(self.numbers)
     }
 }
 
@@ -108,6 +119,16 @@ mod tests {
         };
         assert_eq!(of(&[0, 0, 0]), None);
         assert_eq!(of(&[0, 0, 1, 0]), Some(vec![0, 0, 1, 0]));
+        let mut replaced = TriangleRegions::default();
+        for region in [0, 0, 2] {
+            replaced.push(region);
+            replaced.replace_last(|region| region + 1);
+        }
+        assert_eq!(replaced.finish(), Some(vec![1, 1, 3]));
+        let mut same = TriangleRegions::default();
+        same.push(0);
+        same.replace_last(|_| 1);
+        assert_eq!(same.finish(), None);
         let mut regions = TriangleRegions::default();
         (0..1000).for_each(|_| regions.push(0));
         assert_eq!(regions.numbers.capacity(), 0);

@@ -144,12 +144,18 @@ impl ContentBuilder {
                 groups.push(group);
             }
         }
+        let set = self.number_of(groups);
+        self.last.insert((dimension, region), set);
+        set
+    }
+
+    /// Returns the index in [`Content::sets`] of a set of groups, and adds new sets.
+    fn number_of(&mut self, groups: Vec<u32>) -> u32 {
         let next = self.content.sets.len() as u32;
         let set = *self.sets.entry(groups.clone()).or_insert(next);
         if set == next {
             self.content.sets.push(groups);
         }
-        self.last.insert((dimension, region), set);
         set
     }
 
@@ -181,6 +187,20 @@ impl MeshVisitor for ContentBuilder {
         let vertices = self.vertices(&nodes[..kind.nodes()]);
         self.content.cells.push(kind, &vertices, set, id);
         Ok(())
+    }
+
+    fn further_region(&mut self, kind: CellKind, region: [i64; 2]) {
+        let further = self.set(kind.dimension(), region);
+        let Some(&before) = self.content.cells.sets.last() else { return };
+        let mut groups = self.content.sets[before as usize].clone();
+        for &group in &self.content.sets[further as usize] {
+            if !groups.contains(&group) {
+                groups.push(group);
+            }
+        }
+        let set = self.number_of(groups);
+        self.content.cells.sets.pop();
+        self.content.cells.sets.push(set);
     }
 
     fn polygon(

@@ -31,6 +31,8 @@ struct GroupVisitor {
     table: GroupTable,
     ids: IdIndexBuilder,
     triangles: u32,
+    /// Vertices of the last element other than a triangle.
+    vertices: Vec<u32>,
     columns: Vec<RegionAttribute>,
     /// Distinct pairs of dimension and region integer among the visited elements, for each region attribute.
     met: Vec<Interner<(u8, i64)>>,
@@ -86,20 +88,25 @@ impl MeshVisitor for GroupVisitor {
 
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { kind, region, nodes, .. } = element;
-        self.find(kind.dimension(), region);
         if kind == CellKind::Triangle {
-            for &group in &self.of_element {
-                self.table.add_triangle(group, self.triangles);
-            }
             self.triangles += 1;
         } else {
+            self.vertices.clear();
             let index = |&node: &u64| self.ids.index(node);
-            let vertices: Vec<u32> = nodes[..kind.nodes()].iter().filter_map(index).collect();
-            for &group in &self.of_element {
-                self.table.add(group, kind, &vertices);
+            self.vertices.extend(nodes[..kind.nodes()].iter().filter_map(index));
+        }
+        self.further_region(kind, region);
+        Ok(())
+    }
+
+    fn further_region(&mut self, kind: CellKind, region: [i64; 2]) {
+        self.find(kind.dimension(), region);
+        for &group in &self.of_element {
+            match kind {
+                CellKind::Triangle => self.table.add_triangle(group, self.triangles - 1),
+                _ => self.table.add(group, kind, &self.vertices),
             }
         }
-        Ok(())
     }
 
     fn asks_for_groups(&self) -> bool {

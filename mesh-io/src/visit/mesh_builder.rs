@@ -335,6 +335,16 @@ impl MeshVisitor for MeshBuilder {
         })
     }
 
+    fn further_region(&mut self, kind: CellKind, region: [i64; 2]) {
+        let Self { regions, region_names, .. } = self;
+        if kind == CellKind::Triangle {
+            // No file has tags near the least integer.
+            regions.replace_last(|before| {
+                region_names.intern([i64::MIN + i64::from(before), region[0]])
+            });
+        }
+    }
+
     #[inline]
     fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { id, kind, region, nodes } = element;

@@ -41,6 +41,9 @@ pub(crate) trait MeshVisitor {
     fn element(&mut self, _cursor: &Cursor<'_>, _element: &Element) -> Result<(), ReadError> {
         Ok(())
     }
+    /// Visits a further region of the last element, for files that list an element once for each of its groups. By
+    /// default, further regions are ignored.
+    fn further_region(&mut self, _kind: CellKind, _region: [i64; 2]) {}
     /// Visits a binary list of triangles in bulk. Returns how many leading triangles the visitor has processed; the
     /// caller passes the remaining triangles to [`element`](Self::element).
     fn triangle_records(&mut self, _records: &TriangleRecords<'_>) -> usize {

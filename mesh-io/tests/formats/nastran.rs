@@ -122,8 +122,13 @@ fn cards_may_be_laid_out_in_many_ways() {
     }
     assert_same("a.dat", &deck, &format!("\u{feff}{deck}"));
     assert_same("a.dat", &deck, &["$ made by hand\n", ELEMENTS, NODES].concat());
-    let by_number = read(&deck.replace("CTRIA3,3,9", "CTRIA3,9,"));
-    assert_eq!(by_number.regions(), Some(&[0, 0, 1, 1][..]));
+    // A blank property is the one with the number of the element, if there is one.
+    let by_number = deck.replace("CTRIA3,3,9", "CTRIA3,9,");
+    let properties = by_number.replace("ENDDATA\n", "PSHELL,9,1,.1\nENDDATA\n");
+    assert_eq!(read(&properties).regions(), Some(&[0, 0, 1, 1][..]));
+    assert_eq!(read(&by_number).regions(), Some(&[0, 0, 1, 2][..]));
+    let blank = deck.replace(",7,", ",,").replace(",9,", ",,");
+    assert_eq!(read(&blank).regions(), None);
     assert_eq!(read(&one()).regions(), None);
 }
 

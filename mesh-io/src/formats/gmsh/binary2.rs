@@ -3,6 +3,7 @@
 
 use super::kind::kind_of;
 use super::lists::{block_fits, row};
+use super::repeats::{ElementSender, has_equal_neighbors};
 use super::text2::columns;
 use super::words::{Progress, Words};
 use crate::binary::byte_order::ByteOrder;
@@ -72,6 +73,7 @@ pub(super) fn elements(
     visitor.expect_elements(cursor.capacity(count, 16));
     visitor.region_attributes(columns());
     let mut done = 0;
+    let mut elements = ElementSender::default();
     while done < count {
         let progress = Progress::new(done, count, "elements");
         let words = &mut Words::take(cursor, order, HEADER, progress)?;
@@ -82,7 +84,10 @@ pub(super) fn elements(
         let groups = words.natural(cursor, "the number of an element's tags")? as usize;
         let bytes = groups.saturating_add(1 + kind.nodes()).saturating_mul(4);
         let mut taken = 0;
-        if let (CellKind::Triangle, Some((block, _))) = (kind, cursor.peek(size, bytes)) {
+        let nodes_at = 4 * groups.saturating_add(1);
+        if let (CellKind::Triangle, Some((block, _))) = (kind, cursor.peek(size, bytes))
+            && !has_equal_neighbors(block, bytes, nodes_at, bytes)
+        {
             let field = |at: usize| NumberField::new(block.get(4 * at..), bytes, 4, order);
             let region = |column: usize| match column < groups {
                 true => Region::Field(field(1 + column)),
@@ -97,6 +102,9 @@ pub(super) fn elements(
                 required_fields: &[(field(0), FieldRule::Natural)],
             });
             cursor.take(taken * bytes);
+            if taken > 0 {
+                elements.forget();
+            }
         }
         for at in taken as u64..size {
             let progress = Progress::new(done + at, count, "elements");
@@ -110,7 +118,7 @@ pub(super) fn elements(
             for node in &mut nodes[..kind.nodes()] {
                 *node = words.natural(cursor, format_args!("a node of element {tag}"))?;
             }
-            visitor.element(cursor, &Element { id: tag, kind, region, nodes })?;
+            elements.send(cursor, visitor, &Element { id: tag, kind, region, nodes })?;
         }
         done += size;
     }

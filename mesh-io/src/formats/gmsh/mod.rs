@@ -16,6 +16,7 @@ mod lists;
 mod model;
 mod periodic;
 mod reader;
+mod repeats;
 mod text2;
 mod text4;
 mod text40;

@@ -2,6 +2,7 @@
 
 use super::kind::{kind_of, node_tags};
 use super::lists::{counts, each};
+use super::repeats::ElementSender;
 use super::words::Progress;
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
@@ -49,8 +50,9 @@ pub(super) fn elements(
     visitor.region_attributes(columns());
     let progress = Progress::new(0, count, "elements");
     let read = |cursor: &mut Cursor<'_>, _| element(cursor);
+    let mut elements = ElementSender::default();
     each(cursor, count, progress, visitor, read, |cursor, visitor, _, element| {
-        visitor.element(cursor, &element)
+        elements.send(cursor, visitor, &element)
     })?;
     Ok(count)
 }

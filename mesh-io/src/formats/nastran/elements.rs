@@ -16,6 +16,8 @@ use std::collections::{BTreeSet, HashSet};
 /// A card of the bulk data, reduced to the content that the element reader uses.
 enum Card {
     Element(Element),
+    /// An element whose property is blank.
+    WithoutProperty(Element),
     /// The name of a card whose element constrains nodes, and the ids of these nodes.
     Constrains(CardName, Vec<u64>),
     /// A GRID card with the id of the node; 0 if `card` read the row, since elements need no ids of nodes.
@@ -29,10 +31,17 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
     let mut cursor = rows.clone();
     // The constrained nodes, the number of constraining elements, and the names of their cards.
     let (mut held, mut holding, mut names) = (Vec::new(), 0, BTreeSet::new());
+    let mut properties = None;
     let (mut others, asks_for_data) = (BTreeSet::new(), visitor.asks_for_data());
     all_rows(&mut cursor, visitor, card, |cursor, visitor, card| {
         match card {
             Card::Element(element) => visitor.element(cursor, &element)?,
+            Card::WithoutProperty(element) => {
+                let known = properties.get_or_insert_with(|| property_ids(rows));
+                let property =
+                    if known.contains(&element.id) { element.id.cast_signed() } else { 0 };
+                visitor.element(cursor, &Element { region: [property, 0], ..element })?;
+            }
             Card::Constrains(name, nodes) => {
                 held.extend(nodes);
                 holding += 1;
@@ -130,17 +139,37 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
         }
     };
     let id = whole(cursor, next(), format_args!("the number of a {}", kind.name()))?;
-    let property = match has_property.then(&mut next) {
-        None => 0,
-        // A blank property has the number of the element.
-        Some(b"") => id,
+    let word = has_property.then(&mut next);
+    let property = match word {
+        None | Some(b"") => 0,
         Some(word) => whole(cursor, word, format_args!("the property of {} {id}", kind.name()))?,
     };
     let mut nodes = [0; 4];
     for node in &mut nodes[..kind.nodes()] {
         *node = whole(cursor, next(), format_args!("a vertex of {} {id}", kind.name()))?;
     }
-    Ok(Card::Element(Element { id, kind, region: [property.cast_signed(), 0], nodes }))
+    let element = Element { id, kind, region: [property.cast_signed(), 0], nodes };
+    Ok(match word {
+        Some(b"") => Card::WithoutProperty(element),
+        _ => Card::Element(element),
+    })
+}
+
+/// Returns the ids of all property cards (`PSHELL`, `PCOMP` and so on). An element with a blank property has the property
+/// with the number of the element, and no property if the file does not have that one.
+#[cold]
+fn property_ids(rows: &Cursor<'_>) -> HashSet<u64> {
+    let cursor = &mut rows.clone();
+    let mut ids = HashSet::new();
+    while cursor.next_row() {
+        let line = CardLine::starting_at(cursor.bytes, cursor.row_range().start);
+        if name_bytes(&line.name()).starts_with(b"P")
+            && let Some(field) = line.fields().next()
+        {
+            ids.extend(integer(cursor.bytes[field].trim_ascii()));
+        }
+    }
+    ids
 }
 
 /// Returns the nodes of a rigid element. `words` lists the card's fields, element number first.

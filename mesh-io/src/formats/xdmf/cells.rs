@@ -2,7 +2,7 @@
 
 use super::File;
 use super::document::Item;
-use super::heavy;
+use super::{heavy, tags};
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::Cell;
@@ -15,7 +15,7 @@ use crate::visit::records::TriangleRecords;
 use crate::visit::visitor::MeshVisitor;
 
 /// Stream of the integers of a Topology, in the XML or in a companion file.
-enum CellNumbers<'a> {
+pub(super) enum CellNumbers<'a> {
     Text(Cursor<'a>),
     /// Integers of a companion file: `taken` of them were taken, each is `size` bytes wide.
     Heavy {
@@ -36,7 +36,7 @@ impl<'a> CellNumbers<'a> {
     }
 
     /// Returns whether another integer follows. In the XML, the cursor moves to the next word.
-    fn has_next(&mut self) -> bool {
+    pub(super) fn has_next(&mut self) -> bool {
         match self {
             CellNumbers::Text(cursor) => cursor.next_word(),
             CellNumbers::Heavy { whole, taken, .. } => *taken < whole.len(),
@@ -44,7 +44,7 @@ impl<'a> CellNumbers<'a> {
     }
 
     /// Takes the next integer, called `what` in messages. A companion file must have one left.
-    fn take(&mut self, what: &str) -> Result<u64, ReadError> {
+    pub(super) fn take(&mut self, what: &str) -> Result<u64, ReadError> {
         match self {
             CellNumbers::Text(cursor) => cursor.integer(what),
             CellNumbers::Heavy { whole, taken, .. } => {
@@ -82,10 +82,24 @@ impl<'a> File<'a> {
                 regions.push(numbers);
             }
         }
+        let tags = self.tags()?;
+        // Lines of mesh tags have no numbers in the arrays of the mesh.
+        let from_dimension = if tags.is_empty() { 0 } else { 2 };
+        let mut attributes: Vec<_> =
+            of_regions.iter().map(|own| RegionAttribute::tags(&own.name, from_dimension)).collect();
+        let mut of_lines = Vec::new();
+        for tags in tags {
+            match self.tags_of_triangles(tags, item)? {
+                None => of_lines.push(tags),
+                Some(numbers) if regions.len() < MAX_ARRAYS => {
+                    attributes.push(tags::attribute(&tags.values.name));
+                    regions.push(numbers);
+                }
+                Some(_) => visitor.unsupported("mesh tags of triangles, of which two are read"),
+            }
+        }
         let regions = RegionNumbers::from_iter(regions);
-        visitor.region_attributes(
-            of_regions.iter().map(|own| RegionAttribute::tags(&own.name, 0)).collect(),
-        );
+        visitor.region_attributes(attributes);
         let words = &mut self.words(item)?;
         let (mut id, mut count) = self.triangles(item, words, &regions, visitor);
         let mut points = Vec::new();
@@ -113,13 +127,17 @@ impl<'a> File<'a> {
             let problem = format!("the Topology ends after {id} elements of {count} numbers");
             return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
+        let cells = id;
+        for tags in of_lines {
+            id = self.lines_of_tags(tags, id, visitor)?;
+        }
         if visitor.asks_for_cell_arrays() {
-            self.cell_data(&of_regions, id, visitor);
+            self.cell_data(&of_regions, cells, visitor);
         }
         Ok(())
     }
 
-    fn words(&self, item: &Item) -> Result<CellNumbers<'a>, ReadError> {
+    pub(super) fn words(&self, item: &Item) -> Result<CellNumbers<'a>, ReadError> {
         let Some(mut numbers) = self.heavy.read(item, &self.cursor(item))? else {
             let cursor = self.content(item);
             return Ok(CellNumbers::Text(cursor));
@@ -164,7 +182,7 @@ impl<'a> File<'a> {
 
     /// Returns VTK's cell type and the number of nodes for all elements of a Topology of one `kind`. Polyvertices,
     /// polylines and polygons have as many nodes as `NodesPerElement`, else the second dimension, announces.
-    fn uniform(&self, item: &Item, kind: &str) -> Result<(u64, u64), ReadError> {
+    pub(super) fn uniform(&self, item: &Item, kind: &str) -> Result<(u64, u64), ReadError> {
         let several = item.corners.or_else(|| item.dimensions.get(1).copied());
         Ok(match kind {
             "triangle" => (types::TRIANGLE, 3),
@@ -205,7 +223,7 @@ impl<'a> File<'a> {
         }
     }
 
-    fn integers(&self, item: &Item) -> Result<Vec<i64>, ReadError> {
+    pub(super) fn integers(&self, item: &Item) -> Result<Vec<i64>, ReadError> {
         if let Some(numbers) = self.heavy.read(item, &self.cursor(item))? {
             let whole = numbers.integers();
             return whole.ok_or_else(|| {

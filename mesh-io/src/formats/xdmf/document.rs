@@ -23,6 +23,8 @@ pub(super) enum Content {
 
 /// A `DataItem` with coordinates, topology or data of a mesh.
 pub(super) struct Item {
+    /// Number of the grid around the item, from 1; 0 outside of grids.
+    pub(super) grid: u64,
     /// Section around the item: `Geometry`, `Topology` or `Attribute`.
     pub(super) section: String,
     /// Type that the section names, such as `xyz` or `triangle`, in lower case.
@@ -96,16 +98,19 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
     let mut tags = XmlTags::new(source);
     let mut items = Vec::new();
     let mut seen = false;
+    let mut grids = 0;
     while let Some(tag) = tags.next()? {
         let own = Section::of(&tag)?;
         seen |= own.name == "Xdmf";
+        // Items are in the innermost grids, so the last grid that began is the grid around an item.
+        grids += u64::from(own.name == "Grid");
         if own.name == "DataItem"
             && let Some(parent) = tags.parent()
             && ["Geometry", "Topology", "Attribute"].contains(&&*parent.name())
             && own.value(&["Reference"]).is_none()
             && !tag.is_empty()
         {
-            items.push(item(source, &tag, &own, &Section::of(parent)?)?);
+            items.push(Item { grid: grids, ..item(source, &tag, &own, &Section::of(parent)?)? });
         }
     }
     match seen {
@@ -170,6 +175,7 @@ fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Resul
     let dimensions = tag.value(&["Dimensions"]).unwrap_or_default();
     let dimensions = dimensions.split_whitespace().map(number).collect::<Result<_, _>>()?;
     Ok(Item {
+        grid: 0,
         section: of.name.clone(),
         kind: small(of, &["TopologyType", "GeometryType", "Type"]),
         name: of.value(&["Name"]).unwrap_or_default().to_owned(),

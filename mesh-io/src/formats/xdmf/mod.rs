@@ -1,13 +1,14 @@
 //! XDMF, versions 2 and 3, with its numbers in the XML or in companion files, HDF5 or raw.
 //!
 //! The format: <https://www.xdmf.org/index.php/XDMF_Model_and_Format>. A file has a single mesh. Data may have several
-//! time steps, in grids that refer to the grid with the mesh.
+//! time steps, in grids that refer to the grid with the mesh. Mesh tags are in grids that refer to its Geometry.
 
 mod cells;
 mod companions;
 mod document;
 mod heavy;
 mod points;
+mod tags;
 pub(crate) mod write;
 
 use crate::disk::source::Source;
@@ -64,8 +65,8 @@ impl FormatReader for Xdmf {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let items = document::items(source)?;
-        let file = File { source, items, heavy: HeavyData::open(source)? };
+        let (items, tagged) = tags::split(document::items(source)?);
+        let file = File { source, items, tagged, heavy: HeavyData::open(source)? };
         let (layout, points) = file.points(file.only("Geometry")?, visitor)?;
         file.elements(file.only("Topology")?, visitor)?;
         file.point_data(points, visitor)?;
@@ -77,7 +78,10 @@ impl FormatReader for Xdmf {
 /// An XDMF file with its items and companion files.
 struct File<'a> {
     source: &'a Source,
+    /// Items of the mesh and its data.
     items: Vec<Item>,
+    /// Items of mesh tags.
+    tagged: Vec<Item>,
     heavy: HeavyData<'a>,
 }
 
@@ -103,8 +107,7 @@ impl<'a> File<'a> {
             }
             (_, Some(second)) => {
                 let problem = format!("this is the second {section}");
-                let remedy = "Save each mesh, and each list of mesh tags, to a separate file";
-                Err(self.cursor(second).error(problem, remedy))
+                Err(self.cursor(second).error(problem, "Save each mesh to a separate file"))
             }
         }
     }

@@ -1,0 +1,174 @@
+//! Mesh tags of DOLFINx: numbers of some cells, in a grid with a Topology of its own and the Geometry of the mesh.
+
+use super::File;
+use super::document::Item;
+use crate::content::group_label::GroupLabel;
+use crate::error::ReadError;
+use crate::formats::vtk::cells::Cell;
+use crate::formats::vtk::types;
+use crate::text::cursor::CORRECT;
+use crate::text::token::quoted;
+use crate::visit::items::{GroupScope, RegionAttribute};
+use crate::visit::visitor::MeshVisitor;
+use std::collections::HashMap;
+
+/// The number of triangles without a tag.
+pub(super) const UNTAGGED: i64 = i64::MIN;
+
+/// Makes the region attribute of the tags of triangles.
+pub(super) fn attribute(name: &str) -> RegionAttribute {
+    let label = |tag| (tag != UNTAGGED).then_some(GroupLabel::Tag(tag));
+    RegionAttribute { kind: name.to_owned(), from_dimension: 2, label }
+}
+
+/// Items of one grid with mesh tags.
+#[derive(Clone, Copy)]
+pub(super) struct MeshTags<'i> {
+    topology: &'i Item,
+    /// The tags, one for each cell of `topology`.
+    pub(super) values: &'i Item,
+}
+
+/// Separates the items of the mesh from those of mesh tags: items in grids that have a Topology, where the Geometry is
+/// in another grid with a Topology.
+pub(super) fn split(items: Vec<Item>) -> (Vec<Item>, Vec<Item>) {
+    let grids = |section: &str| -> Vec<u64> {
+        items.iter().filter(|item| item.section == section).map(|item| item.grid).collect()
+    };
+    let (geometries, topologies) = (grids("Geometry"), grids("Topology"));
+    match geometries[..] {
+        [mesh] if topologies.contains(&mesh) => items
+            .into_iter()
+            .partition(|item| item.grid == mesh || !topologies.contains(&item.grid)),
+        _ => (items, Vec::new()),
+    }
+}
+
+impl File<'_> {
+    /// Lists all mesh tags.
+    ///
+    /// # Errors
+    /// If a grid has a second Topology, or other items than one list of tags for its cells.
+    pub(super) fn tags(&self) -> Result<Vec<MeshTags<'_>>, ReadError> {
+        let mut found = Vec::new();
+        for topology in self.tagged.iter().filter(|item| item.section == "Topology") {
+            let is_other = |item: &&Item| item.grid == topology.grid && item.at != topology.at;
+            let mut others = self.tagged.iter().filter(is_other);
+            match (others.next(), others.next()) {
+                (Some(values), None) if values.center == "cell" => {
+                    found.push(MeshTags { topology, values });
+                }
+                _ => {
+                    let problem = "this is the second Topology, and not one of mesh tags";
+                    let remedy = "Save each mesh to a separate file";
+                    return Err(self.cursor(topology).error(problem, remedy));
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Reads the cells of mesh tags: VTK's cell type, the number of nodes of a cell, the nodes of all cells, and the tag
+    /// of each cell.
+    fn tagged_cells(&self, tags: MeshTags<'_>) -> Result<TaggedCells, ReadError> {
+        let (cell_type, corners) = self.uniform(tags.topology, &tags.topology.kind)?;
+        let words = &mut self.words(tags.topology)?;
+        let mut nodes = Vec::new();
+        while words.has_next() {
+            nodes.push(words.take("a node of a cell")?);
+        }
+        let values = self.integers(tags.values)?;
+        if corners == 0 || nodes.len() as u64 != corners.saturating_mul(values.len() as u64) {
+            let problem = format!(
+                "there are {} tags for {} nodes of cells with {corners} nodes",
+                values.len(),
+                nodes.len()
+            );
+            return Err(self.cursor(tags.values).error(problem, CORRECT));
+        }
+        Ok(TaggedCells { cell_type, corners: corners as usize, nodes, values })
+    }
+
+    /// Returns the tag of each triangle of the mesh, [`UNTAGGED`] for a triangle without a tag. `None` for tags of
+    /// other cells.
+    ///
+    /// # Errors
+    /// If the tags are damaged, or name a triangle that the mesh does not have.
+    pub(super) fn tags_of_triangles(
+        &self,
+        tags: MeshTags<'_>,
+        mesh: &Item,
+    ) -> Result<Option<Vec<i64>>, ReadError> {
+        if tags.topology.kind != "triangle" || mesh.kind != "triangle" {
+            return Ok(None);
+        }
+        let words = &mut self.words(mesh)?;
+        let mut nodes = Vec::new();
+        while words.has_next() {
+            nodes.push(words.take("a node of a cell")?);
+        }
+        let key = |corners: &[u64]| {
+            let mut key = [corners[0], corners[1], corners[2]];
+            key.sort_unstable();
+            key
+        };
+        let triangles: HashMap<[u64; 3], usize> = nodes.chunks_exact(3).map(key).zip(0..).collect();
+        let mut numbers = vec![UNTAGGED; nodes.len() / 3];
+        let tagged = self.tagged_cells(tags)?;
+        for (corners, value) in tagged.nodes.chunks_exact(3).zip(tagged.values) {
+            let Some(&triangle) = triangles.get(&key(corners)) else {
+                let name = quoted(tags.values.name.as_bytes());
+                let problem = format!(
+                    "`{name}` tags a triangle of the points {corners:?}, which the mesh does not have"
+                );
+                return Err(self
+                    .cursor(tags.values)
+                    .error(problem, "Save the mesh and its tags again"));
+            };
+            numbers[triangle] = value;
+        }
+        Ok(Some(numbers))
+    }
+
+    /// Visits the lines and points of mesh tags as elements in groups, with ids from `id` on.
+    ///
+    /// # Errors
+    /// If the tags are damaged, or belong to cells of another kind.
+    pub(super) fn lines_of_tags(
+        &self,
+        tags: MeshTags<'_>,
+        mut id: u64,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<u64, ReadError> {
+        let cursor = &self.cursor(tags.topology);
+        let cells = self.tagged_cells(tags)?;
+        if !matches!(cells.cell_type, types::LINE | types::VERTEX) {
+            let problem = "mesh tags of cells that are neither triangles, lines nor points";
+            return Err(cursor.error(problem, "Save the mesh without these tags"));
+        }
+        let mut last = None;
+        for (points, &value) in cells.nodes.chunks_exact(cells.corners).zip(&cells.values) {
+            if last.replace(value) != Some(value) && visitor.asks_for_groups() {
+                let label = GroupLabel::Tag(value);
+                let kind = &tags.values.name;
+                visitor.group_scopes(&[GroupScope { kind, label, dimension: None }]);
+            }
+            let region = [UNTAGGED; 2];
+            Cell { id, cell_type: cells.cell_type, points, region }.send(cursor, visitor)?;
+            id += 1;
+        }
+        if visitor.asks_for_groups() {
+            visitor.group_scopes(&[]);
+        }
+        Ok(id)
+    }
+}
+
+struct TaggedCells {
+    /// VTK's cell type.
+    cell_type: u64,
+    /// Number of nodes of each cell.
+    corners: usize,
+    nodes: Vec<u64>,
+    values: Vec<i64>,
+}
