@@ -20,11 +20,11 @@ pub(crate) fn fit(holds: &Capabilities, content: &mut Content) -> Vec<String> {
 
 fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     let tags = GroupNumbers::new(content, holds.allows_negative_numbers);
-    let main = [0, 1, 2].map(|dimension| content.group_kinds(dimension).first().copied());
+    let stored = [0, 1, 2].map(|dimension| holds.stored_kinds(content, dimension));
     // If names must be words, an unnamed group gets its number as name.
     let name = |(place, group): (usize, &ContentGroup)| {
         let dimension = usize::from(group.dimension);
-        let is_held = holds.names[dimension] && main[dimension] == Some(&group.kind);
+        let is_held = holds.names[dimension] && stored[dimension].contains(&&*group.kind);
         let number = || tags.number(place as u32).to_string();
         let by_number = || holds.name_rules.is_word().then(number);
         group.name().map(str::to_owned).or_else(by_number).filter(|_| is_held)

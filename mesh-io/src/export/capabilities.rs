@@ -6,7 +6,10 @@ use super::name_rules::NameRules;
 use super::sides;
 use crate::content::group_label::GroupLabel;
 use crate::precision::Precision;
-use crate::visit::items::CellKind;
+use crate::visit::items::{CellKind, PeriodicNodes};
+
+/// Loss of periodic pairs, for users.
+pub(crate) const PERIODIC: &str = "pairs of periodic vertices";
 
 /// Elements, groups, names and data that a format can store.
 #[derive(Clone, Copy)]
@@ -33,6 +36,8 @@ pub(crate) struct Capabilities {
     pub(crate) vertex_groups: bool,
     /// Whether the format stores named sets of vertices.
     pub(crate) vertex_sets: bool,
+    /// Whether the format stores pairs of periodic vertices on curves of the model.
+    pub(crate) periodic_curves: bool,
     /// The precision of coordinates.
     pub(crate) precision: Precision,
     pub(crate) point_data: DataSupport,
@@ -56,9 +61,10 @@ pub(crate) enum GroupSupport {
     One,
     /// One group per line, and no groups of other elements.
     OneOfLines,
-    /// Two groups per element: an entity of the model, and a physical group or, without physical groups, one of the
-    /// most important kind.
+    /// An entity of the model per element, and any number of other groups, which become physical groups.
     PhysicalAndEntity,
+    /// Any number of groups per element, which become sets. Entities become sets if there are no other groups.
+    Sets,
     /// One group of each kind per element.
     Each,
     /// A block for the elements of each shape and group. Lines may be in side sets instead.
@@ -78,7 +84,32 @@ pub(crate) enum DataSupport {
     Only(&'static str),
 }
 
+impl GroupSupport {
+    /// Returns whether an element may have several groups of one kind.
+    fn is_several(self) -> bool {
+        matches!(self, GroupSupport::PhysicalAndEntity | GroupSupport::Sets)
+    }
+}
+
 impl Capabilities {
+    /// Lists the kinds of groups in a dimension whose groups the format stores for each element, most important first:
+    /// one kind, or all if an element may have several groups. Entities of gmsh's formats are not listed.
+    pub(crate) fn stored_kinds<'c>(&self, content: &'c Content, dimension: u8) -> Vec<&'c str> {
+        let kinds = content.group_kinds(dimension);
+        let Some(&main) = kinds.first() else { return Vec::new() };
+        let is_stored = |kind: &&str| match self.groups {
+            GroupSupport::PhysicalAndEntity if *kind == "entity" => false,
+            _ if *kind == main => true,
+            // The numbers of a group that another group determines add nothing.
+            _ => {
+                self.groups.is_several()
+                    && *kind != "entity"
+                    && !determines(content, dimension, main, kind)
+            }
+        };
+        kinds.into_iter().filter(is_stored).collect()
+    }
+
     /// A format that stores nothing but triangles.
     pub(crate) const TRIANGLES: Capabilities = Capabilities {
         points: ElementSupport::None,
@@ -94,6 +125,7 @@ impl Capabilities {
         allows_negative_numbers: true,
         vertex_groups: false,
         vertex_sets: false,
+        periodic_curves: false,
         precision: Precision::Double,
         point_data: DataSupport::None,
         cell_data: DataSupport::None,
@@ -136,6 +168,21 @@ impl Capabilities {
         }
         self.point_data.losses("data of vertices", &content.point_data, &mut lost);
         self.cell_data.losses("data of elements", &content.cell_data, &mut lost);
+        let is_curve = |tag: i64| {
+            let is_own = |group: &ContentGroup| {
+                group.dimension == 1 && group.kind == "entity" && group.tag() == Some(tag)
+            };
+            content.groups.iter().any(is_own)
+        };
+        let is_kept = |pairs: &PeriodicNodes| match pairs.entities {
+            // Pairs on points of the model are pairs on the curves beside them, too.
+            Some((0, _)) => self.periodic_curves,
+            Some((1, tags)) => self.periodic_curves && tags.into_iter().all(is_curve),
+            _ => false,
+        };
+        if !content.periodic.iter().all(is_kept) {
+            lost.push(PERIODIC.into());
+        }
         lost.extend(content.unsupported.iter().cloned());
         lost
     }
@@ -196,7 +243,7 @@ impl Capabilities {
             let kind = |group: &u32| &content.groups[*group as usize].kind;
             set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| kind(b) == kind(group)))
         });
-        if several && self.groups != GroupSupport::None {
+        if several && self.groups != GroupSupport::None && !self.groups.is_several() {
             lost.push("further groups of a kind of an element: the first group is kept".into());
         }
         for (dimension, of) in [(0, "points"), (1, "lines"), (2, "surfaces")] {
@@ -208,12 +255,12 @@ impl Capabilities {
                 GroupSupport::OneOfLines => {
                     dimension != 1 || (*kind != main && !determines(content, 1, main, kind))
                 }
-                GroupSupport::PhysicalAndEntity => {
-                    *kind != main
-                        && *kind != "entity"
+                GroupSupport::Each | GroupSupport::PhysicalAndEntity => false,
+                GroupSupport::Sets => {
+                    *kind == "entity"
+                        && *kind != main
                         && !determines(content, dimension, main, kind)
                 }
-                GroupSupport::Each => false,
                 GroupSupport::Blocks => {
                     *kind != main && *kind != "block" && !determines(content, dimension, main, kind)
                 }

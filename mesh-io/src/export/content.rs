@@ -1,7 +1,7 @@
 //! Format-independent mesh in memory, with all cells, groups and data of its file.
 
 use crate::content::group_label::GroupLabel;
-use crate::visit::items::CellKind;
+use crate::visit::items::{CellKind, PeriodicNodes};
 
 /// Mesh with cells of all kinds, groups and data, independent of formats.
 /// [`MeshFile::content`](crate::MeshFile::content) reads the content of a file.
@@ -35,6 +35,8 @@ pub struct Content {
     pub(crate) vertex_groups: Vec<(ContentGroup, Vec<u32>)>,
     pub(crate) point_data: Vec<DataArray>,
     pub(crate) cell_data: Vec<DataArray>,
+    /// Pairs of periodic vertices, as ids.
+    pub(crate) periodic: Vec<PeriodicNodes>,
     /// Short descriptions of file content that the mesh does not include.
     pub(crate) unsupported: Vec<String>,
 }

@@ -1,5 +1,6 @@
 //! Visitor that builds the format-independent content of a mesh file.
 
+use super::capabilities::PERIODIC;
 use super::content::{Content, ContentGroup, DataArray};
 use crate::content::group_keys::GroupKeys;
 use crate::content::group_label::GroupLabel;
@@ -8,7 +9,9 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::visit::field::scatter;
-use crate::visit::items::{CellKind, Element, GroupScope, PointNumbers, RegionAttribute};
+use crate::visit::items::{
+    CellKind, Element, GroupScope, PeriodicNodes, PointNumbers, RegionAttribute,
+};
 use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
@@ -27,7 +30,7 @@ struct ContentBuilder {
     ids: IdIndexBuilder,
     columns: Vec<RegionAttribute>,
     /// Current group scopes: kind, label, and dimension; `None` means that each element sets the dimension.
-    within: Vec<(String, GroupLabel, Option<u8>)>,
+    within: Vec<Scope>,
     keys: GroupKeys,
     vertex_keys: GroupKeys,
     sets: HashMap<Vec<u32>, u32>,
@@ -37,11 +40,14 @@ struct ContentBuilder {
     announced: Option<PendingArray>,
     /// Number of time steps so far, for each array name with several time steps.
     steps: HashMap<String, usize>,
-    /// Last vertex of the preceding polyline, which the next polyline may continue.
-    open_end: Option<u32>,
+    /// Last vertex of the preceding polyline, and its group scopes. A polyline in the same groups continues it.
+    open_end: Option<(u32, Vec<Scope>)>,
     /// Cell data, with the element id of each tuple; `None` for the ids 0, 1, 2 and so on.
     by_tag: Vec<(DataArray, Option<Vec<u64>>)>,
 }
+
+/// A group scope: kind, label and dimension.
+type Scope = (String, GroupLabel, Option<u8>);
 
 /// Name of arrays that lack a name in the file.
 const UNNAMED: &str = "unnamed";
@@ -226,13 +232,25 @@ impl MeshVisitor for ContentBuilder {
         let set = self.set(1, region);
         let vertices = self.vertices(nodes);
         let goes_on = self.within.iter().any(|(_, _, dimension)| *dimension == Some(1));
-        let before = self.open_end.take().filter(|_| goes_on);
+        let before = self.open_end.take().filter(|(_, within)| goes_on && *within == self.within);
+        let before = before.map(|(end, _)| end);
         let all: Vec<u32> = before.into_iter().chain(vertices).collect();
         for ends in all.windows(2) {
             self.content.cells.push(CellKind::Line, ends, set, id);
         }
-        self.open_end = all.last().copied();
+        self.open_end = all.last().map(|&end| (end, self.within.clone()));
         Ok(())
+    }
+
+    fn asks_for_periodic_pairs(&self) -> bool {
+        true
+    }
+
+    fn periodic_pairs(&mut self, pairs: Option<Vec<PeriodicNodes>>) {
+        match pairs {
+            Some(pairs) => self.content.periodic.extend(pairs),
+            None => self.unsupported(PERIODIC),
+        }
     }
 
     fn asks_for_groups(&self) -> bool {
@@ -251,23 +269,7 @@ impl MeshVisitor for ContentBuilder {
     fn group_scopes(&mut self, groups: &[GroupScope<'_>]) {
         let owned =
             |group: &GroupScope<'_>| (group.kind.to_owned(), group.label.clone(), group.dimension);
-        let within: Vec<_> = groups.iter().map(owned).collect();
-        // A polyline continues only within its group. Calls without groups between two parts do not end the polyline.
-        if !within.is_empty() && within != self.within {
-            let same = self.content.cells.sets.last().is_some_and(|&set| {
-                let set = &self.content.sets[set as usize];
-                set.iter().any(|&group| {
-                    let group = &self.content.groups[group as usize];
-                    within.iter().any(|(kind, label, _)| {
-                        common_kind(kind) == group.kind && *label == group.label
-                    })
-                })
-            });
-            if !same {
-                self.open_end = None;
-            }
-        }
-        self.within = within;
+        self.within = groups.iter().map(owned).collect();
         self.last.clear();
     }
 

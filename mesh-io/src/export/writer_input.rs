@@ -13,6 +13,8 @@ pub(crate) struct WriterInput<'a> {
     pub(crate) creator: &'a str,
     pub(crate) capabilities: Capabilities,
     pub(crate) group_numbers: GroupNumbers,
+    /// For each set of groups in [`Content::sets`], the groups that the format stores, most important first.
+    stored_sets: Vec<Vec<u32>>,
     /// Ids of the vertices in the original file; `None` if an id is 0, which many formats cannot store.
     numbers: Option<&'a [u64]>,
 }
@@ -24,7 +26,19 @@ impl<'a> WriterInput<'a> {
         creator: &'a str,
     ) -> WriterInput<'a> {
         let numbers = (!content.vertex_ids.contains(&0)).then_some(content.vertex_ids.as_slice());
+        let kinds = [0, 1, 2].map(|dimension| holds.stored_kinds(content, dimension));
+        let rank = |&group: &u32| {
+            let group = &content.groups[group as usize];
+            kinds[usize::from(group.dimension)].iter().position(|kind| *kind == group.kind)
+        };
+        let stored = |set: &Vec<u32>| {
+            let mut groups: Vec<u32> =
+                set.iter().copied().filter(|group| rank(group).is_some()).collect();
+            groups.sort_by_key(rank);
+            groups
+        };
         WriterInput {
+            stored_sets: content.sets.iter().map(stored).collect(),
             content,
             creator,
             capabilities: holds,
@@ -91,6 +105,11 @@ impl<'a> WriterInput<'a> {
     pub(crate) fn group(&self, cell: usize) -> Option<&'a ContentGroup> {
         let group = self.group_numbers.group(self.content, cell)?;
         Some(&self.content.groups[group as usize])
+    }
+
+    /// Returns the groups of a cell that the format stores, most important first.
+    pub(crate) fn stored_groups(&self, cell: usize) -> &[u32] {
+        &self.stored_sets[self.content.cells.sets[cell] as usize]
     }
 
     /// Returns the name of a group; for unnamed groups, the group number as text.

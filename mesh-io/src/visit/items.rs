@@ -111,8 +111,10 @@ pub(crate) struct GroupScope<'w> {
 
 /// Pairs of nodes that a periodic model identifies, with the motion that maps the first node of each pair to the
 /// second.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PeriodicNodes {
+    /// Dimension of the two entities of the model (gmsh), and the tags of the second and the first entity.
+    pub(crate) entities: Option<(u8, [i64; 2])>,
     /// Motion from first to second nodes; `None` if the file lists pairs alone.
     pub(crate) motion: Option<Affine>,
     /// Ids of the two nodes of each pair; empty in formats that store a motion alone.

@@ -204,7 +204,7 @@ impl MeshVisitor for MeshBuilder {
             &mut self.constraints;
         *has_unread_pairs |= pairs.is_none();
         let mut unlisted = 0;
-        for PeriodicNodes { motion, nodes } in pairs.into_iter().flatten() {
+        for PeriodicNodes { motion, nodes, .. } in pairs.into_iter().flatten() {
             motions.extend(motion.filter(|_| nodes.is_empty()));
             let mut pairs = Vec::with_capacity(nodes.len());
             for [a, b] in nodes {

@@ -204,9 +204,14 @@ fn content_that_a_format_cannot_hold_is_listed() {
                f 2 3 5\no other\nf 3 4 5\nf 4 1 5\nf 2 6 7 3\nl 1 2 3\np 5\n";
     let of = |to| converted("in.obj", obj, to).1;
     let left = "normals; texture coordinates";
-    let objects = "groups of points (object): other; groups of lines (object): other; \
-                   groups of surfaces (object): part, other";
-    assert_eq!(of(Format::Gmsh22), format!("{objects}; {left}"));
+    // Materials and objects become physical groups.
+    assert_eq!(of(Format::Gmsh22), left);
+    let gmsh = converted("in.obj", obj, Format::Gmsh22).0;
+    let names =
+        "$PhysicalNames\n5\n0 1 \"a b\"\n0 2 \"other\"\n1 1 \"a b\"\n1 2 \"other\"\n2 1 \"a b\"\n";
+    assert!(gmsh.contains(&names.replacen('5', "7", 1)), "{gmsh}");
+    let medit = of(Format::Medit);
+    assert!(medit.contains("groups of surfaces (object): part, other"), "{medit}");
     let off = of(Format::Off);
     assert!(off.starts_with("1 point; 2 lines; groups of points (material): a b; "), "{off}");
     let vtu = of(Format::Vtu);
@@ -224,6 +229,40 @@ fn content_that_a_format_cannot_hold_is_listed() {
             .unwrap()
             .is_none()
     );
+}
+
+/// A square of two entities, one of which is in two groups, and whose left and right curve are periodic.
+const PERIODIC: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 1 \"all\"\n2 2 \"wet\"\n1 1 \"left\"\n\
+$EndPhysicalNames\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 .5 0\n$EndNodes\n$Elements\n9\n\
+1 1 2 1 7 4 1\n2 1 2 0 8 2 3\n3 2 2 1 4 1 2 5\n4 2 2 1 4 2 3 5\n5 2 2 1 5 3 4 5\n6 2 2 2 5 3 4 5\n7 2 2 1 5 4 1 5\n\
+8 2 2 2 5 4 1 5\n9 15 2 0 3 1\n$EndElements\n$Periodic\n2\n0 2 3\n1\n2 1\n1 8 7\n\
+Affine 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1\n2\n2 1\n3 4\n$EndPeriodic\n";
+
+#[test]
+fn versions_of_gmsh_keep_elements_of_several_groups_and_periodic_pairs() {
+    let (newer, lost) = converted("in.msh", PERIODIC, Format::Gmsh41);
+    assert_eq!(lost, "");
+    // The two surfaces, and their physical groups behind the box around each.
+    let is_surface = |row: &&str| row.ends_with(" 1 1 0") || row.ends_with(" 2 1 2 0");
+    let surfaces: Vec<&str> = newer.lines().filter(is_surface).collect();
+    assert_eq!(surfaces.len(), 3, "{newer}");
+    let pairs = "$Periodic\n1\n1 8 7\n16 1.0 0.0 0.0 1.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0\n2\n2 1\n3 4\n";
+    assert!(newer.contains(pairs), "{newer}");
+    let (older, lost) = converted("in.msh", &newer, Format::Gmsh22);
+    assert_eq!(lost, "");
+    let rows =
+        ["5 2 2 1 5 3 4 5\n6 2 2 2 5 3 4 5\n", "$Periodic\n1\n1 8 7\nAffine 1.0 0.0 0.0 1.0"];
+    assert!(rows.iter().all(|rows| older.contains(rows)), "{older}");
+    let folder = Folder::new(&[("in.msh", PERIODIC), ("out.msh", &older)]);
+    let [before, after] = ["in.msh", "out.msh"].map(|name| folder.read(name));
+    let pairs = |file: &MeshFile| {
+        let pairs = file.constraints().periodic.iter().map(|set| set.pairs.clone());
+        pairs.max_by_key(Vec::len).unwrap()
+    };
+    assert_eq!(pairs(&before), pairs(&after));
+    assert_eq!(before.groups().unwrap().len(), after.groups().unwrap().len());
+    let (_, lost) = converted("in.msh", PERIODIC, Format::Vtu);
+    assert!(lost.contains("pairs of periodic vertices"), "{lost}");
 }
 
 #[test]
@@ -295,8 +334,9 @@ fn sets_of_an_input_file_of_abaqus_are_the_groups_of_a_mesh() {
         "{lost}"
     );
     let expected = "*HEADING\nmesh\n*NODE\n1, 0.0, 0.0, 0.5\n2, 1.0, 0.0, 1.0\n3, 1.0, 1.0, 1.0\n4, 0.0, 1.0, 1.0\n5, 0.5, 0.5, 1.0\n\
-        6, 2.0, 0.5, 1.0\n*ELEMENT, TYPE=T3D2, ELSET=in_let\n1, 1, 2\n*ELEMENT, TYPE=T3D2, ELSET=wall\n2, 2, 3\n3, 3, 4\n4, 4, 1\n\
-        *ELEMENT, TYPE=S3, ELSET=steel\n5, 1, 2, 5\n6, 2, 3, 5\n7, 3, 4, 5\n8, 4, 1, 5\n*ELEMENT, TYPE=S3, ELSET=set3\n9, 2, 6, 3\n";
+        6, 2.0, 0.5, 1.0\n*ELEMENT, TYPE=T3D2\n1, 1, 2\n2, 2, 3\n3, 3, 4\n4, 4, 1\n\
+        *ELEMENT, TYPE=S3\n5, 1, 2, 5\n6, 2, 3, 5\n7, 3, 4, 5\n8, 4, 1, 5\n9, 2, 6, 3\n\
+        *ELSET, ELSET=in_let\n1\n*ELSET, ELSET=set3\n9\n*ELSET, ELSET=steel\n5, 6, 7, 8\n*ELSET, ELSET=wall\n2, 3, 4\n";
     assert_eq!(inp, expected);
     let exodus = "*NODE\n1, 0., 0.\n2, 2., 0.\n3, 0., 1e-7\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*NSET, NSET=\"a b\"\n1, 3\n*NSET, NSET=A_B\n2\n";
     let (inp, lost) = converted("in.inp", exodus, Format::Abaqus);

@@ -80,7 +80,7 @@ fn damaged_mesh_tags_are_errors_with_place_and_remedy() {
         ("0 1  2 3", "0 1  2 9", "line 5 has node 9, which Geometry does not list"),
         ("PolyLine", "Quadrilateral", "there are 2 tags for 4 nodes of cells with 4 nodes"),
     ] {
-        let error = read(&TAGGED.replacen(part, other, 1)).err().expect(expected).to_string();
+        let error = read(&TAGGED.replacen(part, other, 1)).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}");
     }
 }

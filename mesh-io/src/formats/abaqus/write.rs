@@ -6,9 +6,10 @@ use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::precision::short_text;
 use crate::visit::items::CellKind;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Maximum number of ids in a data line of `*NSET`.
+/// Maximum number of ids in a data line of `*NSET` and `*ELSET`.
 const ROW: usize = 16;
 
 pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
@@ -32,14 +33,21 @@ pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
         (_, false) => "T3D2",
     };
     let mut last = None;
+    let mut sets: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     for (cell, element) in input.cells().zip(1..) {
-        let own = (kind_of(cell), input.group_numbers.group(content, cell));
+        let own = kind_of(cell);
         if last.replace(own) != Some(own) {
-            put!(out, "*ELEMENT, TYPE={}", own.0);
-            let set = own.1.map(|group| format!(", ELSET={}", input.name_or_number(group)));
-            put!(out, "{}\n", set.unwrap_or_default());
+            put!(out, "*ELEMENT, TYPE={own}\n");
         }
         put!(out, "{element}, {}\n", input.vertex_ids(cell).replace(' ', ", "));
+        for &group in input.stored_groups(cell) {
+            sets.entry(input.name_or_number(group)).or_default().push(element);
+        }
+    }
+    // Some programs read the parameter ELSET of several lists of elements as several sets.
+    for (name, elements) in sets {
+        put!(out, "*ELSET, ELSET={name}\n");
+        rows(&elements, &mut out);
     }
     let names: Vec<&str> =
         content.vertex_groups.iter().map(|(group, _)| group.name().unwrap_or_default()).collect();
@@ -54,11 +62,16 @@ pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
         distinct(&names, NameRules::Label, &[], |place| NameRules::Label.of(&number(place)));
     for ((_, vertices), name) in content.vertex_groups.iter().zip(names) {
         put!(out, "*NSET, NSET={name}\n");
-        for row in vertices.chunks(ROW) {
-            let numbers: Vec<_> =
-                row.iter().map(|&v| input.vertex_id(v as usize).to_string()).collect();
-            put!(out, "{}\n", numbers.join(", "));
-        }
+        let ids: Vec<u64> = vertices.iter().map(|&v| input.vertex_id(v as usize)).collect();
+        rows(&ids, &mut out);
     }
     out
+}
+
+/// Writes the ids of a set.
+fn rows(ids: &[u64], out: &mut String) {
+    for row in ids.chunks(ROW) {
+        let numbers: Vec<_> = row.iter().map(u64::to_string).collect();
+        put!(out, "{}\n", numbers.join(", "));
+    }
 }

@@ -45,14 +45,22 @@ impl<'a> File<'a> {
                             |&[a, b]: &[u64; 2]| a != b && seen.insert([a.min(b), a.max(b)]);
                         let nodes: Vec<_> = ids.filter(is_new).collect();
                         if !nodes.is_empty() {
-                            found.push(PeriodicNodes { motion: motion.flatten(), nodes });
+                            found.push(PeriodicNodes {
+                                entities: None,
+                                motion: motion.flatten(),
+                                nodes,
+                            });
                         }
                     }
                     None => {
                         // The motion alone determines the pairs. Connectivities that are not periodic, such as overlaps,
                         // join no vertices.
                         let Some(motion) = motion else { continue };
-                        found.push(PeriodicNodes { motion: Some(motion?), nodes: Vec::new() });
+                        found.push(PeriodicNodes {
+                            entities: None,
+                            motion: Some(motion?),
+                            nodes: Vec::new(),
+                        });
                     }
                 }
             }

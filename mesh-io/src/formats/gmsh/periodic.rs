@@ -33,9 +33,19 @@ fn in_plane(numbers: &[f64]) -> Option<Affine> {
     Some([[all[0], all[1], all[3]], [all[4], all[5], all[7]]])
 }
 
-/// Combines pairs of nodes with their motion; `None` without pairs.
-fn pairs(motion: Option<Affine>, nodes: Vec<[u64; 2]>) -> Option<PeriodicNodes> {
-    (!nodes.is_empty()).then_some(PeriodicNodes { motion, nodes })
+/// Combines pairs of nodes with their entities and their motion; `None` without pairs.
+fn pairs(
+    entities: (u8, [i64; 2]),
+    motion: Option<Affine>,
+    nodes: Vec<[u64; 2]>,
+) -> Option<PeriodicNodes> {
+    let entities = Some(entities);
+    (!nodes.is_empty()).then_some(PeriodicNodes { entities, motion, nodes })
+}
+
+/// Formats a motion of the plane as the matrix of a motion in space.
+pub(super) fn matrix([[a, b, x], [c, d, y]]: Affine) -> String {
+    format!("{a:?} {b:?} 0.0 {x:?} {c:?} {d:?} 0.0 {y:?} 0.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0")
 }
 
 fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>> {
@@ -48,6 +58,9 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>>
     for _ in 0..links {
         // The row has the dimension and the tags of both entities.
         (cursor.next_row() && !cursor.is_at(b'$')).then_some(())?;
+        let dimension = u8::try_from(number(cursor)?).ok()?;
+        let mut tag = || str::from_utf8(cursor.token()?).ok()?.parse().ok();
+        let entities = (dimension, [tag()?, tag()?]);
         cursor.next_row().then_some(())?;
         let first = cursor.token()?;
         // In 4.1, a row has the entry count of the motion and the entries. In earlier versions, the row starts with
@@ -67,7 +80,7 @@ fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>>
             let (image, of) = (number(cursor)?, number(cursor)?);
             nodes.push([of, image]);
         }
-        found.extend(pairs(in_plane(&numbers), nodes));
+        found.extend(pairs(entities, in_plane(&numbers), nodes));
     }
     Some(found)
 }
@@ -90,7 +103,9 @@ fn binary(
     };
     let mut found = Vec::new();
     for _ in 0..links {
-        take(cursor, 3, 4)?;
+        let ints = take(cursor, 3, 4)?;
+        let int = |at: usize| order.signed(&ints[4 * at..4 * at + 4]);
+        let entities = (u8::try_from(int(0)).ok()?, [int(1), int(2)]);
         let mut count = size(cursor)?;
         let mut numbers = Vec::new();
         // In 4.1, `count` is the entry count of the motion. In 4.0, a negative `count` announces a motion of 16
@@ -107,7 +122,7 @@ fn binary(
             let (image, of) = bytes.split_at(width);
             [order.whole(of), order.whole(image)]
         };
-        found.extend(pairs(in_plane(&numbers), nodes.map(pair).collect()));
+        found.extend(pairs(entities, in_plane(&numbers), nodes.map(pair).collect()));
     }
     Some(found)
 }
@@ -154,8 +169,10 @@ mod tests {
             file.extend(b"\n$EndPeriodic\n");
             let found = read_as(Version::V40, Some(order), &file).unwrap();
             let motion = Some([[0.0, 1.0, 3.0], [4.0, 5.0, 7.0]]);
-            assert_eq!(found[0], PeriodicNodes { motion, nodes: vec![[1, 9], [10, 18]] });
-            assert_eq!(found[1], PeriodicNodes { motion: None, nodes: vec![[8, 7]] });
+            let entities = Some((1, [2, 4]));
+            assert_eq!(found[0], PeriodicNodes { entities, motion, nodes: vec![[1, 9], [10, 18]] });
+            let entities = Some((1, [3, 5]));
+            assert_eq!(found[1], PeriodicNodes { entities, motion: None, nodes: vec![[8, 7]] });
             for length in 10..cut.len() {
                 assert_eq!(read_as(Version::V40, Some(order), &cut[..length]), None);
             }
@@ -165,7 +182,8 @@ mod tests {
     #[test]
     fn text_that_is_not_of_pairs_is_not_read() {
         let whole = "$Periodic\n1\n1 2 4\n2\n9 1\n18 10\n$EndPeriodic\n";
-        let pairs = vec![PeriodicNodes { motion: None, nodes: vec![[1, 9], [10, 18]] }];
+        let entities = Some((1, [2, 4]));
+        let pairs = vec![PeriodicNodes { entities, motion: None, nodes: vec![[1, 9], [10, 18]] }];
         assert_eq!(read_as(Version::V2, None, whole.as_bytes()), Some(pairs));
         for (part, other) in [
             ("1\n1 2", "x\n1 2"),

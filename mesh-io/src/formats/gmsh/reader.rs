@@ -150,12 +150,14 @@ fn visit_sections(
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
             name => {
-                if name == b"Periodic" && visitor.asks_for_periodic_pairs() {
+                let is_periodic = name == b"Periodic" && visitor.asks_for_periodic_pairs();
+                if is_periodic {
                     visitor.periodic_pairs(
                         encoding.and_then(|encoding| periodic::read(cursor, encoding)),
                     );
                 }
-                let is_told = matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
+                let is_told =
+                    is_periodic || matches!(name, b"Comments" | b"PhysicalNames" | b"Entities");
                 if visitor.asks_for_data() && !is_told {
                     visitor.unsupported(&format!("the section ${}", quoted(name)));
                 }

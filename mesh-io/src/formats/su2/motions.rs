@@ -52,7 +52,11 @@ impl Motions {
                     [cos, -sin, x + along_x - cos * x + sin * y],
                     [sin, cos, y + along_y - sin * x - cos * y],
                 ];
-                found.push(PeriodicNodes { motion: Some(motion), nodes: Vec::new() });
+                found.push(PeriodicNodes {
+                    entities: None,
+                    motion: Some(motion),
+                    nodes: Vec::new(),
+                });
             }
         }
         (!found.is_empty()).then_some(found)
