@@ -40,7 +40,7 @@ mod xml;
 pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs};
 pub use crate::content::group::{Group, Groups};
 pub use crate::content::remark::Remark;
-pub use crate::convert::Conversion;
+pub use crate::convert::{Conversion, Encoding};
 pub use crate::disk::source::ReadOptions;
 pub use crate::error::{FieldError, GroupError, Location, ReadError, WriteError};
 pub use crate::export::content::{Cell, Content, ContentGroup, DataArray};

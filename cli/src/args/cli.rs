@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use mesh_io::{Conversion, Format};
+use mesh_io::{Conversion, Encoding, Format};
 
 use crate::args::names;
 use crate::args::{
@@ -177,6 +177,9 @@ pub(crate) struct ConvertArgs {
     /// Output format, if the extension of OUT does not determine the format; .msh without --to means gmsh 4.1
     #[arg(long, value_name = "FORMAT", value_parser = targets())]
     pub(crate) to: Option<Format>,
+    /// Encoding of OUT: gmsh, legacy VTK and PLY are written as text or in binary, VTK XML also compressed
+    #[arg(long, value_enum)]
+    pub(crate) encoding: Option<EncodingArg>,
     /// Write the mesh even if the format does not hold all of it
     #[arg(long)]
     pub(crate) lossy: bool,
@@ -185,6 +188,27 @@ pub(crate) struct ConvertArgs {
     pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
+}
+
+/// Value of `--encoding`.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum EncodingArg {
+    /// Text; VTK XML with its arrays in base64
+    Text,
+    /// Numbers in binary
+    Binary,
+    /// Numbers in binary, compressed by zlib
+    Compressed,
+}
+
+impl From<EncodingArg> for Encoding {
+    fn from(encoding: EncodingArg) -> Encoding {
+        match encoding {
+            EncodingArg::Text => Encoding::Text,
+            EncodingArg::Binary => Encoding::Binary,
+            EncodingArg::Compressed => Encoding::Compressed,
+        }
+    }
 }
 
 /// Parses a format that meshes are converted to, by its short name.

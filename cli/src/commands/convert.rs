@@ -29,6 +29,14 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
             .with_remedy(known()));
     };
     conversion.set_creator("gpu-smooth");
+    if let Some(encoding) = args.encoding
+        && !conversion.set_encoding(encoding.into())
+    {
+        return Err(CliError::usage(format!("{out}: {format} is not written in this --encoding"))
+            .with_remedy(
+                "gmsh, legacy VTK and PLY take text and binary, VTK XML takes text, binary and compressed",
+            ));
+    }
     let lost = conversion.losses();
     if !args.lossy && !lost.is_empty() {
         return Err(CliError::input(format!(

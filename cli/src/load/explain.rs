@@ -6,7 +6,7 @@ use gpu_smooth::{
     MeshError, Topology,
     topology::{BadTriangle, Crossing, HangingNode},
 };
-use mesh_io::{Format, Location, SourceLocation};
+use mesh_io::{Location, SourceLocation};
 use serde::Serialize;
 use std::collections::HashSet;
 

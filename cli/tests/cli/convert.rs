@@ -130,3 +130,24 @@ fn names_of_data_come_through_xml_and_those_without_get_one() {
     let args = ["out.vtu", "better.vtu", "--engine", "cpu", "-q", "--interpolate", "x<y & z"];
     folder.run(args).clean();
 }
+
+#[test]
+fn a_mesh_is_written_in_binary_and_compressed() {
+    let folder = Folder::new(&[("in.2dm", SMS)]);
+    for (name, encoding, start) in [
+        ("out.msh", "binary", &b"$MeshFormat\n4.1 1 8\n\x01\0\0\0\n$EndMeshFormat\n"[..]),
+        ("out.vtk", "binary", b"# vtk DataFile Version 4.2\nwritten by gpu-smooth\nBINARY\n"),
+        ("out.ply", "binary", b"ply\nformat binary_little_endian 1.0\n"),
+        ("out.vtu", "compressed", b"<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\""),
+    ] {
+        folder
+            .line(&format!("convert in.2dm {name} --lossy --quiet --encoding {encoding}"))
+            .clean();
+        assert!(fs::read(folder.path(name)).unwrap().starts_with(start), "{name}");
+        folder.line(&format!("{name} again-{name} --engine cpu --quiet --free-interfaces")).clean();
+    }
+    let run = folder.line("convert in.2dm out.off --lossy --encoding binary");
+    assert_eq!(run.code, Some(2));
+    let remedy = "VTK XML takes text, binary and compressed";
+    assert_holds(&run.err, &["out.off: OFF is not written in this --encoding", remedy]);
+}

@@ -17,6 +17,20 @@ use crate::registry::FormatEntry;
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Loss of ids of vertices, for users.
+const LARGE_IDS: &str = "the vertices' own numbers, of which some have more than 32 bits";
+
+/// Encoding of the numbers in a written file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// Text. VTK XML has its arrays in base64.
+    Text,
+    /// Numbers in binary: little byte order, in legacy VTK big.
+    Binary,
+    /// Numbers in binary, compressed by zlib.
+    Compressed,
+}
+
 /// Mesh prepared for writing in another format.
 ///
 /// ```no_run
@@ -36,6 +50,7 @@ pub struct Conversion {
     losses: Vec<String>,
     renamings: Vec<String>,
     creator: String,
+    encoding: Encoding,
 }
 
 impl Conversion {
@@ -66,12 +81,44 @@ impl Conversion {
         let lost = target.capabilities.losses(&content);
         let renamed = names::fit(&target.capabilities, &mut content);
         let creator = "mesh-io".to_owned();
-        Ok(Some(Conversion { content, target, losses: lost, renamings: renamed, creator }))
+        let encoding = match target.write {
+            WriteFunction::Binary(_) => Encoding::Binary,
+            _ => Encoding::Text,
+        };
+        let (losses, renamings) = (lost, renamed);
+        Ok(Some(Conversion { content, target, losses, renamings, creator, encoding }))
     }
 
     /// Sets the program name in the titles of written files, `written by NAME`. The default name is `mesh-io`.
     pub fn set_creator(&mut self, name: &str) {
         name.clone_into(&mut self.creator);
+    }
+
+    /// Sets the encoding of the written file. Returns false, and changes nothing, if the format is not written in this
+    /// encoding: gmsh, legacy VTK and PLY are written as text and in binary, VTK XML also compressed, and all other formats
+    /// in one encoding.
+    pub fn set_encoding(&mut self, encoding: Encoding) -> bool {
+        let is_written = match (&self.target.write, encoding) {
+            (WriteFunction::Encoded { compressed, .. }, Encoding::Compressed) => {
+                compressed.is_some()
+            }
+            (WriteFunction::Encoded { .. }, _) => true,
+            _ => encoding == self.encoding,
+        };
+        if is_written {
+            self.encoding = encoding;
+            self.losses.retain(|lost| lost != LARGE_IDS);
+            if self.renumbers() && self.target.capabilities.keeps_vertex_ids {
+                self.losses.push(LARGE_IDS.into());
+            }
+        }
+        is_written
+    }
+
+    /// Returns whether vertices have ids that a binary file cannot hold.
+    fn renumbers(&self) -> bool {
+        let is_large = |&id: &u64| i32::try_from(id).is_err();
+        self.encoding != Encoding::Text && self.content.vertex_ids.iter().any(is_large)
     }
 
     /// Lists the parts of the mesh that the format cannot store, one line each. Comments, titles and element numbers
@@ -90,11 +137,11 @@ impl Conversion {
     /// listed, but written only for a mesh with lines.
     pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
         match self.target.write {
-            WriteFunction::One(_) | WriteFunction::Binary(_) => vec![path.to_owned()],
             WriteFunction::Several(_) => {
                 let Names { node, ele, poly } = Names::of(path);
                 vec![node, ele, poly]
             }
+            _ => vec![path.to_owned()],
         }
     }
 
@@ -143,30 +190,43 @@ impl Conversion {
     pub fn text(&self) -> Option<String> {
         match self.target.write {
             WriteFunction::One(write) => Some(write(&self.input())),
-            WriteFunction::Binary(_) | WriteFunction::Several(_) => None,
+            WriteFunction::Encoded { text, .. } if self.encoding == Encoding::Text => {
+                Some(text(&self.input()))
+            }
+            _ => None,
         }
     }
 
     /// Returns the content of a single file, text or binary. `None` for the several files of a Triangle mesh.
     pub fn bytes(&self) -> Option<Vec<u8>> {
         match self.target.write {
-            WriteFunction::One(_) | WriteFunction::Binary(_) => self.contents().pop(),
             WriteFunction::Several(_) => None,
+            _ => self.contents().pop(),
         }
     }
 
     fn contents(&self) -> Vec<Vec<u8>> {
+        let input = &self.input();
         match self.target.write {
-            WriteFunction::One(write) => vec![write(&self.input()).into_bytes()],
-            WriteFunction::Binary(write) => vec![write(&self.input())],
+            WriteFunction::One(write) => vec![write(input).into_bytes()],
+            WriteFunction::Binary(write) => vec![write(input)],
+            WriteFunction::Encoded { text, binary, compressed } => {
+                let bytes = match (self.encoding, compressed) {
+                    (Encoding::Compressed, Some(compressed)) => compressed(input),
+                    (Encoding::Text, _) => text(input).into_bytes(),
+                    _ => binary(input),
+                };
+                vec![bytes]
+            }
             WriteFunction::Several(write) => {
-                write(&self.input()).into_iter().map(String::into_bytes).collect()
+                write(input).into_iter().map(String::into_bytes).collect()
             }
         }
     }
 
     fn input(&self) -> WriterInput<'_> {
-        WriterInput::new(&self.content, self.target.capabilities, &self.creator)
+        let input = WriterInput::new(&self.content, self.target.capabilities, &self.creator);
+        if self.renumbers() { input.renumbered() } else { input }
     }
 }
 

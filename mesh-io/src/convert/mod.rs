@@ -9,4 +9,4 @@ mod names;
 mod tables;
 mod targets;
 
-pub use conversion::Conversion;
+pub use conversion::{Conversion, Encoding};

@@ -69,7 +69,9 @@ fn groups(groups: GroupSupport) -> &'static str {
         GroupSupport::None => "–",
         GroupSupport::One => "one per element",
         GroupSupport::OneOfLines => "one per line",
-        GroupSupport::PhysicalAndEntity => "any number of physical groups, and an entity per element",
+        GroupSupport::PhysicalAndEntity => {
+            "any number of physical groups, and an entity per element"
+        }
         GroupSupport::Sets => "any number of sets",
         GroupSupport::Each => "one of every kind per element",
         GroupSupport::Blocks => "a block per element, side sets",

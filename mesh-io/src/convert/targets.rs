@@ -22,6 +22,12 @@ pub(crate) struct Target {
 pub(crate) enum WriteFunction {
     /// One text file.
     One(fn(&WriterInput<'_>) -> String),
+    /// One file, as text, in binary or compressed.
+    Encoded {
+        text: fn(&WriterInput<'_>) -> String,
+        binary: fn(&WriterInput<'_>) -> Vec<u8>,
+        compressed: Option<fn(&WriterInput<'_>) -> Vec<u8>>,
+    },
     /// One binary file.
     Binary(fn(&WriterInput<'_>) -> Vec<u8>),
     /// Several text files, in the order of [`Conversion::destinations`](super::Conversion::destinations).
@@ -73,19 +79,31 @@ pub(crate) static TARGETS: &[Target] = &[
         format: Format::Gmsh41,
         name: "gmsh41",
         capabilities: GMSH,
-        write: WriteFunction::One(gmsh::write::write_41),
+        write: WriteFunction::Encoded {
+            text: gmsh::write::write_41,
+            binary: gmsh::write::write_41_binary,
+            compressed: None,
+        },
     },
     Target {
         format: Format::Gmsh22,
         name: "gmsh22",
         capabilities: GMSH,
-        write: WriteFunction::One(gmsh::write::write_22),
+        write: WriteFunction::Encoded {
+            text: gmsh::write::write_22,
+            binary: gmsh::write::write_22_binary,
+            compressed: None,
+        },
     },
     Target {
         format: Format::Vtu,
         name: "vtu",
         capabilities: VTK,
-        write: WriteFunction::One(vtk::write::write_xml),
+        write: WriteFunction::Encoded {
+            text: vtk::xml::write::write_vtu,
+            binary: vtk::xml::write::write_vtu_binary,
+            compressed: Some(vtk::xml::write::write_vtu_compressed),
+        },
     },
     Target {
         format: Format::Xdmf,
@@ -97,7 +115,11 @@ pub(crate) static TARGETS: &[Target] = &[
         format: Format::Vtk,
         name: "vtk",
         capabilities: VTK,
-        write: WriteFunction::One(vtk::write::write_legacy),
+        write: WriteFunction::Encoded {
+            text: vtk::write::write_legacy,
+            binary: vtk::write::write_legacy_binary,
+            compressed: None,
+        },
     },
     Target {
         format: Format::Ugrid,
@@ -201,7 +223,11 @@ pub(crate) static TARGETS: &[Target] = &[
             point_data: DataSupport::Scalars,
             ..Capabilities::TRIANGLES
         },
-        write: WriteFunction::One(ply::write::write_ply),
+        write: WriteFunction::Encoded {
+            text: ply::write::write_ply,
+            binary: ply::write::write_ply_binary,
+            compressed: None,
+        },
     },
     Target {
         format: Format::Sms2dm,

@@ -12,6 +12,7 @@ pub(crate) mod content;
 pub(crate) mod content_builder;
 pub(crate) mod group_numbers;
 pub(crate) mod name_rules;
+pub(crate) mod rows;
 pub(crate) mod sides;
 pub(crate) mod writer_input;
 

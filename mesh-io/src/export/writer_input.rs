@@ -47,6 +47,11 @@ impl<'a> WriterInput<'a> {
         }
     }
 
+    /// Numbers the vertices by their positions, counted from 1.
+    pub(crate) fn renumbered(self) -> WriterInput<'a> {
+        WriterInput { numbers: None, ..self }
+    }
+
     /// Lists the cells that the format holds, in the order of the file.
     pub(crate) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
         let content = self.content;

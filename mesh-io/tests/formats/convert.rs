@@ -5,7 +5,7 @@ use super::made::base;
 use super::others::{folder, for_each};
 use super::vtu::{self, styles};
 use super::{Folder, damage};
-use mesh_io::{Conversion, Format, Group, MeshFile};
+use mesh_io::{Conversion, Encoding, Format, Group, MeshFile};
 use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Mutex;
@@ -20,12 +20,18 @@ fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
 /// Returns the number of formats without loss.
 fn check(file: &MeshFile, folder: &Folder) -> usize {
     let mut clean = 0;
-    for (name, format) in Conversion::targets() {
-        let out = format!("{name}{}", format.extensions()[0]);
-        let conversion = Conversion::new(file, format).unwrap().unwrap();
+    let encodings = [Encoding::Text, Encoding::Binary, Encoding::Compressed];
+    let targets =
+        Conversion::targets().flat_map(|target| encodings.map(|encoding| (target, encoding)));
+    for ((name, format), encoding) in targets {
+        let out = format!("{name}{encoding:?}{}", format.extensions()[0]);
+        let mut conversion = Conversion::new(file, format).unwrap().unwrap();
+        if !conversion.set_encoding(encoding) {
+            continue;
+        }
         conversion.write(&folder.path(&out)).unwrap();
         let back = folder.read(&out);
-        assert_eq!(back.format(), format);
+        assert_eq!(back.format().extensions(), format.extensions());
         assert_eq!(back.points(), file.points(), "{name}");
         let (mut triangles, mut own) = (back.triangles().to_vec(), file.triangles().to_vec());
         if conversion.losses().iter().any(|lost| lost.starts_with("the order of triangles")) {
@@ -34,7 +40,8 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         }
         assert_eq!(triangles, own, "{name}");
         // The reader reads the whole file: a second conversion gives an equal file without loss.
-        let again = Conversion::new(&back, format).unwrap().unwrap();
+        let mut again = Conversion::new(&back, format).unwrap().unwrap();
+        again.set_encoding(encoding);
         let [again_text, text] = [&again, &conversion].map(|c| c.text().unwrap_or_default());
         let differ = again_text.lines().zip(text.lines()).find(|(again, first)| again != first);
         assert_eq!(differ, None, "{name}");

@@ -43,9 +43,9 @@ fn pairs(
     (!nodes.is_empty()).then_some(PeriodicNodes { entities, motion, nodes })
 }
 
-/// Formats a motion of the plane as the matrix of a motion in space.
-pub(super) fn matrix([[a, b, x], [c, d, y]]: Affine) -> String {
-    format!("{a:?} {b:?} 0.0 {x:?} {c:?} {d:?} 0.0 {y:?} 0.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0")
+/// Returns the matrix in space of a motion of the plane, row by row.
+pub(super) fn matrix([[a, b, x], [c, d, y]]: Affine) -> [f64; AFFINE] {
+    [a, b, 0.0, x, c, d, 0.0, y, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
 }
 
 fn text(cursor: &mut Cursor<'_>, version: Version) -> Option<Vec<PeriodicNodes>> {

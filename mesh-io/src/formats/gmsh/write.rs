@@ -1,15 +1,15 @@
-//! Writer of gmsh's `.msh`, as text of versions 2.2 and 4.1.
+//! Writer of gmsh's `.msh`, versions 2.2 and 4.1, as text and in binary.
 
 use super::periodic;
+use crate::binary::byte_order::ByteOrder;
 use crate::export::content::DataArray;
-use crate::export::put;
+use crate::export::rows::Rows;
 use crate::export::writer_input::WriterInput;
 use crate::visit::items::{CellKind, PeriodicNodes};
 use std::collections::{HashMap, HashSet};
-use std::fmt::Write;
 
 /// Returns gmsh's type number for an element kind.
-fn kind_of(kind: CellKind) -> u32 {
+fn kind_of(kind: CellKind) -> i64 {
     match kind {
         CellKind::Point => 15,
         CellKind::Line => 1,
@@ -19,36 +19,85 @@ fn kind_of(kind: CellKind) -> u32 {
 }
 
 pub(crate) fn write_22(input: &WriterInput<'_>) -> String {
-    let mut out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_owned();
+    version_22(input, None).into_text()
+}
+
+pub(crate) fn write_22_binary(input: &WriterInput<'_>) -> Vec<u8> {
+    version_22(input, Some(ByteOrder::Little)).into_bytes()
+}
+
+pub(crate) fn write_41(input: &WriterInput<'_>) -> String {
+    version_41(input, None).into_text()
+}
+
+pub(crate) fn write_41_binary(input: &WriterInput<'_>) -> Vec<u8> {
+    version_41(input, Some(ByteOrder::Little)).into_bytes()
+}
+
+/// Starts a file with its section `$MeshFormat`.
+fn start(version: &str, order: Option<ByteOrder>) -> Rows {
+    let mut out = Rows::new(order);
+    out.text(&format!("$MeshFormat\n{version} {} 8\n", u8::from(order.is_some())));
+    if out.is_binary() {
+        // Programs find the byte order by this number.
+        out.int(1);
+        out.end_list();
+    }
+    out.text("$EndMeshFormat\n");
+    out
+}
+
+fn version_22(input: &WriterInput<'_>, order: Option<ByteOrder>) -> Rows {
+    let mut out = start("2.2", order);
     let physicals = Physicals::new(input);
     physicals.write_names(input, &mut out);
     let points = input.content.points.len();
-    put!(out, "$Nodes\n{points}\n");
+    out.text(&format!("$Nodes\n{points}\n"));
     for vertex in 0..points {
-        put!(out, "{} {}\n", input.vertex_id(vertex), input.xyz(vertex));
+        out.int(input.vertex_id(vertex) as i64);
+        coordinates(input, vertex, &mut out);
     }
+    out.end_list();
     // An element of several physical groups has a row for each.
     let rows = |cell: usize| physicals.of(input, cell).len().max(1);
-    put!(out, "$EndNodes\n$Elements\n{}\n", input.cells().map(rows).sum::<usize>());
+    let count: usize = input.cells().map(rows).sum();
+    out.text(&format!("$EndNodes\n$Elements\n{count}\n"));
     let entities = Entities::new(input, &physicals);
+    let cells: Vec<usize> = input.cells().collect();
+    let kind = |cell: usize| kind_of(input.content.cells.kinds[cell]);
     let mut numbers = Vec::new();
-    for cell in input.cells() {
-        let kind = kind_of(input.content.cells.kinds[cell]);
-        let (tags, entity) = (physicals.of(input, cell), entities.of(input, cell));
-        for physical in if tags.is_empty() { &[0] } else { tags } {
-            numbers.push((numbers.len() as u64 + 1, cell));
-            let element = numbers.len();
-            put!(out, "{element} {kind} 2 {physical} {entity} {}\n", input.vertex_ids(cell));
+    for cells in cells.chunk_by(|&a, &b| kind(a) == kind(b)) {
+        let kind = kind(cells[0]);
+        if out.is_binary() {
+            let count: usize = cells.iter().map(|&cell| rows(cell)).sum();
+            [kind, count as i64, 2].into_iter().for_each(|number| out.int(number));
+        }
+        for &cell in cells {
+            let (tags, entity) = (physicals.of(input, cell), entities.of(input, cell));
+            for &physical in if tags.is_empty() { &[0] } else { tags } {
+                numbers.push((numbers.len() as u64 + 1, cell));
+                out.int(numbers.len() as i64);
+                if !out.is_binary() {
+                    out.int(kind);
+                    out.int(2);
+                }
+                out.int(physical);
+                out.int(entity);
+                let nodes = input.content.cells.of(cell).iter();
+                nodes.for_each(|&v| out.int(input.vertex_id(v as usize) as i64));
+                out.end_row();
+            }
         }
     }
-    out.push_str("$EndElements\n");
-    entities.write_periodic(input, "Affine", &mut out);
+    out.end_list();
+    out.text("$EndElements\n");
+    entities.write_periodic(input, false, &mut out);
     data(input, &numbers, &mut out);
     out
 }
 
-pub(crate) fn write_41(input: &WriterInput<'_>) -> String {
-    let mut out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".to_owned();
+fn version_41(input: &WriterInput<'_>, order: Option<ByteOrder>) -> Rows {
+    let mut out = start("4.1", order);
     let physicals = Physicals::new(input);
     physicals.write_names(input, &mut out);
     let entities = Entities::new(input, &physicals);
@@ -58,28 +107,55 @@ pub(crate) fn write_41(input: &WriterInput<'_>) -> String {
     let numbers = || (0..points).map(|vertex| input.vertex_id(vertex));
     let (least, most) = (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0));
     // All nodes are written as nodes of one surface. The line elements show which nodes are on curves.
-    let surface = entities.first_surface();
-    put!(out, "$Nodes\n1 {points} {least} {most}\n2 {surface} 0 {points}\n");
-    numbers().for_each(|number| put!(out, "{number}\n"));
-    (0..points).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
+    out.text("$Nodes\n");
+    sizes(&[1, points as u64, least, most], &mut out);
+    block([2, entities.first_surface(), 0], points, &mut out);
+    for number in numbers() {
+        sizes(&[number], &mut out);
+    }
+    (0..points).for_each(|vertex| coordinates(input, vertex, &mut out));
+    out.end_list();
+    out.text("$EndNodes\n$Elements\n");
     let cells: Vec<usize> = input.cells().collect();
-    let block = |cell: usize| (content.cells.kinds[cell], entities.of(input, cell));
-    let blocks: Vec<&[usize]> = cells.chunk_by(|&a, &b| block(a) == block(b)).collect();
-    put!(out, "$EndNodes\n$Elements\n{} {} 1 {}\n", blocks.len(), cells.len(), cells.len());
+    let of = |cell: usize| (content.cells.kinds[cell], entities.of(input, cell));
+    let blocks: Vec<&[usize]> = cells.chunk_by(|&a, &b| of(a) == of(b)).collect();
+    sizes(&[blocks.len() as u64, cells.len() as u64, 1, cells.len() as u64], &mut out);
     let mut element = 0;
     for cells in blocks {
-        let (kind, entity) = block(cells[0]);
-        put!(out, "{} {entity} {} {}\n", kind.dimension(), kind_of(kind), cells.len());
+        let (kind, entity) = of(cells[0]);
+        block([i64::from(kind.dimension()), entity, kind_of(kind)], cells.len(), &mut out);
         for &cell in cells {
             element += 1;
-            put!(out, "{element} {}\n", input.vertex_ids(cell));
+            out.size(element);
+            let nodes = content.cells.of(cell).iter();
+            nodes.for_each(|&v| out.size(input.vertex_id(v as usize)));
+            out.end_row();
         }
     }
-    out.push_str("$EndElements\n");
-    entities.write_periodic(input, "16", &mut out);
+    out.end_list();
+    out.text("$EndElements\n");
+    entities.write_periodic(input, true, &mut out);
     let numbers: Vec<(u64, usize)> = (1..).zip(cells).collect();
     data(input, &numbers, &mut out);
     out
+}
+
+fn coordinates(input: &WriterInput<'_>, vertex: usize, out: &mut Rows) {
+    let [x, y] = input.content.points[vertex];
+    [x, y, input.content.z(vertex)].into_iter().for_each(|x| out.real(x));
+    out.end_row();
+}
+
+/// Writes a row of sizes.
+fn sizes(numbers: &[u64], out: &mut Rows) {
+    numbers.iter().for_each(|&number| out.size(number));
+    out.end_row();
+}
+
+/// Writes the header of a block of nodes or elements.
+fn block(numbers: [i64; 3], count: usize, out: &mut Rows) {
+    numbers.into_iter().for_each(|number| out.int(number));
+    sizes(&[count as u64], out);
 }
 
 /// Physical groups: all groups of the mesh except entities.
@@ -129,7 +205,7 @@ impl Physicals {
     }
 
     /// Writes the names of the groups of written cells.
-    fn write_names(&self, input: &WriterInput<'_>, out: &mut String) {
+    fn write_names(&self, input: &WriterInput<'_>, out: &mut Rows) {
         let used: HashSet<u32> = input.cells().map(|cell| input.content.cells.sets[cell]).collect();
         let used: HashSet<u32> =
             used.iter().flat_map(|&set| &input.content.sets[set as usize]).copied().collect();
@@ -140,11 +216,11 @@ impl Physicals {
         let mut rows: Vec<(u8, i64, &str)> = used.into_iter().filter_map(row).collect();
         rows.sort_unstable();
         if !rows.is_empty() {
-            put!(out, "$PhysicalNames\n{}\n", rows.len());
+            out.text(&format!("$PhysicalNames\n{}\n", rows.len()));
             for (dimension, tag, name) in rows {
-                put!(out, "{dimension} {tag} \"{name}\"\n");
+                out.text(&format!("{dimension} {tag} \"{name}\"\n"));
             }
-            out.push_str("$EndPhysicalNames\n");
+            out.text("$EndPhysicalNames\n");
         }
     }
 }
@@ -200,8 +276,8 @@ impl<'p> Entities<'p> {
         self.numbers.get(&key).copied().unwrap_or(1)
     }
 
-    /// Writes pairs of periodic nodes on curves. `keyword` is the word in front of a motion.
-    fn write_periodic(&self, input: &WriterInput<'_>, keyword: &str, out: &mut String) {
+    /// Writes pairs of periodic nodes on curves, in the layout of version 4.1 or 2.2.
+    fn write_periodic(&self, input: &WriterInput<'_>, is_41: bool, out: &mut Rows) {
         let number = |tag: i64| {
             let is_own = |group: u32| input.content.groups[group as usize].tag() == Some(tag);
             let own = self.numbers.iter().filter(|((dimension, entity, _), _)| {
@@ -209,28 +285,47 @@ impl<'p> Entities<'p> {
             });
             own.map(|(_, number)| *number).min()
         };
-        let mut links = String::new();
-        let mut count = 0;
+        let written = |pairs: &'_ PeriodicNodes| match pairs.entities {
+            Some((1, [image, of])) => Some([number(image)?, number(of)?]),
+            _ => None,
+        };
+        let links: Vec<([i64; 2], &PeriodicNodes)> = input
+            .content
+            .periodic
+            .iter()
+            .filter_map(|pairs| Some((written(pairs)?, pairs)))
+            .collect();
+        if links.is_empty() {
+            return;
+        }
         let ids: HashMap<u64, usize> = input.content.vertex_ids.iter().copied().zip(0..).collect();
-        for PeriodicNodes { entities, motion, nodes } in &input.content.periodic {
-            let &Some((1, [image, of])) = entities else { continue };
-            let (Some(image), Some(of)) = (number(image), number(of)) else { continue };
-            count += 1;
-            put!(links, "1 {image} {of}\n");
-            match motion {
-                Some(motion) => put!(links, "{keyword} {}\n", periodic::matrix(*motion)),
-                None if keyword == "16" => links.push_str("0\n"),
-                None => {}
+        let id = |node: u64| ids.get(&node).map(|&vertex| input.vertex_id(vertex));
+        out.text("$Periodic\n");
+        // Binary files of version 2.2 have this section as text.
+        let mut rows = Rows::new(out.order().filter(|_| is_41));
+        sizes(&[links.len() as u64], &mut rows);
+        for ([image, of], PeriodicNodes { motion, nodes, .. }) in links {
+            [1, image, of].into_iter().for_each(|number| rows.int(number));
+            rows.end_row();
+            let motion = motion.map(periodic::matrix);
+            match (&motion, is_41) {
+                (Some(matrix), true) => rows.size(matrix.len() as u64),
+                (None, true) => rows.size(0),
+                (Some(_), false) => rows.word("Affine"),
+                (None, false) => {}
             }
-            let id = |node: &u64| ids.get(node).map(|&vertex| input.vertex_id(vertex));
-            let pairs: Vec<_> =
-                nodes.iter().filter_map(|[of, image]| Some((id(image)?, id(of)?))).collect();
-            put!(links, "{}\n", pairs.len());
-            pairs.iter().for_each(|(image, of)| put!(links, "{image} {of}\n"));
+            motion.into_iter().flatten().for_each(|number| rows.real(number));
+            if motion.is_some() || is_41 {
+                rows.end_row();
+            }
+            let pairs: Vec<[u64; 2]> =
+                nodes.iter().filter_map(|&[of, image]| Some([id(image)?, id(of)?])).collect();
+            sizes(&[pairs.len() as u64], &mut rows);
+            pairs.iter().for_each(|pair| sizes(pair, &mut rows));
         }
-        if count > 0 {
-            put!(out, "$Periodic\n{count}\n{links}$EndPeriodic\n");
-        }
+        rows.end_list();
+        out.append(rows);
+        out.text("$EndPeriodic\n");
     }
 
     fn first_surface(&self) -> i64 {
@@ -238,40 +333,46 @@ impl<'p> Entities<'p> {
         surfaces.map(|(_, &number)| number).min().unwrap_or(1)
     }
 
-    fn write(&self, input: &WriterInput<'_>, out: &mut String) {
+    fn write(&self, input: &WriterInput<'_>, out: &mut Rows) {
         let mut rows: Vec<(u8, i64, &[i64])> = self
             .numbers
             .iter()
             .map(|(&(dimension, _, physical), &number)| (dimension, number, physical))
             .collect();
         rows.sort_unstable();
-        let count = |of: u8| rows.iter().filter(|(dimension, ..)| *dimension == of).count();
-        put!(out, "$Entities\n{} {} {} 0\n", count(0), count(1), count(2));
+        let count = |of: u8| rows.iter().filter(|(dimension, ..)| *dimension == of).count() as u64;
+        out.text("$Entities\n");
+        sizes(&[count(0), count(1), count(2), 0], out);
         let bounds = |axis: usize| {
             let along = |v: usize| match axis {
                 2 => input.content.z(v),
                 axis => input.content.points[v][axis],
             };
             let all = (0..input.content.points.len()).map(along);
-            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)))
+            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
         };
         let [x, y, z] = [bounds(0), bounds(1), bounds(2)];
         for (dimension, number, physical) in rows {
-            put!(out, "{number} {:?} {:?} {:?} ", x.0, y.0, z.0);
-            if dimension > 0 {
-                put!(out, "{:?} {:?} {:?} ", x.1, y.1, z.1);
+            out.int(number);
+            // A point has coordinates, other entities have a box.
+            for end in if dimension > 0 { 0..2 } else { 0..1 } {
+                [x, y, z].into_iter().for_each(|bounds| out.real(bounds[end]));
             }
-            put!(out, "{}", physical.len());
-            physical.iter().for_each(|tag| put!(out, " {tag}"));
-            // The bounding entities are unknown.
-            out.push_str(if dimension > 0 { " 0\n" } else { "\n" });
+            out.size(physical.len() as u64);
+            physical.iter().for_each(|&tag| out.int(tag));
+            if dimension > 0 {
+                // The bounding entities are unknown.
+                out.size(0);
+            }
+            out.end_row();
         }
-        out.push_str("$EndEntities\n");
+        out.end_list();
+        out.text("$EndEntities\n");
     }
 }
 
 /// Writes `$NodeData` and `$ElementData`. `elements` are the numbers of the written elements and their cells.
-fn data(input: &WriterInput<'_>, elements: &[(u64, usize)], out: &mut String) {
+fn data(input: &WriterInput<'_>, elements: &[(u64, usize)], out: &mut Rows) {
     for data in input.point_data() {
         let nodes = (0..input.content.points.len()).map(|vertex| (input.vertex_id(vertex), vertex));
         section(data, "NodeData", nodes, out);
@@ -287,7 +388,7 @@ fn section(
     data: &DataArray,
     name: &str,
     items: impl Iterator<Item = (u64, usize)>,
-    out: &mut String,
+    out: &mut Rows,
 ) {
     // gmsh displays data of 1, 3 or 9 components, so others are padded with zeros.
     let each = data.components;
@@ -296,13 +397,14 @@ fn section(
     let is_given = |place: &usize| !of(*place).iter().all(|value| value.is_nan());
     let rows: Vec<(u64, usize)> = items.filter(|(_, place)| is_given(place)).collect();
     let title = &data.name;
-    put!(out, "${name}\n1\n\"{title}\"\n1\n0.0\n3\n0\n{padded}\n{}\n", rows.len());
+    out.text(&format!("${name}\n1\n\"{title}\"\n1\n0.0\n3\n0\n{padded}\n{}\n", rows.len()));
     for (number, place) in rows {
-        put!(out, "{number}");
+        out.int(number as i64);
         for index in 0..padded {
-            put!(out, " {:?}", of(place).get(index).copied().unwrap_or(0.0));
+            out.real(of(place).get(index).copied().unwrap_or(0.0));
         }
-        out.push('\n');
+        out.end_row();
     }
-    put!(out, "$End{name}\n");
+    out.end_list();
+    out.text(&format!("$End{name}\n"));
 }

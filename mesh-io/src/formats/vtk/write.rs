@@ -1,11 +1,11 @@
-//! Writer of VTK's formats: legacy `.vtk` as text, and `.vtu` with base64 arrays.
+//! Arrays of groups and data for VTK's formats, and the writer of legacy `.vtk`, as text and in binary.
 
+use crate::binary::byte_order::ByteOrder;
 use crate::export::content::DataArray;
 use crate::export::put;
+use crate::export::rows::Rows;
 use crate::export::writer_input::WriterInput;
 use crate::formats::vtk::types::number_of;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;
 
 /// Returns the usual array name for a kind of group, by which other programs recognize regions. Other group kinds name
@@ -37,6 +37,37 @@ pub(crate) enum ArrayValues {
     Whole(Vec<i64>),
 }
 
+impl ArrayValues {
+    /// Returns whether the values are whole numbers of at most 32 bits.
+    fn is_small(&self) -> bool {
+        match self {
+            ArrayValues::Real(_) => false,
+            ArrayValues::Whole(numbers) => {
+                numbers.iter().all(|&number| i32::try_from(number).is_ok())
+            }
+        }
+    }
+
+    /// Returns VTK's type for the values, of the fewest bytes, and the values in little byte order.
+    pub(crate) fn little(&self) -> (&'static str, Vec<u8>) {
+        match self {
+            ArrayValues::Real(numbers) => {
+                ("Float64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
+            }
+            ArrayValues::Whole(numbers) => {
+                if numbers.iter().all(|&number| u8::try_from(number).is_ok()) {
+                    ("UInt8", numbers.iter().map(|&number| number as u8).collect())
+                } else if self.is_small() {
+                    let bytes = |&number: &i64| (number as i32).to_le_bytes();
+                    ("Int32", numbers.iter().flat_map(bytes).collect())
+                } else {
+                    ("Int64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
+                }
+            }
+        }
+    }
+}
+
 impl Array {
     /// Copies data in file order, or the tuples of the cells `places`. Whole numbers become real ones if some value is
     /// not finite, as integers have no NaN.
@@ -57,7 +88,7 @@ impl Array {
         Array { name: data.name.clone(), components: each, numbers }
     }
 
-    fn whole(name: &str, numbers: Vec<i64>) -> Array {
+    pub(crate) fn whole(name: &str, numbers: Vec<i64>) -> Array {
         Array { name: name.to_owned(), components: 1, numbers: ArrayValues::Whole(numbers) }
     }
 }
@@ -101,21 +132,44 @@ pub(crate) fn of_cells(input: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
 }
 
 pub(crate) fn write_legacy(input: &WriterInput<'_>) -> String {
+    legacy(input, None).into_text()
+}
+
+/// Writes a legacy file in binary, which has the big byte order.
+pub(crate) fn write_legacy_binary(input: &WriterInput<'_>) -> Vec<u8> {
+    legacy(input, Some(ByteOrder::Big)).into_bytes()
+}
+
+fn legacy(input: &WriterInput<'_>, order: Option<ByteOrder>) -> Rows {
     let content = input.content;
     let cells: Vec<usize> = input.cells().collect();
-    let mut out = format!(
-        "# vtk DataFile Version 4.2\nwritten by {}\nASCII\nDATASET UNSTRUCTURED_GRID\n",
+    let mut out = Rows::new(order);
+    let encoding = if out.is_binary() { "BINARY" } else { "ASCII" };
+    out.text(&format!(
+        "# vtk DataFile Version 4.2\nwritten by {}\n{encoding}\nDATASET UNSTRUCTURED_GRID\n",
         input.creator
-    );
-    put!(out, "POINTS {} double\n", content.points.len());
-    (0..content.points.len()).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
-    let numbers: usize = cells.iter().map(|&cell| 1 + content.cells.of(cell).len()).sum();
-    put!(out, "CELLS {} {numbers}\n", cells.len());
-    for &cell in &cells {
-        put!(out, "{} {}\n", content.cells.of(cell).len(), input.positions(cell, 0));
+    ));
+    out.text(&format!("POINTS {} double\n", content.points.len()));
+    for (vertex, &[x, y]) in content.points.iter().enumerate() {
+        [x, y, content.z(vertex)].into_iter().for_each(|x| out.real(x));
+        out.end_row();
     }
-    put!(out, "CELL_TYPES {}\n", cells.len());
-    cells.iter().for_each(|&cell| put!(out, "{}\n", number_of(content.cells.kinds[cell])));
+    out.end_list();
+    let numbers: usize = cells.iter().map(|&cell| 1 + content.cells.of(cell).len()).sum();
+    out.text(&format!("CELLS {} {numbers}\n", cells.len()));
+    for &cell in &cells {
+        let vertices = content.cells.of(cell);
+        out.int(vertices.len() as i64);
+        vertices.iter().for_each(|&vertex| out.int(i64::from(vertex)));
+        out.end_row();
+    }
+    out.end_list();
+    out.text(&format!("CELL_TYPES {}\n", cells.len()));
+    for &cell in &cells {
+        out.int(number_of(content.cells.kinds[cell]) as i64);
+        out.end_row();
+    }
+    out.end_list();
     for (keyword, count, arrays) in [
         ("CELL_DATA", cells.len(), of_cells(input, &cells)),
         ("POINT_DATA", content.points.len(), of_points(input)),
@@ -123,22 +177,31 @@ pub(crate) fn write_legacy(input: &WriterInput<'_>) -> String {
         if arrays.is_empty() {
             continue;
         }
-        put!(out, "{keyword} {count}\nFIELD FieldData {}\n", arrays.len());
+        out.text(&format!("{keyword} {count}\nFIELD FieldData {}\n", arrays.len()));
         for Array { name, components, numbers } in arrays {
-            let (kind, words): (_, Vec<String>) = match numbers {
-                ArrayValues::Real(numbers) => {
-                    ("double", numbers.iter().map(|x| format!("{x:?}").to_lowercase()).collect())
-                }
-                ArrayValues::Whole(numbers) => {
-                    let small = numbers.iter().all(|&number| i32::try_from(number).is_ok());
-                    let kind = if small { "int" } else { "long" };
-                    (kind, numbers.iter().map(i64::to_string).collect())
-                }
+            let is_small = numbers.is_small();
+            let kind = match &numbers {
+                ArrayValues::Real(_) => "double",
+                ArrayValues::Whole(_) if is_small => "int",
+                // The size of a `long` in a binary file depends on the platform.
+                ArrayValues::Whole(_) if out.is_binary() => "vtktypeint64",
+                ArrayValues::Whole(_) => "long",
             };
-            put!(out, "{} {components} {count} {kind}\n", encoded(&name));
-            for row in words.chunks(components.max(1)) {
-                put!(out, "{}\n", row.join(" "));
+            out.text(&format!("{} {components} {count} {kind}\n", encoded(&name)));
+            let components = components.max(1);
+            match numbers {
+                ArrayValues::Real(numbers) => numbers.chunks(components).for_each(|row| {
+                    row.iter().for_each(|&number| out.real(number));
+                    out.end_row();
+                }),
+                ArrayValues::Whole(numbers) => numbers.chunks(components).for_each(|row| {
+                    for &number in row {
+                        if is_small { out.int(number) } else { out.long(number) }
+                    }
+                    out.end_row();
+                }),
             }
+            out.end_list();
         }
     }
     out
@@ -155,69 +218,4 @@ fn encoded(name: &str) -> String {
         }
     }
     encoded
-}
-
-pub(crate) fn write_xml(input: &WriterInput<'_>) -> String {
-    let content = input.content;
-    let cells: Vec<usize> = input.cells().collect();
-    let mut out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
-                   byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
-        .to_owned();
-    let (points, count) = (content.points.len(), cells.len());
-    put!(out, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{count}\">\n");
-    let at = |vertex: usize| {
-        let [x, y] = content.points[vertex];
-        [x, y, content.z(vertex)]
-    };
-    let coordinates = Array {
-        name: "Points".into(),
-        components: 3,
-        numbers: ArrayValues::Real((0..points).flat_map(at).collect()),
-    };
-    let connectivity = cells.iter().flat_map(|&cell| content.cells.of(cell));
-    let connectivity = connectivity.map(|&vertex| i64::from(vertex)).collect();
-    let mut end = 0;
-    let ends = cells.iter().map(|&cell| {
-        end += content.cells.of(cell).len() as i64;
-        end
-    });
-    let ends = ends.collect();
-    let types = cells.iter().map(|&cell| number_of(content.cells.kinds[cell]) as i64).collect();
-    let sections = [
-        ("PointData", of_points(input)),
-        ("CellData", of_cells(input, &cells)),
-        ("Points", vec![coordinates]),
-        (
-            "Cells",
-            vec![
-                Array::whole("connectivity", connectivity),
-                Array::whole("offsets", ends),
-                Array::whole("types", types),
-            ],
-        ),
-    ];
-    for (section, arrays) in sections {
-        put!(out, "<{section}>\n");
-        for Array { name, components, numbers } in arrays {
-            let (kind, bytes): (_, Vec<u8>) = match numbers {
-                ArrayValues::Real(numbers) => {
-                    ("Float64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
-                }
-                ArrayValues::Whole(numbers) => {
-                    ("Int64", numbers.iter().flat_map(|number| number.to_le_bytes()).collect())
-                }
-            };
-            let length = (bytes.len() as u64).to_le_bytes();
-            let text = STANDARD.encode([&length[..], &bytes].concat());
-            let name = quick_xml::escape::escape(&name);
-            put!(
-                out,
-                "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-                 format=\"binary\">\n{text}\n</DataArray>\n"
-            );
-        }
-        put!(out, "</{section}>\n");
-    }
-    out.push_str("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
-    out
 }

@@ -2,7 +2,7 @@
 
 use super::File;
 use super::document::Item;
-use super::{heavy, tags};
+use super::heavy;
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::Cell;
@@ -13,6 +13,15 @@ use crate::text::token::quoted;
 use crate::visit::items::RegionAttribute;
 use crate::visit::records::TriangleRecords;
 use crate::visit::visitor::MeshVisitor;
+
+/// Region numbers of mesh tags, in addition to the arrays of the mesh.
+#[derive(Default)]
+pub(super) struct TagRegions {
+    /// The numbers of all cells of the mesh, for each list of mesh tags.
+    pub(super) numbers: Vec<(RegionAttribute, Vec<i64>)>,
+    /// Least dimension of elements with numbers in the arrays of the mesh.
+    pub(super) from_dimension: u8,
+}
 
 /// Stream of the integers of a Topology, in the XML or in a companion file.
 pub(super) enum CellNumbers<'a> {
@@ -61,15 +70,17 @@ impl<'a> CellNumbers<'a> {
 }
 
 impl<'a> File<'a> {
-    /// Visits the elements of a Topology with their region numbers, and cell data if the visitor asks for data.
+    /// Visits the elements of a Topology with their region numbers. `tags` are further region numbers, one for each cell.
+    /// Returns the number of cells, and the arrays that number regions.
     ///
     /// # Errors
     /// If the Topology is damaged, or if its attributes announce other counts of elements or integers.
     pub(super) fn elements(
         &self,
         item: &Item,
+        tags: TagRegions,
         visitor: &mut dyn MeshVisitor,
-    ) -> Result<(), ReadError> {
+    ) -> Result<(u64, Vec<&Item>), ReadError> {
         let is_region = |item: &&Item| !self.is_real(item) && names_regions(item.name.as_bytes());
         let (mut of_regions, mut regions): (Vec<&Item>, Vec<Vec<i64>>) = (Vec::new(), Vec::new());
         for own in self.attributes("cell").filter(is_region) {
@@ -82,20 +93,16 @@ impl<'a> File<'a> {
                 regions.push(numbers);
             }
         }
-        let tags = self.tags()?;
-        // Lines of mesh tags have no numbers in the arrays of the mesh.
-        let from_dimension = if tags.is_empty() { 0 } else { 2 };
-        let mut attributes: Vec<_> =
-            of_regions.iter().map(|own| RegionAttribute::tags(&own.name, from_dimension)).collect();
-        let mut of_lines = Vec::new();
-        for tags in tags {
-            match self.tags_of_triangles(tags, item)? {
-                None => of_lines.push(tags),
-                Some(numbers) if regions.len() < MAX_ARRAYS => {
-                    attributes.push(tags::attribute(&tags.values.name));
-                    regions.push(numbers);
-                }
-                Some(_) => visitor.unsupported("mesh tags of triangles, of which two are read"),
+        let mut attributes: Vec<_> = of_regions
+            .iter()
+            .map(|own| RegionAttribute::tags(&own.name, tags.from_dimension))
+            .collect();
+        for (attribute, numbers) in tags.numbers {
+            if regions.len() < MAX_ARRAYS {
+                attributes.push(attribute);
+                regions.push(numbers);
+            } else {
+                visitor.unsupported("mesh tags of triangles, of which two are read");
             }
         }
         let regions = RegionNumbers::from_iter(regions);
@@ -127,14 +134,7 @@ impl<'a> File<'a> {
             let problem = format!("the Topology ends after {id} elements of {count} numbers");
             return Err(words.error(problem, "Its attributes announce other numbers: correct them"));
         }
-        let cells = id;
-        for tags in of_lines {
-            id = self.lines_of_tags(tags, id, visitor)?;
-        }
-        if visitor.asks_for_cell_arrays() {
-            self.cell_data(&of_regions, cells, visitor);
-        }
-        Ok(())
+        Ok((id, of_regions))
     }
 
     pub(super) fn words(&self, item: &Item) -> Result<CellNumbers<'a>, ReadError> {
@@ -204,7 +204,7 @@ impl<'a> File<'a> {
     }
 
     /// Visits the arrays of cell data that the visitor wants, except the region arrays `regions`.
-    fn cell_data(&self, regions: &[&Item], cells: u64, visitor: &mut dyn MeshVisitor) {
+    pub(super) fn cell_data(&self, regions: &[&Item], cells: u64, visitor: &mut dyn MeshVisitor) {
         for item in self.attributes("cell") {
             let is_region = regions.iter().any(|own| own.at == item.at);
             let (is_real, components) = (self.is_real(item), item.components(cells));

@@ -119,6 +119,21 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
     }
 }
 
+/// Separates the items of the mesh from those of mesh tags: items in grids that have a Topology, where the Geometry is
+/// in another grid with a Topology.
+pub(super) fn split(items: Vec<Item>) -> (Vec<Item>, Vec<Item>) {
+    let grids = |section: &str| -> Vec<u64> {
+        items.iter().filter(|item| item.section == section).map(|item| item.grid).collect()
+    };
+    let (geometries, topologies) = (grids("Geometry"), grids("Topology"));
+    match geometries[..] {
+        [mesh] if topologies.contains(&mesh) => items
+            .into_iter()
+            .partition(|item| item.grid == mesh || !topologies.contains(&item.grid)),
+        _ => (items, Vec::new()),
+    }
+}
+
 /// Reads an item: `tag` has its attributes, `of` those of the section around it.
 fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Result<Item, ReadError> {
     let text = xml.text().ok_or_else(|| xml.error("the file ends within a DataItem", CUT_OFF))?;

@@ -65,10 +65,19 @@ impl FormatReader for Xdmf {
         source: &Source,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
-        let (items, tagged) = tags::split(document::items(source)?);
+        let (items, tagged) = document::split(document::items(source)?);
         let file = File { source, items, tagged, heavy: HeavyData::open(source)? };
         let (layout, points) = file.points(file.only("Geometry")?, visitor)?;
-        file.elements(file.only("Topology")?, visitor)?;
+        let topology = file.only("Topology")?;
+        let (tags, lines) = file.tag_regions(topology)?;
+        let (cells, regions) = file.elements(topology, tags, visitor)?;
+        let mut id = cells;
+        for tags in lines {
+            id = file.lines_of_tags(tags, id, visitor)?;
+        }
+        if visitor.asks_for_cell_arrays() {
+            file.cell_data(&regions, cells, visitor);
+        }
         file.point_data(points, visitor)?;
         file.heavy.check_no_overlaps()?;
         Ok(layout)

@@ -1,6 +1,7 @@
 //! Mesh tags of DOLFINx: numbers of some cells, in a grid with a Topology of its own and the Geometry of the mesh.
 
 use super::File;
+use super::cells::TagRegions;
 use super::document::Item;
 use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
@@ -13,10 +14,10 @@ use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
 /// The number of triangles without a tag.
-pub(super) const UNTAGGED: i64 = i64::MIN;
+const UNTAGGED: i64 = i64::MIN;
 
 /// Makes the region attribute of the tags of triangles.
-pub(super) fn attribute(name: &str) -> RegionAttribute {
+fn attribute(name: &str) -> RegionAttribute {
     let label = |tag| (tag != UNTAGGED).then_some(GroupLabel::Tag(tag));
     RegionAttribute { kind: name.to_owned(), from_dimension: 2, label }
 }
@@ -26,22 +27,7 @@ pub(super) fn attribute(name: &str) -> RegionAttribute {
 pub(super) struct MeshTags<'i> {
     topology: &'i Item,
     /// The tags, one for each cell of `topology`.
-    pub(super) values: &'i Item,
-}
-
-/// Separates the items of the mesh from those of mesh tags: items in grids that have a Topology, where the Geometry is
-/// in another grid with a Topology.
-pub(super) fn split(items: Vec<Item>) -> (Vec<Item>, Vec<Item>) {
-    let grids = |section: &str| -> Vec<u64> {
-        items.iter().filter(|item| item.section == section).map(|item| item.grid).collect()
-    };
-    let (geometries, topologies) = (grids("Geometry"), grids("Topology"));
-    match geometries[..] {
-        [mesh] if topologies.contains(&mesh) => items
-            .into_iter()
-            .partition(|item| item.grid == mesh || !topologies.contains(&item.grid)),
-        _ => (items, Vec::new()),
-    }
+    values: &'i Item,
 }
 
 impl File<'_> {
@@ -49,7 +35,7 @@ impl File<'_> {
     ///
     /// # Errors
     /// If a grid has a second Topology, or other items than one list of tags for its cells.
-    pub(super) fn tags(&self) -> Result<Vec<MeshTags<'_>>, ReadError> {
+    fn tags(&self) -> Result<Vec<MeshTags<'_>>, ReadError> {
         let mut found = Vec::new();
         for topology in self.tagged.iter().filter(|item| item.section == "Topology") {
             let is_other = |item: &&Item| item.grid == topology.grid && item.at != topology.at;
@@ -66,6 +52,28 @@ impl File<'_> {
             }
         }
         Ok(found)
+    }
+
+    /// Returns the tags of triangles of the mesh as regions, and all other mesh tags.
+    ///
+    /// # Errors
+    /// If tags are damaged, or name a triangle that the mesh does not have.
+    pub(super) fn tag_regions(
+        &self,
+        mesh: &Item,
+    ) -> Result<(TagRegions, Vec<MeshTags<'_>>), ReadError> {
+        let (mut regions, mut lines) = (TagRegions::default(), Vec::new());
+        for tags in self.tags()? {
+            match self.tags_of_triangles(tags, mesh)? {
+                Some(numbers) => regions.numbers.push((attribute(&tags.values.name), numbers)),
+                None => lines.push(tags),
+            }
+        }
+        // Lines of mesh tags have no numbers in the arrays of the mesh.
+        if !lines.is_empty() {
+            regions.from_dimension = 2;
+        }
+        Ok((regions, lines))
     }
 
     /// Reads the cells of mesh tags: VTK's cell type, the number of nodes of a cell, the nodes of all cells, and the tag
@@ -94,7 +102,7 @@ impl File<'_> {
     ///
     /// # Errors
     /// If the tags are damaged, or name a triangle that the mesh does not have.
-    pub(super) fn tags_of_triangles(
+    fn tags_of_triangles(
         &self,
         tags: MeshTags<'_>,
         mesh: &Item,

@@ -148,6 +148,15 @@ impl BlockEncoding {
         })
     }
 
+    /// Encodes the bytes of an array in a new file, in blocks of VTK's usual size.
+    pub(super) fn wrap_new(&self, bytes: &[u8]) -> Vec<u8> {
+        const BLOCK: usize = 1 << 15;
+        let (block, has_separate_header) = (BLOCK, false);
+        let old =
+            DecodedBlocks { bytes: Cow::default(), encoded_length: 0, block, has_separate_header };
+        self.wrap(&old, bytes)
+    }
+
     /// Encodes new bytes in the form of `old`: block size and header.
     pub(super) fn wrap(&self, old: &DecodedBlocks<'_>, bytes: &[u8]) -> Vec<u8> {
         let Some(compressor) = self.compressor else {

@@ -11,6 +11,7 @@ mod document;
 mod encoding;
 mod ghosts;
 mod points;
+pub(crate) mod write;
 
 use crate::disk::source::Source;
 use crate::error::ReadError;
