@@ -10,6 +10,7 @@ use gpu_smooth::{
     Topology,
     measure::{Measure, Measured},
 };
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::render::html::page::ViewerMesh;
@@ -126,7 +127,7 @@ pub(crate) fn viewer_mesh(
             "points": part.points(state.points()),
             "values": values(topology, state, &shown)?,
             // A picture by each measure; empty if the page contains all triangles.
-            "pictures": pictures.iter().map(draw).collect::<Result<Vec<_>, CliError>>()?,
+            "pictures": pictures.par_iter().map(draw).collect::<Result<Vec<_>, CliError>>()?,
         }));
     }
     let corners: Vec<Value> = spots
