@@ -33,7 +33,8 @@ fn browser(folder: &Folder, args: &[&str], fragment: &str) -> Output {
     let page = format!("file://{}{fragment}", folder.path("page.html").display());
     let mut command = Command::new(program);
     command.args(["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]);
-    command.args(["--virtual-time-budget=3000", "--enable-logging=stderr"]).args(args);
+    // The browser ends after the page and its images are loaded. A virtual clock would not wait for images.
+    command.arg("--enable-logging=stderr").args(args);
     let output = command.arg(page).output().unwrap();
     let log = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success() && !log.contains("Uncaught"), "{log}");
