@@ -40,7 +40,7 @@ fn run() -> ExitCode {
     }
     interrupt::survive_large_files();
     let done = match command {
-        Some(Command::Quality(args)) => quality::run(&args),
+        Some(Command::Quality(args)) => quality::run(&args, (&output).into()),
         Some(Command::Try(args)) => trial::run(&args, (&output).into()),
         Some(Command::Groups(args)) => groups::run(&args),
         Some(Command::Compare(args)) => compare::run(args, &output),

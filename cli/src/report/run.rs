@@ -1,6 +1,7 @@
 //! The report of a run, as `--report` writes it in JSON.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use gpu_smooth::{
     Metric, Outcome, Quality, Scheme,
@@ -212,13 +213,25 @@ pub(crate) struct SweepReport {
     pub(crate) all: BTreeMap<&'static str, f64>,
 }
 
+/// The duration of the parts of a run, in seconds.
 #[derive(Clone, Copy, Serialize)]
 pub(crate) struct Seconds {
     pub(crate) read: f64,
     pub(crate) prepare: f64,
     pub(crate) smooth: f64,
     pub(crate) write: f64,
+    /// Drawing and writing the picture and the page; 0 without both.
+    pub(crate) pictures: f64,
+    /// The sum of all parts.
     pub(crate) total: f64,
+}
+
+impl Seconds {
+    /// Replaces the time of pictures and pages, also in the total.
+    pub(crate) fn with_pictures(self, pictures: Duration) -> Self {
+        let pictures = pictures.as_secs_f64();
+        Self { pictures, total: self.total - self.pictures + pictures, ..self }
+    }
 }
 
 impl From<&Quality> for QualityReport {

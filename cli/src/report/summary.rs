@@ -45,11 +45,15 @@ impl Report {
         if let Some(warning) = self.warning() {
             let _ = writeln!(text, "{warning}");
         }
-        let Seconds { read, prepare, smooth, write, total } = self.seconds;
+        let Seconds { read, prepare, smooth, write, pictures, total } = self.seconds;
         let _ = write!(
             text,
-            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s; total {total:.3} s"
+            "read {read:.3} s, prepare {prepare:.3} s, smooth {smooth:.3} s, write {write:.3} s"
         );
+        if pictures > 0.0 {
+            let _ = write!(text, ", pictures {pictures:.3} s");
+        }
+        let _ = write!(text, "; total {total:.3} s");
         text
     }
 

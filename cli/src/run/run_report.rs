@@ -33,6 +33,7 @@ impl Clock {
             prepare: (self.prepared - self.read).as_secs_f64(),
             smooth: (self.smoothed - self.prepared).as_secs_f64(),
             write: (self.written - self.smoothed).as_secs_f64(),
+            pictures: 0.0,
             total: (self.written - self.began).as_secs_f64(),
         }
     }

@@ -16,7 +16,7 @@ use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{flag, low_level};
 
-use crate::terminal::tell;
+use crate::terminal::{progress, tell};
 
 /// Interval at which the thread polls for signals. A blocking wait would need different code on each system.
 const INTERVAL: Duration = Duration::from_millis(20);
@@ -89,7 +89,7 @@ fn received(signal: i32, quiet: bool) {
     }
     let _mesh = mesh_io::atomic::discard_pending_writes();
     let _other = uninterrupted();
-    tell::leave_bar();
+    progress::remove_bar();
     let text = if has_result {
         "interrupted again: ended at once"
     } else {

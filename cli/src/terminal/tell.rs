@@ -81,13 +81,6 @@ fn printable(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Ends the last line of a terminal, which may show a progress bar.
-pub(crate) fn leave_bar() {
-    if std::io::stderr().is_terminal() && !is_json() {
-        put(format_args!(""));
-    }
-}
-
 /// Prints an error to standard error. A line of JSON also contains the error's kind and remedy.
 pub(crate) fn error(error: &CliError) {
     let text = error.to_string();

@@ -40,6 +40,11 @@ fn points(value: &Value) -> Vec<[f64; 2]> {
     bytes(value).chunks(16).map(|two| [number(&two[..8]), number(&two[8..])]).collect()
 }
 
+fn values(value: &Value) -> Vec<f32> {
+    let number = |four: &[u8]| f32::from_le_bytes(four.try_into().unwrap());
+    bytes(value).chunks(4).map(number).collect()
+}
+
 /// Returns the corners of all drawn triangles: before the run for state 0, after the run for state 1.
 fn corners(data: &Value, state: usize) -> Vec<[[f64; 2]; 3]> {
     let points = points(&data["states"][state]["points"]);
@@ -63,30 +68,18 @@ fn the_mesh_of_a_page_is_that_of_the_files() {
         assert_eq!(corners(&data, state), of_mesh(&mesh, &topology), "{name}");
         let measured = Measured::new(&mesh.points, &topology).unwrap();
         for (k, measure) in data["measures"].as_array().unwrap().iter().enumerate() {
-            let codes = bytes(&data["states"][state]["codes"][k]);
-            let codes: Vec<u16> =
-                codes.chunks(2).map(|two| u16::from_le_bytes(two.try_into().unwrap())).collect();
-            assert_eq!(codes.len(), 160);
+            let told = values(&data["states"][state]["values"][k]);
+            assert_eq!(told.len(), 160);
             let name: Measure = measure["name"].as_str().unwrap().parse().unwrap();
-            let (ideal, bad) = (measure["ideal"].as_f64().unwrap(), measure["bad"].as_f64());
-            for (code, value) in codes.iter().zip(measured.values(name)) {
-                let goodness = f64::from(code - 1) / 65533.0;
-                // Decodes the value in the same way as the script of the page.
-                let told = match bad {
-                    Some(bad) => bad + goodness * (ideal - bad),
-                    None => ideal + 10f64.powf(1.0 - goodness) - 1.0,
-                };
-                let most = if bad.is_some() { f64::INFINITY } else { ideal + 9.0 };
-                assert!(
-                    (told - value.min(most)).abs() < 1e-3 * (ideal + 1.0),
-                    "{name}: {told}, {value}"
-                );
+            for (told, value) in told.into_iter().zip(measured.values(name)) {
+                assert!((f64::from(told) - value).abs() <= 1e-7 * value, "{name}: {told}, {value}");
             }
         }
     }
     // The outline has each edge of the boundary once: 36 edges of two indices.
     assert_eq!(indices(&data["boundary"]).len(), 2 * 36);
-    assert!(data["states"][0]["picture"].is_null());
+    assert_eq!(data["states"][0]["pictures"], serde_json::json!([]));
+    assert!(indices(&data["pieces"]).is_empty() && data["face"].is_null());
 }
 
 #[test]
@@ -164,12 +157,12 @@ fn a_mesh_that_was_tangled_is_shown_as_it_was() {
     let [node, ele] = super::output::INVERTED;
     let folder = Folder::new(&[("in.node", node), ("in.ele", ele)]);
     let (_, data) = page(&folder, "in out --untangle");
-    let codes = |state: usize| {
-        let codes = bytes(&data["states"][state]["codes"][0]);
-        codes.chunks(2).map(|two| u16::from_le_bytes(two.try_into().unwrap())).collect::<Vec<_>>()
+    // The value of an inverted triangle is not a number.
+    let bad = |state: usize| {
+        let values = values(&data["states"][state]["values"][0]);
+        values.iter().filter(|value| value.is_nan()).count()
     };
-    assert_eq!(codes(0).iter().filter(|code| **code == 0).count(), 1);
-    assert_eq!(codes(1).iter().filter(|code| **code == 0).count(), 0);
+    assert_eq!([bad(0), bad(1)], [1, 0]);
 }
 
 #[test]
@@ -248,4 +241,62 @@ fn pages_that_would_replace_something_are_refused() {
     let run = folder.line("in.node other --out-dir d --html page.html");
     assert_eq!(run.code, Some(2));
     assert_holds(&run.err, &["--html"]);
+}
+
+/// A square of 4 triangles, with two quadrilaterals on its right and one inner vertex between them.
+pub(crate) const MIXED: &str = "OFF\n9 6 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n0.5 1.2 0\n4 0 0\n4 2 0\n2 4 0\n0 4 0\n\
+    3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n4 1 5 6 2\n4 3 2 7 8\n";
+
+#[test]
+fn a_page_shows_quadrilaterals_beside_the_triangles() {
+    let folder = Folder::new(&[("in.off", MIXED)]);
+    let (of_run, run) = page(&folder, "in.off out.off");
+    let (of_mesh, mesh) = page_of(&folder, "quality in.off");
+    for (page, data) in [(of_run, run), (of_mesh, mesh)] {
+        assert_holds(
+            &page,
+            &["fixed quadrilateral</li>", "All 4 triangles and 2 fixed quadrilaterals."],
+        );
+        assert_eq!(data["face"], "fixed quadrilateral");
+        let points = points(&data["states"][0]["points"]);
+        let corners: Vec<[f64; 2]> =
+            indices(&data["pieces"]).into_iter().map(|v| points[v]).collect();
+        let area = |t: &[[f64; 2]]| {
+            let [p, q, r] = [t[0], t[1], t[2]];
+            0.5 * ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).abs()
+        };
+        assert_eq!(corners.chunks(3).map(area).sum::<f64>(), 8.0);
+        assert_eq!(data["extent"], serde_json::json!([[0.0, 0.0], [4.0, 4.0]]));
+        // The boundary has no edge between a triangle and a quadrilateral.
+        let boundary: Vec<[f64; 2]> =
+            indices(&data["boundary"]).into_iter().map(|v| points[v]).collect();
+        let middles: Vec<[f64; 2]> = boundary
+            .chunks(2)
+            .map(|e| [0, 1].map(|axis| (e[0][axis] + e[1][axis]) / 2.0))
+            .collect();
+        assert_eq!(middles.len(), 8);
+        assert!(!middles.contains(&[2.0, 1.0]) && !middles.contains(&[1.0, 2.0]), "{middles:?}");
+        assert!(indices(&data["held"]).is_empty());
+    }
+}
+
+/// Two rules of axe-core, the checker of accessibility: `scrollable-region-focusable` and `empty-table-header`.
+#[test]
+fn keys_reach_wide_tables_and_each_column_has_a_header() {
+    let folder = small();
+    let (of_run, _) = page(&folder, "in out");
+    let (of_mesh, _) = page_of(&folder, "quality in.node");
+    folder.line("quality in.node out.node --html page.html").clean();
+    for page in [of_run, of_mesh, folder.text("page.html")] {
+        assert!(!page.contains("<th></th>"), "a header is empty");
+        let wide: Vec<&str> = page
+            .split("<div class=\"wide\"")
+            .skip(1)
+            .map(|tag| tag.split('>').next().unwrap())
+            .collect();
+        assert!(!wide.is_empty());
+        for tag in wide {
+            assert_holds(tag, &["tabindex=\"0\"", "role=\"group\"", "aria-label=\""]);
+        }
+    }
 }

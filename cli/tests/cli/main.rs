@@ -100,8 +100,15 @@ impl Run {
 
 /// Returns whether a line on standard error reports progress.
 fn is_progress(line: &str) -> bool {
-    let starts =
-        ["reading", "preparing", "smoothing", "writing", "sweep ", "finding the optimum: "];
+    let starts = [
+        "reading",
+        "preparing",
+        "smoothing",
+        "writing",
+        "drawing",
+        "sweep ",
+        "finding the optimum: ",
+    ];
     let text = line.strip_prefix("gpu-smooth: ").unwrap_or_default();
     starts.iter().any(|start| text.starts_with(start))
 }

@@ -1,5 +1,6 @@
 //! Pictures (`--picture`): correct content, orientation and size.
 
+use super::html::MIXED;
 use super::output::INVERTED;
 use super::{Folder, assert_holds, finish, small, support};
 use std::fs;
@@ -272,4 +273,33 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
         assert_holds(&run.err, &[part]);
     }
     assert!(folder.content() == before);
+}
+
+#[test]
+fn quadrilaterals_are_drawn_in_gray_without_a_boundary_to_triangles() {
+    let folder = Folder::new(&[("in.off", MIXED)]);
+    folder.line("quality in.off --picture p.svg --picture-size 800").clean();
+    let svg = folder.text("p.svg");
+    assert_holds(&svg, &[">fixed quadrilateral</text>"]);
+    assert!(!svg.contains("fixed vertex"), "{svg}");
+    folder.line("quality in.off --picture p.png --picture-size 800").clean();
+    let image = Image::read(&folder, "p.png");
+    // All colored and gray pixels above the legend.
+    let mesh = |[_, row]: &[usize; 2]| *row < image.height - 90;
+    let is_gray = |pixel| pixel == [196, 198, 201, 255];
+    let mut all = image.places(|pixel| is_face(pixel) || is_gray(pixel));
+    all.retain(mesh);
+    let [[left, right], [top, bottom]] = bounds(&all);
+    assert!((right - left).abs_diff(bottom - top) < 8, "{left} {right} {top} {bottom}");
+    // Triangles fill a quarter of the square at its lower left, and gray quadrilaterals the quarters beside it.
+    let at = |x: f64, y: f64| {
+        let column = left as f64 + x * (right - left) as f64;
+        let row = bottom as f64 - y * (bottom - top) as f64;
+        image.pixels[row as usize * image.width + column as usize]
+    };
+    assert!(is_face(at(0.3, 0.3)) && is_gray(at(0.75, 0.25)) && is_gray(at(0.25, 0.75)));
+    assert_eq!(at(0.75, 0.75), [255; 4]);
+    // An edge between a triangle and a quadrilateral is thin and gray, and no black line of the boundary.
+    let dark = |x: f64, y: f64| (-4..=4).map(|i| at(x + f64::from(i) / 800.0, y)[1]).min().unwrap();
+    assert!(dark(0.5, 0.3) > 140 && dark(1.0, 0.3) < 110, "{} {}", dark(0.5, 0.3), dark(1.0, 0.3));
 }

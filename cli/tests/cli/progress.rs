@@ -26,6 +26,15 @@ fn a_log_of_json_has_an_object_on_every_line() {
     assert_eq!((&end["event"], &end["mesh"]), (&"end".into(), &"in".into()));
     assert_eq!((&end["stop"], &end["sweeps"]), (&report["stop"], &report["sweeps"]));
     assert_eq!(end["f_after"], report["after"]["f"]["imr"]);
+    // Pictures and pages are drawn in a stage of their own.
+    let run = folder.line("in out --log json --engine cpu --picture p.png --html p.html");
+    let events_of_drawing = self::events(&run.err);
+    let mut stages = events_of_drawing.iter().filter_map(|event| event["stage"].as_str());
+    assert_eq!(stages.next_back(), Some("drawing"), "{}", run.err);
+    let run = folder.line("quality in --log json --picture p.png");
+    assert_holds(&run.err, &["\"stage\":\"reading\"", "\"stage\":\"drawing\""]);
+    assert_eq!(folder.line("quality in --log json").err, "");
+    let run = folder.line("in out --log json --engine cpu --report r.json --fix-box 0,0,1,1");
     // The result is printed to standard output as without `--log`.
     assert_holds(&run.out, &["\nconverged after "]);
 
@@ -101,5 +110,38 @@ fn a_long_stage_is_shown_on_a_terminal_and_in_a_log() {
         for line in text.split(['\r', '\n']).filter(|line| line.contains("reading")) {
             assert!(!on_terminal || line.chars().count() < 50, "{line:?}");
         }
+    }
+}
+
+/// A signal removes the bar, so that no estimate stays on the terminal.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_removes_the_bar_from_the_terminal() {
+    use std::fs;
+    use std::process::{Command, Stdio};
+    use std::time::Duration;
+
+    let program = env!("CARGO_BIN_EXE_gpu-smooth");
+    for line in ["in.msh out.msh", "try in.msh", "quality in.msh --picture p.png"] {
+        let folder = Folder::new(&[]);
+        let pipe = folder.path("in.msh");
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let mut command = Command::new("script");
+        let shell = format!("stty rows 24 cols 60 <&1; {program} {line} & echo $! > id; wait $!");
+        command.args(["-qec", &shell, "/dev/null"]);
+        command.current_dir(&folder.0).stdin(Stdio::null()).env("TERM", "xterm");
+        let child = command.stdout(Stdio::piped()).spawn().unwrap();
+        let writer = fs::OpenOptions::new().write(true).open(&pipe).unwrap();
+        std::thread::sleep(Duration::from_millis(1300));
+        let id = folder.text("id");
+        assert!(Command::new("kill").args(["-TERM", id.trim()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        drop(writer);
+        let text = String::from_utf8(output.stdout).unwrap();
+        let (bars, note) = text.split_once("gpu-smooth: interrupted").unwrap();
+        assert_holds(note, &[": nothing was written"]);
+        let last = bars.rsplit("reading").next().unwrap();
+        assert!(bars.contains("reading  1 s"), "{line}: {text:?}");
+        assert!(last.contains("\u{1b}[2K") || last.contains("\u{1b}[K"), "{line}: {text:?}");
     }
 }

@@ -98,10 +98,36 @@ fn report_holds_the_documented_keys() {
         assert!(of("after", "min_angle") > of("before", "min_angle"));
         assert!(of("after", "worst_imr") < of("before", "worst_imr"));
 
-        assert_keys(&report["seconds"], &["read", "prepare", "smooth", "write", "total"]);
+        let parts = ["read", "prepare", "smooth", "write", "pictures"];
+        assert_keys(&report["seconds"], &[&parts[..], &["total"]].concat());
         let seconds = |part| number(&report["seconds"][part]);
-        let parts: f64 = ["read", "prepare", "smooth", "write"].into_iter().map(seconds).sum();
-        assert!(parts > 0.0 && (parts - seconds("total")).abs() < 1e-6);
+        let sum: f64 = parts.into_iter().map(seconds).sum();
+        assert!(sum > 0.0 && (sum - seconds("total")).abs() < 1e-6);
+        assert_eq!(seconds("pictures"), 0.0, "nothing was drawn");
+    }
+}
+
+#[test]
+fn the_total_time_of_a_run_includes_pictures_and_pages() {
+    let folder = small();
+    for drawings in ["--picture p.png", "--html p.html", "--picture p.svg --html p.html"] {
+        let start = std::time::Instant::now();
+        let line = format!("in out --engine cpu --force --report r.json {drawings}");
+        let run = folder.line(&line).clean();
+        let elapsed = start.elapsed().as_secs_f64();
+        let seconds = &folder.json("r.json")["seconds"];
+        let [pictures, total] = ["pictures", "total"].map(|part| number(&seconds[part]));
+        let sum: f64 =
+            ["read", "prepare", "smooth", "write"].map(|part| number(&seconds[part])).iter().sum();
+        assert!(pictures > 0.0 && (sum + pictures - total).abs() < 1e-6, "{seconds}");
+        assert!(total < elapsed, "{total} of {elapsed} s");
+        let told = format!(", pictures {pictures:.3} s; total {total:.3} s");
+        assert!(run.out.contains(&told), "no {told:?} in {}", run.out);
+        if drawings.contains("html") {
+            assert!(
+                folder.text("p.html").contains("<span class=\"pictures key\"></span>pictures ")
+            );
+        }
     }
 }
 

@@ -88,6 +88,13 @@ impl MeshFile {
         &self.parsed.constraints
     }
 
+    /// Lists the corners of each quadrilateral and of each polygon of five or more corners, as vertex indices in the order
+    /// of the file. [`write`](Self::write) moves no vertex by itself; programs keep the corners fixed, as
+    /// [`constraints`](Self::constraints) contain them.
+    pub fn other_faces(&self) -> impl Iterator<Item = &[u32]> {
+        self.parsed.other_faces.iter()
+    }
+
     /// Returns the [region](Self#regions) of each triangle, in the order of [`triangles`](Self::triangles). Regions are
     /// numbered from 0 in the order of first occurrence. `None` if all triangles have equal regions.
     pub fn regions(&self) -> Option<&[u32]> {

@@ -1,6 +1,7 @@
 //! Makes a mesh from a file's nodes and elements.
 
 use crate::content::constraints::{Constraints, PeriodicPairs};
+use crate::content::faces::Faces;
 use crate::content::id_index::IdIndexBuilder;
 use crate::content::regions::{Interner, TriangleRegions};
 use crate::content::remark::Remark;
@@ -47,7 +48,7 @@ pub(crate) fn parse_by(
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
     let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
-    let MeshBuilder { cell_arrays, fractional, .. } = assembler;
+    let MeshBuilder { cell_arrays, fractional, other_faces, .. } = assembler;
     if quadrilaterals > 0 {
         remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
     }
@@ -82,6 +83,7 @@ pub(crate) fn parse_by(
         encoded,
         regions,
         constraints,
+        other_faces,
         remarks,
         data,
         cell_arrays,
@@ -104,6 +106,7 @@ struct MeshBuilder {
     region_names: Interner<[i64; 2]>,
     regions: TriangleRegions,
     constraints: Constraints,
+    other_faces: Faces,
     quadrilaterals: u64,
     remarks: Vec<Remark>,
     /// Names of the arrays of real numbers on vertices besides x and y, each once.
@@ -179,6 +182,21 @@ impl MeshVisitor for MeshBuilder {
             return 0;
         }
         records.read(&mut self.points, self.ids.list(), &mut self.x_offsets)
+    }
+
+    fn polygon(
+        &mut self,
+        cursor: &Cursor<'_>,
+        id: u64,
+        _: [i64; 2],
+        corners: &[u64],
+    ) -> Result<(), ReadError> {
+        let index = |&node: &u64| self.index(cursor, CellKind::Polygon, id, node);
+        let corners = corners.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
+        self.constraints.vertices.extend_from_slice(&corners);
+        self.constraints.anchored.extend_from_slice(&corners);
+        self.other_faces.push(&corners);
+        Ok(())
     }
 
     fn polyline(
@@ -372,7 +390,10 @@ impl MeshVisitor for MeshBuilder {
                     CellKind::Line => self.constraints.lines.push([a, b]),
                     _ => self.constraints.anchored.extend_from_slice(fixed),
                 }
-                self.quadrilaterals += u64::from(kind == CellKind::Quadrilateral);
+                if kind == CellKind::Quadrilateral {
+                    self.quadrilaterals += 1;
+                    self.other_faces.push(fixed);
+                }
                 Ok(())
             }
         }

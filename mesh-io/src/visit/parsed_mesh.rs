@@ -1,6 +1,7 @@
 //! The mesh that a visitor builds from the items of a file.
 
 use crate::content::constraints::Constraints;
+use crate::content::faces::Faces;
 use crate::content::remark::Remark;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, Offsets};
 use crate::format::Format;
@@ -27,6 +28,8 @@ pub(crate) struct ParsedMesh {
     pub(crate) regions: Option<Vec<u32>>,
     /// Lines, points and periodic pairs of the file.
     pub(crate) constraints: Constraints,
+    /// The quadrilaterals and polygons of the file.
+    pub(crate) other_faces: Faces,
     pub(crate) remarks: Vec<Remark>,
     /// Names of the arrays of real numbers on vertices besides x and y, each once.
     pub(crate) data: Vec<String>,

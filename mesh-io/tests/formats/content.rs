@@ -100,3 +100,25 @@ fn each_attribute_of_triangles_is_a_kind_of_group() {
         6
     );
 }
+
+#[test]
+fn other_faces_are_the_quadrilaterals_and_polygons_of_a_file() {
+    let off = "OFF\n8 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n2 1 0\n3 0 0\n3 1 0\n3 0 1 2\n4 1 4 5 2\n3 0 2 3\n4 4 6 7 5\n";
+    let vtk = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 7 float\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n3 1 0\n2 2 0\n\
+               POLYGONS 3 14\n3 0 1 2\n3 0 2 3\n5 1 4 5 6 2\n";
+    let folder = Folder::new(&[("a.off", off), ("a.vtk", vtk), ("a.msh", GMSH22)]);
+    for (name, expected) in [
+        ("a.off", vec![vec![1, 4, 5, 2], vec![4, 6, 7, 5]]),
+        ("a.vtk", vec![vec![1, 4, 5, 6, 2]]),
+        ("a.msh", vec![vec![1, 5, 5, 2]]),
+    ] {
+        let file = folder.read(name);
+        let faces: Vec<Vec<u32>> = file.other_faces().map(<[u32]>::to_vec).collect();
+        assert_eq!(faces, expected, "{name}");
+        // The corners of these faces stay fixed.
+        for corner in expected.concat() {
+            assert!(file.constraints().vertices.contains(&corner), "{name}: {corner}");
+            assert!(file.constraints().anchored.contains(&corner), "{name}: {corner}");
+        }
+    }
+}

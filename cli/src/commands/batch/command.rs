@@ -117,10 +117,9 @@ impl Watch for Watched<'_> {
     }
 
     fn interrupted(&mut self) {
-        tell::leave_bar();
         let text =
             "interrupted: unfinished meshes are not written (interrupt again to end at once)";
-        tell::note(self.verbosity.quiet, text);
+        self.tally.aside(|| tell::note(self.verbosity.quiet, text));
     }
 }
 

@@ -9,22 +9,30 @@ use crate::commands::quality::{json, text};
 use crate::error::CliError;
 use crate::render::html::{self, PageEntry};
 use crate::request::Outputs;
-use crate::terminal::tell;
+use crate::terminal::progress::Display;
+use crate::terminal::{Verbosity, interrupt, tell};
 
-/// Prints the quality of meshes. Returns an error if a mesh cannot be read, or if triangles violate a
+/// Prints the quality of meshes. Shows progress on standard error if a picture or a page is drawn. Returns an error if a mesh cannot be read, or if triangles violate a
 /// threshold.
-pub(crate) fn run(args: &QualityArgs) -> Result<(), CliError> {
+pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliError> {
     let outputs = Outputs::of_drawings(&args.picture, args.html.as_ref())?;
     outputs.check(&args.meshes, &[])?;
+    let is_drawn = outputs.picture.is_some() || outputs.page.is_some();
+    let verbosity = Verbosity { quiet: verbosity.quiet || !is_drawn, ..verbosity };
+    if is_drawn {
+        interrupt::watch(verbosity.quiet);
+    }
+    let display = Display::new(verbosity, None, 0);
     let style = Style::of_terminal(args.ascii);
     let (mut qualities, mut errors) = (Vec::new(), Vec::new());
     for path in &args.meshes {
-        match MeshQuality::of(path, args, outputs.picture.as_ref()) {
+        match MeshQuality::of(path, args, outputs.picture.as_ref(), &display) {
             Ok(quality) => qualities.push(quality),
             // A mesh that cannot be read must not hide the others.
             Err(error) => errors.push(error),
         }
     }
+    display.clear();
     if !qualities.is_empty() {
         print(&qualities, args, &style)?;
         write_page(&qualities, outputs.page.as_deref())?;

@@ -22,6 +22,7 @@ use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::{Histogram, QualityReport, histogram};
 use crate::request::{PictureRequest, ThirdCoordinate};
+use crate::terminal::progress::{Display, Stage};
 
 /// Measurements of one mesh. The mesh is not stored, so that many meshes can be shown side by side.
 pub(crate) struct MeshQuality {
@@ -100,12 +101,15 @@ pub(crate) struct Violation {
 }
 
 impl MeshQuality {
-    /// Reads and measures a mesh, and draws the requested picture.
+    /// Reads and measures a mesh, and draws the requested picture and section of the page.
     pub(crate) fn of(
         path: &Path,
         args: &QualityArgs,
         picture: Option<&PictureRequest>,
+        display: &Display,
     ) -> Result<Self, CliError> {
+        display
+            .stage(Stage::Reading { bytes: std::fs::metadata(path).map_or(0, |file| file.len()) });
         let mut file = read(path, &(&args.reading).into())?;
         let surface = Surface::from(&args.surface);
         let laid_out = lay_out(&mut file, surface, ThirdCoordinate::of(&args.surface, &[]))?;
@@ -119,6 +123,9 @@ impl MeshQuality {
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         if let Some(picture) = picture {
             picture.check_part(&mesh.points)?;
+        }
+        if picture.is_some() || args.html.is_some() {
+            display.stage(Stage::Drawing { triangles: mesh.triangles.len() });
         }
         let title = path.file_name().unwrap_or_default().display().to_string();
         let state = MeshState { title, points: &mesh.points };

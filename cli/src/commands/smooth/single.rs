@@ -4,6 +4,7 @@ use crate::error::{CliError, ErrorKind};
 use crate::load::LoadedMesh;
 use std::path::{Path, PathBuf};
 use std::slice;
+use std::time::Instant;
 
 use gpu_smooth::{Outcome, Phase, Progress, Smoother};
 use mesh_io::atomic;
@@ -61,10 +62,7 @@ pub(crate) fn run(
             dry_run::print(&task, &rehearsal);
             return Ok(());
         }
-        run_pipeline(&task, engine, &mut follow, |done| {
-            display.clear();
-            finish(&task, &done)
-        })
+        run_pipeline(&task, engine, &mut follow, |done| finish(&task, done, &display))
     });
     display.clear();
     done.map_err(|failure| match request.extent {
@@ -95,6 +93,9 @@ impl PipelineObserver for Shown<'_> {
         if let Some(picture) = &outputs.picture {
             picture.check_part(&file.mesh().points)?;
         }
+        let bytes = file.source.contents().map(|(_, bytes)| bytes.len() as u64).sum();
+        let drawing = drawing_stage(outputs, file.mesh().triangles.len());
+        self.display.expect([Stage::Writing { bytes }].into_iter().chain(drawing).collect());
         if outputs.replaces_any {
             return Ok(());
         }
@@ -128,13 +129,15 @@ impl PipelineObserver for Shown<'_> {
 }
 
 /// Writes and prints the requested results of a run.
-fn finish(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<(), CliError> {
+fn finish(task: &SmoothJob<'_>, mut done: Done<'_>, display: &Display) -> Result<(), CliError> {
     let SmoothJob { request, verbosity, out, .. } = *task;
     let outputs = &request.outputs;
-    let Done { file, smoother, outcome, report, .. } = done;
+    let drawn = draw(task, &mut done, display);
+    display.clear();
+    let report = &done.report;
+    // The report contains the time of the drawings, and is written even if they fail.
     write_report(outputs, report)
-        .and_then(|()| draw(task, file, smoother, outcome))
-        .and_then(|()| html::write(outputs.page.as_deref(), task, done))
+        .and(drawn)
         .map_err(|error| error.followed_by("The mesh was written"))?;
     let say = |text: &str| streams::say_beside(out, text);
     if verbosity.verbose {
@@ -179,8 +182,27 @@ fn error_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) -
     }
 }
 
+/// Returns the stage of the requested drawings; `None` without drawings.
+fn drawing_stage(outputs: &Outputs, triangles: usize) -> Option<Stage> {
+    let drawings = usize::from(outputs.picture.is_some()) + usize::from(outputs.page.is_some());
+    (drawings > 0).then_some(Stage::Drawing { triangles: drawings * triangles })
+}
+
+/// Draws the requested picture and page of a run, and adds their time to the report.
+fn draw(task: &SmoothJob<'_>, done: &mut Done<'_>, display: &Display) -> Result<(), CliError> {
+    let outputs = &task.request.outputs;
+    let triangles = done.file.mesh().triangles.len();
+    let Some(stage) = drawing_stage(outputs, triangles) else { return Ok(()) };
+    display.stage(stage);
+    let began = Instant::now();
+    let drawn = draw_picture(task, done.file, done.smoother, done.outcome)
+        .and_then(|()| html::write(outputs.page.as_deref(), task, done, began));
+    done.report.seconds = done.report.seconds.with_pictures(began.elapsed());
+    drawn
+}
+
 /// Draws the mesh before and after the run if a picture is requested.
-fn draw(
+fn draw_picture(
     task: &SmoothJob<'_>,
     file: &LoadedMesh,
     smoother: &Smoother<'_>,

@@ -13,7 +13,7 @@ use crate::run::observer::PipelineObserver;
 use crate::run::run_pipeline;
 use crate::terminal::Verbosity;
 use crate::terminal::progress::{Display, Stage};
-use crate::terminal::tell;
+use crate::terminal::{interrupt, tell};
 use gpu_smooth::Progress;
 
 /// Smooths the mesh with the options of each run, and prints a table of the results. Writes no mesh.
@@ -30,6 +30,7 @@ pub(crate) fn run(args: &TryArgs, verbosity: Verbosity) -> Result<(), CliError> 
     }
     let runs = TrialRun::of_command_line(&args.mesh).unwrap_or_else(|error| error.exit());
     let Some(first) = runs.first() else { return Ok(()) };
+    interrupt::watch(verbosity.quiet);
     let engines = Engines::new(&first.request)?;
     let mut tried = Vec::new();
     for (number, run) in (1..).zip(&runs) {

@@ -10,24 +10,28 @@ use gpu_smooth::{
     Topology,
     measure::{Measure, Measured},
 };
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use crate::render::html::page::ViewerMesh;
 use crate::render::html::worst::WorstTriangle;
-use crate::render::picture::{Extent, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks};
+use crate::render::picture::{
+    Extent, FixedFaces, NEUTRAL, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks,
+};
 
-/// The measures by which the page can color the mesh. The picture of a large mesh uses the first one.
+/// The measures by which the page can color the mesh.
 const SHOWN: [Measure; 4] =
     [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
 
 /// Limits on the size of a page.
 pub(crate) struct Bounds {
-    /// Largest number of triangles that the page contains completely. Larger meshes are shown by a picture and parts.
+    /// Largest number of triangles that the page contains completely. Larger meshes are shown by pictures and parts.
     most: usize,
-    /// Longer side of the picture, in pixels.
+    /// Longer side of each picture, in pixels.
     pixels: u32,
 }
 
-/// The default limits, with which a page has at most some 15 MB.
+/// The default limits, with which a page has at most some 20 MB.
 pub(crate) const BOUNDS: Bounds = Bounds { most: 250_000, pixels: 2000 };
 
 /// Number of triangles shown around each of the worst triangles of a larger mesh.
@@ -37,29 +41,35 @@ const AROUND: usize = 1500;
 const MOST_EDGES: usize = 200_000;
 
 /// Describes in one or two sentences how the page shows a mesh.
-pub(crate) fn caption(triangles: usize) -> String {
-    match triangles > BOUNDS.most {
-        false => format!("All {triangles} triangles."),
-        true => format!(
-            "{triangles} triangles, too many for a page: the whole is a picture by shape, where the worst of the triangles that \
-             share a pixel shows. The {AROUND} triangles around each of the worst ones listed below can be enlarged."
+fn caption(triangles: usize, faces: &FixedFaces, is_whole: bool) -> String {
+    let elements = match (faces.name(), faces.count) {
+        (None, _) => format!("{triangles} triangles"),
+        (Some(name), 1) => format!("{triangles} triangles and 1 {name}"),
+        (Some(name), n) => format!("{triangles} triangles and {n} {name}s"),
+    };
+    match is_whole {
+        true => format!("All {elements}."),
+        false => format!(
+            "{elements}, too many for a page: the whole is a picture, where the worst of the triangles that share a pixel \
+             shows. The {AROUND} triangles around each of the worst ones listed below can be enlarged, and have values."
         ),
     }
 }
 
-/// Returns the JSON that the page's script reads: of the mesh before and after a run, or of one mesh. `states` must not
-/// be empty.
-pub(crate) fn data(
+/// Returns what the page shows of a mesh before and after a run, or of one mesh. `states` must not be empty.
+pub(crate) fn viewer_mesh(
     file: &LoadedMesh,
     states: &[&Measured<'_>],
     spots: &[WorstTriangle],
     bounds: &Bounds,
-) -> Result<Value, CliError> {
+) -> Result<ViewerMesh, CliError> {
     let (first, last) = (states[0], states[states.len() - 1]);
     let topology = first.topology();
-    let is_whole = topology.triangles().len() <= bounds.most;
+    let faces = FixedFaces::of(file, topology);
+    let is_whole = topology.triangles().len() + faces.pieces.len() <= bounds.most;
     let outlines = Outlines::of(
         topology,
+        &faces,
         &file.mesh().fixed,
         file.source.regions(),
         [first, last].map(|state| state.points()),
@@ -68,7 +78,8 @@ pub(crate) fn data(
         true => (0..topology.triangles().len()).collect(),
         false => around(topology, spots),
     };
-    let extent = Extent::of(topology.triangles(), &[first.points(), last.points()]);
+    let extent =
+        Extent::of([topology.triangles(), &faces.pieces], &[first.points(), last.points()]);
     let mut part = Part::new(file.mesh().points.len());
     let corners = shown.iter().flat_map(|&t| topology.triangles()[t]);
     let triangles: Vec<u32> = corners.map(|v| part.number(v)).collect();
@@ -86,6 +97,15 @@ pub(crate) fn data(
         true => outlines.slid.iter().map(|&v| part.number(v)).collect(),
         false => Vec::new(),
     };
+    // Pictures show the faces of larger meshes.
+    let (pieces, face_edges) =
+        if is_whole { (&faces.pieces[..], &faces.edges[..]) } else { (&[][..], &[][..]) };
+    let pieces: Vec<u32> = pieces.as_flattened().iter().map(|&v| part.number(v)).collect();
+    let face_edges = face_edges.iter().flat_map(|edge| {
+        let [a, b] = edge.ends.map(|v| part.number(v));
+        [edge.piece as u32, a, b]
+    });
+    let face_edges: Vec<u32> = face_edges.collect();
     let measures = SHOWN.map(|measure| {
         let definition = measure.definition();
         json!({
@@ -98,14 +118,16 @@ pub(crate) fn data(
     });
     let mut both = Vec::new();
     for &state in states {
-        let picture = match is_whole {
-            true => None,
-            false => Some(picture(topology, state, extent, bounds.pixels)?),
+        let draw = |&measure: &Measure| {
+            let png = picture_of(topology, &faces, state, measure, extent, bounds.pixels)?;
+            Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)))
         };
+        let pictures = if is_whole { &[][..] } else { &SHOWN[..] };
         both.push(json!({
             "points": part.points(state.points()),
-            "codes": codes(topology, state, &shown)?,
-            "picture": picture,
+            "values": values(topology, state, &shown)?,
+            // A picture by each measure; empty if the page contains all triangles.
+            "pictures": pictures.par_iter().map(draw).collect::<Result<Vec<_>, CliError>>()?,
         }));
     }
     let corners: Vec<Value> = spots
@@ -115,8 +137,9 @@ pub(crate) fn data(
             json!({ "triangle": at, "state": spot.state, "at": spot.at, "size": spot.size })
         })
         .collect();
-    Ok(json!({
+    let data = json!({
         "colors": VIRIDIS,
+        "neutral": NEUTRAL,
         "measures": measures,
         "extent": [extent.low, extent.high],
         "triangles": indices(&triangles),
@@ -124,9 +147,15 @@ pub(crate) fn data(
         "between": indices(&between),
         "held": indices(&held),
         "slid": indices(&slid),
+        "pieces": indices(&pieces),
+        // The index of a piece, and two vertices, for each edge of a face.
+        "face_edges": indices(&face_edges),
+        "face": faces.name(),
         "states": both,
         "spots": corners,
-    }))
+    });
+    let caption = caption(topology.triangles().len(), &faces, is_whole);
+    Ok(ViewerMesh { caption, faces: faces.name(), data })
 }
 
 /// Encodes a sequence of little-endian numbers in Base64.
@@ -138,9 +167,9 @@ fn indices(numbers: &[u32]) -> String {
     encoded(numbers.iter().map(|number| number.to_le_bytes()))
 }
 
-/// Returns a Base64 string for each measure with the 16-bit codes of the shown triangles: 0 for inverted or flat
-/// triangles, otherwise from 1 (bad) to 65534 (ideal).
-fn codes(
+/// Returns a Base64 string for each measure with the values of the shown triangles in single precision, NaN for inverted
+/// and flat triangles.
+fn values(
     topology: &Topology<'_>,
     state: &Measured<'_>,
     shown: &[usize],
@@ -148,26 +177,13 @@ fn codes(
     let bad = topology.bad_triangles(state.points())?;
     let bad: HashSet<usize> = bad.into_iter().map(|bad| bad.triangle).collect();
     let of = |measure| {
-        let code = |&t: &usize| -> u16 {
-            match bad.contains(&t) {
-                true => 0,
-                false => 1 + (65533.0 * goodness(measure, state.value(measure, t))).round() as u16,
-            }
+        let value = |&t: &usize| match bad.contains(&t) {
+            true => f32::NAN,
+            false => state.value(measure, t) as f32,
         };
-        encoded(shown.iter().map(|t| code(t).to_le_bytes()))
+        encoded(shown.iter().map(|t| value(t).to_le_bytes()))
     };
     Ok(SHOWN.map(of).to_vec())
-}
-
-/// Draws the whole mesh colored by the first measure. Returns a PNG as a data URL.
-fn picture(
-    topology: &Topology<'_>,
-    state: &Measured<'_>,
-    extent: Extent,
-    pixels: u32,
-) -> Result<String, CliError> {
-    let bytes = picture_of(topology, state, SHOWN[0], extent, pixels)?;
-    Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(bytes)))
 }
 
 /// Returns the triangles around each spot, ascending and without repeats. Triangles are added in order of their
@@ -252,22 +268,30 @@ mod tests {
         let topology = Topology::new(file.mesh()).unwrap();
         let state = Measured::new(&file.mesh().points, &topology).unwrap();
         let spots = worst::spots(&file, [&state; 2]);
-        let of = |most| data(&file, &[&state; 2], &spots, &Bounds { most, pixels: 300 }).unwrap();
+        let of = |most| {
+            let bounds = Bounds { most, pixels: 300 };
+            viewer_mesh(&file, &[&state; 2], &spots, &bounds).unwrap().data
+        };
         let count = |data: &Value, key: &str| {
             BASE64_STANDARD.decode(data[key].as_str().unwrap()).unwrap().len() / 4
         };
         let (whole, parts) = (of(12_800), of(12_799));
-        assert!(whole["states"][0]["picture"].is_null());
+        assert_eq!(whole["states"][0]["pictures"], json!([]));
         assert_eq!(count(&whole, "triangles"), 3 * 12_800);
         let shown = count(&parts, "triangles") / 3;
         assert!((AROUND..12_800).contains(&shown), "{shown}");
         assert_eq!(count(&parts, "boundary"), 2 * 320);
         for state in 0..2 {
-            let picture = parts["states"][state]["picture"].as_str().unwrap();
-            let png = picture.strip_prefix("data:image/png;base64,").unwrap();
-            let png = BASE64_STANDARD.decode(png).unwrap();
-            // Bytes of the PNG header with the width and height of the picture.
-            assert_eq!(png[16..24], [0, 0, 1, 44, 0, 0, 1, 44]);
+            let pictures = parts["states"][state]["pictures"].as_array().unwrap();
+            // Each measure by which the page colors the mesh has a picture of its own.
+            assert_eq!(pictures.len(), parts["measures"].as_array().unwrap().len());
+            for (i, picture) in pictures.iter().enumerate() {
+                let png = picture.as_str().unwrap().strip_prefix("data:image/png;base64,").unwrap();
+                let png = BASE64_STANDARD.decode(png).unwrap();
+                // Bytes of the PNG header with the width and height of the picture.
+                assert_eq!(png[16..24], [0, 0, 1, 44, 0, 0, 1, 44]);
+                assert!(!pictures[..i].contains(picture), "picture {i}");
+            }
         }
         // The worst triangles touch the displaced vertex, and both forms show them.
         for data in [&whole, &parts] {

@@ -7,14 +7,13 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use gpu_smooth::measure::{Measure, Measured, Statistics};
 use mesh_io::atomic;
-use serde_json::Value;
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use crate::render::html::page::{Page, View, escape};
+use crate::render::html::page::{Page, View, ViewerMesh, escape};
 use crate::render::html::tables::measure_name;
 use crate::render::html::{charts, mesh, tables, worst};
-use crate::render::picture::{Extent, picture_of};
+use crate::render::picture::{Extent, FixedFaces, picture_of};
 use crate::report::{Histogram, histogram};
 
 /// Longer side of the picture of each of several meshes, in pixels.
@@ -44,8 +43,7 @@ pub(crate) struct MeshPart {
 
 /// The drawing of a mesh.
 enum MeshView {
-    /// JSON for the viewer, and its caption.
-    Viewer { caption: String, data: Value },
+    Viewer(ViewerMesh),
     /// A PNG as a data URL; `None` if all vertices have equal positions.
     Picture(Option<String>),
 }
@@ -58,14 +56,14 @@ impl MeshPart {
         let spots = worst::spots_of_mesh(file, measured, by, worst);
         let topology = measured.topology();
         let view = match is_alone {
-            true => MeshView::Viewer {
-                caption: mesh::caption(topology.triangles().len()),
-                data: mesh::data(file, &[measured], &spots, &mesh::BOUNDS)?,
-            },
+            true => MeshView::Viewer(mesh::viewer_mesh(file, &[measured], &spots, &mesh::BOUNDS)?),
             false => {
-                let extent = Extent::of(topology.triangles(), &[measured.points()]);
+                let faces = FixedFaces::of(file, topology);
+                let extent =
+                    Extent::of([topology.triangles(), &faces.pieces], &[measured.points()]);
                 let is_drawn = extent.size().into_iter().any(|length| length > 0.0);
-                let draw = || picture_of(topology, measured, Measure::Shape, extent, PIXELS);
+                let draw =
+                    || picture_of(topology, &faces, measured, Measure::Shape, extent, PIXELS);
                 let url = |png| format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png));
                 MeshView::Picture(is_drawn.then(draw).transpose()?.map(url))
             }
@@ -111,8 +109,8 @@ fn page(meshes: &[PageEntry<'_>]) -> String {
     };
     let mut page = Page::new(name);
     part.sentences.iter().for_each(|sentence| page.lead(sentence));
-    if let MeshView::Viewer { caption, data } = &part.view {
-        page.mesh(caption, View::Mesh, data);
+    if let MeshView::Viewer(mesh) = &part.view {
+        page.mesh(mesh, View::Mesh);
     }
     page.section("Worst triangles", &part.worst);
     page.section("Distribution", &part.charts);

@@ -1,8 +1,13 @@
 //! The frame of a page: head, style and script.
 
+use serde_json::Value;
+
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("viewer.js");
 const VIEWER: &str = include_str!("viewer.html");
+
+/// The hint that a view shows if the wheel turns over it.
+const HINT: &str = "<span class=\"hint\" aria-hidden=\"true\">Ctrl + wheel enlarges. After a click on the view, the wheel alone does.</span>";
 
 /// The views of the mesh viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +23,7 @@ impl View {
     fn figures(self) -> String {
         let figure = |caption: &str, label: &str| {
             format!(
-                "<figure>{caption}<canvas tabindex=\"0\" aria-label=\"{label}\"></canvas></figure>\n"
+                "<figure>{caption}<canvas tabindex=\"0\" aria-label=\"{label}\"></canvas>{HINT}</figure>\n"
             )
         };
         match self {
@@ -32,8 +37,8 @@ impl View {
         }
     }
 
-    /// Fills the template of the viewer.
-    fn fill(self, caption: &str) -> String {
+    /// Fills the template of the viewer. `faces` is the name of the fixed faces of the mesh; `None` without any.
+    fn fill(self, caption: &str, faces: Option<&str>) -> String {
         let (class, together, slid) = match self {
             Self::Mesh => ("one", "", ""),
             Self::Run => (
@@ -44,8 +49,20 @@ impl View {
         };
         let text = VIEWER.replace("{views}", &self.figures()).replace("{class}", class);
         let text = text.replace("{together}", together).replace("{slid}", slid);
+        let sign = |name| format!("<li><span class=\"sign face\"></span>{}</li>", escape(name));
+        let text = text.replace("{faces}", &faces.map(sign).unwrap_or_default());
         text.replace("{caption}", &escape(caption))
     }
+}
+
+/// A mesh for the viewer.
+pub(crate) struct ViewerMesh {
+    /// One or two sentences on the drawn part of the mesh.
+    pub(crate) caption: String,
+    /// Name of the quadrilaterals and polygons; `None` if the mesh has triangles alone.
+    pub(crate) faces: Option<&'static str>,
+    /// JSON that the script draws.
+    pub(crate) data: Value,
 }
 
 /// A page under construction.
@@ -72,12 +89,12 @@ impl Page {
         self.body += &format!("<section><h2>{}</h2>\n{content}\n</section>\n", escape(title));
     }
 
-    /// Adds the section with the mesh viewer. `data` is the JSON that the script draws.
-    pub(crate) fn mesh(&mut self, caption: &str, view: View, data: &serde_json::Value) {
-        let content = view.fill(caption);
+    /// Adds the section with the mesh viewer.
+    pub(crate) fn mesh(&mut self, mesh: &ViewerMesh, view: View) {
+        let content = view.fill(&mesh.caption, mesh.faces);
         self.body += &format!("<section id=\"mesh\"><h2>Mesh</h2>\n{content}</section>\n");
         // Without `<`, no text in the JSON can end the script element.
-        self.data = data.to_string().replace('<', "\\u003c");
+        self.data = mesh.data.to_string().replace('<', "\\u003c");
     }
 
     pub(crate) fn finish(self) -> String {

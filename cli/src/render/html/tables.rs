@@ -8,11 +8,18 @@ use crate::render::html::page::escape;
 use crate::report::{DistinctMeasures, Report, Seconds};
 use crate::terminal::numbers::{fit8, sig6};
 
+/// Returns the start tag of a block that scrolls sideways if the window is narrower than its content. Keys scroll a block
+/// that can have the focus. `name` names the block for screen readers.
+pub(crate) fn wide(name: &str) -> String {
+    format!("<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{}\">", escape(name))
+}
+
 /// Writes the summary of the terminal as HTML: subject, and table of values before and after.
 pub(crate) fn summary(report: &Report) -> String {
     let mut text = format!(
-        "{}<div class=\"wide\"><table><thead><tr><th></th><th>before</th><th>after</th></tr></thead><tbody>",
-        report.subject().lines().map(|line| format!("<p>{}</p>", escape(line))).collect::<String>()
+        "{}{}<table><thead><tr><th>quantity</th><th>before</th><th>after</th></tr></thead><tbody>",
+        report.subject().lines().map(|line| format!("<p>{}</p>", escape(line))).collect::<String>(),
+        wide("summary")
     );
     for [name, before, after] in report.rows() {
         let _ = write!(
@@ -38,8 +45,8 @@ pub(crate) fn statistics_of_meshes(meshes: &[(&str, &[Statistics])]) -> String {
     let is_alone = meshes.len() == 1;
     let class = if is_alone { "one" } else { "pairs" };
     let mut text =
-        format!("<div class=\"wide\"><table class=\"{class}\"><thead><tr><th>measure</th>");
-    text += if is_alone { "" } else { "<th></th>" };
+        format!("{}<table class=\"{class}\"><thead><tr><th>measure</th>", wide("statistics"));
+    text += if is_alone { "" } else { "<th>mesh</th>" };
     for column in ["min", "5 %", "median", "mean", "95 %", "max", "sd"] {
         let _ = write!(text, "<th>{column}</th>");
     }
@@ -75,10 +82,17 @@ fn row(text: &mut String, statistics: &Statistics) {
     *text += "</tr>";
 }
 
-/// Writes the duration of the run's stages as a bar with percentages.
+/// Writes the duration of the run's stages as a bar with percentages. The time of the page itself is known up to this
+/// table.
 pub(crate) fn time(seconds: &Seconds) -> String {
-    let Seconds { read, prepare, smooth, write, total } = *seconds;
-    let parts = [("read", read), ("prepare", prepare), ("smooth", smooth), ("write", write)];
+    let Seconds { read, prepare, smooth, write, pictures, total } = *seconds;
+    let parts = [
+        ("read", read),
+        ("prepare", prepare),
+        ("smooth", smooth),
+        ("write", write),
+        ("pictures", pictures),
+    ];
     let (mut bar, mut names) = (String::new(), String::new());
     for (name, seconds) in parts {
         let share = 100.0 * seconds / total.max(f64::MIN_POSITIVE);

@@ -13,31 +13,60 @@ const boundary = decoded(Uint32Array, data.boundary);
 const between = decoded(Uint32Array, data.between);
 const held = decoded(Uint32Array, data.held);
 const slid = decoded(Uint32Array, data.slid);
-const states = data.states.map((state) => {
-  const image = state.picture ? new Image() : null;
-  if (image) {
-    image.onload = redraw;
-    image.src = state.picture;
-  }
-  return { points: decoded(Float64Array, state.points), codes: state.codes.map((codes) => decoded(Uint16Array, codes)), image };
-});
+// Triangles that cover the quadrilaterals and polygons, and edges of these faces: index of a piece, and two vertices.
+const pieces = decoded(Uint32Array, data.pieces);
+const faceEdges = decoded(Uint32Array, data.face_edges);
+const states = data.states.map((state) => ({
+  points: decoded(Float64Array, state.points),
+  values: state.values.map((values) => decoded(Float32Array, values)),
+  pictures: state.pictures,
+  // Images and codes by measure, made when the measure is chosen.
+  images: [],
+  codes: [],
+}));
 const canvases = [...document.querySelectorAll("#views canvas")];
 const [low, high] = data.extent;
 
 // The middle of the view in units of the mesh, and CSS pixels per unit. `spot` is the triangle that a link asked for.
 const view = { x: 0, y: 0, scale: 1, isWhole: true, spot: null };
 let measure = 0;
+// The timer of each canvas that ends its hint.
+const hints = new Map();
 
-// Colors by code: 0 is inverted or flat, 1 to 65534 goes from bad to good, 65535 is nothing.
-const NOTHING = 65535;
+// Colors by code: 0 is inverted or flat, 1 to BEST goes from bad to good, NEUTRAL is a face that no measure judges.
+const BEST = 65533, NEUTRAL = 65534, NOTHING = 65535;
 const palette = new Uint32Array(65536);
-for (let code = 1; code < NOTHING; code++) {
-  const place = ((code - 1) / 65533) * (data.colors.length - 1);
+for (let code = 1; code <= BEST; code++) {
+  const place = ((code - 1) / (BEST - 1)) * (data.colors.length - 1);
   const first = Math.min(Math.floor(place), data.colors.length - 2);
   const [r, g, b] = data.colors[first].map((from, i) => Math.round(from + (data.colors[first + 1][i] - from) * (place - first)));
   palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
 }
 palette[0] = (255 << 24) | (75 << 16) | (25 << 8) | 230;
+palette[NEUTRAL] = (255 << 24) | (data.neutral[2] << 16) | (data.neutral[1] << 8) | data.neutral[0];
+
+/** The codes of all triangles by the chosen measure. A value that is not a number is that of an inverted or flat triangle. */
+function codesOf(state) {
+  return (state.codes[measure] ??= Uint16Array.from(state.values[measure], (value) =>
+    Number.isNaN(value) ? 0 : 1 + Math.round((BEST - 1) * goodness(data.measures[measure], value))));
+}
+
+/** Rates a value from 0 (bad) to 1 (ideal): on a linear scale, or on a logarithmic one if the measure has no bad end. */
+function goodness({ bad, ideal }, value) {
+  const rate = bad === null ? 1 - Math.log10(1 + Math.abs(value - ideal)) : (value - bad) / (ideal - bad);
+  return Math.min(1, Math.max(0, rate));
+}
+
+/** The picture of a large mesh by the chosen measure; null while it is decoded, and for meshes without pictures. */
+function imageOf(state) {
+  if (!state.pictures.length) return null;
+  if (!state.images[measure]) {
+    const image = (state.images[measure] = new Image());
+    image.onload = redraw;
+    image.src = state.pictures[measure];
+  }
+  return state.images[measure].complete ? state.images[measure] : null;
+}
 
 /** Fills the pixels whose middles are in a triangle, or the one of its middle; where several meet, the worst is kept. */
 function fill(best, width, height, x0, y0, x1, y1, x2, y2, code) {
@@ -96,34 +125,39 @@ function draw(canvas, state) {
   const style = getComputedStyle(document.documentElement);
   const [ink, paper] = ["--ink", "--paper"].map((name) => style.getPropertyValue(name));
   context.clearRect(0, 0, width, height);
-  const at = placed(state.points, canvas, ratio), codes = state.codes[measure];
-  const hasPicture = state.image && measure === 0 && state.image.complete;
-  if (hasPicture) {
+  const at = placed(state.points, canvas, ratio), codes = codesOf(state), image = imageOf(state);
+  if (image) {
     const scale = view.scale * ratio;
     const left = width / 2 + (low[0] - view.x) * scale, top = height / 2 - (high[1] - view.y) * scale;
-    const longest = Math.max(high[0] - low[0], high[1] - low[1]) / Math.max(state.image.width, state.image.height);
+    const longest = Math.max(high[0] - low[0], high[1] - low[1]) / Math.max(image.width, image.height);
     context.imageSmoothingEnabled = false;
-    context.drawImage(state.image, left, top, state.image.width * longest * scale, state.image.height * longest * scale);
+    context.drawImage(image, left, top, image.width * longest * scale, image.height * longest * scale);
   }
 
   const best = new Uint16Array(width * height).fill(NOTHING);
   const inner = [];
-  for (let t = 0, i = 0; i < triangles.length; t++, i += 3) {
-    const a = 2 * triangles[i], b = 2 * triangles[i + 1], c = 2 * triangles[i + 2];
+  /** Fills the triangle whose corners are at `i` of a list. Returns whether it is high enough for its edges to be drawn. */
+  const filled = (list, i, code) => {
+    const a = 2 * list[i], b = 2 * list[i + 1], c = 2 * list[i + 2];
     const x0 = at[a], y0 = at[a + 1], x1 = at[b], y1 = at[b + 1], x2 = at[c], y2 = at[c + 1];
-    if (Math.max(x0, x1, x2) < 0 || Math.min(x0, x1, x2) > width || Math.max(y0, y1, y2) < 0 || Math.min(y0, y1, y2) > height) continue;
+    if (Math.max(x0, x1, x2) < 0 || Math.min(x0, x1, x2) > width || Math.max(y0, y1, y2) < 0 || Math.min(y0, y1, y2) > height) return false;
     const longest = Math.max((x1 - x0) ** 2 + (y1 - y0) ** 2, (x2 - x1) ** 2 + (y2 - y1) ** 2, (x0 - x2) ** 2 + (y0 - y2) ** 2);
     // Small triangles are seen better in the picture of the whole mesh.
-    if (hasPicture && longest < (4 * ratio) ** 2) continue;
-    fill(best, width, height, x0, y0, x1, y1, x2, y2, codes[t]);
+    if (image && longest < (4 * ratio) ** 2) return false;
+    fill(best, width, height, x0, y0, x1, y1, x2, y2, code);
     const area = Math.abs((x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0));
-    // Edges are drawn only where a triangle is some pixels high.
-    if (area > 4 * ratio * Math.sqrt(longest)) {
-      if (a < b) inner.push(a / 2, b / 2);
-      if (b < c) inner.push(b / 2, c / 2);
-      if (c < a) inner.push(c / 2, a / 2);
-    }
+    return area > 4 * ratio * Math.sqrt(longest);
+  };
+  for (let t = 0, i = 0; i < triangles.length; t++, i += 3) {
+    if (!filled(triangles, i, codes[t])) continue;
+    const [a, b, c] = [triangles[i], triangles[i + 1], triangles[i + 2]];
+    if (a < b) inner.push(a, b);
+    if (b < c) inner.push(b, c);
+    if (c < a) inner.push(c, a);
   }
+  const isHigh = [];
+  for (let i = 0; i < pieces.length; i += 3) isHigh.push(filled(pieces, i, NEUTRAL));
+  for (let i = 0; i < faceEdges.length; i += 3) if (isHigh[faceEdges[i]]) inner.push(faceEdges[i + 1], faceEdges[i + 2]);
   const pixels = new ImageData(width, height), words = new Uint32Array(pixels.data.buffer);
   for (let i = 0; i < words.length; i++) if (best[i] !== NOTHING) words[i] = palette[best[i]];
   const layer = new OffscreenCanvas(width, height);
@@ -264,27 +298,36 @@ function fromMiddle(canvas, event) {
 
 /** Tells what is under the pointer. */
 function tell(canvas, event) {
-  const [dx, dy] = fromMiddle(canvas, event), { points, codes } = states[canvases.indexOf(canvas)];
+  const [dx, dy] = fromMiddle(canvas, event), { points, values, pictures } = states[canvases.indexOf(canvas)];
   const x = view.x + dx / view.scale, y = view.y - dy / view.scale;
   const side = (a, b) => (points[2 * b] - points[2 * a]) * (y - points[2 * a + 1]) - (points[2 * b + 1] - points[2 * a + 1]) * (x - points[2 * a]);
-  let text = `${x.toPrecision(7)}  ${y.toPrecision(7)}`;
-  for (let t = 0, i = 0; i < triangles.length; t++, i += 3) {
-    const [a, b, c] = [triangles[i], triangles[i + 1], triangles[i + 2]];
-    const sides = [side(a, b), side(b, c), side(c, a)];
-    if (sides.every((s) => s >= 0) || sides.every((s) => s <= 0)) {
-      text += data.measures.map((measure, k) => `   ${measure.name} ${value(measure, codes[k][t])}`).join("");
-      break;
+  /** The index of the first triangle of a list that has the place, -1 without any. */
+  const found = (list) => {
+    for (let i = 0; i < list.length; i += 3) {
+      const [a, b, c] = [list[i], list[i + 1], list[i + 2]];
+      const sides = [side(a, b), side(b, c), side(c, a)];
+      if (sides.every((s) => s >= 0) || sides.every((s) => s <= 0)) return i / 3;
     }
-  }
-  document.getElementById("hovered").textContent = text;
+    return -1;
+  };
+  const t = found(triangles);
+  const parts = [[x, y].map(coordinate).join("  ")];
+  if (t >= 0) data.measures.forEach((measure, k) => parts.push(`${measure.name} ${value(measure, values[k][t])}`));
+  else if (found(pieces) >= 0) parts.push(data.face);
+  else if (pictures.length) parts.push("values are known around the worst triangles");
+  document.getElementById("hovered").textContent = parts.join("   ");
 }
 
-/** The value of a measure that a code stands for. */
-function value({ bad, ideal, unit }, code) {
-  if (code === 0) return "inverted or flat";
-  const goodness = (code - 1) / 65533;
-  if (bad !== null) return `${(bad + goodness * (ideal - bad)).toPrecision(4)}${unit}`;
-  return goodness === 0 ? `${ideal + 9} or more` : (ideal + 10 ** (1 - goodness) - 1).toPrecision(4);
+/** A coordinate with digits down to a tenth of a pixel, at least seven and at most the 17 of double precision. */
+function coordinate(x) {
+  const digits = Math.ceil(Math.log10(Math.abs(x) * view.scale)) + 1;
+  return x.toPrecision(Math.min(17, Math.max(7, Number.isFinite(digits) ? digits : 7)));
+}
+
+/** The value of a measure with six of the seven digits of single precision. */
+function value({ unit }, x) {
+  if (Number.isNaN(x)) return "inverted or flat";
+  return Number.isFinite(x) ? `${x.toPrecision(6)}${unit}` : "infinite";
 }
 
 function legend() {
@@ -306,6 +349,11 @@ document.getElementById("all").onclick = whole;
 
 for (const canvas of canvases) {
   canvas.addEventListener("wheel", (event) => {
+    // The wheel scrolls the page unless the reader asks for the view. A trackpad reports pinching as Ctrl.
+    if (!event.ctrlKey && !event.metaKey && document.activeElement !== canvas) {
+      hint(canvas);
+      return;
+    }
     event.preventDefault();
     zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), ...fromMiddle(canvas, event));
   }, { passive: false });
@@ -321,6 +369,7 @@ for (const canvas of canvases) {
     if (moves[event.key]) pan(...moves[event.key]);
     else if (event.key === "+") zoom(2);
     else if (event.key === "-") zoom(0.5);
+    else if (event.key === "Escape") canvas.blur();
     else return;
     event.preventDefault();
   });
@@ -338,6 +387,14 @@ for (const canvas of canvases) {
     last = now;
   }, { passive: false });
   canvas.addEventListener("touchend", () => (last = null));
+}
+
+/** Shows for a moment how the wheel enlarges. */
+function hint(canvas) {
+  const { classList } = canvas.parentElement.querySelector(".hint");
+  classList.add("shown");
+  clearTimeout(hints.get(canvas));
+  hints.set(canvas, setTimeout(() => classList.remove("shown"), 1500));
 }
 
 function follow() {

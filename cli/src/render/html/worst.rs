@@ -7,7 +7,7 @@ use gpu_smooth::measure::{Measure, Measured};
 
 use crate::load::as_in_file;
 use crate::render::html::page::escape;
-use crate::render::html::tables::measure_name;
+use crate::render::html::tables::{measure_name, wide};
 use crate::terminal::numbers::{coordinate, fit8};
 
 /// Largest number of triangles in a list.
@@ -118,7 +118,8 @@ pub(crate) fn list_of_mesh(spots: &[WorstTriangle], measure: Measure, links: boo
     // The least angle is not listed twice.
     let shown = if measure == Measure::MinAngle { 1 } else { 2 };
     let mut text = format!(
-        "<div class=\"lists\"><div class=\"wide\"><table><caption>The worst by {measure}</caption><thead><tr><th>triangle</th>"
+        "<div class=\"lists\">{}<table><caption>The worst by {measure}</caption><thead><tr><th>triangle</th>",
+        wide(&format!("the worst by {measure}"))
     );
     for measure in &measures[..shown] {
         let _ = write!(text, "<th>{}</th>", escape(&measure_name(*measure)));
@@ -156,8 +157,9 @@ pub(crate) fn lists(spots: &[WorstTriangle]) -> String {
         }
         let _ = write!(
             text,
-            "<div class=\"wide\"><table><caption>{title}</caption><thead><tr><th>triangle</th>\
-             <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>"
+            "{}<table><caption>{title}</caption><thead><tr><th>triangle</th>\
+             <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>",
+            wide(title)
         );
         for (i, spot) in of_list() {
             let WorstTriangle { label, place, at_in_file: [x, y], can_move, .. } = spot;

@@ -1,6 +1,7 @@
 //! `--html`: a run as one page in a single file.
 
 use std::path::Path;
+use std::time::Instant;
 
 use gpu_smooth::measure::{Measure, Measured};
 use mesh_io::atomic;
@@ -15,19 +16,21 @@ use crate::report::{Histogram, histogram};
 /// The measures with a histogram.
 const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
 
-/// Writes the page of a run to `path`; does nothing if `path` is `None`.
+/// Writes the page of a run to `path`; does nothing if `path` is `None`. `began` is the time at which the drawing of the
+/// run's picture and page began.
 pub(crate) fn write(
     path: Option<&Path>,
     task: &SmoothJob<'_>,
     done: &Done<'_>,
+    began: Instant,
 ) -> Result<(), CliError> {
     let Some(path) = path else { return Ok(()) };
     let failed = |error: CliError| error.within("the page was not written");
-    let text = page(task, done).map_err(failed)?;
+    let text = page(task, done, began).map_err(failed)?;
     atomic::write(path, text.as_bytes()).map_err(|error| failed(error.into()))
 }
 
-fn page(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliError> {
+fn page(task: &SmoothJob<'_>, done: &Done<'_>, began: Instant) -> Result<String, CliError> {
     let topology = done.smoother.topology();
     let surface = task.request.surface;
     let before = Measured::on(surface, &done.file.mesh().points, topology)?;
@@ -41,13 +44,13 @@ fn page(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliError> {
         page.lead(&warning);
     }
     page.section("Summary", &tables::summary(&done.report));
-    let data = mesh::data(done.file, &states, &spots, &mesh::BOUNDS)?;
-    page.mesh(&mesh::caption(topology.triangles().len()), View::Run, &data);
+    page.mesh(&mesh::viewer_mesh(done.file, &states, &spots, &mesh::BOUNDS)?, View::Run);
     page.section("Worst triangles", &worst::lists(&spots));
     page.section("Distribution", &histograms(states));
     page.section("Convergence", &convergence(done));
     page.section("Statistics", &tables::statistics(states));
-    page.section("Where time went", &tables::time(&done.report.seconds));
+    let seconds = done.report.seconds.with_pictures(began.elapsed());
+    page.section("Where time went", &tables::time(&seconds));
     page.section("The run", &run::run(task, done)?);
     Ok(page.finish())
 }

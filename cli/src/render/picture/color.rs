@@ -10,6 +10,12 @@ pub(crate) const WHITE: Color = [255, 255, 255];
 /// colors.
 pub(crate) const BAD: Color = [230, 25, 75];
 
+/// Color of quadrilaterals and polygons, which no measure judges. The color is not on the scale.
+pub(crate) const NEUTRAL: Color = [196, 198, 201];
+
+/// Goodness that stands for [`NEUTRAL`]. Goodness of triangles is at most 1.
+pub(crate) const UNJUDGED: f32 = 2.0;
+
 /// The color map Viridis (Smith & van der Walt, 2015), from bad to good. Its steps appear equal to normal and
 /// color-blind vision, and in gray.
 pub(crate) const VIRIDIS: [Color; 10] = [
@@ -25,12 +31,16 @@ pub(crate) const VIRIDIS: [Color; 10] = [
     [253, 231, 37],
 ];
 
-/// Returns the color for a goodness from 0 (bad) to 1 (ideal), and [`BAD`] for a negative one (inverted or flat).
+/// Returns the color for a goodness from 0 (bad) to 1 (ideal), [`BAD`] for a negative one (inverted or flat), and
+/// [`NEUTRAL`] for one above 1.
 pub(crate) fn of_goodness(goodness: f32) -> Color {
     if goodness < 0.0 {
         return BAD;
     }
-    let place = goodness.min(1.0) * (VIRIDIS.len() - 1) as f32;
+    if goodness > 1.0 {
+        return NEUTRAL;
+    }
+    let place = goodness * (VIRIDIS.len() - 1) as f32;
     let first = (place as usize).min(VIRIDIS.len() - 2);
     let share = place - first as f32;
     let mix =

@@ -6,6 +6,7 @@ use crate::render::picture::{color, png, svg};
 use crate::request::{PictureFormat, PictureRequest};
 
 use crate::render::picture::canvas::Canvas;
+use crate::render::picture::faces::FixedFaces;
 use crate::render::picture::layout::{Extent, Frame};
 use crate::render::picture::outlines::Outlines;
 use crate::render::picture::raster::Raster;
@@ -53,6 +54,7 @@ pub(crate) fn write(
         [first, .., last] => (first.points, last.points),
         _ => (&[][..], &[][..]),
     };
+    let faces = FixedFaces::of(mesh.file, mesh.topology);
     let scene = Scene {
         measure: request.measure,
         part,
@@ -60,10 +62,12 @@ pub(crate) fn write(
         with_arrows: request.with_arrows,
         outlines: Outlines::of(
             mesh.topology,
+            &faces,
             &mesh.file.mesh().fixed,
             mesh.file.source.regions(),
             [before, after],
         ),
+        faces,
         panels,
     };
     let layout = scene.layout(request.width);
@@ -82,10 +86,11 @@ pub(crate) fn write(
     atomic::write(&request.path, &bytes).map_err(|error| failed(error.into()))
 }
 
-/// Draws only triangles, colored by a measure, as a PNG with transparent background. The picture covers the
-/// extent, and its longer side has `longest` pixels.
+/// Draws only triangles, colored by a measure, and fixed faces, as a PNG with transparent background. The picture covers
+/// the extent, and its longer side has `longest` pixels.
 pub(crate) fn picture_of(
     topology: &Topology<'_>,
+    faces: &FixedFaces,
     state: &Measured<'_>,
     measure: Measure,
     extent: Extent,
@@ -97,7 +102,8 @@ pub(crate) fn picture_of(
     let corner = [width, height].map(|size| (size * scale).ceil());
     let frame = Frame::new(extent, [[0.0; 2], corner]);
     let mut raster = Raster::new([[0.0; 2], corner.map(|x| x as f32)]);
-    for (triangle, goodness) in topology.triangles().iter().zip(goodness) {
+    let pieces = faces.pieces.iter().map(|piece| (piece, color::UNJUDGED));
+    for (triangle, goodness) in topology.triangles().iter().zip(goodness).chain(pieces) {
         raster.fill(triangle.map(|v| frame.place(state.points()[v as usize])), goodness);
     }
     png::encode(&raster)

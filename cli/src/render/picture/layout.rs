@@ -10,12 +10,13 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// Returns the bounding box of the vertices of `triangles` at all given sets of positions. Points that are not
-    /// finite are ignored.
-    pub(crate) fn of(triangles: &[[u32; 3]], all: &[&[[f64; 2]]]) -> Self {
+    /// Returns the bounding box of the vertices of all lists of triangles at all given sets of positions. Points that
+    /// are not finite are ignored.
+    pub(crate) fn of(triangles: [&[[u32; 3]]; 2], all: &[&[[f64; 2]]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for points in all {
-            for &[x, y] in triangles.iter().flatten().map(|&v| &points[v as usize]) {
+            let vertices = triangles.into_iter().flat_map(<[_]>::as_flattened);
+            for &[x, y] in vertices.map(|&v| &points[v as usize]) {
                 if x.is_finite() && y.is_finite() {
                     low = [low[0].min(x), low[1].min(y)];
                     high = [high[0].max(x), high[1].max(y)];

@@ -4,6 +4,7 @@ mod arrows;
 mod canvas;
 mod color;
 mod draw;
+mod faces;
 mod font;
 mod layout;
 mod outlines;
@@ -12,7 +13,8 @@ mod raster;
 mod scene;
 mod svg;
 
-pub(crate) use color::{VIRIDIS, bad_end, goodness, ticks};
+pub(crate) use color::{NEUTRAL, VIRIDIS, bad_end, goodness, ticks};
 pub(crate) use draw::{MeshState, PictureSubject, picture_of, write};
+pub(crate) use faces::FixedFaces;
 pub(crate) use layout::Extent;
 pub(crate) use outlines::{Outlines, slid};

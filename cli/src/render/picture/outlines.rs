@@ -2,31 +2,36 @@
 
 use gpu_smooth::Topology;
 
+use crate::render::picture::faces::FixedFaces;
+
 /// Lines and vertices that are drawn above triangles, by vertex index. All panels of a picture share them.
 pub(crate) struct Outlines {
-    /// Boundary edges, which belong to one triangle each.
+    /// Boundary edges, which belong to one triangle or one fixed face each.
     pub(crate) boundary: Vec<[u32; 2]>,
     /// Edges between triangles of different regions.
     pub(crate) between_regions: Vec<[u32; 2]>,
-    /// Fixed vertices inside the mesh that have not slid, ascending.
+    /// Fixed vertices inside the mesh that have not slid and are no corner of a fixed face, ascending.
     pub(crate) held: Vec<u32>,
     /// Vertices that slid along lines, ascending.
     pub(crate) slid: Vec<u32>,
 }
 
 impl Outlines {
-    /// Collects the lines of a mesh from its fixed vertices, the region of each triangle, and its points before and
-    /// after a run. `regions` is `None` for a single region.
+    /// Collects the lines of a mesh from its fixed faces and vertices, the region of each triangle, and its points before
+    /// and after a run. `regions` is `None` for a single region.
     pub(crate) fn of(
         topology: &Topology<'_>,
+        faces: &FixedFaces,
         fixed: &[u32],
         regions: Option<&[u32]>,
         [before, after]: [&[[f64; 2]]; 2],
     ) -> Self {
         let slid = slid(topology, before, after);
-        let boundary = topology.boundary_edges();
+        let boundary = faces.boundary.clone();
+        // Corners of fixed faces need no marks, as the faces are drawn.
         let mut is_outer = vec![false; topology.free().len()];
-        boundary.iter().flatten().for_each(|&v| is_outer[v as usize] = true);
+        let outer = boundary.as_flattened().iter().chain(faces.pieces.as_flattened());
+        outer.for_each(|&v| is_outer[v as usize] = true);
         let mut held: Vec<u32> = fixed.iter().copied().filter(|&v| !is_outer[v as usize]).collect();
         held.sort_unstable();
         held.dedup();

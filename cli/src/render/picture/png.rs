@@ -6,9 +6,12 @@ use tiny_skia::{
 
 use crate::error::CliError;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
-use crate::render::picture::color::{BLACK, Color, WHITE};
+use crate::render::picture::color::{BAD, BLACK, Color, NEUTRAL, WHITE, of_goodness};
 use crate::render::picture::font::Font;
 use crate::render::picture::raster::Raster;
+
+/// Number of steps from bad to good in a palette, which also has three other colors.
+const SCALE: u8 = 253;
 
 pub(crate) struct Png {
     pixels: Pixmap,
@@ -43,15 +46,31 @@ pub(super) fn too_large() -> CliError {
     CliError::run("the picture is too large: give a smaller --picture-size")
 }
 
-/// Encodes the triangles of a raster as a PNG with transparent background.
+/// Encodes the triangles of a raster as a PNG with transparent background. The PNG has a palette, which makes pages with
+/// several pictures of a large mesh about half as large as full colors do.
 pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, CliError> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(|_| too_large());
     let (width, height) = (size(raster.width)?, size(raster.height)?);
-    let mut pixels = Pixmap::new(width, height).ok_or_else(too_large)?;
-    for (to, [r, g, b, a]) in pixels.pixels_mut().iter_mut().zip(raster.pixels()) {
-        *to = PremultipliedColorU8::from_rgba(r, g, b, a).unwrap_or(*to);
-    }
-    pixels.encode_png().map_err(|error| CliError::run(error.to_string()))
+    // Transparent, inverted or flat, without judgment, and the scale from bad to good.
+    let scale = (0..SCALE).map(|step| of_goodness(f32::from(step) / f32::from(SCALE - 1)));
+    let palette: Vec<Color> = [WHITE, BAD, NEUTRAL].into_iter().chain(scale).collect();
+    let index = |goodness: f32| match goodness {
+        g if g.is_infinite() => 0,
+        g if g < 0.0 => 1,
+        g if g > 1.0 => 2,
+        g => 3 + (g * f32::from(SCALE - 1)).round() as u8,
+    };
+    let pixels: Vec<u8> = raster.goodness().map(index).collect();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(palette.concat());
+    encoder.set_trns(&[0][..]);
+    let failed = |error: png::EncodingError| CliError::run(error.to_string());
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(&pixels).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
 }
 
 impl Canvas for Png {

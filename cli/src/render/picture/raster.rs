@@ -9,7 +9,6 @@ pub(crate) struct Raster {
     pub(crate) top: i32,
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// Goodness row by row; infinite at pixels without a triangle.
     goodness: Vec<f32>,
 }
 
@@ -61,6 +60,11 @@ impl Raster {
             let pixel = &mut self.goodness[row * self.width + column];
             *pixel = pixel.min(goodness);
         }
+    }
+
+    /// Returns the goodness of each pixel row by row; infinite at pixels without a triangle.
+    pub(crate) fn goodness(&self) -> impl Iterator<Item = f32> + '_ {
+        self.goodness.iter().copied()
     }
 
     /// Returns the pixels row by row, each as red, green, blue and opacity.

@@ -6,7 +6,8 @@ use gpu_smooth::measure::Measure;
 
 use crate::render::picture::arrows;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
-use crate::render::picture::color::{self, BAD, BLACK, WHITE};
+use crate::render::picture::color::{self, BAD, BLACK, NEUTRAL, UNJUDGED, WHITE};
+use crate::render::picture::faces::FixedFaces;
 use crate::render::picture::layout::{Extent, Frame, Layout, Place};
 use crate::render::picture::outlines::{Outlines, inner_edges};
 use crate::terminal::numbers::fit8;
@@ -30,6 +31,7 @@ pub(crate) struct Scene<'a> {
     pub(crate) part: Option<Extent>,
     /// Whether panels show, by arrows, how far vertices have moved since the first panel.
     pub(crate) with_arrows: bool,
+    pub(crate) faces: FixedFaces,
     pub(crate) outlines: Outlines,
     pub(crate) panels: Vec<Panel<'a>>,
 }
@@ -45,7 +47,8 @@ impl Scene<'_> {
     /// Lays out the panels, with insets if a marked triangle is too small to be visible without.
     pub(crate) fn layout(&self, width: u32) -> Layout {
         let all: Vec<&[[f64; 2]]> = self.panels.iter().map(|panel| panel.points).collect();
-        let extent = self.part.unwrap_or_else(|| Extent::of(self.triangles, &all));
+        let extent =
+            self.part.unwrap_or_else(|| Extent::of([self.triangles, &self.faces.pieces], &all));
         let plain = Layout::new(extent, self.panels.len(), 0, width);
         let is_small = |(panel, place): (&Panel<'_>, &Place)| {
             let spots = self.spots(panel, &place.frame, plain.text);
@@ -164,12 +167,16 @@ impl Scene<'_> {
         let shown = |points: &[Point]| is_shown(points, frame.corners, text);
         let placed =
             self.triangles.iter().map(|t| t.map(place)).zip(panel.goodness.iter().copied());
-        let mut faces = placed.filter(|face| shown(&face.0));
-        canvas.faces(frame.corners, &mut faces, self.triangles.len());
+        let pieces = self.faces.pieces.iter().map(|piece| (piece.map(place), UNJUDGED));
+        let mut faces = placed.chain(pieces).filter(|face| shown(&face.0));
+        canvas.faces(frame.corners, &mut faces, self.triangles.len() + self.faces.pieces.len());
 
         let mut edges: [Vec<[Point; 2]>; 3] = Default::default();
-        for (t, edge) in inner_edges(self.triangles) {
-            let height = least_height(self.triangles[t].map(place));
+        let of_triangles = inner_edges(self.triangles).map(|(t, edge)| (self.triangles[t], edge));
+        let of_faces =
+            self.faces.edges.iter().map(|edge| (self.faces.pieces[edge.piece], edge.ends));
+        for (triangle, edge) in of_triangles.chain(of_faces) {
+            let height = least_height(triangle.map(place));
             let edge = edge.map(place);
             if height >= LEAST_HEIGHT && shown(&edge) {
                 let class = ((height / LEAST_HEIGHT).log2() as usize).min(2);
@@ -248,12 +255,17 @@ impl Scene<'_> {
             let half = 0.4 * text;
             canvas.rectangle([[x - half, y - half], [x + half, y + half]], BAD);
         };
+        let face: Sign = |[x, y], text, canvas| {
+            let half = 0.4 * text;
+            canvas.rectangle([[x - half, y - half], [x + half, y + half]], NEUTRAL);
+        };
         let is_bad = |panel: &Panel<'_>| panel.goodness.iter().any(|&goodness| goodness < 0.0);
         let signs = [
             (true, boundary, "boundary"),
             (!self.outlines.between_regions.is_empty(), between, "between regions"),
             (!self.outlines.held.is_empty(), held as Sign, "fixed vertex inside"),
             (!self.outlines.slid.is_empty(), slid as Sign, "vertex that slid"),
+            (!self.faces.is_empty(), face, self.faces.name().unwrap_or_default()),
             (self.panels.iter().any(is_bad), bad, "inverted or flat"),
             (
                 self.panels.iter().any(|panel| !panel.worst.is_empty()),

@@ -1,6 +1,7 @@
 //! Choice between a progress bar, lines of text, and silence.
 
 use std::io::IsTerminal;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget};
@@ -10,6 +11,17 @@ use crate::terminal::tell;
 
 /// Time before progress is shown. Shorter runs show none.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(700);
+
+/// The bar that was made last, which a signal removes.
+static LAST_BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+/// Removes the bar of this process from the terminal, if there is one. No later update draws the bar again.
+pub(crate) fn remove_bar() {
+    let bar = LAST_BAR.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+}
 
 /// Display of progress on standard error.
 #[derive(Clone, Copy, PartialEq)]
@@ -37,6 +49,8 @@ impl Form {
             Self::Bar => ProgressDrawTarget::stderr(),
             Self::None | Self::Lines(_) => ProgressDrawTarget::hidden(),
         };
-        ProgressBar::with_draw_target(Some(1000), target)
+        let bar = ProgressBar::with_draw_target(Some(1000), target);
+        *LAST_BAR.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
+        bar
     }
 }

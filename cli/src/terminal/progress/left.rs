@@ -7,6 +7,8 @@ const READ: f64 = 400e6;
 const WRITE: f64 = 450e6;
 /// Vertices per second that two cores prepare.
 const PREPARE: f64 = 4e6;
+/// Triangles per second that are drawn before and after a run.
+const DRAW: f64 = 0.5e6;
 
 /// Estimator of the duration of stages. The relative speed of the machine is learned from earlier stages.
 #[derive(Default)]
@@ -40,6 +42,7 @@ fn usual(stage: Stage) -> Option<f64> {
         Stage::Reading { bytes } => bytes as f64 / READ,
         Stage::Preparing { vertices } => vertices as f64 / PREPARE,
         Stage::Writing { bytes } => bytes as f64 / WRITE,
+        Stage::Drawing { triangles } => triangles as f64 / DRAW,
         Stage::Untangling | Stage::Smoothing => return None,
     };
     (seconds > 0.0).then_some(seconds)

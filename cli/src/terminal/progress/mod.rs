@@ -6,6 +6,7 @@ mod run;
 mod stage;
 mod tally;
 
+pub(crate) use form::remove_bar;
 pub(crate) use run::Display;
 pub(crate) use stage::Stage;
 pub(crate) use tally::Tally;

@@ -33,6 +33,8 @@ struct State {
     started: Instant,
     stage: Stage,
     stage_began: Instant,
+    /// Stages after the sweeps that have not begun.
+    later: Vec<Stage>,
     pace: Pace,
     decay: Decay,
     sweeps: Option<LatestSweep>,
@@ -71,6 +73,7 @@ impl Display {
             started: now,
             stage: Stage::Reading { bytes: 0 },
             stage_began: now,
+            later: Vec::new(),
             pace: Pace::default(),
             decay: Decay::new(tolerance, max_sweeps),
             sweeps: None,
@@ -87,6 +90,11 @@ impl Display {
         Self { shared }
     }
 
+    /// Announces the stages after the sweeps, whose time counts as time left from the sweeps on.
+    pub(crate) fn expect(&self, later: Vec<Stage>) {
+        self.shared.lock().later = later;
+    }
+
     /// Ends the current stage, whose duration is recorded, and begins `stage`.
     pub(crate) fn stage(&self, stage: Stage) {
         let mut state = self.shared.lock();
@@ -94,6 +102,7 @@ impl Display {
         let ended = state.stage;
         state.pace.learn(ended, seconds);
         state.stage = stage;
+        state.later.retain(|later| later.name() != stage.name());
         state.stage_began = Instant::now();
         if tell::is_json() && state.form != Form::None {
             tell::event(json!({ "event": "stage", "stage": stage.name() }));
@@ -231,19 +240,71 @@ impl State {
         text
     }
 
-    /// Estimates the remaining seconds of the stage; `None` for stages without an estimate.
+    /// Estimates the remaining seconds: of the stage before the sweeps, and of the run from the sweeps on. `None` for
+    /// stages without an estimate, and for a stage that has exceeded its estimate, as its end is unknown.
     fn left(&self) -> Option<f64> {
         let seconds = self.stage_began.elapsed().as_secs_f64();
-        match (self.stage, &self.sweeps) {
+        let of_stage = match (self.stage, &self.sweeps) {
             (Stage::Smoothing, Some(swept)) if swept.progress.phase == Phase::Smoothing => {
                 let since = swept.reported_at.elapsed().as_secs_f64();
-                Some((self.decay.sweeps_left()? * swept.seconds() - since).max(0.0))
+                self.decay.sweeps_left()? * swept.seconds() - since
             }
-            (Stage::Smoothing, _) => None,
-            // A stage that exceeds its estimate has no known end.
-            (stage, _) => {
-                self.pace.whole(stage).map(|whole| whole - seconds).filter(|left| *left > 0.0)
-            }
+            (Stage::Smoothing, _) => return None,
+            (stage, _) => self.pace.whole(stage)? - seconds,
+        };
+        let is_last_part =
+            matches!(self.stage, Stage::Smoothing | Stage::Writing { .. } | Stage::Drawing { .. });
+        let later = self.later.iter().filter(|_| is_last_part);
+        let later: f64 = later.filter_map(|&stage| self.pace.whole(stage)).sum();
+        (of_stage > 0.0).then_some(of_stage + later)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Makes a display of a run whose f has decayed within its tolerance, `since` before now.
+    fn after_sweeps(since: Duration) -> Display {
+        let display = Display::new(Verbosity { quiet: true, verbose: false }, Some(1e-6), 1000);
+        display.stage(Stage::Smoothing);
+        for sweep in [1, 5, 20] {
+            let f = 1.0 + 0.8f64.powi(sweep as i32);
+            display.sweep(&Progress { sweep, f, phase: Phase::Smoothing });
         }
+        let mut state = display.shared.lock();
+        if let Some(sweeps) = &mut state.sweeps {
+            // Each of the 20 sweeps took 0.1 s, and 45 are left.
+            sweeps.reported_at -= since;
+            sweeps.began = sweeps.reported_at - Duration::from_secs(2);
+        }
+        drop(state);
+        display
+    }
+
+    #[test]
+    fn the_time_left_while_smoothing_includes_later_stages() {
+        let display = after_sweeps(Duration::ZERO);
+        let left = |display: &Display| display.shared.lock().left();
+        let of_sweeps = left(&display).unwrap();
+        assert!((of_sweeps - 4.5).abs() < 0.1, "{of_sweeps}");
+        let drawing = Stage::Drawing { triangles: 1_000_000 };
+        display.expect(vec![Stage::Writing { bytes: 900_000_000 }, drawing]);
+        // Writing takes 2 s, and drawing 2 s.
+        let all = left(&display).unwrap();
+        assert!((all - of_sweeps - 4.0).abs() < 0.1, "{all}");
+        display.stage(Stage::Writing { bytes: 900_000_000 });
+        let all = left(&display).unwrap();
+        assert!((all - 4.0).abs() < 0.1, "{all}");
+        display.stage(drawing);
+        let all = left(&display).unwrap();
+        assert!((all - 2.0).abs() < 0.1, "{all}");
+    }
+
+    #[test]
+    fn no_time_left_is_claimed_after_the_estimated_end_of_the_sweeps() {
+        let display = after_sweeps(Duration::from_secs(10));
+        display.expect(vec![Stage::Writing { bytes: 900_000_000 }]);
+        assert_eq!(display.shared.lock().left(), None);
     }
 }

@@ -13,6 +13,8 @@ pub(crate) enum Stage {
     Smoothing,
     /// Writing a file of approximately `bytes` bytes.
     Writing { bytes: u64 },
+    /// Drawing pictures and pages of a mesh. `triangles` counts each triangle once for each drawing.
+    Drawing { triangles: usize },
 }
 
 impl Stage {
@@ -24,6 +26,7 @@ impl Stage {
             Self::Untangling => "untangling",
             Self::Smoothing => "smoothing",
             Self::Writing { .. } => "writing",
+            Self::Drawing { .. } => "drawing",
         }
     }
 

@@ -97,6 +97,11 @@ impl Tally {
         text
     }
 
+    /// Hides the bar during a call of `print`.
+    pub(crate) fn aside(&self, print: impl FnOnce()) {
+        self.bar.suspend(print);
+    }
+
     pub(crate) fn clear(&self) {
         self.bar.finish_and_clear();
     }
