@@ -5,7 +5,8 @@ use crate::export::name_rules::NameRules;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::{
-    abaqus, exodus, gmsh, medit, ply, su2, triangle, ugrid, vtk, write_grids, write_surface, xdmf,
+    abaqus, exodus, gmsh, medit, ply, selafin, su2, triangle, ugrid, vtk, write_grids,
+    write_surface, xdmf,
 };
 use crate::precision::Precision;
 
@@ -257,6 +258,15 @@ pub(crate) static TARGETS: &[Target] = &[
             ..Capabilities::TRIANGLES
         },
         write: WriteFunction::One(write_grids::write_adcirc),
+    },
+    Target {
+        format: Format::Selafin,
+        name: "selafin",
+        capabilities: Capabilities {
+            point_data: DataSupport::Only(selafin::write::BED),
+            ..Capabilities::TRIANGLES
+        },
+        write: WriteFunction::Binary(selafin::write::write_selafin),
     },
     Target {
         format: Format::FreeFem,

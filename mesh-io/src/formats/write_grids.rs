@@ -4,49 +4,55 @@ use crate::export::content::{Content, DataArray};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
+use crate::formats::selafin;
 use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
 
-/// Converts depths to third coordinates and back, between formats with different conventions. Depths of ADCIRC and
-/// FVCOM are positive downwards, z of SMS, MIKE and UGRID upwards. SMS, too, opens a grid of ADCIRC with minus its
+/// Converts heights of the bed between formats with different conventions. Depths of ADCIRC and FVCOM are positive
+/// downwards, z of SMS, MIKE and UGRID and the bed of SELAFIN upwards. SMS, too, opens a grid of ADCIRC with minus its
 /// depths as z. In UGRID, z is a node variable named `z` or ending in `node_z`, and a depth is a node variable whose
 /// name ends in `depth`.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
-    match (from, to) {
-        (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => {
-            if let Some(at) = content.point_data.iter().position(|data| data.name == "depth") {
-                let depths = content.point_data.remove(at).values;
-                content.z_values = depths.into_iter().map(minus).collect();
-            }
-        }
-        (Format::Sms2dm | Format::Mike, Format::Adcirc) => {
-            let vertices = 0..content.points.len();
-            let values = vertices.map(|vertex| minus(content.z(vertex))).collect();
-            (content.z_values, content.common_z) = (Vec::new(), 0.0);
-            content.point_data.push(of_vertices("depth", values));
-        }
-        (Format::Ugrid, Format::Sms2dm) => {
-            if let Some((z_values, is_depth)) = take_heights(content) {
-                let upwards = |number| if is_depth { minus(number) } else { number };
-                content.z_values = z_values.into_iter().map(upwards).collect();
-            }
-        }
-        (Format::Ugrid, Format::Adcirc) => {
-            if let Some((z_values, is_depth)) = take_heights(content) {
-                let downwards = |number| if is_depth { number } else { minus(number) };
-                let values = z_values.into_iter().map(downwards).collect();
-                content.point_data.push(of_vertices("depth", values));
-            }
-        }
-        (_, Format::Ugrid) if !content.z_values.is_empty() => {
-            let values = std::mem::take(&mut content.z_values);
-            content.point_data.push(of_vertices("z", values));
-        }
-        _ => {}
+    let turned = |values: Vec<f64>| -> Vec<f64> { values.into_iter().map(minus).collect() };
+    if to == Format::Ugrid && !content.z_values.is_empty() {
+        let values = std::mem::take(&mut content.z_values);
+        content.point_data.push(of_vertices("z", values));
     }
+    let has_depths = |format| matches!(format, Format::Adcirc | Format::Fvcom);
+    if !matches!(to, Format::Sms2dm | Format::Adcirc | Format::Selafin)
+        || from == to
+        || (has_depths(from) && has_depths(to))
+    {
+        return;
+    }
+    let heights = match from {
+        Format::Adcirc | Format::Fvcom => take(content, "depth").map(turned),
+        Format::Sms2dm | Format::Mike if to == Format::Sms2dm => None,
+        Format::Sms2dm | Format::Mike => {
+            let values = (0..content.points.len()).map(|vertex| content.z(vertex)).collect();
+            (content.z_values, content.common_z) = (Vec::new(), 0.0);
+            Some(values)
+        }
+        Format::Ugrid => take_heights(content)
+            .map(|(values, is_depth)| if is_depth { turned(values) } else { values }),
+        Format::Selafin => take(content, selafin::write::BED),
+        _ => None,
+    };
+    let Some(heights) = heights else { return };
+    match to {
+        Format::Sms2dm => content.z_values = heights,
+        Format::Adcirc => content.point_data.push(of_vertices("depth", turned(heights))),
+        _ => content.point_data.push(of_vertices(selafin::write::BED, heights)),
+    }
+}
+
+/// Removes data of vertices, and returns their values.
+fn take(content: &mut Content, name: &str) -> Option<Vec<f64>> {
+    let at = content.point_data.iter().position(|data| data.name == name)?;
+    Some(content.point_data.remove(at).values)
 }
 
 fn of_vertices(name: &str, values: Vec<f64>) -> DataArray {

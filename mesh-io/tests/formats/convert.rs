@@ -91,6 +91,7 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         let turned = match (file.format(), format) {
             (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => Some(("depth", "z")),
             (Format::Sms2dm | Format::Mike, Format::Adcirc) => Some(("z", "depth")),
+            (Format::Adcirc | Format::Fvcom, Format::Selafin) => Some(("depth", "BOTTOM")),
             _ => None,
         };
         if let Some((from, to)) = turned
@@ -232,7 +233,7 @@ fn content_that_a_format_cannot_hold_is_listed() {
     let (text, lost) = converted("in.msh", &sparse, Format::Gmsh41);
     assert!(lost.is_empty() && text.contains("\n60\n"), "{lost}");
     assert!(
-        Conversion::new(&Folder::new(&[("in.msh", GMSH)]).read("in.msh"), Format::Selafin)
+        Conversion::new(&Folder::new(&[("in.msh", GMSH)]).read("in.msh"), Format::Mike)
             .unwrap()
             .is_none()
     );
@@ -331,6 +332,14 @@ fn depths_of_grids_are_heights_of_sms() {
     assert_eq!(folder.read("b.nc").data_names(), ["z"]);
     assert_eq!(convert("b.nc", Format::Adcirc, "d.14"), [""; 0]);
     assert!(folder.text("d.14").contains(&grid[2..]), "{}", folder.text("d.14"));
+    // In SELAFIN, heights are the variable BOTTOM.
+    assert_eq!(convert("a.14", Format::Selafin, "a.slf"), [""; 0]);
+    assert_eq!(folder.read("a.slf").data_names(), ["BOTTOM"]);
+    assert_eq!(convert("a.slf", Format::Sms2dm, "e.2dm"), [""; 0]);
+    assert!(folder.text("e.2dm").ends_with(nodes), "{}", folder.text("e.2dm"));
+    assert_eq!(convert("e.2dm", Format::Selafin, "e.slf"), [""; 0]);
+    assert_eq!(convert("e.slf", Format::Adcirc, "e.14"), [""; 0]);
+    assert!(folder.text("e.14").contains(&grid[2..]), "{}", folder.text("e.14"));
 }
 
 #[test]

@@ -4,6 +4,8 @@
 //! between two copies of its length. The x of all points precede the y of all points. The time steps that follow are
 //! kept.
 
+pub(crate) mod write;
+
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
 use crate::disk::source::Source;
@@ -103,7 +105,9 @@ impl FormatReader for Selafin {
         elements
             .send(visitor, |index, _| Cursor::at_byte_offset(source, listed_at + index * stride))?;
         if visitor.asks_for_data() {
-            visitor.unsupported("the title, the date, boundary numbers and times of a SELAFIN");
+            if parameters[9] == 1 {
+                visitor.unsupported("the date of a SELAFIN");
+            }
             steps(after_mesh, order, precision, &names, numbers, visitor);
         } else {
             names.iter().for_each(|name| _ = visitor.point_array(name, 1, true));
@@ -124,7 +128,10 @@ fn steps(
     visitor: &mut dyn MeshVisitor,
 ) {
     let cursor = &mut cursor;
-    while record(cursor, order, "the time of a step", None).is_ok() {
+    while let Ok(time) = record(cursor, order, "the time of a step", None) {
+        if time.iter().any(|&byte| byte != 0) {
+            visitor.unsupported("the times of a SELAFIN");
+        }
         for name in names {
             let Ok(values) = record(cursor, order, "the values of a variable", Some(bytes)) else {
                 return;
