@@ -200,6 +200,11 @@ impl Smoother<'_> {
             points.clone_from(&self.mesh.points);
             returned = 0;
         }
+        // A device sums in single precision, and so cannot find a gain below the error of its f.
+        let error = match improving {
+            None => (written - swept).abs() / written.max(MIN_SCALE),
+            Some(_) => 0.0,
+        };
         let slid = stages.slid(gains, &points);
         let best = if gains { written } else { initial };
         let least = base.least_objective(problem.targets().is_some());
@@ -224,7 +229,7 @@ impl Smoother<'_> {
             levels_left_out: ended.counts.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
             // A decay that has just begun may promise more than the distance between f and its lower limit.
-            remaining: ended.remaining.map(|left| left.min(possible)),
+            remaining: ended.remaining.map(|left| left.max(error).min(possible)),
             held_back: ended.held_back,
             lost,
             history: ended.history,

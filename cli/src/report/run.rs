@@ -36,6 +36,9 @@ pub(crate) struct Report {
     pub(crate) best_sweep: u32,
     /// Estimated remaining gain as a fraction of f; null if the decay of f allows no estimate.
     pub(crate) remaining: Option<f64>,
+    /// Whether a GPU ended the run as converged, although its single precision cannot tell a gain of the tolerance.
+    #[serde(skip)]
+    pub(crate) imprecise: bool,
     /// reached, converged, stalled, held-back, max-sweeps, canceled, time-limit, not-finite or nothing-to-do.
     pub(crate) stop: &'static str,
     /// Sweeps completed at the checkpoint from which the run continued; `None` for uninterrupted runs.

@@ -249,6 +249,10 @@ impl Report {
             ("converged", None) if self.held_back > 0 => {
                 format!("converged after {sweeps}; --guard worst keeps {held} from moving on")
             }
+            ("converged", None) if self.imprecise => format!(
+                "converged after {sweeps}, as far as single precision tells{}; --engine cpu has double precision",
+                self.left()
+            ),
             ("converged", None) => format!("converged after {sweeps}"),
             ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
             ("held-back", None) => {

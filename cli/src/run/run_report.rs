@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use gpu_smooth::{Backend, Checkpoint, Outcome, Smoother, Stop};
+use gpu_smooth::{Backend, Checkpoint, Metric, Outcome, Smoother, Stop};
 
 use crate::load::LoadedMesh;
 use crate::report::{
@@ -61,6 +61,7 @@ pub(super) fn report(
         levels_left_out: outcome.levels_left_out,
         best_sweep: outcome.best_sweep,
         remaining: outcome.remaining,
+        imprecise: is_imprecise(input, ran),
         stop: stop(input, ran),
         continued_from: input.task.resumed.map(Checkpoint::sweeps),
         nothing_to_do: choice.nothing_to_do.clone(),
@@ -80,6 +81,19 @@ pub(super) fn report(
         history: report::history(outcome, request.scheme(), request.tracks_all()),
         seconds: clock.seconds(),
     }
+}
+
+/// Returns whether a GPU ended the run as converged, although the error of its f exceeds the tolerance.
+fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
+    let (request, outcome) = (input.request(), &ran.outcome);
+    let is_gpu = matches!(&*ran.taken.backend, Backend::Gpu(_));
+    // The estimate of EDGE includes a distance that is no error.
+    let is_smooth = request.scheme().base() != Metric::Edge;
+    let exceeds = |tolerance: f64| outcome.remaining.is_some_and(|left| left > tolerance);
+    is_gpu
+        && is_smooth
+        && outcome.stop == Stop::Converged
+        && request.estimated_end().is_some_and(exceeds)
 }
 
 /// Returns the name of the reason why a run ended.

@@ -59,3 +59,15 @@ fn every_scheme_leaves_a_valid_better_mesh_on_the_cpu() {
     let folder = small();
     schemes().for_each(|scheme| assert_scheme_works(&folder, scheme, "cpu"));
 }
+
+#[test]
+fn a_run_says_that_single_precision_ends_it() {
+    let mesh = support::perturb_random(&support::graded(32, 1e-4), 0.3, 5);
+    let [node, ele] = support::triangle_text(&mesh, "");
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    let out = folder.line("in.node out.node --scheme soft-size --engine gpu").clean().out;
+    let told = ", as far as single precision tells; f is estimated to be ";
+    assert!(out.contains(told) && out.contains("; --engine cpu has double precision"), "{out}");
+    let run = folder.line("in.node out.node --engine gpu");
+    assert!(run.code == Some(0) && !run.out.contains("single precision"), "{}", run.out);
+}
