@@ -18,7 +18,7 @@ def trial() -> str | None:
     # A program that embeds Python may not be able to run a module.
     if not sys.executable:
         return None
-    command = [sys.executable, "-c", "from gpu_smooth import _native; _native.adapters()"]
+    command = [sys.executable, "-m", "gpu_smooth", "adapters"]
     try:
         done = subprocess.run(
             command,
@@ -26,7 +26,8 @@ def trial() -> str | None:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             timeout=PATIENCE,
-            env=dict(os.environ),
+            # The command line would start a third process for its own trial.
+            env=dict(os.environ, GPU_SMOOTH_IS_TRIAL="1"),
             check=False,
         )
     except subprocess.TimeoutExpired:

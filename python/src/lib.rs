@@ -3,6 +3,7 @@
 //! users.
 
 mod arrays;
+mod command_line;
 mod data;
 mod engine;
 mod error;
@@ -26,6 +27,8 @@ use pyo3::prelude::*;
 mod _native {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::command_line::command_line;
     #[pymodule_export]
     use crate::data::{compare, interpolate, untangle};
     #[pymodule_export]

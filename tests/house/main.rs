@@ -92,7 +92,7 @@ fn only_requests_and_commands_name_the_arguments_of_the_command_line() {
     let uses = by_folder(&uses_of("cli/src"), 1);
     let naming = uses.iter().filter(|(_, used)| used.contains("args"));
     let naming: Vec<&str> = naming.map(|(folder, _)| folder.as_str()).collect();
-    assert_eq!(naming, ["commands", "main", "request"]);
+    assert_eq!(naming, ["commands", "lib", "request"]);
 }
 
 #[test]
