@@ -254,7 +254,7 @@ def metrics() -> list[Metric]:
     --------
     >>> import gpu_smooth
     >>> [metric.name for metric in gpu_smooth.metrics()][:3]
-    ['edge', 'area', 'imr']
+    ['edge', 'area', 'rms']
     """
     return [Metric(**row) for row in _native.metrics()]
 

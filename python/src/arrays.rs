@@ -289,8 +289,12 @@ pub(crate) fn per_vertex(
 /// Returns an array of two dimensions that has exactly this type and is aligned, without a copy. `None` for everything
 /// else.
 fn typed<'py, T: Element>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyArray2<T>>>> {
-    let Ok(array) = value.cast::<PyArray2<T>>() else { return Ok(None) };
     let py = value.py();
+    // Subclasses, such as masked arrays, may mean something else by their numbers.
+    if !value.is_exact_instance_of::<PyUntypedArray>() {
+        return Ok(None);
+    }
+    let Ok(array) = value.cast::<PyArray2<T>>() else { return Ok(None) };
     let flags = array.getattr(intern!(py, "flags"))?;
     let is_aligned: bool = flags.getattr(intern!(py, "aligned"))?.extract()?;
     Ok(is_aligned.then(|| array.clone()))
@@ -351,6 +355,7 @@ fn laid_out<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = array.py();
     let numpy = py.import(intern!(py, "numpy"))?;
+    let array = numpy.call_method1(intern!(py, "asarray"), (array,))?;
     numpy.call_method1(intern!(py, "require"), (array, dtype, ["C", "A"]))
 }
 
