@@ -26,6 +26,7 @@ from gpu_smooth._arrays import (
 )
 from gpu_smooth._errors import DeviceError, FileError, GpuSmoothError, MeshError, OptionError
 from gpu_smooth._files import Group, MeshFile, convert, smooth_file
+from gpu_smooth._gmsh import smooth_gmsh_model
 from gpu_smooth._native import Quality, __version__
 from gpu_smooth._progress import Progress
 from gpu_smooth._result import Result
@@ -59,5 +60,6 @@ __all__ = [
     "run",
     "smooth",
     "smooth_file",
+    "smooth_gmsh_model",
     "untangle",
 ]
