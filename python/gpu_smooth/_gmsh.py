@@ -98,7 +98,9 @@ def _cells(gmsh: Any, rows: Integers) -> Cells:
                 regions.append(np.full(len(corners) // 3, entity))
             else:
                 anchored.append(corners)
-    return Cells(*map(np.concatenate, (triangles, lines, anchored, regions)))
+    return Cells(
+        np.concatenate(triangles), np.concatenate(lines), np.concatenate(anchored), np.concatenate(regions)
+    )
 
 
 def _periodic(gmsh: Any, rows: Integers) -> Integers:

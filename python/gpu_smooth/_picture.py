@@ -31,8 +31,16 @@ def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, A
         raise _native_option_error(which)
     names = list(states) if which == "both" else [which]
     if ax is None:
+        width, height = np.ptp(result.points[np.unique(result.triangles), :2], axis=0)
+        each = 6.0 * min(max(height / max(width, np.finfo(float).tiny), 0.3), 2.0)
         figure, axes = plt.subplots(
-            1, len(names), squeeze=False, sharex=True, sharey=True, figsize=(6.4 * len(names), 5.6)
+            1,
+            len(names),
+            squeeze=False,
+            sharex=True,
+            sharey=True,
+            figsize=(6.0 * len(names) + 1.0, each + 0.6),
+            layout="constrained",
         )
         all_axes = list(axes[0])
     else:

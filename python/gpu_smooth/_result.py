@@ -149,7 +149,8 @@ class Result:
         return _picture.html(self)
 
     def __repr__(self) -> str:
-        before, after = self.quality_before.f(self.metric), self.quality_after.f(self.metric)
+        history = self.history
+        before, after = history[0], history[self.best_sweep]
         return (
             f"Result({self.stop} after {self.sweeps} sweeps on {self.engine}, "
             f"f {self.metric} {before:.6g} -> {after:.6g}, inverted {self.quality_after.inverted})"
