@@ -12,6 +12,7 @@ from gpu_smooth._native import Outcome, Quality
 
 if TYPE_CHECKING:
     from gpu_smooth._options import Doubles, Floats, Integers
+    from gpu_smooth._smooth import Smoother
 
 
 class Result:
@@ -20,12 +21,16 @@ class Result:
     A notebook shows the result as a picture. `run` and `Smoother.run` return results.
     """
 
-    def __init__(self, outcome: Outcome, triangles: Integers) -> None:
+    def __init__(self, outcome: Outcome, smoother: Smoother) -> None:
         self._outcome = outcome
-        self.triangles: Integers = triangles
-        """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
+        self._smoother = smoother
         self.points: Floats = outcome.points()
         """Points after the run, in the shape and the type of the points that were passed."""
+
+    @property
+    def triangles(self) -> Integers:
+        """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
+        return self._smoother.triangles
 
     @functools.cached_property
     def points_before(self) -> Floats:
@@ -106,6 +111,11 @@ class Result:
     def slid(self) -> int:
         """Number of vertices that slid along lines."""
         return self._outcome.slid
+
+    @property
+    def prepare_seconds(self) -> float:
+        """Duration of the preparation of the mesh in seconds, which runs of a `Smoother` share."""
+        return self._outcome.prepare_seconds
 
     @property
     def seconds(self) -> float:

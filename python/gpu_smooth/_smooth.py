@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from gpu_smooth import _native
@@ -57,7 +58,6 @@ class Smoother:
         if run_options:
             raise TypeError(f"{run_options[0]!r} is an option of a run: pass it to Smoother.run")
         self._native = _native.Smoother(points, triangles, **options)
-        self._triangles = self._native.triangles
 
     def run(self, **options: Unpack[RunOptions]) -> Result:
         """Smooth the mesh, from the points that were passed to the constructor.
@@ -78,17 +78,17 @@ class Smoother:
         MeshError, OptionError, DeviceError
             As `smooth` does.
         """
-        return Result(self._native.run(**options), self._triangles)
+        return Result(self._native.run(**options), self)
 
     @property
     def free(self) -> Any:
         """Whether each vertex is free: inside of the mesh and not fixed; of shape (n,), bool."""
         return self._native.free
 
-    @property
+    @functools.cached_property
     def triangles(self) -> Integers:
         """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
-        return self._triangles
+        return self._native.triangles
 
 
 MESH_OPTIONS = frozenset(_native.mesh_options())

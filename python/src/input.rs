@@ -54,6 +54,11 @@ impl From<SmoothError> for Failure {
 pub(crate) struct Input {
     /// The mesh to be prepared: in the chart if there is one, and untangled.
     pub(crate) mesh: Mesh,
+    pub(crate) layout: Layout,
+}
+
+/// What a mesh is beside the library's: the form in which it was given, and what keeps its vertices.
+pub(crate) struct Layout {
     /// Points of the mesh before untangling; `None` if the mesh was not tangled.
     pub(crate) tangled: Option<Vec<[f64; 2]>>,
     pub(crate) chart: Option<Chart>,
@@ -84,31 +89,64 @@ impl Input {
                 tangled = Some(std::mem::replace(&mut mesh.points, points));
             }
         }
-        Ok(Self { mesh, tangled, chart, constraints })
+        Ok(Self { mesh, layout: Layout { tangled, chart, constraints } })
     }
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.
     pub(crate) fn smoother(&self, options: &MeshOptions) -> Result<Smoother<'_>, Failure> {
         let mut smoother = Smoother::new(&self.mesh)?;
-        self.set_targets(options, &mut smoother)?;
+        self.layout.set_up(options, &mut smoother)?;
+        Ok(smoother)
+    }
+
+    /// Prepares the mesh as [`smoother`](Self::smoother) does, and moves the mesh into the smoother.
+    pub(crate) fn into_smoother(
+        self,
+        options: &MeshOptions,
+    ) -> Result<(Smoother<'static>, Layout), Failure> {
+        let Self { mesh, layout } = self;
+        let mut smoother = Smoother::from_mesh(mesh)?;
+        layout.set_up(options, &mut smoother)?;
+        Ok((smoother, layout))
+    }
+}
+
+/// Targets of a mesh.
+enum Chosen {
+    OfVertices(Targets),
+    OfPlaces(Box<TargetField>),
+}
+
+impl Layout {
+    /// Sets the targets and the sliding vertices of a smoother.
+    fn set_up(&self, options: &MeshOptions, smoother: &mut Smoother<'_>) -> Result<(), Failure> {
+        match self.targets(options, smoother)? {
+            None => {}
+            Some(Chosen::OfVertices(targets)) => smoother.set_targets(&targets)?,
+            Some(Chosen::OfPlaces(field)) => {
+                smoother.set_target_field(*field)?;
+            }
+        }
         if options.slides {
             let slide = movement::slide(options, smoother.topology(), &self.constraints);
             smoother.set_slide(Some(&slide))?;
         }
-        Ok(smoother)
+        Ok(())
     }
 
-    fn set_targets(
+    /// Returns the targets of a mesh; `None` for equilateral targets in the plane.
+    fn targets(
         &self,
         options: &MeshOptions,
-        smoother: &mut Smoother<'_>,
-    ) -> Result<(), MeshError> {
-        let (points, topology, surface) = (&self.mesh.points, smoother.topology(), options.surface);
+        smoother: &Smoother<'_>,
+    ) -> Result<Option<Chosen>, MeshError> {
+        let (points, topology, surface) =
+            (&smoother.mesh().points, smoother.topology(), options.surface);
         let rings = options.target_rings.unwrap_or(2);
         // Shapes are kept as they appear in coordinates, also on the sphere.
         let mut measured_on = surface;
         let targets = match &options.target {
-            Target::Equilateral if surface == Surface::Plane => return Ok(()),
+            Target::Equilateral if surface == Surface::Plane => return Ok(None),
             Target::Equilateral => Targets::equilateral(points.len()),
             Target::KeepSize => Targets::keep_size(topology, points, surface, rings)?,
             Target::KeepShape => {
@@ -127,20 +165,20 @@ impl Input {
                 };
                 let field = TargetField::new(&mesh, &of_numbers(&values.numbers, values)?)?;
                 let field = field.seen_on(surface);
-                return match options.is_of_places() {
-                    true => smoother.set_target_field(field).map(|_| ()),
-                    false => smoother.set_targets(&field.at(points)?.0),
-                };
+                return Ok(Some(match options.is_of_places() {
+                    true => Chosen::OfPlaces(field.into()),
+                    false => Chosen::OfVertices(field.at(points)?.0),
+                }));
             }
         };
         if options.is_of_places() {
             let triangles = topology.triangles().to_vec();
             let mesh = Mesh { points: points.clone(), triangles, fixed: vec![] };
             let field = TargetField::new(&mesh, &targets)?.seen_on(measured_on);
-            return smoother.set_target_field(field).map(|_| ());
+            return Ok(Some(Chosen::OfPlaces(field.into())));
         }
         let targets = targets.seen_on(measured_on, points, topology.triangles())?;
-        smoother.set_targets(&targets)
+        Ok(Some(Chosen::OfVertices(targets)))
     }
 }
 

@@ -14,6 +14,7 @@ mod mesh_options;
 mod movement;
 mod observer;
 mod outcome;
+mod prepared;
 mod run_options;
 mod smoother;
 mod tables;

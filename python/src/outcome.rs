@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 
 use crate::error;
 use crate::measures::Quality;
-use crate::smoother::Prepared;
+use crate::prepared::Prepared;
 use crate::threads;
 
 /// The result of a run. The class `Result` of the package shows it.
@@ -53,8 +53,7 @@ impl Outcome {
 
     /// Returns the points before the run, as they were passed.
     fn points_before<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let input = &self.prepared.input;
-        let points = input.tangled.as_ref().unwrap_or(&input.mesh.points).clone();
+        let points = self.prepared.points_before().to_vec();
         self.prepared.form.array(py, self.prepared.given(points))
     }
 
@@ -73,8 +72,7 @@ impl Outcome {
 
     /// Returns the quality of the mesh before the run.
     fn quality_before(&self, py: Python<'_>) -> PyResult<Quality> {
-        let input = &self.prepared.input;
-        self.quality(py, input.tangled.as_ref().unwrap_or(&input.mesh.points))
+        self.quality(py, self.prepared.points_before())
     }
 
     /// Returns the quality of the mesh after the run.
@@ -134,6 +132,12 @@ impl Outcome {
     #[getter]
     fn slid(&self) -> usize {
         self.outcome.slid.map_or(0, |slid| slid.moved)
+    }
+
+    /// Duration of the preparation of the mesh in seconds.
+    #[getter]
+    fn prepare_seconds(&self) -> f64 {
+        self.prepared.smoother.prepare_time().as_secs_f64()
     }
 
     /// Duration of the run in seconds.

@@ -14,30 +14,9 @@ use crate::input::{Failure, Input};
 use crate::mesh_options::{CallOptions, MeshOptions};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
+use crate::prepared::{Prepared, given};
 use crate::run_options::RunOptions;
 use crate::threads;
-
-/// A mesh that is prepared for runs, with all that results need.
-pub(crate) struct Prepared {
-    pub(crate) smoother: PreparedMesh<'static>,
-    pub(crate) input: Input,
-    pub(crate) options: MeshOptions,
-    pub(crate) form: PointsForm,
-}
-
-impl Prepared {
-    /// Returns points of the mesh as points of the call: without the copies of a chart, and with its longitudes.
-    pub(crate) fn given(&self, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-        given(&self.input, points)
-    }
-}
-
-fn given(input: &Input, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    match &input.chart {
-        Some(chart) => chart.given(&points),
-        None => points,
-    }
-}
 
 /// A mesh prepared once for any number of runs.
 #[pyclass(frozen, module = "gpu_smooth._native")]
@@ -58,8 +37,8 @@ impl Smoother {
         let observer = RunObserver::new(&run);
         let prepared = threads::watched(py, &observer, || {
             let input = Input::new(mesh, &options, form.precision(), &observer)?;
-            let smoother = input.smoother(&options)?.into_owned();
-            Ok(Prepared { smoother, input, options, form })
+            let (smoother, layout) = input.into_smoother(&options)?;
+            Ok(Prepared { smoother, layout, options, form })
         })?;
         let prepared = finished(py, &observer, prepared)?;
         Ok(Self(Arc::new(prepared)))
@@ -94,14 +73,6 @@ impl Smoother {
         let triangles = self.0.smoother.topology().triangles();
         let numbers = triangles.as_flattened().iter().map(|&v| i64::from(v)).collect();
         arrays::matrix(py, numbers, [triangles.len(), 3])
-    }
-}
-
-impl Prepared {
-    /// Returns the number of vertices that were passed.
-    fn vertices(&self) -> usize {
-        let chart = self.input.chart.as_ref();
-        chart.map_or(self.input.mesh.points.len(), |chart| chart.original().points.len())
     }
 }
 
@@ -196,5 +167,5 @@ pub(crate) fn smooth<'py>(
     let outcome = threads::watched(py, &observer, || plan.run(&smoother, &observer))?;
     let outcome = finished(py, &observer, outcome)?;
     drop(smoother);
-    form.array(py, given(&input, outcome.points))
+    form.array(py, given(&input.layout, outcome.points))
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -113,3 +114,20 @@ def test_models_that_cannot_be_smoothed_are_refused(gmsh: Any) -> None:
 def test_a_session_must_run() -> None:
     with pytest.raises(gpu_smooth.GpuSmoothError, match="no gmsh session"):
         gpu_smooth.smooth_gmsh_model()
+
+
+@pytest.mark.filterwarnings("ignore:FigureCanvasAgg is non-interactive")
+@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
+def test_the_three_lines_of_the_documents_smooth_and_show_a_mesh(gmsh: Any, document: str) -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    text = (Path(__file__).parents[2] / document).read_text()
+    code = text.split("```python\n")[1].split("```")[0]
+    assert len(code.splitlines()) == 3
+    square(gmsh)
+    before = nodes(gmsh)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    assert nodes(gmsh) != before and names["result"].stop == "converged"
+    assert len(names["result"].plot().axes) == 3

@@ -53,7 +53,7 @@ def test_other_threads_go_on_during_a_run() -> None:
             counted[0] += 1
             time.sleep(0.001)
 
-    thread = threading.Thread(target=count)
+    thread = threading.Thread(target=count, daemon=True)
     thread.start()
     before = counted[0]
     gpu_smooth.smooth(points, triangles, tolerance=0, time_limit=0.5, engine="cpu", method="relaxed", max_sweeps=10**6)
