@@ -117,7 +117,8 @@ def test_the_command_line_is_in_the_wheel(plate: Path, tmp_path: Path) -> None:
 def test_examples_in_docstrings_hold() -> None:
     tried = 0
     for module in pkgutil.iter_modules(gpu_smooth.__path__, "gpu_smooth."):
-        if module.name != "gpu_smooth.__main__":
+        # The accessor needs PyVista, and has no examples.
+        if module.name not in ("gpu_smooth.__main__", "gpu_smooth._accessor"):
             result = doctest.testmod(importlib.import_module(module.name))
             assert result.failed == 0, module.name
             tried += result.attempted

@@ -87,6 +87,8 @@ import os, sys, threading, time, signal
 sys.path.insert(0, {tests!r})
 from conftest import lattice
 import gpu_smooth
+# A shell that starts the tests in the background lets its processes ignore the signal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 points, triangles = lattice(100)
 gpu_smooth.smooth(points, triangles, max_sweeps=2)
 if {forks}:
