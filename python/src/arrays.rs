@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use crate::error;
 
-/// Points of a mesh: x and y, and the form of the array that had them.
+/// Points of a mesh, and the form of their array.
 pub(crate) struct Points {
     pub(crate) xy: Vec<[f64; 2]>,
     pub(crate) form: PointsForm,
@@ -128,7 +128,7 @@ fn rows<T: Copy, const N: usize, R>(view: ArrayView2<'_, T>, to: impl Fn([T; N])
     }
 }
 
-/// Reads triples of vertices: an array of integers of shape (m, 3). `vertices` is the number of vertices of the mesh.
+/// Reads triples of vertices: an array of integers of shape (m, 3). The mesh has `vertices` vertices.
 pub(crate) fn triangles(
     name: &str,
     value: &Bound<'_, PyAny>,
@@ -182,7 +182,7 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Returns the rows of an array. An index that is negative or not below the number of vertices is an error.
+    /// Returns the rows of an array. Fails for an index below 0, or not below the number of vertices.
     fn of<T: Element + Copy + std::fmt::Display, const N: usize>(
         &self,
         array: &Bound<'_, PyArray2<T>>,

@@ -114,7 +114,7 @@ pub(crate) fn compare<'py>(
     Ok(all)
 }
 
-/// Reads points that must be as many as the vertices of a mesh.
+/// Reads points, one row per vertex of a mesh.
 fn likewise(name: &str, value: &Bound<'_, PyAny>, mesh: &Mesh) -> PyResult<Points> {
     let points = arrays::points(name, value)?;
     let (given, expected) = (points.xy.len(), mesh.points.len());

@@ -11,9 +11,9 @@ use crate::error;
 use crate::run_options::EngineChoice;
 use crate::threads;
 
-/// Devices by the name that was asked for. Locked only by threads that hold Python's lock.
+/// Open devices, each with the requested text in the adapter's name. Locked only by threads that hold Python's lock.
 static OPEN: Mutex<Vec<(Option<String>, Arc<Backend>)>> = Mutex::new(Vec::new());
-/// Whether a driver of a GPU was started in this process, or in the process from which this process was forked.
+/// Whether this process, or a parent before a fork, has started a driver of a GPU.
 static HAS_STARTED: AtomicBool = AtomicBool::new(false);
 
 /// Returns an error if a driver of a GPU cannot be used because the process was forked after the start of the driver.
@@ -57,7 +57,7 @@ pub(crate) fn open(
     }
 }
 
-/// Returns the device of an adapter, opened by this call or an earlier one.
+/// Opens the device of an adapter, or returns the device if it is open.
 fn opened(py: Python<'_>, name: Option<&str>) -> PyResult<Arc<Backend>> {
     let of_name = |open: &[(Option<String>, Arc<Backend>)]| {
         let found = open.iter().find(|(own, _)| own.as_deref() == name);

@@ -1,4 +1,4 @@
-//! The mesh of a call, ready to be prepared: its fixed vertices, its chart on a sphere, and its untangled points.
+//! Fixes vertices of a mesh, continues its longitudes, untangles it, and prepares it for runs.
 
 use std::ops::ControlFlow;
 
@@ -52,12 +52,12 @@ impl From<SmoothError> for Failure {
 
 /// The mesh of a call.
 pub(crate) struct Input {
-    /// The mesh to be prepared: in the chart if there is one, and untangled.
+    /// The mesh with continued longitudes on a sphere, after untangling.
     pub(crate) mesh: Mesh,
     pub(crate) layout: Layout,
 }
 
-/// What a mesh is beside the library's: the form in which it was given, and what keeps its vertices.
+/// Points of a mesh before untangling, the chart of its longitudes, and its fixed vertices.
 pub(crate) struct Layout {
     /// Points of the mesh before untangling; `None` if the mesh was not tangled.
     pub(crate) tangled: Option<Vec<[f64; 2]>>,

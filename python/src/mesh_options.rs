@@ -44,7 +44,7 @@ pub(crate) enum Target {
     },
 }
 
-/// The options of a mesh as they were passed.
+/// The options that belong to a mesh.
 pub(crate) struct MeshOptions {
     /// Vertices that neither move nor slide.
     pub(crate) fixed: Vec<u32>,

@@ -1,4 +1,4 @@
-//! What happens between the sweeps of a run: signals, the time limit, and the function of the user.
+//! Signals, the time limit and the user's function, which may end a run between two sweeps.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +15,7 @@ use crate::run_options::RunOptions;
 pub(crate) struct RunObserver<'a> {
     on_sweep: Option<&'a Py<PyAny>>,
     end: Option<Instant>,
-    /// The exception of a signal or of the function.
+    /// The exception that a signal or the user's function raised.
     raised: Mutex<Option<PyErr>>,
     is_canceled: AtomicBool,
 }

@@ -15,12 +15,12 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
-    /// Returns points of the mesh as points of the call: without the copies of a chart, and with its longitudes.
+    /// Returns points for the caller: vertices that a chart has copied are left out, and longitudes are in the given range.
     pub(crate) fn given(&self, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         given(&self.layout, points)
     }
 
-    /// Returns the points before the run: those before untangling if the mesh was tangled.
+    /// Returns the points before the run and before untangling.
     pub(crate) fn points_before(&self) -> &[[f64; 2]] {
         self.layout.tangled.as_ref().unwrap_or(&self.smoother.mesh().points)
     }

@@ -53,7 +53,7 @@ enum MethodChoice {
     Paper,
 }
 
-/// The options of a run as they were passed; `None` for options that were not.
+/// The options of a run; `None` for options that the caller left out.
 #[derive(Default)]
 pub(crate) struct RunOptions {
     scheme: Option<Scheme>,

@@ -13,7 +13,7 @@ use crate::observer::RunObserver;
 /// The process that first computed, and whose threads rayon's global pool has; 0 before the first computation.
 static OWNER: AtomicU32 = AtomicU32::new(0);
 
-/// Threads of a forked process, with the number of the process. Locked only by threads that hold Python's lock, so that
+/// The thread pool of a forked process, and the identifier of the process. Locked only by threads that hold Python's lock, so that
 /// no other thread can hold this lock when a process is forked.
 static OF_FORK: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 

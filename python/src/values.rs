@@ -7,7 +7,7 @@ use pyo3::types::{PyBool, PyString};
 
 use crate::error;
 
-/// An option as it was passed: its name and its value.
+/// Name and value of an option of a call.
 #[derive(Clone, Copy)]
 pub(crate) struct Given<'a, 'py> {
     pub(crate) name: &'a str,
@@ -56,7 +56,7 @@ impl Given<'_, '_> {
         }
     }
 
-    /// Returns the value of the word that was given. Underscores may replace hyphens.
+    /// Returns the value of a word in the list `words`. Underscores may replace hyphens.
     pub(crate) fn word<T: Clone>(&self, words: &[(&str, T)]) -> PyResult<T> {
         let given = self.value.cast::<PyString>().ok().map(|word| word.to_string());
         let given = given.map(|word| word.to_lowercase().replace('_', "-"));
@@ -75,7 +75,7 @@ impl Given<'_, '_> {
     }
 }
 
-/// Returns the error of an option that `function` does not have, with the most similar of `names`.
+/// Returns the `TypeError` for an option that `function` lacks. The message has the most similar of `names`.
 pub(crate) fn unknown(py: Python<'_>, name: &str, function: &str, names: &[&str]) -> PyErr {
     let similar = py
         .import("difflib")
