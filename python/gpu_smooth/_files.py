@@ -225,6 +225,8 @@ def smooth_file(source: Path, destination: Path, **options: Any) -> dict[str, An
     import sys
     import tempfile
 
+    if not sys.executable:
+        raise GpuSmoothError("no interpreter of Python is known to run the command line: sys.executable is empty")
     words = [sys.executable, "-m", "gpu_smooth", os.fspath(source), os.fspath(destination)]
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
