@@ -33,9 +33,11 @@ class Cells(NamedTuple):
         """Return options with the constraints of the cells, beside those that were given."""
         if not len(self.triangles):
             raise MeshError("mesh: there are no triangles with three vertices. Pass a mesh of linear triangles")
+        # None is the default of each option.
+        given = {name: value for name, value in given.items() if value is not None}
         fixed = np.zeros(vertices, dtype=bool)
         fixed[self.anchored] = True
-        if given.get("fixed") is not None:
+        if "fixed" in given:
             own = np.asarray(given["fixed"])
             # Wrong arrays are passed on, so that the error is that of `smooth`.
             if own.dtype == bool and own.shape == fixed.shape:
@@ -43,10 +45,13 @@ class Cells(NamedTuple):
             elif own.dtype.kind in "iu" and own.ndim == 1 and ((own >= 0) & (own < vertices)).all():
                 fixed[own] = True
             else:
-                return {**given, "regions": None}
+                return given
         lines = self.lines
-        if given.get("lines") is not None:
-            lines = np.concatenate([lines, np.asarray(given["lines"]).reshape(-1, 2)])
+        if "lines" in given:
+            drawn = np.asarray(given["lines"])
+            if drawn.ndim != 2 or drawn.shape[1] != 2:
+                return given
+            lines = np.concatenate([lines, drawn])
         found = {"fixed": fixed, "lines": lines}
         if self.regions is not None:
             found["regions"] = self.regions

@@ -54,6 +54,11 @@ def test_vertices_of_other_cells_and_between_regions_stay(mesh: Mesh) -> None:
     assert np.array_equal(fixed.points[17], points[17]) and moved[17]
     with pytest.raises(gpu_smooth.MeshError, match=r"fixed\[0\] is 999"):
         gpu_smooth.smooth(given, fixed=[999])
+    with pytest.raises(gpu_smooth.MeshError, match=r"lines: .* the shape is \(3,\)"):
+        gpu_smooth.smooth(given, lines=[1, 2, 3])
+    with pytest.raises(gpu_smooth.MeshError, match=r"lines\[\d+, 1\] is 999"):
+        gpu_smooth.smooth(given, lines=[[1, 999]])
+    assert np.array_equal(gpu_smooth.smooth(given, regions=None, lines=None).points, smoothed.points)
 
 
 def test_a_file_of_meshio_is_smoothed_as_by_the_command_line(tmp_path: Any) -> None:
