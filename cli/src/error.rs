@@ -1,7 +1,6 @@
 //! The error of a command: its kind, message and remedy.
 
 use std::fmt;
-use std::process::ExitCode;
 
 use gpu_smooth::{GpuError, MeshError, SmoothError};
 use mesh_io::{FieldError, GroupError, ReadError, WriteError};
@@ -34,15 +33,15 @@ impl ErrorKind {
     }
 
     /// Returns the exit code of the program.
-    pub(crate) fn exit_code(self) -> ExitCode {
-        ExitCode::from(match self {
+    pub(crate) fn exit_code(self) -> u8 {
+        match self {
             Self::Run => 1,
             // clap exits with 2 as well.
             Self::Usage => 2,
             Self::Input => 3,
             Self::Output => 4,
             Self::Device => 5,
-        })
+        }
     }
 }
 

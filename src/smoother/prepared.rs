@@ -35,6 +35,19 @@ pub struct Smoother<'a> {
     prepare: Duration,
 }
 
+impl Smoother<'static> {
+    /// Prepares a mesh, and keeps the mesh in the smoother, which borrows nothing. Equal to [`Smoother::new`] otherwise.
+    ///
+    /// # Errors
+    /// [`MeshError`] under the conditions of [`Smoother::new`].
+    pub fn from_mesh(mesh: Mesh) -> Result<Self, MeshError> {
+        let start = Instant::now();
+        let (topology, problem) = prepare_to_slide(&mesh)?;
+        let topology = topology.into_owned();
+        Ok(Self::of(Cow::Owned(mesh), topology, problem, start))
+    }
+}
+
 impl<'a> Smoother<'a> {
     /// Prepares a mesh. A mesh without free vertices, such as a strip of triangles, is accepted, as its vertices can
     /// slide; see [`set_slide`](Self::set_slide).
@@ -43,16 +56,20 @@ impl<'a> Smoother<'a> {
     /// [`MeshError`] if the mesh cannot be smoothed: see [`Topology::new`] and [`Topology::check_smoothable`].
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         let start = Instant::now();
-        Ok(Self::of(mesh, prepare_to_slide(mesh)?, start))
+        let (topology, problem) = prepare_to_slide(mesh)?;
+        Ok(Self::of(Cow::Borrowed(mesh), topology, problem, start))
     }
 
-    fn of(mesh: &'a Mesh, prepared: (Topology<'a>, Problem), start: Instant) -> Self {
-        let (mut topology, problem) = prepared;
+    fn of(
+        mesh: Cow<'a, Mesh>,
+        mut topology: Topology<'a>,
+        problem: Problem,
+        start: Instant,
+    ) -> Self {
         // Runs need only the problem. The stars are computed again when a vertex has to be set back.
         topology.forget_stars();
-        let (mesh, pairs) = (Cow::Borrowed(mesh), [0; 2]);
         let (slide, sliding, field, projection) = (None, None, None, None);
-        let prepare = start.elapsed();
+        let (pairs, prepare) = ([0; 2], start.elapsed());
         Self { mesh, topology, problem, slide, sliding, pairs, field, projection, prepare }
     }
 
@@ -64,8 +81,13 @@ impl<'a> Smoother<'a> {
         }
     }
 
+    /// Returns the mesh that the smoother has prepared.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
     /// Copies the mesh into the smoother, which then borrows nothing and can be stored in a struct without lifetimes,
-    /// or moved into a spawned task.
+    /// or moved into a spawned task. [`Self::from_mesh`] takes a mesh without a copy.
     pub fn into_owned(self) -> Smoother<'static> {
         Smoother {
             mesh: Cow::Owned(self.mesh.into_owned()),
@@ -252,5 +274,27 @@ impl<'a> Smoother<'a> {
     /// Returns the objective by a metric at normalized positions.
     pub(super) fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
         metric.ideal_squared() + mean_excess(metric, &self.problem, positions)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Options;
+
+    #[test]
+    fn a_smoother_that_keeps_its_mesh_runs_as_one_that_borrows_the_mesh() {
+        let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.3, 0.6]];
+        // The second triangle is wound clockwise.
+        let triangles = vec![[0, 1, 4], [2, 1, 4], [2, 3, 4], [3, 0, 4]];
+        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let kept = Smoother::from_mesh(mesh.clone()).unwrap();
+        assert_eq!(kept.mesh(), &mesh);
+        let borrowed = Smoother::new(&mesh).unwrap();
+        assert_eq!(kept.topology().triangles(), borrowed.topology().triangles());
+        let run = |smoother: &Smoother<'_>| smoother.run(&Options::default()).block().unwrap();
+        assert_eq!(run(&kept).points, run(&borrowed).points);
+        let flat = Mesh { points: vec![[0.0; 2]; 5], ..mesh };
+        assert!(Smoother::from_mesh(flat).is_err());
     }
 }

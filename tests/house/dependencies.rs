@@ -41,7 +41,9 @@ fn collect(folder: &Path, source: &Path, texts: &mut BTreeMap<String, String>) {
 /// Returns the uses of files with the given contents.
 pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
     let mut parsed = BTreeMap::new();
-    for (name, text) in texts {
+    // The main file of a crate with a library uses the library from outside.
+    let has_library = texts.contains_key("lib");
+    for (name, text) in texts.iter().filter(|(name, _)| *name != "main" || !has_library) {
         let file = syn::parse_file(text).unwrap_or_else(|error| panic!("{name}: {error}"));
         parsed.insert(module_of(name), (name.clone(), file));
     }

@@ -13,7 +13,7 @@ use mesh_io::atomic;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs, OutputArgs, SmoothArgs};
 use crate::error::CliError;
-use crate::terminal::tell;
+use crate::terminal::{process, tell};
 
 /// Name of the program in scripts of shells.
 const PROGRAM: &str = "gpu-smooth";
@@ -21,13 +21,17 @@ const PROGRAM: &str = "gpu-smooth";
 /// shell.
 const VARIABLE: &str = "GPU_SMOOTH_COMPLETE";
 
-/// Answers a script of a shell that asks for completions, and ends the program. Does nothing in all other calls.
-pub(crate) fn complete() {
+/// Answers a script of a shell that asks for completions, and returns true. Does nothing in all other calls, and returns
+/// false.
+pub(crate) fn complete() -> bool {
+    let line = process::command_line();
     // The script passes the words of the command line after `--`. The last word is incomplete.
-    let mut words: Vec<OsString> = std::env::args_os().skip_while(|word| word != "--").collect();
+    let mut words: Vec<OsString> = line.iter().skip_while(|word| *word != "--").cloned().collect();
     words.pop();
     let program = move || program_after(words.get(1..).unwrap_or_default());
-    CompleteEnv::with_factory(program).var(VARIABLE).bin(PROGRAM).complete();
+    let script = CompleteEnv::with_factory(program).var(VARIABLE).bin(PROGRAM);
+    let directory = std::env::current_dir().ok();
+    script.try_complete(line, directory.as_deref()).unwrap_or_else(|error| error.exit())
 }
 
 /// Returns the definition of the program for the completion of the word after `words`, the first of which is the name

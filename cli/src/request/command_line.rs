@@ -8,12 +8,21 @@ use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
 use crate::args::{Cli, Command, OutputArgs};
 use crate::request::conflicts::{self, OF_BENCH, OF_COMPARE, OF_CONVERT, OF_QUALITY, OF_RUN};
-use crate::terminal::Verbosity;
+use crate::terminal::{Verbosity, process};
 
-/// Parses the command line of this process. If the command line is invalid, or asks for help or the version,
-/// prints the answer and ends the process.
-pub(crate) fn command_line() -> Cli {
-    checked(std::env::args_os()).unwrap_or_else(|error| error.exit())
+/// Parses the command line of this process.
+///
+/// # Errors
+/// If the command line is invalid, or asks for help or the version, prints the answer and returns the exit code.
+pub(crate) fn command_line() -> Result<Cli, u8> {
+    checked(process::command_line()).map_err(|error| answered(&error))
+}
+
+/// Prints an error of the command line, or the requested help or version. Returns the exit code.
+pub(crate) fn answered(error: &clap::Error) -> u8 {
+    // A closed terminal is no reason for another error.
+    let _ = error.print();
+    u8::try_from(error.exit_code()).unwrap_or(2)
 }
 
 /// Parses a command line, whose first word is the name of the program. Checks the values of options, and that

@@ -10,6 +10,7 @@ use clap::{ArgAction, ArgMatches, Command, CommandFactory};
 use crate::args::Cli;
 use crate::request::command_line::checked;
 use crate::request::smooth::{RunExtent, SmoothRequest};
+use crate::terminal::process;
 
 /// Options of the tried runs, by target. Metrics such as `shape-size` are left out: they even out the sizes of triangles,
 /// and so remove the refinement of a coast or an airfoil.
@@ -41,7 +42,7 @@ impl TrialRun {
     /// Returns an error if an option of all runs contradicts another option.
     pub(crate) fn of_command_line(mesh: &Path) -> Result<Vec<Self>, clap::Error> {
         let program = Cli::command();
-        let matches = program.clone().get_matches_from(std::env::args_os());
+        let matches = program.clone().try_get_matches_from(process::command_line())?;
         let common = match (program.find_subcommand("try"), matches.subcommand_matches("try")) {
             (Some(command), Some(matches)) => words_of(command, matches),
             _ => Vec::new(),

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use gpu_smooth::GpuError;
 
+use crate::terminal::process;
+
 /// Time limit for drivers to start and answer. Slow drivers have needed five seconds to compile their first kernel.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Interval between two checks whether the child process has ended.
@@ -48,8 +50,10 @@ pub(crate) fn drivers(tried: Trial<'_>) -> Result<(), GpuError> {
 }
 
 fn outcome(name: Option<&str>) -> Result<(), String> {
-    let Ok(program) = std::env::current_exe() else { return Ok(()) };
+    let words = process::program();
+    let [program, first @ ..] = &words[..] else { return Ok(()) };
     let mut command = Command::new(program);
+    command.args(first);
     command.arg("adapters").args(name.map(|name| ["--", name]).into_iter().flatten());
     command.env(MARK, "1").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     // If no child process can be started, the driver is assumed to work.

@@ -6,7 +6,6 @@
 
 #[cfg(unix)]
 use std::io::IsTerminal;
-use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -117,10 +116,10 @@ pub(crate) fn uninterrupted() -> MutexGuard<'static, ()> {
 }
 
 /// Returns the exit code of a successful command: 0, or that of the signal that interrupted the run.
-pub(crate) fn exit_code() -> ExitCode {
+pub(crate) fn exit_code() -> u8 {
     match REQUESTED.load(Ordering::SeqCst) {
-        0 => ExitCode::SUCCESS,
-        signal => exit_status(signal).into(),
+        0 => 0,
+        signal => exit_status(signal),
     }
 }
 

@@ -1,8 +1,9 @@
-//! The terminal: messages, progress, signals and panics.
+//! The terminal: messages, progress, signals, panics and the words of the process.
 
 pub(crate) mod interrupt;
 pub(crate) mod numbers;
 pub(crate) mod panics;
+pub(crate) mod process;
 pub(crate) mod progress;
 pub(crate) mod shell_words;
 pub(crate) mod tell;

@@ -4,7 +4,6 @@
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
-use std::process::ExitCode;
 
 use crate::error::CliError;
 use crate::terminal::tell;
@@ -15,7 +14,7 @@ thread_local! {
 }
 
 /// Runs `work`, the whole process, and reports an uncaught panic of wgpu as an error.
-pub(crate) fn reporting_panics(work: impl FnOnce() -> ExitCode) -> ExitCode {
+pub(crate) fn reporting_panics(work: impl FnOnce() -> u8) -> u8 {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
         let of_wgpu = panic.location().is_some_and(|place| is_of_wgpu(place.file()));

@@ -212,6 +212,10 @@ fn every_documented_command_of_a_clone_names_a_target_or_a_file_of_the_clone() {
                 "node" => {
                     assert!(root().join(argument(line, "node").unwrap()).is_file(), "{place}")
                 }
+                "pip" => {
+                    let folder = root().join(argument(line, "install").unwrap());
+                    assert!(folder.join("pyproject.toml").is_file(), "{place}");
+                }
                 _ => assert!(root().join(program).is_file(), "{place}"),
             }
             count += 1;

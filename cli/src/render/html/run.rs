@@ -8,11 +8,12 @@ use crate::render::html::page::escape;
 use crate::render::picture::slid;
 use crate::report::{Done, SmoothJob};
 use crate::terminal::numbers::sig6;
-use crate::terminal::shell_words;
+use crate::terminal::{process, shell_words};
 
 /// Writes the command, the versions, the engine, and the certificate as HTML.
 pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliError> {
-    let command: Vec<String> = std::env::args_os().map(|word| shell_words::quoted(&word)).collect();
+    let command: Vec<String> =
+        process::command_line().iter().map(|word| shell_words::quoted(word)).collect();
     let engine = &done.report.engine;
     let on = match (&engine.adapter, &engine.driver) {
         (Some(adapter), Some(driver)) => format!("{adapter} ({driver})"),

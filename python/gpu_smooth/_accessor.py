@@ -1,0 +1,35 @@
+"""The accessor `gpu_smooth` of PyVista's datasets, which PyVista 0.48 and later find by an entry point."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista
+
+from gpu_smooth import _native, _pyvista
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from gpu_smooth._options import Doubles, SmoothOptions, Surface
+
+
+class Accessor:
+    """Smoothing as `mesh.gpu_smooth`, for `pyvista.UnstructuredGrid` and `pyvista.PolyData`."""
+
+    def __init__(self, mesh: Any) -> None:
+        self._mesh = mesh
+
+    def smooth(self, **options: Unpack[SmoothOptions]) -> Any:
+        """Return a copy of the mesh with moved vertices; see `gpu_smooth.smooth` for the options and exceptions."""
+        return _pyvista.smooth(self._mesh, dict(options))
+
+    def quality(self, measure: str = "imr", *, surface: Surface = "plane") -> Doubles:
+        """Return the quality of each triangle, of shape (m,); see `gpu_smooth.quality`."""
+        triangles = _pyvista.cells_of(self._mesh).triangles
+        return _native.quality(np.asarray(self._mesh.points), triangles, measure, surface)
+
+
+pyvista.register_dataset_accessor("gpu_smooth", pyvista.UnstructuredGrid)(Accessor)
+pyvista.register_dataset_accessor("gpu_smooth", pyvista.PolyData)(Accessor)

@@ -1,0 +1,34 @@
+"""Exceptions of the package."""
+
+from __future__ import annotations
+
+
+class GpuSmoothError(Exception):
+    """Base of all exceptions of this package."""
+
+
+class MeshError(GpuSmoothError, ValueError):
+    """Arrays are no mesh that can be smoothed, or do not fit the mesh.
+
+    Attributes
+    ----------
+    triangles : tuple of int
+        Triangles that the message names, such as all inverted ones; numbered from 0.
+    vertex : int or None
+        Vertex that the message names; numbered from 0.
+    """
+
+    triangles: tuple[int, ...] = ()
+    vertex: int | None = None
+
+
+class OptionError(GpuSmoothError, ValueError):
+    """An option has a wrong value, or two options exclude each other."""
+
+
+class DeviceError(GpuSmoothError, RuntimeError):
+    """A GPU cannot be used, or has failed during a run."""
+
+
+class FileError(GpuSmoothError, OSError):
+    """A file cannot be read, written or converted."""

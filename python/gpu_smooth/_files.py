@@ -1,0 +1,260 @@
+"""Mesh files: reading, byte-preserving writing, smoothing and conversion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from gpu_smooth import _native
+from gpu_smooth._errors import DeviceError, FileError, GpuSmoothError, OptionError
+
+if TYPE_CHECKING:
+    import pathlib
+
+    from gpu_smooth._options import Array, Doubles, Integers, Path
+
+
+class Group(NamedTuple):
+    """Group of elements and vertices to which a file gives a tag or a name."""
+
+    kind: str
+    """The format's word for the group, such as `"physical"` of gmsh."""
+    dimension: int
+    """0 for points, 1 for lines, 2 for triangles and quadrilaterals."""
+    name: str | None
+    tag: int | None
+    vertices: Integers
+    """Vertices of the elements of the group, ascending, of shape (k,)."""
+    triangles: Integers
+    """Triangles of the group, ascending, of shape (k,)."""
+
+
+class MeshFile:
+    """Mesh file in memory, which can be written with moved vertices and no other change.
+
+    Parameters
+    ----------
+    path : str or path-like
+        File to read. The format is detected from its content. Files compressed by gzip or zstd are decompressed.
+    weld : bool, default False
+        Join corners of triangles at the same place to one vertex, for STL.
+    allow_outside : bool, default False
+        Let the file name files outside of its directory.
+    regions : str, optional
+        Name of the cell data that number the regions of triangles.
+
+    Raises
+    ------
+    FileError
+        The file is missing, damaged or of an unknown format, or has no plane mesh of triangles. An `OSError`.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        *,
+        weld: bool = False,
+        allow_outside: bool = False,
+        regions: str | None = None,
+    ) -> None:
+        self._native = _native.MeshFile(path, weld=weld, allow_outside=allow_outside, regions=regions)
+
+    @property
+    def path(self) -> pathlib.Path:
+        """Path of the file."""
+        return self._native.path
+
+    @property
+    def format(self) -> str:
+        """Name of the format."""
+        return self._native.format
+
+    @property
+    def points(self) -> Doubles:
+        """Positions of the vertices, of shape (n, 2). The array is a copy."""
+        return self._native.points
+
+    @property
+    def triangles(self) -> Integers:
+        """Vertices of each triangle, numbered from 0 in the order of the file, of shape (m, 3)."""
+        return self._native.triangles
+
+    @property
+    def regions(self) -> Integers | None:
+        """Region of each triangle, of shape (m,); None without regions. The numbers are not those of the file."""
+        return self._native.regions
+
+    @property
+    def lines(self) -> Integers:
+        """Edges of line elements, of shape (k, 2), for the option `lines`."""
+        return self._native.lines
+
+    @property
+    def anchored(self) -> Integers:
+        """Vertices of points and of elements other than triangles and lines, for the option `fixed`."""
+        return self._native.anchored
+
+    @property
+    def periodic(self) -> Integers:
+        """Periodic pairs of vertices, of shape (k, 2), for the option `periodic`."""
+        return self._native.periodic
+
+    @property
+    def groups(self) -> list[Group]:
+        """Groups of the file, such as gmsh's physical groups."""
+        return [Group(**row) for row in self._native.groups()]
+
+    @property
+    def data_names(self) -> list[str]:
+        """Names of the data of vertices and cells in the file."""
+        return self._native.data_names
+
+    @property
+    def remarks(self) -> list[str]:
+        """Remarks on content of the file that is not used."""
+        return self._native.remarks
+
+    def data(self, name: str) -> Doubles:
+        """Return data of the vertices, of shape (n,) or (n, k).
+
+        Parameters
+        ----------
+        name : str
+            Name of the data in the file. Third coordinates are named `"z"`. Of several time steps, the last is returned.
+
+        Raises
+        ------
+        FileError
+            The file has no such data.
+        """
+        return self._native.data(name)
+
+    def write(self, path: Path, points: Array) -> None:
+        """Write the file with its vertices at other points, and no other change.
+
+        Numbers whose bits are unchanged keep their text. An existing file is replaced whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path-like
+            File to write; may be the file that was read. A name that ends in .gz or .zst compresses the file.
+        points : array_like of float, shape (n, 2)
+            Positions of the vertices.
+
+        Raises
+        ------
+        FileError
+            The file cannot be written.
+        MeshError
+            The points are not finite, or not one per vertex.
+        """
+        self._native.write(path, points)
+
+    def difference(self, other: MeshFile) -> str | None:
+        """Return the first difference to another file apart from coordinates, None without one."""
+        return self._native.difference(other._native)
+
+    def __repr__(self) -> str:
+        sizes = f"{len(self.points)} vertices, {len(self.triangles)} triangles"
+        return f"MeshFile({str(self.path)!r}, {self.format}, {sizes})"
+
+
+def convert(
+    source: Path,
+    destination: Path,
+    *,
+    lossy: bool = False,
+    encoding: Literal["text", "binary", "compressed"] | None = None,
+) -> list[str]:
+    """Write a mesh file in another format, by the ending of `destination`.
+
+    Parameters
+    ----------
+    source : str or path-like
+        File to read.
+    destination : str or path-like
+        File to write. An existing file is replaced.
+    lossy : bool, default False
+        Write the mesh even if the format cannot hold all of it.
+    encoding : {"text", "binary", "compressed"}, optional
+        Encoding of the numbers. gmsh, legacy VTK and PLY are written as text or in binary, VTK XML also compressed. The
+        default is text, except for formats that are binary.
+
+    Returns
+    -------
+    list of str
+        What the format cannot hold.
+
+    Raises
+    ------
+    FileError
+        A file cannot be read or written, the format is not written in the encoding, or the format cannot hold all of the
+        mesh and `lossy` is false.
+    """
+    return MeshFile(source)._native.convert(destination, lossy, encoding)
+
+
+# Exit codes of the command line, and their exceptions.
+ERRORS: dict[int, type[GpuSmoothError]] = {2: OptionError, 3: FileError, 4: FileError, 5: DeviceError}
+
+
+def smooth_file(source: Path, destination: Path, **options: Any) -> dict[str, Any]:
+    """Smooth a mesh file as the command line does, and return the report.
+
+    The command line runs in another process. A driver that crashes does not end this process.
+
+    Parameters
+    ----------
+    source : str or path-like
+        Mesh to read.
+    destination : str or path-like
+        File for the smoothed mesh, in the format of `source`; may be `source` itself.
+    **options
+        Options of the command line, with underscores for hyphens: `slide=True` for `--slide`, `fix=["inlet", "outlet"]`
+        for `--fix inlet --fix outlet`. `gpu-smooth --help` lists them.
+
+    Returns
+    -------
+    dict
+        The report of the run, as `--report` writes it; see docs/report.md.
+
+    Raises
+    ------
+    FileError
+        A file cannot be read or written, or its mesh cannot be smoothed.
+    OptionError
+        The command line has no such option, or refuses its value.
+    DeviceError
+        The GPU cannot be used, or has failed.
+    GpuSmoothError
+        The run has ended without the wanted result, such as with `strict=True`.
+    """
+    import json
+    import os
+    import pathlib
+    import subprocess
+    import sys
+    import tempfile
+
+    if not sys.executable:
+        raise GpuSmoothError("no interpreter of Python is known to run the command line: sys.executable is empty")
+    words = [sys.executable, "-m", "gpu_smooth", os.fspath(source), os.fspath(destination)]
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        values = value if isinstance(value, (list, tuple)) else [value]
+        for one in values:
+            if one is True:
+                words.append(option)
+            elif one is not None and one is not False:
+                words.append(f"{option}={os.fspath(one) if isinstance(one, os.PathLike) else one}")
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(options.get("report") or pathlib.Path(folder, "report.json"))
+        if not options.get("report"):
+            words.append(f"--report={report}")
+        words.append("--quiet")
+        done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        if done.returncode != 0:
+            text = done.stderr.decode(errors="replace").strip()
+            text = text.removeprefix("error: ") or f"gpu-smooth ended with code {done.returncode}"
+            raise ERRORS.get(done.returncode, GpuSmoothError)(text)
+        found: dict[str, Any] = json.loads(report.read_text())
+        return found

@@ -1,0 +1,133 @@
+"""The mesh of the running gmsh session."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gpu_smooth._cells import Cells
+from gpu_smooth._errors import GpuSmoothError, MeshError
+from gpu_smooth._smooth import run
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from gpu_smooth._options import Integers, SmoothOptions
+    from gpu_smooth._result import Result
+
+# gmsh's types of elements.
+LINE, TRIANGLE = 1, 2
+
+
+def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
+    """Smooth the mesh of the running gmsh session in place.
+
+    Nodes on points and curves of the model stay, also on those embedded in a surface. With `slide=True`, nodes on curves
+    slide along them, and the nodes of periodic curves slide in pairs. Nodes of other elements than triangles stay. The
+    parameters of moved nodes on their curves and surfaces are set too.
+
+    Parameters
+    ----------
+    **options
+        The options of `smooth`. Vertices are numbered by the rows of `gmsh.model.mesh.getNodes()`.
+
+    Returns
+    -------
+    Result
+        New points of all nodes, of shape (n, 3), in the order of `gmsh.model.mesh.getNodes()`, and a report.
+
+    Raises
+    ------
+    GpuSmoothError
+        No gmsh session is running.
+    MeshError
+        The mesh has no triangles of three nodes, has volume elements, or is not in a plane of constant z.
+    OptionError, DeviceError
+        As `smooth` does.
+    """
+    import gmsh
+
+    if not gmsh.isInitialized():
+        raise GpuSmoothError("no gmsh session is running: call gmsh.initialize() and mesh a model first")
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    tags = np.asarray(tags, dtype=np.int64)
+    points = np.asarray(coordinates, dtype=float).reshape(-1, 3)
+    rows = np.full(int(tags.max(initial=0)) + 1, -1)
+    rows[tags] = np.arange(len(tags))
+    cells = _cells(gmsh, rows)
+    given: dict[str, Any] = cells.options(dict(options), len(points))
+    if np.ptp(points[cells.triangles, 2]) != 0.0:
+        raise MeshError(
+            "mesh: the triangles are not in a plane of constant z. Rotate the model into the plane of x and y"
+        )
+    if given.get("slide") and given.get("periodic") is None:
+        given["periodic"] = _periodic(gmsh, rows)
+    result = run(points, cells.triangles, **given)
+    moved = np.flatnonzero((result.points != points).any(axis=1))
+    _set_nodes(gmsh, tags, rows, result.points, moved)
+    return result
+
+
+def _cells(gmsh: Any, rows: Integers) -> Cells:
+    """Return the cells of the model. `rows` are the rows of nodes by their tags."""
+    if len(gmsh.model.mesh.getElementTypes(3)):
+        raise MeshError("mesh: there are volume elements, whose nodes must not move. Mesh the surfaces alone")
+    triangles, regions = [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]
+    lines, anchored = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)]
+    for dimension, entity in gmsh.model.getEntities():
+        # Nodes on points, and nodes on curves that no line has.
+        if dimension < 2:
+            nodes = rows[np.asarray(gmsh.model.mesh.getNodes(dimension, entity)[0], np.int64)]
+            on_lines = np.empty(0, np.int64)
+            types, _, of_types = gmsh.model.mesh.getElements(dimension, entity)
+            for kind, connectivity in zip(types, of_types):
+                corners = rows[np.asarray(connectivity, np.int64)]
+                if kind == LINE:
+                    lines.append(corners.reshape(-1, 2))
+                    on_lines = np.union1d(on_lines, corners)
+                else:
+                    anchored.append(corners)
+            anchored.append(np.setdiff1d(nodes, on_lines))
+            continue
+        types, _, of_types = gmsh.model.mesh.getElements(dimension, entity)
+        for kind, connectivity in zip(types, of_types):
+            corners = rows[np.asarray(connectivity, np.int64)]
+            if kind == TRIANGLE:
+                triangles.append(corners.reshape(-1, 3))
+                regions.append(np.full(len(corners) // 3, entity))
+            else:
+                anchored.append(corners)
+    return Cells(
+        np.concatenate(triangles), np.concatenate(lines), np.concatenate(anchored), np.concatenate(regions)
+    )
+
+
+def _periodic(gmsh: Any, rows: Integers) -> Integers:
+    """Return the pairs of nodes of periodic curves, of shape (k, 2)."""
+    pairs = [np.empty((0, 2), np.int64)]
+    for _, curve in gmsh.model.getEntities(1):
+        master, nodes, of_master, _ = gmsh.model.mesh.getPeriodicNodes(1, curve)
+        if master != curve and len(nodes):
+            pairs.append(rows[np.stack([of_master, nodes], axis=1).astype(np.int64)])
+    return np.concatenate(pairs)
+
+
+def _set_nodes(gmsh: Any, tags: Integers, rows: Integers, points: Any, moved: Integers) -> None:
+    """Set the places of moved nodes, and their parameters on the curve or surface to which they belong."""
+    is_moved = np.zeros(len(tags), bool)
+    is_moved[moved] = True
+    for dimension, entity in [*gmsh.model.getEntities(1), *gmsh.model.getEntities(2)]:
+        own = np.asarray(gmsh.model.mesh.getNodes(dimension, entity)[0], np.int64)
+        own = own[is_moved[rows[own]]]
+        if not len(own):
+            continue
+        places = points[rows[own]]
+        try:
+            parameters = np.asarray(gmsh.model.getParametrization(dimension, entity, places.ravel()))
+            parameters = parameters.reshape(len(own), dimension)
+        except Exception:  # noqa: BLE001
+            # gmsh raises Exception. Entities without geometry, such as those of a mesh that was read, have no parameters.
+            parameters = np.empty((len(own), 0))
+        for tag, place, parameter in zip(own.tolist(), places.tolist(), parameters.tolist()):
+            gmsh.model.mesh.setNode(tag, place, parameter)

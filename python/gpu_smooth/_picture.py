@@ -1,0 +1,132 @@
+"""Pictures of results: by matplotlib, and as SVG in notebooks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gpu_smooth import _native
+
+if TYPE_CHECKING:
+    from gpu_smooth._options import Doubles, Floats, Integers
+    from gpu_smooth._result import Result
+
+# Colors of shapes from good to bad: matplotlib's viridis_r at equal steps.
+COLORS = ("#fde725", "#a0da39", "#4ac16d", "#1fa187", "#277f8e", "#365c8d", "#46327e", "#440154")
+# Largest inverse mean ratio that has a color of its own; worse triangles have the last color.
+WORST = 3.0
+# Largest number of triangles of which a notebook gets a picture. A picture of more takes megabytes.
+MOST_TRIANGLES = 20_000
+# Width of the picture of a mesh, in pixels.
+WIDTH = 360.0
+
+
+def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, Any]) -> Any:
+    """Draw a result by matplotlib; see `Result.plot`."""
+    import matplotlib.pyplot as plt
+
+    states = {"before": result.points_before, "after": result.points}
+    if which not in ("before", "after", "both"):
+        raise _native_option_error(which)
+    names = list(states) if which == "both" else [which]
+    if ax is None:
+        width, height = np.ptp(result.points[np.unique(result.triangles), :2], axis=0)
+        each = 6.0 * min(max(height / max(width, np.finfo(float).tiny), 0.3), 2.0)
+        figure, axes = plt.subplots(
+            1,
+            len(names),
+            squeeze=False,
+            sharex=True,
+            sharey=True,
+            figsize=(6.0 * len(names) + 1.0, each + 0.6),
+            layout="constrained",
+        )
+        all_axes = list(axes[0])
+    else:
+        figure, all_axes = ax.figure, [ax]
+        names = names[-1:]
+    values = {
+        name: _native.quality(states[name], result.triangles, measure, "plane") for name in names
+    }
+    finite = np.concatenate([value[np.isfinite(value)] for value in values.values()])
+    chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2, "cmap": "viridis_r"}
+    if finite.size:
+        # A few very bad triangles would take all colors.
+        chosen |= {"vmin": finite.min(), "vmax": np.quantile(finite, 0.99)}
+    chosen |= options
+    drawn = None
+    for name, axis in zip(names, all_axes):
+        points = states[name]
+        drawn = axis.tripcolor(
+            points[:, 0], points[:, 1], result.triangles, facecolors=_finite(values[name]), **chosen
+        )
+        axis.set_aspect("equal")
+        axis.set_title(name)
+    figure.colorbar(drawn, ax=all_axes, label=measure)
+    return figure
+
+
+def _finite(values: Doubles) -> Doubles:
+    largest = np.max(values[np.isfinite(values)], initial=0.0)
+    finite: Doubles = np.where(np.isfinite(values), values, largest)
+    return finite
+
+
+def _native_option_error(which: str) -> Exception:
+    from gpu_smooth._errors import OptionError
+
+    return OptionError(f'which: the value is {which!r}, and must be "before" or "after" or "both"')
+
+
+def html(result: Result) -> str:
+    """Return a result as HTML: the mesh before and after the run, colored by shape, and a table."""
+    pictures = ""
+    if len(result.triangles) <= MOST_TRIANGLES:
+        states = (("before", result.points_before), ("after", result.points))
+        pictures = "".join(
+            f'<figure style="display:inline-block;margin:4px"><figcaption>{name}</figcaption>'
+            f"{svg(points, result.triangles)}</figure>"
+            for name, points in states
+        )
+    before, after = result.quality_before, result.quality_after
+    metric = result.metric
+    rows = [
+        (f"f {metric}", f"{before.f(metric):.6g}", f"{after.f(metric):.6g}"),
+        ("min angle", f"{before.min_angle:.2f}°", f"{after.min_angle:.2f}°"),
+        ("max angle", f"{before.max_angle:.2f}°", f"{after.max_angle:.2f}°"),
+        ("worst imr", f"{before.worst_imr:.6g}", f"{after.worst_imr:.6g}"),
+        ("inverted", str(before.inverted), str(after.inverted)),
+    ]
+    table = "".join(
+        f"<tr><th>{name}</th><td>{was}</td><td>{now}</td></tr>" for name, was, now in rows
+    )
+    return (
+        f"<div>{pictures}<table><tr><th></th><th>before</th><th>after</th></tr>{table}</table>"
+        f"<p>{result.stop} after {result.sweeps} sweeps</p></div>"
+    )
+
+
+def svg(points: Floats, triangles: Integers) -> str:
+    """Return a mesh as an SVG picture, each triangle colored by its inverse mean ratio."""
+    used = np.unique(triangles)
+    flat = np.asarray(points[:, :2], dtype=float)
+    low, high = flat[used].min(axis=0), flat[used].max(axis=0)
+    size = np.maximum(high - low, np.finfo(float).tiny)
+    scale = WIDTH / max(size[0], size[1])
+    xy = np.round((flat - low) * [scale, -scale] + [0.0, scale * size[1]], 2)
+    quality = _native.quality(points, triangles, "imr", "plane")
+    shares = np.nan_to_num((quality - 1.0) / (WORST - 1.0), nan=1.0, posinf=1.0)
+    colors = np.clip(shares * len(COLORS), 0, len(COLORS) - 1).astype(int)
+    paths = []
+    for number, color in enumerate(COLORS):
+        corners = xy[triangles[colors == number]].reshape(-1, 6).tolist()
+        path = "".join("M%g %gL%g %gL%g %gZ" % tuple(corner) for corner in corners)
+        if path:
+            paths.append(f'<path fill="{color}" d="{path}"/>')
+    width, height = size * scale
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
+        f'viewBox="-1 -1 {width + 2:.2f} {height + 2:.2f}" stroke="#fff" stroke-width="0.3" '
+        f'stroke-linejoin="round">{"".join(paths)}</svg>'
+    )

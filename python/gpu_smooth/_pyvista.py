@@ -1,0 +1,94 @@
+"""Meshes of PyVista, and the accessor `gpu_smooth` of its datasets."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gpu_smooth import _native
+from gpu_smooth._cells import REGIONS, Cells, whole
+from gpu_smooth._errors import MeshError
+
+# Types of VTK's cells.
+VERTEX, POLY_VERTEX, LINE, POLY_LINE, TRIANGLE = 1, 2, 3, 4, 5
+
+
+class _Part:
+    """Cells of one type: the vertices of cell k are `connectivity[offsets[k]:offsets[k + 1]]`."""
+
+    def __init__(self, offsets: Any, connectivity: Any) -> None:
+        self.offsets, self.connectivity = np.asarray(offsets), np.asarray(connectivity)
+        self.sizes = np.diff(self.offsets)
+
+    def rows(self, is_chosen: Any, size: int) -> Any:
+        """Return the vertices of the chosen cells, which have `size` vertices each."""
+        starts = self.offsets[:-1][is_chosen]
+        return self.connectivity[starts[:, None] + np.arange(size)].astype(np.int64)
+
+    def vertices(self, is_chosen: Any) -> Any:
+        """Return the vertices of the chosen cells."""
+        return self.connectivity[np.repeat(is_chosen, self.sizes)].astype(np.int64)
+
+    def segments(self, is_chosen: Any) -> Any:
+        """Return the edges of the chosen lines and polylines, of shape (k, 2)."""
+        edges = np.stack([self.connectivity[:-1], self.connectivity[1:]], axis=1).astype(np.int64)
+        # An edge does not go from one line to the next.
+        is_inside = np.repeat(is_chosen, self.sizes)[:-1]
+        ends = self.offsets[1:-1] - 1
+        is_inside[ends[(ends >= 0) & (ends < len(is_inside))]] = False
+        return edges[is_inside]
+
+
+def _part(array: Any) -> _Part:
+    """Return the cells of a `vtkCellArray`."""
+    import pyvista
+
+    return _Part(
+        pyvista.convert_array(array.GetOffsetsArray()),
+        pyvista.convert_array(array.GetConnectivityArray()),
+    )
+
+
+def cells_of(mesh: Any) -> Cells:
+    """Return the cells of a `pyvista.UnstructuredGrid` or `pyvista.PolyData`."""
+    import pyvista
+
+    if isinstance(mesh, pyvista.UnstructuredGrid):
+        part, types = _part(mesh.GetCells()), np.asarray(mesh.celltypes)
+        is_line = np.isin(types, (LINE, POLY_LINE))
+        is_triangle = types == TRIANGLE
+        lines = part.segments(is_line) if len(types) else np.empty((0, 2), np.int64)
+        anchored = part.vertices(~(is_line | is_triangle))
+        triangles = part.rows(is_triangle, 3)
+    elif isinstance(mesh, pyvista.PolyData):
+        # Cell data are of vertices, lines, polygons and strips, in this order.
+        parts = [_part(own()) for own in (mesh.GetVerts, mesh.GetLines, mesh.GetPolys, mesh.GetStrips)]
+        vertices, of_lines, polygons, strips = parts
+        is_polygon = polygons.sizes == 3
+        triangles = polygons.rows(is_polygon, 3)
+        lines = of_lines.segments(np.ones(len(of_lines.sizes), bool))
+        anchored = np.concatenate(
+            [vertices.connectivity, strips.connectivity, polygons.vertices(~is_polygon)]
+        )
+        is_triangle = np.concatenate(
+            [is_polygon if own is polygons else np.zeros(len(own.sizes), bool) for own in parts]
+        )
+    else:
+        raise MeshError(
+            f"mesh: {type(mesh).__name__} is not accepted. Pass an UnstructuredGrid or PolyData, such as mesh.cast_to_"
+            "unstructured_grid()"
+        )
+    regions = next((mesh.cell_data[name] for name in REGIONS if name in mesh.cell_data), None)
+    of_triangles = None if regions is None else whole(np.asarray(regions)[is_triangle])
+    return Cells(triangles, lines, anchored.astype(np.int64), of_triangles)
+
+
+def smooth(mesh: Any, options: dict[str, Any]) -> Any:
+    """Return a copy of a PyVista mesh with moved vertices."""
+    cells = cells_of(mesh)
+    points = np.asarray(mesh.points)
+    moved = _native.smooth(points, cells.triangles, **cells.options(options, len(points)))
+    smoothed = mesh.copy(deep=True)
+    smoothed.points = moved
+    return smoothed

@@ -1,0 +1,167 @@
+"""The result of a run."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from gpu_smooth import _picture
+from gpu_smooth._native import Outcome, Quality
+
+if TYPE_CHECKING:
+    from gpu_smooth._options import Doubles, Floats, Integers
+    from gpu_smooth._smooth import Smoother
+
+
+class Result:
+    """Result of a run: new points, and a report.
+
+    A notebook shows the result as a picture. `run` and `Smoother.run` return results.
+    """
+
+    def __init__(self, outcome: Outcome, smoother: Smoother) -> None:
+        self._outcome = outcome
+        self._smoother = smoother
+        self.points: Floats = outcome.points()
+        """Points after the run, in the shape and the type of the points that were passed."""
+
+    @property
+    def triangles(self) -> Integers:
+        """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
+        return self._smoother.triangles
+
+    @functools.cached_property
+    def points_before(self) -> Floats:
+        """Points before the run, in the shape and the type of `points`."""
+        return self._outcome.points_before()
+
+    @property
+    def displacement(self) -> Floats:
+        """Vectors from the points before the run to `points`, in the shape of `points`."""
+        moved: Floats = self.points - self.points_before
+        return moved
+
+    @functools.cached_property
+    def histories(self) -> dict[str, Doubles]:
+        """f before the first sweep and after each sweep, by each metric of the history; see the option `history`."""
+        return self._outcome.history()
+
+    @property
+    def history(self) -> Doubles:
+        """f by the first metric of the scheme, of shape (sweeps + 1,): before the first sweep and after each sweep."""
+        return self.histories.get(self.metric, np.empty(0))
+
+    @functools.cached_property
+    def quality_before(self) -> Quality:
+        """Quality of the mesh before the run."""
+        return self._outcome.quality_before()
+
+    @functools.cached_property
+    def quality_after(self) -> Quality:
+        """Quality of the mesh after the run."""
+        return self._outcome.quality_after()
+
+    @property
+    def metric(self) -> str:
+        """Name of the first metric of the scheme, which judges the run."""
+        return self._outcome.metric
+
+    @property
+    def engine(self) -> str:
+        """`"cpu"`, or the name of the GPU adapter."""
+        return self._outcome.engine
+
+    @property
+    def stop(self) -> str:
+        """Reason why the run ended.
+
+        `"converged"`, `"reached"` (the goal), `"stalled"`, `"held-back"`, `"max-sweeps"`, `"canceled"` (by `on_sweep` or
+        `time_limit`) or `"not-finite"`.
+        """
+        return self._outcome.stop
+
+    @property
+    def sweeps(self) -> int:
+        """Number of sweeps done."""
+        return self._outcome.sweeps
+
+    @property
+    def corrections(self) -> int:
+        """Number of corrections from coarser levels."""
+        return self._outcome.corrections
+
+    @property
+    def best_sweep(self) -> int:
+        """The sweep whose points were taken; 0 for the points before the run."""
+        return self._outcome.best_sweep
+
+    @property
+    def remaining(self) -> float | None:
+        """Estimated gain of further sweeps, as a share of f; None if unknown."""
+        return self._outcome.remaining
+
+    @property
+    def held_back(self) -> int:
+        """Number of vertices that a guard kept from moving further."""
+        return self._outcome.held_back
+
+    @property
+    def slid(self) -> int:
+        """Number of vertices that slid along lines."""
+        return self._outcome.slid
+
+    @property
+    def prepare_seconds(self) -> float:
+        """Duration of the preparation of the mesh in seconds, which runs of a `Smoother` share."""
+        return self._outcome.prepare_seconds
+
+    @property
+    def seconds(self) -> float:
+        """Duration of the run in seconds, without the preparation of the mesh."""
+        return self._outcome.seconds
+
+    def plot(
+        self,
+        which: Literal["before", "after", "both"] = "both",
+        measure: str = "imr",
+        ax: Any = None,
+        **options: Any,
+    ) -> Any:
+        """Draw the mesh by matplotlib, each triangle colored by a measure.
+
+        Parameters
+        ----------
+        which : {"before", "after", "both"}
+            The mesh before the run, after the run, or both side by side in equal colors.
+        measure : str
+            Name of a measure; see `measures`.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw in, for "before" or "after".
+        **options
+            Passed to `matplotlib.axes.Axes.tripcolor`, such as `cmap`, `vmin` or `edgecolors`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ImportError
+            matplotlib is not installed.
+        OptionError
+            No measure has the name.
+        """
+        return _picture.plot(self, which, measure, ax, options)
+
+    def _repr_html_(self) -> str:
+        return _picture.html(self)
+
+    def __repr__(self) -> str:
+        history = self.history
+        before, after = history[0], history[self.best_sweep]
+        return (
+            f"Result({self.stop} after {self.sweeps} sweeps on {self.engine}, "
+            f"f {self.metric} {before:.6g} -> {after:.6g}, inverted {self.quality_after.inverted})"
+        )

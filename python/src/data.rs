@@ -1,0 +1,130 @@
+//! Functions on arrays beside smoothing: untangling, interpolation of data, and comparison of two states of a mesh.
+
+use gpu_smooth::interpolate::Interpolation;
+use gpu_smooth::measure::{Change, Distribution};
+use gpu_smooth::{Mesh, Quality as MeshQuality, Topology};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{self, Points, PointsForm};
+use crate::error;
+use crate::input::{self, Failure};
+use crate::measures::{self, Quality};
+use crate::observer::RunObserver;
+use crate::run_options::RunOptions;
+use crate::threads;
+
+/// Moves free vertices until no triangle is inverted or flat.
+#[pyfunction]
+#[pyo3(signature = (points, triangles, fixed, keep_going, time_limit, on_sweep))]
+pub(crate) fn untangle<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    triangles: &Bound<'py, PyAny>,
+    fixed: &Bound<'py, PyAny>,
+    keep_going: bool,
+    time_limit: &Bound<'py, PyAny>,
+    on_sweep: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Points { xy, form } = arrays::points("points", points)?;
+    let triangles = arrays::triangles("triangles", triangles, xy.len())?;
+    let fixed = match fixed.is_none() {
+        true => Vec::new(),
+        false => arrays::vertex_set("fixed", fixed, xy.len())?,
+    };
+    let options = PyDict::new(py);
+    options.set_item("time_limit", time_limit)?;
+    options.set_item("on_sweep", on_sweep)?;
+    let mut run = RunOptions::default();
+    for (name, value) in &options {
+        run.set_named(&name, &value, "untangle")?;
+    }
+    let observer = RunObserver::new(&run);
+    let mesh = Mesh { points: xy, triangles, fixed };
+    let stored = form.precision();
+    let done = threads::watched(py, &observer, || match keep_going {
+        true => {
+            let done = gpu_smooth::untangle(&mesh, stored, &mut input::observe(&observer))?;
+            Ok(Some(done.points))
+        }
+        false => input::untangled(&mesh, stored, &observer),
+    })?;
+    if let Some(raised) = observer.take_raised() {
+        return Err(raised);
+    }
+    let points = done.map_err(|failure: Failure| failure.raised(py))?;
+    form.array(py, points.unwrap_or(mesh.points))
+}
+
+/// Evaluates data of vertices at new positions of the vertices.
+#[pyfunction]
+pub(crate) fn interpolate<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    triangles: &Bound<'py, PyAny>,
+    moved: &Bound<'py, PyAny>,
+    values: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mesh = measures::mesh(points, triangles)?;
+    let moved = likewise("moved", moved, &mesh)?.xy;
+    let values = arrays::per_vertex("values", values, mesh.points.len())?;
+    let taken = threads::detached(py, || {
+        let topology = Topology::new(&mesh)?;
+        Interpolation::new(&topology, &mesh.points, &moved)?.apply(&values.numbers, values.each)
+    })?;
+    let taken = taken.map_err(|error| error::of_mesh(py, &error))?;
+    match values.is_flat {
+        true => Ok(PyArray1::from_vec(py, taken).into_any()),
+        false => arrays::matrix(py, taken, [mesh.points.len(), values.each]),
+    }
+}
+
+/// Compares two states of a mesh. Returns a dict of keyword arguments for the class `Comparison` of the package.
+#[pyfunction]
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    before: &Bound<'py, PyAny>,
+    after: &Bound<'py, PyAny>,
+    triangles: &Bound<'py, PyAny>,
+    on: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let Points { xy, form } = arrays::points("before", before)?;
+    let triangles = arrays::triangles("triangles", triangles, xy.len())?;
+    let mesh = Mesh { points: xy, triangles, fixed: Vec::new() };
+    let Points { xy: after, form: other } = likewise("after", after, &mesh)?;
+    let surface = measures::surface(on)?;
+    let compared = threads::detached(py, || {
+        let topology = Topology::new(&mesh)?;
+        let change = Change::between(&topology, &mesh.points, &after)?;
+        let of = |points: &[[f64; 2]]| MeshQuality::on(surface, points, &topology);
+        Ok((change, [of(&mesh.points)?, of(&after)?]))
+    })?;
+    let (change, [was, is]) = compared.map_err(|error| error::of_mesh(py, &error))?;
+    let spread = |of: Distribution| (of.median, of.p95, of.most);
+    let moved = mesh.points.iter().zip(&after).filter(|(was, is)| was != is).count();
+    let all = PyDict::new(py);
+    all.set_item("vertices_moved", moved)?;
+    all.set_item("z_changed", !PointsForm::has_equal_z(&form, &other))?;
+    all.set_item("moved", spread(change.moved))?;
+    all.set_item("size_change", spread(change.size))?;
+    all.set_item("least_altitude", (change.least_altitude[0], change.least_altitude[1]))?;
+    all.set_item("quality_before", Quality::of(was))?;
+    all.set_item("quality_after", Quality::of(is))?;
+    Ok(all)
+}
+
+/// Reads points, one row per vertex of a mesh.
+fn likewise(name: &str, value: &Bound<'_, PyAny>, mesh: &Mesh) -> PyResult<Points> {
+    let points = arrays::points(name, value)?;
+    let (given, expected) = (points.xy.len(), mesh.points.len());
+    match given == expected {
+        true => Ok(points),
+        false => {
+            let text = format!(
+                "{name}: {given} points are given for the {expected} vertices of the mesh. Pass one row per vertex"
+            );
+            Err(error::mesh(value.py(), &text))
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Exceptions: the classes of `gpu_smooth/_errors.py`, raised with messages that name the argument, the index and a
+//! remedy.
+
+use gpu_smooth::options::{Feature, OptionError};
+use gpu_smooth::{GpuError, MeshError, SmoothError};
+use mesh_io::{ReadError, WriteError};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyTuple, PyType};
+
+/// The module that defines the exceptions.
+static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+
+/// Returns an exception of the class `class` of `gpu_smooth._errors`.
+fn raised(py: Python<'_>, class: &str, text: &str) -> PyErr {
+    let module = MODULE
+        .get_or_try_init(py, || py.import(intern!(py, "gpu_smooth._errors")).map(Bound::unbind));
+    let class = module.and_then(|module| module.bind(py).getattr(class));
+    match class.and_then(|class| class.cast_into::<PyType>().map_err(PyErr::from)) {
+        Ok(class) => PyErr::from_type(class, (text.to_owned(),)),
+        Err(error) => error,
+    }
+}
+
+/// Returns the exception for arrays that are no mesh, or do not fit the mesh.
+pub(crate) fn mesh(py: Python<'_>, text: &str) -> PyErr {
+    raised(py, "MeshError", text)
+}
+
+/// Returns the exception for an option with a wrong value.
+pub(crate) fn option(py: Python<'_>, text: &str) -> PyErr {
+    raised(py, "OptionError", text)
+}
+
+/// Returns the exception for a device that cannot be used.
+pub(crate) fn device(py: Python<'_>, text: &str) -> PyErr {
+    raised(py, "DeviceError", text)
+}
+
+/// Returns the exception for a file that cannot be read or written.
+pub(crate) fn file(py: Python<'_>, text: &str) -> PyErr {
+    raised(py, "FileError", text)
+}
+
+/// Returns the exception of a file that cannot be read.
+pub(crate) fn of_reading(py: Python<'_>, error: &ReadError) -> PyErr {
+    file(py, &error.to_string())
+}
+
+/// Returns the exception of a file that cannot be written.
+pub(crate) fn of_writing(py: Python<'_>, error: &WriteError) -> PyErr {
+    match error {
+        WriteError::Points { .. } => mesh(py, &format!("points: {error}")),
+        _ => file(py, &error.to_string()),
+    }
+}
+
+/// Returns the exception of a run.
+pub(crate) fn of_run(py: Python<'_>, error: &SmoothError) -> PyErr {
+    match error {
+        SmoothError::Mesh(error) => of_mesh(py, error),
+        SmoothError::Option(error) => of_option(py, error),
+        SmoothError::Gpu(error) => of_gpu(py, error),
+        _ => option(py, &error.to_string()),
+    }
+}
+
+/// Returns the exception of a device, with advice.
+pub(crate) fn of_gpu(py: Python<'_>, error: &GpuError) -> PyErr {
+    let text = error.to_string();
+    let has_advice = text.contains("--engine cpu");
+    let text = text.replace("--engine cpu", "engine=\"cpu\"");
+    match (error, has_advice) {
+        (_, true) => device(py, &text),
+        (GpuError::NoAdapter { .. }, _) => device(
+            py,
+            &format!(
+                "engine: {text}. Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` brings one \
+                 that needs no graphics card), or pass engine=\"cpu\""
+            ),
+        ),
+        _ => device(py, &format!("engine: {text}. Pass engine=\"cpu\" to compute on the CPU")),
+    }
+}
+
+/// Returns the exception of options that the library refuses, with the names of Python's arguments.
+pub(crate) fn of_option(py: Python<'_>, error: &OptionError) -> PyErr {
+    let text = match error {
+        OptionError::OutOfRange { option, value, range } => {
+            let option = match *option {
+                "newton steps" => "inner".to_owned(),
+                "scheme length" => "scheme".to_owned(),
+                name => name.replace(' ', "_"),
+            };
+            format!("{option}: the value is {value}, and must be {range}")
+        }
+        OptionError::Conflict { features: [a, b], why } => {
+            format!("{} does not go with {}: {why}", argument(*a), argument(*b))
+        }
+        _ => error.to_string(),
+    };
+    option(py, &text)
+}
+
+/// Returns the argument that selects a feature of a run.
+fn argument(feature: Feature) -> String {
+    match feature {
+        Feature::UnevenScheme => "scheme (of several metrics, or of edge)".to_owned(),
+        Feature::UncorrectedScheme => "scheme (without corrections, such as area)".to_owned(),
+        Feature::Multilevel => "method=\"multilevel\"".to_owned(),
+        Feature::FiniteDifferences => "derivatives=\"finite-difference\"".to_owned(),
+        Feature::Goal => "fraction or desired".to_owned(),
+        Feature::SearchedGoal => "fraction without desired".to_owned(),
+        Feature::WorstGuard => "guard=\"worst\"".to_owned(),
+        Feature::MaxMove => "max_move".to_owned(),
+        Feature::KeepAltitude => "keep_altitude".to_owned(),
+        Feature::ImproveWorst => "improve_worst".to_owned(),
+        Feature::Slide => "slide".to_owned(),
+        Feature::Targets => "target".to_owned(),
+        Feature::TargetField => "target (of places)".to_owned(),
+        Feature::Untangle => "untangle".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// Returns the exception of a mesh that cannot be untangled.
+pub(crate) fn tangled(py: Python<'_>, text: &str, triangles: Vec<usize>) -> PyErr {
+    with_indices(py, mesh(py, text), triangles, None)
+}
+
+/// Returns the exception of a mesh that the library refuses. The attributes `triangles` and `vertex` of the exception
+/// have the indices that the error names.
+pub(crate) fn of_mesh(py: Python<'_>, error: &MeshError) -> PyErr {
+    let (triangles, vertex) = indices(error);
+    with_indices(py, mesh(py, &explained(error)), triangles, vertex)
+}
+
+/// Sets the attributes of an exception that name triangles and a vertex.
+fn with_indices(
+    py: Python<'_>,
+    raised: PyErr,
+    triangles: Vec<usize>,
+    vertex: Option<usize>,
+) -> PyErr {
+    let value = raised.value(py);
+    let set = PyTuple::new(py, triangles)
+        .and_then(|triangles| value.setattr(intern!(py, "triangles"), triangles))
+        .and_then(|()| value.setattr(intern!(py, "vertex"), vertex));
+    match set {
+        Ok(()) => raised,
+        Err(error) => error,
+    }
+}
+
+/// Returns the triangles and the vertex that an error names.
+fn indices(error: &MeshError) -> (Vec<usize>, Option<usize>) {
+    match error {
+        MeshError::NotFinite { vertex } | MeshError::OverlappingStar { vertex, .. } => {
+            (Vec::new(), Some(*vertex as usize))
+        }
+        MeshError::IndexOutOfRange { triangle, vertex, .. } => {
+            (triangle.iter().copied().collect(), Some(*vertex as usize))
+        }
+        MeshError::RepeatedVertex { triangle, vertex } => (vec![*triangle], Some(*vertex as usize)),
+        MeshError::EdgeOfThree { triangles, .. } => (triangles.clone(), None),
+        MeshError::Infeasible { triangles } => {
+            (triangles.iter().map(|bad| bad.triangle).collect(), None)
+        }
+        MeshError::Closed { triangle }
+        | MeshError::BeyondPrecision { triangle, .. }
+        | MeshError::Pole { triangle } => (vec![*triangle], None),
+        MeshError::Target { vertex, .. } => (Vec::new(), Some(*vertex)),
+        _ => (Vec::new(), None),
+    }
+}
+
+/// Returns the message of a mesh error in terms of the arguments, with a remedy.
+fn explained(error: &MeshError) -> String {
+    match error {
+        MeshError::Empty => {
+            "triangles: the mesh has no triangles. Pass an integer array of shape (m, 3) with at least one row".to_owned()
+        }
+        MeshError::NotFinite { vertex } => {
+            format!("points[{vertex}]: {error}. Replace NaN and infinity, or remove the vertex")
+        }
+        MeshError::OutOfRange { .. } => format!("points: {error}. Choose another unit of length"),
+        MeshError::IndexOutOfRange { triangle: Some(triangle), .. } => {
+            format!("triangles[{triangle}]: {error}. Vertices are numbered from 0 by the rows of points")
+        }
+        MeshError::RepeatedVertex { triangle, .. } => {
+            format!("triangles[{triangle}]: {error}. Remove the triangle")
+        }
+        MeshError::EdgeOfThree { .. } => {
+            format!("triangles: {error}. Remove triangles until an edge has two at most")
+        }
+        MeshError::Infeasible { .. } => {
+            format!("triangles: {error}. Pass untangle=True, or correct the points of their vertices")
+        }
+        MeshError::OverlappingStar { vertex, .. } => {
+            format!("points[{vertex}]: {error}. Correct the points around the vertex")
+        }
+        MeshError::BeyondPrecision { triangle, usable, .. } => {
+            let usable = match usable.is_empty() {
+                true => "Pass untangle=True".to_owned(),
+                false => format!("Pass untangle=True, or a scheme of {}", usable.join(", ")),
+            };
+            format!("triangles[{triangle}]: {error}. {usable}")
+        }
+        MeshError::Target { vertex, problem } => {
+            format!("vertex {vertex} has no target: {problem}. Sizes are positive, tensors (xx, xy, yy) positive definite")
+        }
+        MeshError::NothingFree { .. } => format!(
+            "{error}: all are on the boundary, fixed, on lines or between regions. Pass slide=True, fix fewer vertices, or \
+             refine the mesh"
+        ),
+        MeshError::PointCount { .. } => format!("points: {error}. Pass one row per vertex"),
+        MeshError::ValueCount { .. } => format!("{error}. Pass one row per vertex"),
+        other => other.to_string(),
+    }
+}

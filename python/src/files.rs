@@ -1,0 +1,200 @@
+//! Mesh files: a file in memory with its points, triangles, groups and data, and conversions.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use mesh_io::{Conversion, Encoding, MeshFile as File, ReadOptions};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays;
+use crate::error;
+use crate::threads;
+use crate::values::Given;
+
+/// A mesh file in memory.
+#[pyclass(frozen, module = "gpu_smooth._native")]
+pub(crate) struct MeshFile(Arc<File>);
+
+#[pymethods]
+impl MeshFile {
+    #[new]
+    #[pyo3(signature = (path, *, weld, allow_outside, regions))]
+    fn new(
+        py: Python<'_>,
+        path: PathBuf,
+        weld: bool,
+        allow_outside: bool,
+        regions: Option<String>,
+    ) -> PyResult<Self> {
+        let options = ReadOptions::new().weld(weld).allow_outside(allow_outside).regions(regions);
+        let file = threads::detached(py, || options.read(&path))?;
+        Ok(Self(Arc::new(file.map_err(|error| error::of_reading(py, &error))?)))
+    }
+
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.0.path().to_owned()
+    }
+
+    #[getter]
+    fn format(&self) -> String {
+        self.0.format().to_string()
+    }
+
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let points = self.0.points();
+        arrays::matrix(py, points.as_flattened().to_vec(), [points.len(), 2])
+    }
+
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let triangles = self.0.triangles();
+        let numbers = triangles.as_flattened().iter().map(|&v| i64::from(v)).collect();
+        arrays::matrix(py, numbers, [triangles.len(), 3])
+    }
+
+    #[getter]
+    fn regions<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<i64>>> {
+        let regions = self.0.regions()?.iter().map(|&region| i64::from(region)).collect();
+        Some(PyArray1::from_vec(py, regions))
+    }
+
+    #[getter]
+    fn lines<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lines = &self.0.constraints().lines;
+        let numbers = lines.as_flattened().iter().map(|&v| i64::from(v)).collect();
+        arrays::matrix(py, numbers, [lines.len(), 2])
+    }
+
+    #[getter]
+    fn anchored<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        let mut anchored = self.0.constraints().anchored.clone();
+        anchored.sort_unstable();
+        anchored.dedup();
+        PyArray1::from_vec(py, anchored.into_iter().map(i64::from).collect())
+    }
+
+    #[getter]
+    fn periodic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let pairs = self.0.constraints().periodic.iter().flat_map(|list| &list.pairs);
+        let numbers: Vec<i64> = pairs.flatten().map(|&v| i64::from(v)).collect();
+        let rows = numbers.len() / 2;
+        arrays::matrix(py, numbers, [rows, 2])
+    }
+
+    #[getter]
+    fn remarks(&self) -> Vec<String> {
+        self.0.remarks().iter().map(ToString::to_string).collect()
+    }
+
+    #[getter]
+    fn data_names(&self) -> Vec<String> {
+        self.0.data_names().to_vec()
+    }
+
+    /// Returns the groups, as a dict of keyword arguments each.
+    fn groups<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let groups = threads::detached(py, || self.0.groups())?;
+        let groups = groups.map_err(|error| error::of_reading(py, &error))?;
+        let indices = |list: &[u32]| {
+            PyArray1::from_vec(py, list.iter().map(|&index| i64::from(index)).collect())
+        };
+        let row = |group: &mesh_io::Group| {
+            let row = PyDict::new(py);
+            row.set_item("kind", &group.kind)?;
+            row.set_item("dimension", group.dimension)?;
+            row.set_item("name", &group.name)?;
+            row.set_item("tag", group.tag)?;
+            row.set_item("vertices", indices(group.vertices()))?;
+            row.set_item("triangles", indices(group.triangles()))?;
+            Ok(row)
+        };
+        groups.iter().map(row).collect()
+    }
+
+    /// Returns an array of data of the vertices.
+    fn data<'py>(&self, py: Python<'py>, name: String) -> PyResult<Bound<'py, PyAny>> {
+        let fields = threads::detached(py, || self.0.point_fields(Some(&[name])))?;
+        let fields = fields.map_err(|error| error::of_reading(py, &error))?;
+        let Some(field) = fields.last() else {
+            return Err(error::file(py, "the file has no data of this name"));
+        };
+        let (values, rows) = (field.values().to_vec(), self.0.points().len());
+        match field.components() {
+            1 => Ok(PyArray1::from_vec(py, values).into_any()),
+            each => arrays::matrix(py, values, [rows, each]),
+        }
+    }
+
+    /// Writes the file with its vertices at other points.
+    fn write(&self, py: Python<'_>, path: PathBuf, points: &Bound<'_, PyAny>) -> PyResult<()> {
+        let points = arrays::points("points", points)?.xy;
+        let written = threads::detached(py, || self.0.write(&path, &points))?;
+        written.map_err(|error| error::of_writing(py, &error))
+    }
+
+    /// Returns the first difference to another file apart from coordinates, None without one.
+    fn difference(&self, py: Python<'_>, other: &Self) -> PyResult<Option<String>> {
+        let found = threads::detached(py, || self.0.difference(&other.0))?;
+        Ok(found.map(|found| {
+            format!("{} and {}: {}", found.location, found.other_location, found.description)
+        }))
+    }
+
+    /// Writes the mesh in the format of the ending of `path`, and returns what the format cannot hold.
+    fn convert(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        lossy: bool,
+        encoding: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Vec<String>> {
+        let Some(format) = Conversion::target_of(&path) else {
+            let names: Vec<_> = Conversion::targets().map(|(name, _)| name).collect();
+            let text = format!(
+                "{}: the ending belongs to no format that is written. There are {}",
+                path.display(),
+                names.join(", ")
+            );
+            return Err(error::file(py, &text));
+        };
+        let conversion = threads::detached(py, || Conversion::new(&self.0, format))?;
+        let conversion = conversion.map_err(|error| error::of_reading(py, &error))?;
+        let Some(mut conversion) = conversion else {
+            return Err(error::file(py, &format!("{}: {format} is not written", path.display())));
+        };
+        conversion.set_creator("gpu-smooth");
+        if let Some(value) = encoding {
+            let given = Given { name: "encoding", value };
+            let encoding = given.word(&[
+                ("text", Encoding::Text),
+                ("binary", Encoding::Binary),
+                ("compressed", Encoding::Compressed),
+            ])?;
+            if !conversion.set_encoding(encoding) {
+                let text = format!(
+                    "{}: {format} is not written in this encoding. gmsh, legacy VTK and PLY take \"text\" and \"binary\", \
+                     VTK XML takes \"text\", \"binary\" and \"compressed\"",
+                    path.display()
+                );
+                return Err(error::file(py, &text));
+            }
+        }
+        let losses = conversion.losses().to_vec();
+        if !lossy && !losses.is_empty() {
+            let text = format!(
+                "{}: {format} does not hold all of {}: {}. Pass lossy=True to write the mesh without",
+                path.display(),
+                self.0.path().display(),
+                losses.join("; ")
+            );
+            return Err(error::file(py, &text));
+        }
+        let written = threads::detached(py, || conversion.write(&path))?;
+        written.map_err(|error| error::of_writing(py, &error))?;
+        Ok(losses)
+    }
+}

@@ -1,0 +1,50 @@
+//! The native module of the Python package `gpu_smooth`: conversions between NumPy arrays and the slices of the library,
+//! options by the names of the command line, and exceptions. The Python modules in `gpu_smooth/` are the interface of
+//! users.
+
+mod arrays;
+mod command_line;
+mod data;
+mod engine;
+mod error;
+mod files;
+mod input;
+mod measures;
+mod mesh_options;
+mod movement;
+mod observer;
+mod outcome;
+mod prepared;
+mod run_options;
+mod smoother;
+mod tables;
+mod threads;
+mod values;
+
+use pyo3::prelude::*;
+
+/// The native part of the package `gpu_smooth`.
+#[pymodule]
+mod _native {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::command_line::command_line;
+    #[pymodule_export]
+    use crate::data::{compare, interpolate, untangle};
+    #[pymodule_export]
+    use crate::files::MeshFile;
+    #[pymodule_export]
+    use crate::measures::{Quality, quality};
+    #[pymodule_export]
+    use crate::outcome::Outcome;
+    #[pymodule_export]
+    use crate::smoother::{Smoother, smooth};
+    #[pymodule_export]
+    use crate::tables::{adapters, measures, mesh_options, metrics, run_options};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,112 @@
+//! Quality of the triangles of a mesh.
+
+use gpu_smooth::measure::{Measure, Measured};
+use gpu_smooth::targets::Surface;
+use gpu_smooth::{Mesh, Metric, Quality as MeshQuality, Topology};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays;
+use crate::error;
+use crate::threads;
+use crate::values::Given;
+
+/// Returns the surface of a word.
+pub(crate) fn surface(value: &Bound<'_, PyAny>) -> PyResult<Surface> {
+    let given = Given { name: "surface", value };
+    given.word(&[("plane", Surface::Plane), ("sphere", Surface::Sphere)])
+}
+
+/// Returns the mesh of two arrays.
+pub(crate) fn mesh(points: &Bound<'_, PyAny>, triangles: &Bound<'_, PyAny>) -> PyResult<Mesh> {
+    let points = arrays::points("points", points)?.xy;
+    let triangles = arrays::triangles("triangles", triangles, points.len())?;
+    Ok(Mesh { points, triangles, fixed: Vec::new() })
+}
+
+/// Returns the value of a measure for each triangle.
+#[pyfunction]
+pub(crate) fn quality<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    triangles: &Bound<'py, PyAny>,
+    measure: &str,
+    on: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let mesh = mesh(points, triangles)?;
+    let surface = surface(on)?;
+    let measure: Measure =
+        measure.parse().map_err(|unknown: gpu_smooth::measure::UnknownMeasure| {
+            error::option(py, &format!("measure: {unknown}"))
+        })?;
+    let values = threads::detached(py, || {
+        let topology = Topology::new(&mesh)?;
+        Ok(Measured::on(surface, &mesh.points, &topology)?.values(measure))
+    })?;
+    let values = values.map_err(|error| error::of_mesh(py, &error))?;
+    Ok(PyArray1::from_vec(py, values))
+}
+
+/// Statistics of the triangles of a mesh.
+#[pyclass(frozen, module = "gpu_smooth")]
+pub(crate) struct Quality(MeshQuality);
+
+impl Quality {
+    pub(crate) fn of(quality: MeshQuality) -> Self {
+        Self(quality)
+    }
+}
+
+#[pymethods]
+impl Quality {
+    /// The objective f, the mean of q² over all triangles, by a metric. Infinite if a triangle is inverted or flat and
+    /// the metric has a barrier.
+    #[pyo3(signature = (metric = "imr"))]
+    fn f(&self, py: Python<'_>, metric: &str) -> PyResult<f64> {
+        let metric: Metric = metric.replace('_', "-").parse().map_err(
+            |unknown: gpu_smooth::metric::UnknownMetric| {
+                error::option(py, &format!("metric: {unknown}"))
+            },
+        )?;
+        Ok(self.0.f(metric))
+    }
+
+    /// Smallest angle of any triangle, in degrees.
+    #[getter]
+    fn min_angle(&self) -> f64 {
+        self.0.min_angle
+    }
+
+    /// Largest angle of any triangle, in degrees.
+    #[getter]
+    fn max_angle(&self) -> f64 {
+        self.0.max_angle
+    }
+
+    /// Largest inverse mean ratio: 1 at best, infinite if a triangle is inverted or flat.
+    #[getter]
+    fn worst_imr(&self) -> f64 {
+        self.0.worst_imr
+    }
+
+    /// Index of the triangle with the largest inverse mean ratio.
+    #[getter]
+    fn worst_triangle(&self) -> usize {
+        self.0.worst_triangle
+    }
+
+    /// Number of inverted or flat triangles.
+    #[getter]
+    fn inverted(&self) -> usize {
+        self.0.inverted
+    }
+
+    fn __repr__(&self) -> String {
+        let MeshQuality { min_angle, max_angle, worst_imr, inverted, .. } = &self.0;
+        format!(
+            "Quality(f imr {:.6}, min angle {min_angle:.2}°, max angle {max_angle:.2}°, worst imr {worst_imr:.6}, inverted \
+             {inverted})",
+            self.0.f(Metric::Imr)
+        )
+    }
+}

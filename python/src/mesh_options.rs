@@ -1,0 +1,239 @@
+//! The options that belong to a mesh: vertices that may move, targets and the surface of coordinates.
+
+use gpu_smooth::Metric;
+use gpu_smooth::options::OptionRange;
+use gpu_smooth::targets::Surface;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString, PyTuple};
+
+use crate::arrays::{self, PerVertex};
+use crate::error;
+use crate::run_options::{self, RunOptions};
+use crate::values::{self, Given};
+
+/// Names of the options of a mesh.
+pub(crate) const NAMES: &[&str] = &[
+    "fixed",
+    "lines",
+    "regions",
+    "slide",
+    "corner_angle",
+    "hausdorff",
+    "periodic",
+    "only_bad",
+    "rings",
+    "target",
+    "target_rings",
+    "target_of",
+    "surface",
+    "untangle",
+];
+
+/// The target shape and size of elements.
+pub(crate) enum Target {
+    Equilateral,
+    KeepSize,
+    KeepShape,
+    /// Sizes or tensors of the vertices.
+    Given(PerVertex),
+    /// Sizes or tensors of the vertices of another mesh.
+    Background {
+        points: Vec<[f64; 2]>,
+        triangles: Vec<[u32; 3]>,
+        values: PerVertex,
+    },
+}
+
+/// The options that belong to a mesh.
+pub(crate) struct MeshOptions {
+    /// Vertices that neither move nor slide.
+    pub(crate) fixed: Vec<u32>,
+    /// Edges whose vertices stay, or slide along the edges.
+    pub(crate) lines: Vec<[u32; 2]>,
+    /// Region of each triangle; empty without regions.
+    pub(crate) regions: Vec<i64>,
+    pub(crate) slides: bool,
+    pub(crate) corner_angle: Option<f64>,
+    pub(crate) hausdorff: Option<f64>,
+    /// Pairs of vertices that slide together.
+    pub(crate) periodic: Vec<[u32; 2]>,
+    /// Inverse mean ratio of bad triangles; only vertices near bad triangles move.
+    pub(crate) only_bad: Option<f64>,
+    pub(crate) rings: Option<u32>,
+    pub(crate) target: Target,
+    pub(crate) target_rings: Option<u32>,
+    /// Whether targets belong to places.
+    pub(crate) of_places: Option<bool>,
+    pub(crate) surface: Surface,
+    pub(crate) untangles: bool,
+}
+
+impl MeshOptions {
+    fn new() -> Self {
+        Self {
+            fixed: Vec::new(),
+            lines: Vec::new(),
+            regions: Vec::new(),
+            slides: false,
+            corner_angle: None,
+            hausdorff: None,
+            periodic: Vec::new(),
+            only_bad: None,
+            rings: None,
+            target: Target::Equilateral,
+            target_rings: None,
+            of_places: None,
+            surface: Surface::Plane,
+            untangles: false,
+        }
+    }
+
+    /// Sets an option of a mesh with `size` vertices and triangles. Returns false if no option of a mesh has the name.
+    fn set(&mut self, given: Given<'_, '_>, size: [usize; 2]) -> PyResult<bool> {
+        let Given { name, value } = given;
+        let [vertices, triangles] = size;
+        match name {
+            "fixed" => self.fixed = arrays::vertex_set(name, value, vertices)?,
+            "lines" => self.lines = arrays::pairs(name, value, vertices)?,
+            "regions" => self.regions = arrays::labels(name, value, triangles)?,
+            "slide" => self.slides = given.flag()?,
+            "corner_angle" => self.corner_angle = Some(given.number(OptionRange::CORNER_ANGLE)?),
+            "hausdorff" => self.hausdorff = Some(given.number(OptionRange::HAUSDORFF)?),
+            "periodic" => self.periodic = arrays::pairs(name, value, vertices)?,
+            "only_bad" => {
+                let is_ratio = |ratio: f64| ratio >= 1.0 && ratio.is_finite();
+                self.only_bad =
+                    Some(given.number_in("an inverse mean ratio, 1 or above", is_ratio)?);
+            }
+            "rings" => self.rings = Some(given.count(0, u32::MAX)?),
+            "target" => self.target = target(given, vertices)?,
+            "target_rings" => self.target_rings = Some(given.count(0, 1000)?),
+            "target_of" => {
+                self.of_places = Some(given.word(&[("vertex", false), ("place", true)])?)
+            }
+            "surface" => {
+                let surfaces = [("plane", Surface::Plane), ("sphere", Surface::Sphere)];
+                self.surface = given.word(&surfaces)?;
+            }
+            "untangle" => self.untangles = given.flag()?,
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Checks for options that need another option.
+    fn check(&self, py: Python<'_>) -> PyResult<()> {
+        let has_slide_option =
+            self.corner_angle.is_some() || self.hausdorff.is_some() || !self.periodic.is_empty();
+        let is_kept = matches!(self.target, Target::KeepSize | Target::KeepShape);
+        let refusals = [
+            (
+                has_slide_option && !self.slides,
+                "corner_angle, hausdorff and periodic need slide=True. Drop them, or pass it",
+            ),
+            (
+                self.rings.is_some() && self.only_bad.is_none(),
+                "rings needs only_bad. Drop it, or pass it",
+            ),
+            (
+                self.target_rings.is_some() && !is_kept,
+                "target_rings needs target=\"keep-size\" or \"keep-shape\". Drop it, or pass one of them",
+            ),
+            (
+                self.of_places == Some(true) && matches!(self.target, Target::Equilateral),
+                "target_of needs a target. Drop it, or pass one",
+            ),
+        ];
+        match refusals.iter().find(|(is_refused, _)| *is_refused) {
+            Some((_, text)) => Err(error::option(py, text)),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the metric of a run without a scheme. A metric of shapes alone would ignore targets of sizes.
+    pub(crate) fn default_metric(&self) -> Metric {
+        let is_of_sizes = match &self.target {
+            Target::KeepSize => true,
+            Target::Given(values) | Target::Background { values, .. } => values.each == 1,
+            Target::Equilateral | Target::KeepShape => false,
+        };
+        if is_of_sizes { Metric::SoftSize } else { Metric::Imr }
+    }
+
+    /// Returns whether targets belong to places. By default, targets of another mesh do.
+    pub(crate) fn is_of_places(&self) -> bool {
+        let is_background = matches!(self.target, Target::Background { .. });
+        !matches!(self.target, Target::Equilateral) && self.of_places.unwrap_or(is_background)
+    }
+}
+
+/// Reads a target: a word, an array, or a background as a tuple of points, triangles and an array.
+fn target(given: Given<'_, '_>, vertices: usize) -> PyResult<Target> {
+    let Given { name, value } = given;
+    if value.is_instance_of::<PyString>() {
+        let words = [("equilateral", 0), ("keep-size", 1), ("keep-shape", 2)];
+        return Ok(match given.word(&words)? {
+            0 => Target::Equilateral,
+            1 => Target::KeepSize,
+            _ => Target::KeepShape,
+        });
+    }
+    if let Ok(background) = value.cast::<PyTuple>() {
+        let Ok((points, triangles, values)) =
+            background.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>)>()
+        else {
+            return Err(given.refused("a tuple of points, triangles and sizes or tensors"));
+        };
+        let points = arrays::points("target[0]", &points)?.xy;
+        let triangles = arrays::triangles("target[1]", &triangles, points.len())?;
+        let values =
+            checked("target[2]", arrays::per_vertex("target[2]", &values, points.len())?, value)?;
+        return Ok(Target::Background { points, triangles, values });
+    }
+    Ok(Target::Given(checked(name, arrays::per_vertex(name, value, vertices)?, value)?))
+}
+
+/// Returns an error unless there is a size or a tensor for each vertex.
+fn checked(name: &str, values: PerVertex, value: &Bound<'_, PyAny>) -> PyResult<PerVertex> {
+    match values.each {
+        1 | 3 => Ok(values),
+        each => {
+            let text = format!(
+                "{name}: the vertices have {each} numbers each, and need 1 (a size) or 3 (a tensor, as xx, xy, yy)"
+            );
+            Err(error::mesh(value.py(), &text))
+        }
+    }
+}
+
+/// The options of a call.
+pub(crate) struct CallOptions {
+    pub(crate) mesh: MeshOptions,
+    pub(crate) run: RunOptions,
+}
+
+impl CallOptions {
+    /// Reads the options of a call for a mesh with `size` vertices and triangles. `None` is the default of each option.
+    pub(crate) fn of_call(
+        py: Python<'_>,
+        options: Option<&Bound<'_, PyDict>>,
+        size: [usize; 2],
+    ) -> PyResult<Self> {
+        let mut all = Self { mesh: MeshOptions::new(), run: RunOptions::default() };
+        for (name, value) in options.into_iter().flatten() {
+            let name: String = name.extract()?;
+            let given = Given { name: &name, value: &value };
+            let is_known = match value.is_none() {
+                true => NAMES.contains(&&*name) || run_options::NAMES.contains(&&*name),
+                false => all.mesh.set(given, size)? || all.run.set(given)?,
+            };
+            if !is_known {
+                let names: Vec<&str> = NAMES.iter().chain(run_options::NAMES).copied().collect();
+                return Err(values::unknown(py, &name, "smoothing", &names));
+            }
+        }
+        all.mesh.check(py)?;
+        all.run.check(py)?;
+        Ok(all)
+    }
+}

@@ -1,0 +1,72 @@
+//! The vertices of a mesh that stay, slide or move, by the options of the mesh.
+
+use std::collections::HashMap;
+
+use gpu_smooth::slide::Periodic;
+use gpu_smooth::{Mesh, MeshError, Slide, Topology, select};
+
+use crate::mesh_options::MeshOptions;
+
+/// Edges between triangles of different regions. `regions` has a number per triangle, and is empty without regions.
+fn interface_edges(triangles: &[[u32; 3]], regions: &[i64]) -> Vec<[u32; 2]> {
+    let mut region_of = HashMap::new();
+    let mut between = Vec::new();
+    for (&[a, b, c], &region) in triangles.iter().zip(regions) {
+        for [a, b] in [[a, b], [b, c], [c, a]] {
+            let edge = [a.min(b), a.max(b)];
+            if *region_of.entry(edge).or_insert(region) != region {
+                between.push(edge);
+            }
+        }
+    }
+    between
+}
+
+/// The vertices of a mesh that are not free.
+#[derive(Clone)]
+pub(crate) struct Constraints {
+    /// Edges whose vertices stay, or slide along the edges.
+    pub(crate) lines: Vec<[u32; 2]>,
+    /// Vertices that neither move nor slide.
+    pub(crate) held: Vec<u32>,
+}
+
+/// Sets the fixed vertices of a mesh by its options.
+pub(crate) fn fix(mesh: &mut Mesh, options: &MeshOptions) -> Result<Constraints, MeshError> {
+    let mut lines = options.lines.clone();
+    lines.extend(interface_edges(&mesh.triangles, &options.regions));
+    let mut held = options.fixed.clone();
+    if let Some(limit) = options.only_bad {
+        let topology = Topology::new(mesh)?;
+        let bad = select::triangles_above(&mesh.points, &topology, limit);
+        let near = select::vertices_near(&topology, &bad, options.rings.unwrap_or(2));
+        let mut is_near = vec![false; mesh.points.len()];
+        near.into_iter().for_each(|v| is_near[v as usize] = true);
+        held.extend((0..).zip(is_near).filter(|(_, is_near)| !is_near).map(|(v, _)| v));
+    }
+    mesh.fixed = [&held, lines.as_flattened()].concat();
+    Ok(Constraints { lines, held })
+}
+
+/// Returns the curves along which vertices slide.
+pub(crate) fn slide(
+    options: &MeshOptions,
+    topology: &Topology<'_>,
+    constraints: &Constraints,
+) -> Slide {
+    let Constraints { mut lines, held } = constraints.clone();
+    // Fixed vertices on the boundary slide only if their boundary edges are listed.
+    lines.extend(topology.boundary_edges());
+    let periodic = match options.periodic.is_empty() {
+        true => Vec::new(),
+        false => vec![Periodic { pairs: options.periodic.clone(), motion: None }],
+    };
+    let usual = Slide::default();
+    Slide {
+        corner_angle: options.corner_angle.unwrap_or(usual.corner_angle),
+        hausdorff: options.hausdorff,
+        lines,
+        held,
+        periodic,
+    }
+}

@@ -1,0 +1,148 @@
+//! The result of a run.
+
+use std::sync::Arc;
+
+use gpu_smooth::{Backend, Metric, Outcome as RunOutcome, Quality as MeshQuality};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error;
+use crate::measures::Quality;
+use crate::prepared::Prepared;
+use crate::threads;
+
+/// The result of a run. The class `Result` of the package shows it.
+#[pyclass(frozen, module = "gpu_smooth._native")]
+pub(crate) struct Outcome {
+    outcome: RunOutcome,
+    prepared: Arc<Prepared>,
+    base: Metric,
+    engine: String,
+}
+
+impl Outcome {
+    pub(crate) fn new(
+        outcome: RunOutcome,
+        prepared: Arc<Prepared>,
+        base: Metric,
+        backend: &Backend,
+    ) -> Self {
+        let engine = match backend {
+            Backend::Cpu => "cpu".to_owned(),
+            Backend::Gpu(gpu) => gpu.adapter().name.clone(),
+        };
+        Self { outcome, prepared, base, engine }
+    }
+
+    fn quality(&self, py: Python<'_>, points: &[[f64; 2]]) -> PyResult<Quality> {
+        let topology = self.prepared.smoother.topology();
+        let surface = self.prepared.options.surface;
+        let quality = threads::detached(py, || MeshQuality::on(surface, points, topology))?;
+        quality.map(Quality::of).map_err(|error| error::of_mesh(py, &error))
+    }
+}
+
+#[pymethods]
+impl Outcome {
+    /// Returns the points after the run, in the form of the points that were passed.
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let points = self.prepared.given(self.outcome.points.clone());
+        self.prepared.form.array(py, points)
+    }
+
+    /// Returns the points before the run, as they were passed.
+    fn points_before<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let points = self.prepared.points_before().to_vec();
+        self.prepared.form.array(py, self.prepared.given(points))
+    }
+
+    /// Returns f before the first sweep and after each sweep, by each metric that was evaluated.
+    fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let by_metric = PyDict::new(py);
+        for &metric in Metric::ALL {
+            let values: Option<Vec<f64>> =
+                self.outcome.history.iter().map(|objectives| objectives.of(metric)).collect();
+            if let Some(values) = values.filter(|values| !values.is_empty()) {
+                by_metric.set_item(metric.name(), PyArray1::from_vec(py, values))?;
+            }
+        }
+        Ok(by_metric)
+    }
+
+    /// Returns the quality of the mesh before the run.
+    fn quality_before(&self, py: Python<'_>) -> PyResult<Quality> {
+        self.quality(py, self.prepared.points_before())
+    }
+
+    /// Returns the quality of the mesh after the run.
+    fn quality_after(&self, py: Python<'_>) -> PyResult<Quality> {
+        self.quality(py, &self.outcome.points)
+    }
+
+    /// Name of the metric that judges the run.
+    #[getter]
+    fn metric(&self) -> &'static str {
+        self.base.name()
+    }
+
+    /// `"cpu"`, or the name of the adapter.
+    #[getter]
+    fn engine(&self) -> &str {
+        &self.engine
+    }
+
+    /// The reason why the run ended, in one word.
+    #[getter]
+    fn stop(&self) -> &'static str {
+        self.outcome.stop.name()
+    }
+
+    /// Number of sweeps done.
+    #[getter]
+    fn sweeps(&self) -> u32 {
+        self.outcome.sweeps
+    }
+
+    /// Number of corrections from coarser levels.
+    #[getter]
+    fn corrections(&self) -> u32 {
+        self.outcome.corrections
+    }
+
+    /// The sweep whose points were taken; 0 for the points before the run.
+    #[getter]
+    fn best_sweep(&self) -> u32 {
+        self.outcome.best_sweep
+    }
+
+    /// Estimated gain of further sweeps, as a share of f; None if unknown.
+    #[getter]
+    fn remaining(&self) -> Option<f64> {
+        self.outcome.remaining
+    }
+
+    /// Number of vertices that a guard held back.
+    #[getter]
+    fn held_back(&self) -> usize {
+        self.outcome.held_back
+    }
+
+    /// Number of vertices that slid along lines.
+    #[getter]
+    fn slid(&self) -> usize {
+        self.outcome.slid.map_or(0, |slid| slid.moved)
+    }
+
+    /// Duration of the preparation of the mesh in seconds.
+    #[getter]
+    fn prepare_seconds(&self) -> f64 {
+        self.prepared.smoother.prepare_time().as_secs_f64()
+    }
+
+    /// Duration of the run in seconds.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.outcome.smooth.as_secs_f64()
+    }
+}

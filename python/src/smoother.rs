@@ -1,0 +1,186 @@
+//! Smoothing: a prepared mesh and its runs, and the one call that prepares and runs.
+
+use std::sync::Arc;
+
+use gpu_smooth::options::Feature;
+use gpu_smooth::targets::Surface;
+use gpu_smooth::{Backend, Mesh, Options, Smoother as PreparedMesh};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{self, Points, PointsForm};
+use crate::engine;
+use crate::error;
+use crate::input::{Coordinates, Failure, Input};
+use crate::mesh_options::{CallOptions, MeshOptions};
+use crate::observer::RunObserver;
+use crate::outcome::Outcome;
+use crate::prepared::{Prepared, given};
+use crate::run_options::RunOptions;
+use crate::threads;
+
+/// A mesh prepared once for any number of runs.
+#[pyclass(frozen, module = "gpu_smooth._native")]
+pub(crate) struct Smoother(Arc<Prepared>);
+
+#[pymethods]
+impl Smoother {
+    #[new]
+    #[pyo3(signature = (points, triangles, **options))]
+    fn new(
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        triangles: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let Call { mesh, form, options } = Call::read(points, triangles, options)?;
+        let CallOptions { mesh: options, run } = options;
+        let observer = RunObserver::new(&run);
+        let prepared = threads::watched(py, &observer, || {
+            let input = Input::new(mesh, &options, form.precision(), &observer)?;
+            let (smoother, layout) = input.into_smoother(&options)?;
+            Ok(Prepared { smoother, layout, options, form })
+        })?;
+        let prepared = finished(py, &observer, prepared)?;
+        Ok(Self(Arc::new(prepared)))
+    }
+
+    /// Smooths the mesh, from its points as they were passed.
+    #[pyo3(signature = (**options))]
+    fn run(&self, py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Outcome> {
+        let mut run = RunOptions::default();
+        for (name, value) in options.into_iter().flatten() {
+            run.set_named(&name, &value, "Smoother.run")?;
+        }
+        run.check(py)?;
+        let Prepared { smoother, options, form, layout } = &*self.0;
+        let plan = RunPlan::new(py, &run, options, form, smoother)?;
+        let observer = RunObserver::new(&run);
+        let outcome = threads::watched(py, &observer, || match coordinates(options, &run) {
+            Coordinates::Projected => plan.run(smoother, &observer),
+            coordinates => {
+                plan.run(&layout.smoother(smoother.mesh(), options, coordinates)?, &observer)
+            }
+        })?;
+        let outcome = finished(py, &observer, outcome)?;
+        Ok(Outcome::new(outcome, Arc::clone(&self.0), plan.options.scheme.base(), &plan.backend))
+    }
+
+    /// The flags of the vertices that are free: inside of the mesh and not fixed.
+    #[getter]
+    fn free<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<bool>> {
+        let free = self.0.smoother.topology().free();
+        numpy::PyArray1::from_slice(py, &free[..self.0.vertices()])
+    }
+
+    /// The triangles with consistent windings, counter-clockwise.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let triangles = self.0.smoother.topology().triangles();
+        let numbers = triangles.as_flattened().iter().map(|&v| i64::from(v)).collect();
+        arrays::matrix(py, numbers, [triangles.len(), 3])
+    }
+}
+
+/// The arguments of a call.
+struct Call {
+    mesh: Mesh,
+    form: PointsForm,
+    options: CallOptions,
+}
+
+impl Call {
+    fn read(
+        points: &Bound<'_, PyAny>,
+        triangles: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let Points { xy, form } = arrays::points("points", points)?;
+        let triangles = arrays::triangles("triangles", triangles, xy.len())?;
+        let size = [xy.len(), triangles.len()];
+        let options = CallOptions::of_call(points.py(), options, size)?;
+        let mesh = Mesh { points: xy, triangles, fixed: Vec::new() };
+        Ok(Self { mesh, form, options })
+    }
+}
+
+/// The options and the engine of a run.
+struct RunPlan {
+    options: Options,
+    backend: Arc<Backend>,
+}
+
+impl RunPlan {
+    fn new(
+        py: Python<'_>,
+        run: &RunOptions,
+        mesh: &MeshOptions,
+        form: &PointsForm,
+        smoother: &PreparedMesh<'_>,
+    ) -> PyResult<Self> {
+        let options = run.library(form.precision(), mesh.default_metric());
+        let untangle = if mesh.untangles { &[Feature::Untangle][..] } else { &[] };
+        options.check_with(untangle).map_err(|error| error::of_option(py, &error))?;
+        let backend = engine::open(py, &run.engine(), smoother.size(), &options)?;
+        Ok(Self { options, backend })
+    }
+
+    fn run(
+        &self,
+        smoother: &PreparedMesh<'_>,
+        observer: &RunObserver<'_>,
+    ) -> Result<gpu_smooth::Outcome, Failure> {
+        let observe = |progress: &gpu_smooth::Progress| observer.sweep(progress);
+        Ok(smoother.run(&self.options).on(&self.backend).observe(observe).block()?)
+    }
+}
+
+/// Returns the coordinates in which a run moves vertices. On a plane, all are those of the mesh.
+fn coordinates(mesh: &MeshOptions, run: &RunOptions) -> Coordinates {
+    match mesh.surface == Surface::Sphere && run.measures_in_coordinates() {
+        true => Coordinates::OfMesh,
+        false => Coordinates::Projected,
+    }
+}
+
+/// Returns the result of finished work, or the exception that ended the work.
+fn finished<T>(
+    py: Python<'_>,
+    observer: &RunObserver<'_>,
+    done: Result<T, Failure>,
+) -> PyResult<T> {
+    observer.take_raised().map_or(Ok(()), Err)?;
+    done.map_err(|failure| failure.raised(py))
+}
+
+/// Smooths a mesh that is given as arrays, and returns the new points.
+#[pyfunction]
+#[pyo3(signature = (points, triangles, **options))]
+pub(crate) fn smooth<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    triangles: &Bound<'py, PyAny>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Call { mesh, form, options } = Call::read(points, triangles, options)?;
+    let CallOptions { mesh: options, run } = options;
+    let observer = RunObserver::new(&run);
+    let input = threads::watched(py, &observer, || {
+        Input::new(mesh, &options, form.precision(), &observer)
+    })?;
+    let input = match input {
+        Ok(input) => input,
+        failed => finished(py, &observer, failed)?,
+    };
+    let coordinates = coordinates(&options, &run);
+    let smoother = threads::watched(py, &observer, || input.smoother(&options, coordinates))?;
+    let smoother = match smoother {
+        Ok(smoother) => smoother,
+        failed => finished(py, &observer, failed)?,
+    };
+    let plan = RunPlan::new(py, &run, &options, &form, &smoother)?;
+    let outcome = threads::watched(py, &observer, || plan.run(&smoother, &observer))?;
+    let outcome = finished(py, &observer, outcome)?;
+    drop(smoother);
+    form.array(py, given(&input.layout, outcome.points))
+}

@@ -1,0 +1,78 @@
+//! The tables of metrics, measures, options and adapters.
+
+use gpu_smooth::measure::{Better, Measure};
+use gpu_smooth::{Metric, gpu};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::engine;
+use crate::threads;
+use crate::{mesh_options as of_mesh, run_options as of_run};
+
+/// Returns the names of the options that belong to a mesh.
+#[pyfunction]
+pub(crate) fn mesh_options() -> Vec<&'static str> {
+    of_mesh::NAMES.to_vec()
+}
+
+/// Returns the names of the options of a run.
+#[pyfunction]
+pub(crate) fn run_options() -> Vec<&'static str> {
+    of_run::NAMES.to_vec()
+}
+
+/// Returns the metrics, as a dict of keyword arguments each.
+#[pyfunction]
+pub(crate) fn metrics(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |metric: &Metric| {
+        let row = PyDict::new(py);
+        row.set_item("name", metric.name())?;
+        row.set_item("formula", metric.formula())?;
+        row.set_item("purpose", metric.purpose())?;
+        row.set_item("ideal", metric.ideal())?;
+        row.set_item("has_barrier", metric.has_barrier())?;
+        row.set_item("is_scale_invariant", metric.is_scale_invariant())?;
+        row.set_item("omega", metric.omega())?;
+        row.set_item("source", metric.citation())?;
+        Ok(row)
+    };
+    Metric::ALL.iter().map(row).collect()
+}
+
+/// Returns the measures, as a dict of keyword arguments each.
+#[pyfunction]
+pub(crate) fn measures(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |measure: &Measure| {
+        let definition = measure.definition();
+        let row = PyDict::new(py);
+        row.set_item("name", definition.name)?;
+        row.set_item("formula", definition.formula)?;
+        row.set_item("unit", definition.unit)?;
+        row.set_item("range", (definition.range[0], definition.range[1]))?;
+        row.set_item("ideal", definition.ideal)?;
+        row.set_item(
+            "better",
+            if definition.better == Better::Higher { "higher" } else { "lower" },
+        )?;
+        row.set_item("source", definition.source)?;
+        Ok(row)
+    };
+    Measure::ALL.iter().map(row).collect()
+}
+
+/// Opens and checks the adapters of this machine, and returns them as a dict of keyword arguments each.
+#[pyfunction]
+pub(crate) fn adapters(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    engine::start_drivers(py)?;
+    let row = |(adapter, usable): (gpu::AdapterSummary, Result<(), gpu::GpuError>)| {
+        let row = PyDict::new(py);
+        row.set_item("name", &adapter.name)?;
+        row.set_item("driver", &adapter.driver)?;
+        row.set_item("backend", &adapter.backend)?;
+        row.set_item("kind", adapter.kind)?;
+        row.set_item("is_software", adapter.is_software())?;
+        row.set_item("problem", usable.err().map(|error| error.to_string()))?;
+        Ok(row)
+    };
+    threads::detached(py, gpu::checked_adapters)?.into_iter().map(row).collect()
+}

@@ -1,0 +1,89 @@
+//! Values of options: numbers, flags and words, checked, with messages that name the option.
+
+use gpu_smooth::options::OptionRange;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyString};
+
+use crate::error;
+
+/// Name and value of an option of a call.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a, 'py> {
+    pub(crate) name: &'a str,
+    pub(crate) value: &'a Bound<'py, PyAny>,
+}
+
+impl Given<'_, '_> {
+    /// Returns the error of a value that is not as wanted.
+    pub(crate) fn refused(&self, wanted: &str) -> PyErr {
+        let Self { name, value } = self;
+        let shown = value.repr().map_or_else(|_| "…".to_owned(), |shown| shown.to_string());
+        let shown = match shown.chars().count() {
+            0..=80 => shown,
+            _ => shown.chars().take(79).chain(['…']).collect(),
+        };
+        error::option(value.py(), &format!("{name}: the value is {shown}, and must be {wanted}"))
+    }
+
+    fn is_bool(&self) -> bool {
+        self.value.is_instance_of::<PyBool>()
+    }
+
+    /// Returns a flag. Numbers are no flags.
+    pub(crate) fn flag(&self) -> PyResult<bool> {
+        self.value.extract().map_err(|_| self.refused("True or False"))
+    }
+
+    /// Returns a number within a range.
+    pub(crate) fn number(&self, range: OptionRange) -> PyResult<f64> {
+        self.number_in(range.words, |number| range.contains(number))
+    }
+
+    /// Returns a number for which `is_within` holds; `words` describe such numbers.
+    pub(crate) fn number_in(&self, words: &str, is_within: impl Fn(f64) -> bool) -> PyResult<f64> {
+        match self.value.extract::<f64>() {
+            Ok(number) if !self.is_bool() && is_within(number) => Ok(number),
+            _ => Err(self.refused(words)),
+        }
+    }
+
+    /// Returns a whole number from `least` to `most`.
+    pub(crate) fn count(&self, least: u32, most: u32) -> PyResult<u32> {
+        match self.value.extract::<u32>() {
+            Ok(count) if !self.is_bool() && (least..=most).contains(&count) => Ok(count),
+            _ => Err(self.refused(&format!("a whole number from {least} to {most}"))),
+        }
+    }
+
+    /// Returns the value of a word in the list `words`. Underscores may replace hyphens.
+    pub(crate) fn word<T: Clone>(&self, words: &[(&str, T)]) -> PyResult<T> {
+        let given = self.value.cast::<PyString>().ok().map(|word| word.to_string());
+        let given = given.map(|word| word.to_lowercase().replace('_', "-"));
+        match words.iter().find(|(word, _)| Some(*word) == given.as_deref()) {
+            Some((_, value)) => Ok(value.clone()),
+            None => {
+                let names: Vec<_> = words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+                Err(self.refused(&names.join(" or ")))
+            }
+        }
+    }
+
+    /// Returns a text.
+    pub(crate) fn text(&self) -> PyResult<String> {
+        self.value.extract().map_err(|_| self.refused("a text"))
+    }
+}
+
+/// Returns the `TypeError` for an option that `function` lacks. The message has the most similar of `names`.
+pub(crate) fn unknown(py: Python<'_>, name: &str, function: &str, names: &[&str]) -> PyErr {
+    let similar = py
+        .import("difflib")
+        .and_then(|difflib| difflib.call_method1("get_close_matches", (name, names.to_vec(), 1)))
+        .and_then(|found| found.extract::<Vec<String>>());
+    let advice = match similar.ok().and_then(|mut found| found.pop()) {
+        Some(similar) => format!("Did you mean {similar}?"),
+        None => format!("There are {}", names.join(", ")),
+    };
+    PyTypeError::new_err(format!("{name}: {function} has no option of this name. {advice}"))
+}

@@ -1,0 +1,44 @@
+"""Meshes for the tests."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+Points = npt.NDArray[np.float64]
+Triangles = npt.NDArray[np.int64]
+MESHES = Path(__file__).parents[2] / "meshes"
+
+
+def lattice(side: int, seed: int = 1, by: float = 0.24) -> tuple[Points, Triangles]:
+    """Return a square of `side` by `side` cells, whose inner vertices are moved by up to `by` of a cell."""
+    across = np.arange(side + 1.0)
+    points = np.stack(np.meshgrid(across, across), axis=-1).reshape(-1, 2)
+    corner = (np.arange(side) + (side + 1) * np.arange(side)[:, None]).ravel()
+    lower = np.stack([corner, corner + 1, corner + side + 2], axis=1)
+    upper = np.stack([corner, corner + side + 2, corner + side + 1], axis=1)
+    is_inner = np.logical_and(points > 0, points < side).all(axis=1)
+    moves = np.random.default_rng(seed).uniform(-by, by, points.shape)
+    moves[~is_inner] = 0.0
+    return points + moves, np.concatenate([lower, upper])
+
+
+def command_line(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run the command line of the installed package."""
+    command = [sys.executable, "-m", "gpu_smooth", *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture
+def mesh() -> tuple[Points, Triangles]:
+    return lattice(12)
+
+
+@pytest.fixture
+def plate() -> Path:
+    return MESHES / "plate.node"

@@ -1,0 +1,80 @@
+"""Functions on arrays beside smoothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from conftest import Points, Triangles
+
+import gpu_smooth
+
+Mesh = tuple[Points, Triangles]
+
+
+def test_measures_agree_with_formulas(mesh: Mesh) -> None:
+    points, triangles = mesh
+    corners = points[triangles]
+    edges = np.roll(corners, -1, axis=1) - corners
+    lengths = np.linalg.norm(edges, axis=2)
+    area = 0.5 * np.abs(edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0])
+    cosines = -(edges * np.roll(edges, 1, axis=1)).sum(axis=2)
+    angles = np.degrees(np.arccos(cosines / (lengths * np.roll(lengths, 1, axis=1))))
+    imr = (lengths**2).sum(axis=1) / (4 * np.sqrt(3) * area)
+    expected = {
+        "imr": imr,
+        "shape": 1 / imr,
+        "edge-ratio": lengths.max(axis=1) / lengths.min(axis=1),
+        "min_angle": angles.min(axis=1),
+        "max-angle": angles.max(axis=1),
+    }
+    for measure, values in expected.items():
+        found = gpu_smooth.quality(points, triangles, measure)
+        assert found.dtype == np.float64 and np.abs(found / values - 1).max() < 1e-9, measure
+    assert np.array_equal(gpu_smooth.quality(points, triangles), gpu_smooth.quality(points, triangles, "imr"))
+    with pytest.raises(gpu_smooth.OptionError, match="no measure is called 'roundness'"):
+        gpu_smooth.quality(points, triangles, "roundness")
+
+
+def test_tables_have_a_row_for_each_metric_and_measure() -> None:
+    metrics, measures = gpu_smooth.metrics(), gpu_smooth.measures()
+    assert {metric.name for metric in metrics} <= {measure.name for measure in measures}
+    for measure in measures:
+        low, high = measure.range
+        assert low <= measure.ideal <= high and measure.source and measure.formula
+        values = gpu_smooth.quality([[0, 0], [1, 0], [0.5, 0.75**0.5]], [[0, 1, 2]], measure.name)
+        assert abs(values[0] - measure.ideal) < 1e-6, measure
+    assert all(metric.formula and metric.source and metric.purpose for metric in metrics)
+
+
+def test_interpolation_keeps_linear_data(mesh: Mesh) -> None:
+    points, triangles = mesh
+    moved = gpu_smooth.smooth(points, triangles)
+
+    def linear(at: npt.NDArray[Any]) -> Points:
+        return np.stack([at[:, 0] - 2 * at[:, 1], 3 + at[:, 1]], axis=1)
+
+    found = gpu_smooth.interpolate(points, triangles, moved, linear(points))
+    assert found.shape == (len(points), 2)
+    assert np.abs(found - linear(moved)).max() < 1e-12
+    flat = gpu_smooth.interpolate(points, triangles, moved, linear(points)[:, 0])
+    assert np.array_equal(flat, found[:, 0])
+    with pytest.raises(gpu_smooth.MeshError, match="moved: 5 points"):
+        gpu_smooth.interpolate(points, triangles, moved[:5], linear(points))
+    with pytest.raises(gpu_smooth.MeshError, match="values"):
+        gpu_smooth.interpolate(points, triangles, moved, linear(points)[:5])
+
+
+def test_two_states_are_compared(mesh: Mesh) -> None:
+    points, triangles = mesh
+    same = gpu_smooth.compare(points, points, triangles)
+    assert same.vertices_moved == 0 and same.moved.most == 0 and not same.z_changed
+    after = np.column_stack([points, np.ones(len(points))])
+    after[20, 0] += 0.01
+    before = np.column_stack([points, np.zeros(len(points))])
+    found = gpu_smooth.compare(before, after, triangles)
+    assert found.vertices_moved == 1 and found.z_changed and 0.005 < found.moved.most < 0.02
+    assert found.quality_before.f() != found.quality_after.f()
+    assert found.least_altitude[0] > 0

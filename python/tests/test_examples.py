@@ -1,0 +1,93 @@
+"""Examples, pictures and the README."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from conftest import Points, Triangles
+
+import gpu_smooth
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+Mesh = tuple[Points, Triangles]
+
+
+def output(name: str, *words: str | Path, **variables: str) -> str:
+    """Run an example, and return what it prints."""
+    command = [sys.executable, "-P" if sys.version_info >= (3, 11) else "-B", str(EXAMPLES / name)]
+    done = subprocess.run(
+        [*command, *map(str, words)], capture_output=True, text=True, check=False, env={**os.environ, **variables}
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_optimesh_is_replaced() -> None:
+    before, after = map(float, re.findall(r"least angle (\S+) -> (\S+) ", output("replace_optimesh.py"))[0])
+    assert before < 20 < 30 < after
+
+
+def test_tasks_of_a_job_array_share_the_meshes(tmp_path: Path, plate: Path) -> None:
+    source = tmp_path / "in"
+    source.mkdir()
+    for k in range(5):
+        gpu_smooth.convert(plate, source / f"mesh{k}.vtk")
+    for task in ("3", "4"):
+        output(
+            "slurm_array.py", source, tmp_path / "out",
+            SLURM_ARRAY_TASK_ID=task, SLURM_ARRAY_TASK_MIN="3", SLURM_ARRAY_TASK_COUNT="2",
+        )
+        expected = {"3": ["mesh0.vtk", "mesh2.vtk", "mesh4.vtk"], "4": [f"mesh{k}.vtk" for k in range(5)]}[task]
+        assert sorted(path.name for path in (tmp_path / "out").iterdir()) == expected
+
+
+@pytest.mark.heavy
+def test_a_thousand_meshes_are_smoothed_through_dask() -> None:
+    assert re.match(r"1000 meshes, least angle (\d+)", output("many_meshes_dask.py", "--side", "12"))
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", ["coast", "airfoil", "two_materials"])
+def test_the_gallery_draws(name: str, tmp_path: Path) -> None:
+    printed = output(f"gallery_{name}.py", tmp_path / "picture.png", MPLBACKEND="agg")
+    before, after = map(float, re.findall(r"f \S+ (\S+) -> (\S+),", printed)[0])
+    assert after < before and "inverted 0" in printed
+    assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.heavy
+def test_a_result_is_plotted(mesh: Mesh) -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    result = gpu_smooth.run(*mesh)
+    figure = result.plot()
+    assert [axes.get_title() for axes in figure.axes[:2]] == ["before", "after"]
+    assert [axes.get_title() for axes in result.plot("after", "min-angle").axes[:1]] == ["after"]
+    with pytest.raises(gpu_smooth.OptionError, match="which: the value is 'then'"):
+        result.plot("then")  # type: ignore[arg-type]
+    pyplot.close("all")
+
+
+def test_a_notebook_shows_the_mesh_before_and_after(mesh: Mesh) -> None:
+    points, triangles = mesh
+    html = gpu_smooth.run(points, triangles)._repr_html_()
+    # The picture is well-formed XML.
+    root = ElementTree.fromstring(html)
+    pictures = root.findall(".//{http://www.w3.org/2000/svg}svg")
+    assert len(pictures) == 2
+    for picture in pictures:
+        paths = "".join(path.get("d") or "" for path in picture)
+        assert paths.count("M") == len(triangles)
+        numbers = np.array(re.findall(r"[-\d.]+", paths), float)
+        assert numbers.min() == 0 and numbers.max() == 360
+    assert "converged" in html

@@ -1,0 +1,143 @@
+"""Mesh files, the command line of the wheel, and examples in docstrings."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import pkgutil
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import command_line
+
+import gpu_smooth
+from gpu_smooth import FileError, GpuSmoothError, MeshError, OptionError
+
+
+def gmsh_file(path: Path) -> Path:
+    """Write a square of two regions, with a named line and a depth at each vertex."""
+    nodes = [(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1), (0.6, 0.4), (1.4, 0.7)]
+    left = [(1, 2, 7), (2, 5, 7), (5, 6, 7), (6, 1, 7)]
+    right = [(2, 3, 8), (3, 4, 8), (4, 5, 8), (5, 2, 8)]
+    elements = [f"1 1 2 3 1 1 2", *(
+        f"{2 + k} 2 2 {tag} {tag} " + " ".join(map(str, corners))
+        for k, (tag, corners) in enumerate([*[(1, t) for t in left], *[(2, t) for t in right]])
+    )]
+    path.write_text("\n".join([
+        "$MeshFormat", "2.2 0 8", "$EndMeshFormat",
+        "$PhysicalNames", "3", '1 3 "inlet"', '2 1 "left"', '2 2 "right"', "$EndPhysicalNames",
+        "$Nodes", str(len(nodes)), *(f"{k} {x} {y} 0.50" for k, (x, y) in enumerate(nodes, 1)), "$EndNodes",
+        "$Elements", str(len(elements)), *elements, "$EndElements",
+        "$NodeData", "1", '"depth"', "1", "0", "3", "0", "1", str(len(nodes)),
+        *(f"{k} {k}.25" for k in range(1, len(nodes) + 1)), "$EndNodeData", "",
+    ]))
+    return path
+
+
+def test_a_file_is_read_and_written_with_moved_vertices_alone(tmp_path: Path) -> None:
+    file = gpu_smooth.MeshFile(gmsh_file(tmp_path / "in.msh"))
+    assert file.format.startswith("gmsh 2.2") and file.path == tmp_path / "in.msh"
+    assert file.points.shape == (8, 2) and file.triangles.shape == (8, 3)
+    assert file.regions is not None and len(set(file.regions.tolist())) == 2
+    names = {group.name: group for group in file.groups}
+    assert names["inlet"].dimension == 1 and names["inlet"].vertices.tolist() == [0, 1]
+    assert names["left"].triangles.tolist() == [0, 1, 2, 3] and names["right"].tag == 2
+    assert file.data("depth").tolist() == [k + 1.25 for k in range(8)]
+    assert "depth" in file.data_names and file.lines.tolist() == [[0, 1]]
+    assert "8 vertices, 8 triangles" in repr(file)
+    smoothed = gpu_smooth.smooth(
+        file.points, file.triangles, regions=file.regions, lines=file.lines, fixed=file.anchored
+    )
+    file.write(tmp_path / "out.msh", smoothed)
+    out = gpu_smooth.MeshFile(tmp_path / "out.msh")
+    assert np.array_equal(out.points, smoothed) and file.difference(out) is None
+    before, after = ((tmp_path / name).read_text().split("\n") for name in ("in.msh", "out.msh"))
+    differing = [k for k, (was, now) in enumerate(zip(before, after)) if was != now]
+    assert len(before) == len(after) and [before[k].split()[0] for k in differing] == ["7", "8"]
+    done = command_line(tmp_path / "in.msh", tmp_path / "cli.msh")
+    assert done.returncode == 0 and (tmp_path / "cli.msh").read_bytes() == (tmp_path / "out.msh").read_bytes()
+    with pytest.raises(FileError, match="none"):
+        file.data("none")
+    with pytest.raises(MeshError, match="points: "):
+        file.write(tmp_path / "out.msh", smoothed[:3])
+    with pytest.raises(FileError, match="missing"):
+        file.write(tmp_path / "missing" / "out.msh", smoothed)
+    with pytest.raises(FileError, match="none.msh"):
+        gpu_smooth.MeshFile(tmp_path / "none.msh")
+
+
+def test_a_file_is_smoothed_as_by_the_command_line(tmp_path: Path) -> None:
+    source = gmsh_file(tmp_path / "in.msh")
+    report = gpu_smooth.smooth_file(source, tmp_path / "out.msh", slide=True, fix=["inlet"], tolerance=1e-4)
+    assert report["stop"] == "converged" or "stop" not in report
+    words = ["--slide", "--fix", "inlet", "--tolerance", "1e-4"]
+    assert command_line(source, tmp_path / "cli.msh", *words).returncode == 0
+    assert (tmp_path / "out.msh").read_bytes() == (tmp_path / "cli.msh").read_bytes()
+    with pytest.raises(OptionError, match="--tolerence"):
+        gpu_smooth.smooth_file(source, tmp_path / "out.msh", tolerence=1)
+    with pytest.raises(FileError, match="none.msh"):
+        gpu_smooth.smooth_file(tmp_path / "none.msh", tmp_path / "out.msh")
+    with pytest.raises(FileError, match="missing"):
+        gpu_smooth.smooth_file(source, tmp_path / "missing" / "out.msh")
+    with pytest.raises(GpuSmoothError):
+        gpu_smooth.smooth_file(source, tmp_path / "out.msh", strict=True, max_sweeps=0)
+
+
+def test_a_file_is_converted(tmp_path: Path) -> None:
+    source = gmsh_file(tmp_path / "in.msh")
+    losses = gpu_smooth.convert(source, tmp_path / "out.vtk", lossy=True)
+    assert np.array_equal(gpu_smooth.MeshFile(tmp_path / "out.vtk").points, gpu_smooth.MeshFile(source).points)
+    if losses:
+        with pytest.raises(FileError, match="lossy=True"):
+            gpu_smooth.convert(source, tmp_path / "other.vtk")
+    with pytest.raises(FileError, match="the ending belongs to no format"):
+        gpu_smooth.convert(source, tmp_path / "out.docx")
+    gpu_smooth.convert(source, tmp_path / "out.vtu", lossy=True, encoding="compressed")
+    assert b"vtkZLibDataCompressor" in (tmp_path / "out.vtu").read_bytes()
+    assert np.array_equal(gpu_smooth.MeshFile(tmp_path / "out.vtu").points, gpu_smooth.MeshFile(source).points)
+    with pytest.raises(FileError, match="not written in this encoding"):
+        gpu_smooth.convert(source, tmp_path / "out.off", lossy=True, encoding="binary")
+
+
+def test_the_command_line_is_in_the_wheel(plate: Path, tmp_path: Path) -> None:
+    script = shutil.which("gpu-smooth", path=str(Path(sys.executable).parent))
+    assert script is not None
+    done = subprocess.run([script, "--version"], capture_output=True, text=True, check=False)
+    assert done.stdout.strip() == f"gpu-smooth {gpu_smooth.__version__}" and done.returncode == 0
+    assert command_line("--version").stdout == done.stdout
+    assert "Usage: gpu-smooth [OPTIONS] <IN> <OUT>" in command_line("--help").stdout
+    assert "gpu-smooth" in command_line("completions", "bash").stdout
+    for word, code in (("adapters", 0), ("metrics", 0), ("none.msh", 2), ("quality", 2)):
+        assert command_line(word).returncode == code, word
+    assert command_line("quality", tmp_path / "none.msh").returncode == 3
+    assert command_line(plate, tmp_path / "none" / "out.node").returncode == 4
+    done = command_line(plate, tmp_path / "out.node", "--engine", "gpu")
+    assert done.returncode == 0 and "converged" in done.stdout, done.stderr
+
+
+def test_examples_in_docstrings_hold() -> None:
+    tried = 0
+    for module in pkgutil.iter_modules(gpu_smooth.__path__, "gpu_smooth."):
+        # The accessor needs PyVista, and has no examples.
+        if module.name not in ("gpu_smooth.__main__", "gpu_smooth._accessor"):
+            result = doctest.testmod(importlib.import_module(module.name))
+            assert result.failed == 0, module.name
+            tried += result.attempted
+    result = doctest.testmod(gpu_smooth)
+    assert result.failed == 0 and tried + result.attempted > 20
+
+
+def test_public_functions_say_what_they_return_and_raise() -> None:
+    for name in gpu_smooth.__all__:
+        thing = getattr(gpu_smooth, name)
+        if isinstance(thing, str):
+            continue
+        text = thing.__doc__ or ""
+        assert text.strip(), name
+        if callable(thing) and not isinstance(thing, type) and thing.__code__.co_argcount:
+            assert "Parameters\n    ----" in text and "Returns\n    ----" in text, name
+            assert "Raises\n    ----" in text, name

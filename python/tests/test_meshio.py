@@ -1,0 +1,79 @@
+"""Meshes of meshio in place of arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import meshio
+import numpy as np
+import pytest
+from conftest import Points, Triangles, lattice
+
+import gpu_smooth
+
+Mesh = tuple[Points, Triangles]
+
+
+def test_a_mesh_of_triangles_is_smoothed_as_its_arrays(mesh: Mesh) -> None:
+    points, triangles = mesh
+    in_space = np.column_stack([points, np.full(len(points), 3.0)])
+    data = {"depth": np.arange(float(len(points)))}
+    given = meshio.Mesh(
+        in_space, [("triangle", triangles[:100]), ("triangle", triangles[100:])], point_data=data
+    )
+    smoothed = gpu_smooth.smooth(given, scheme="rms")
+    assert isinstance(smoothed, meshio.Mesh)
+    assert np.array_equal(smoothed.points, gpu_smooth.smooth(in_space, triangles, scheme="rms"))
+    assert np.array_equal(given.points, in_space), "the given mesh is not changed"
+    assert smoothed.point_data["depth"] is given.point_data["depth"]
+    assert [block.type for block in smoothed.cells] == ["triangle", "triangle"]
+
+
+def test_vertices_of_other_cells_and_between_regions_stay(mesh: Mesh) -> None:
+    points, triangles = mesh
+    column = np.flatnonzero(np.arange(len(points)) % 13 == 6)
+    line = np.stack([column[:-1], column[1:]], axis=1)
+    cut = np.isin(np.arange(len(triangles)) % 144, [30, 31])
+    quad = np.array([[33, 34, 47, 46]])
+    is_right = triangles[:, 0] // 13 >= 8
+    cells: Any = [
+        ("triangle", triangles[~cut]), ("quad", quad), ("line", line), ("vertex", np.array([[100]])),
+    ]
+    numbers: Any = {
+        "gmsh:physical": [np.where(is_right, 2, 1)[~cut], np.array([9]), np.full(len(line), 7), np.array([8])]
+    }
+    given = meshio.Mesh(points, cells, cell_data=numbers, field_data={"right": np.array([2, 2])})
+    smoothed = gpu_smooth.smooth(given)
+    stays = np.zeros(len(points), bool)
+    row = np.arange(8 * 13, 9 * 13)
+    stays[[*column, *quad.ravel(), 100, *row]] = True
+    moved = (smoothed.points != points).any(axis=1)
+    assert not moved[stays].any() and moved.sum() > 50
+    assert smoothed.field_data is given.field_data and len(smoothed.cells) == 4
+    fixed = gpu_smooth.smooth(given, fixed=[17])
+    assert np.array_equal(fixed.points[17], points[17]) and moved[17]
+    with pytest.raises(gpu_smooth.MeshError, match=r"fixed\[0\] is 999"):
+        gpu_smooth.smooth(given, fixed=[999])
+    with pytest.raises(gpu_smooth.MeshError, match=r"lines: .* the shape is \(3,\)"):
+        gpu_smooth.smooth(given, lines=[1, 2, 3])
+    with pytest.raises(gpu_smooth.MeshError, match=r"lines\[\d+, 1\] is 999"):
+        gpu_smooth.smooth(given, lines=[[1, 999]])
+    assert np.array_equal(gpu_smooth.smooth(given, regions=None, lines=None).points, smoothed.points)
+
+
+def test_a_file_of_meshio_is_smoothed_as_by_the_command_line(tmp_path: Any) -> None:
+    from conftest import command_line
+
+    points, triangles = lattice(10)
+    physical: Any = {"gmsh:physical": [(triangles[:, 0] % 11 > 5).astype(int)]}
+    mesh = meshio.Mesh(points, [("triangle", triangles)], cell_data=physical)
+    mesh.write(tmp_path / "in.vtu", binary=False)
+    assert command_line(tmp_path / "in.vtu", tmp_path / "out.vtu").returncode == 0
+    of_file = meshio.read(tmp_path / "out.vtu")
+    smoothed = gpu_smooth.smooth(meshio.read(tmp_path / "in.vtu"))
+    assert np.array_equal(smoothed.points[:, :2], of_file.points[:, :2])
+
+
+def test_a_mesh_without_triangles_is_refused() -> None:
+    with pytest.raises(gpu_smooth.MeshError, match="no triangles"):
+        gpu_smooth.smooth(meshio.Mesh(np.eye(4, 2), [("quad", np.array([[0, 1, 2, 3]]))]))

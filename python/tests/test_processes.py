@@ -1,0 +1,151 @@
+"""Threads, processes, signals and memory."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import lattice
+
+import gpu_smooth
+
+
+def smoothed(seed: int, engine: Any = "cpu") -> bytes:
+    points, triangles = lattice(20, seed)
+    return gpu_smooth.smooth(points, triangles, engine=engine).tobytes()
+
+
+def attempted(engine: Any) -> str:
+    try:
+        smoothed(1, engine)
+    except gpu_smooth.DeviceError as error:
+        return str(error)
+    return "done"
+
+
+@pytest.mark.parametrize("engine", ["cpu", "gpu"])
+def test_threads_smooth_at_once(engine: Any) -> None:
+    expected = [smoothed(seed, engine) for seed in range(6)]
+    smoother = gpu_smooth.Smoother(*lattice(20, 3))
+    with ThreadPoolExecutor(6) as threads:
+        for _ in range(3):
+            assert list(threads.map(smoothed, range(6), [engine] * 6)) == expected
+        runs = threads.map(lambda _: smoother.run(engine=engine).points.tobytes(), range(6))
+        assert set(runs) == {expected[3]}
+
+
+def test_other_threads_go_on_during_a_run() -> None:
+    points, triangles = lattice(150)
+    counted = [0]
+    is_done = threading.Event()
+
+    def count() -> None:
+        while not is_done.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count, daemon=True)
+    thread.start()
+    before = counted[0]
+    gpu_smooth.smooth(points, triangles, tolerance=0, time_limit=0.5, engine="cpu", method="relaxed", max_sweeps=10**6)
+    during = counted[0] - before
+    is_done.set()
+    thread.join()
+    assert during > 30
+
+
+@pytest.mark.filterwarnings("ignore:.*multi-threaded.*fork:DeprecationWarning")
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_processes_smooth_at_once(method: str) -> None:
+    expected = [smoothed(seed) for seed in range(4)]
+    context = multiprocessing.get_context(method)
+    with ProcessPoolExecutor(2, mp_context=context) as processes:
+        assert list(processes.map(smoothed, range(4), timeout=120)) == expected
+
+
+@pytest.mark.filterwarnings("ignore:.*multi-threaded.*fork:DeprecationWarning")
+def test_a_gpu_is_refused_in_a_process_that_was_forked_after_its_use() -> None:
+    smoothed(1, "gpu")
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("fork")) as processes:
+        assert "drivers do not survive a fork" in processes.submit(attempted, "gpu").result(60)
+        assert processes.submit(attempted, "auto").result(60) == "done"
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as processes:
+        assert processes.submit(attempted, "gpu").result(120) == "done"
+
+
+ENDLESS = """
+import os, sys, threading, time, signal
+sys.path.insert(0, {tests!r})
+from conftest import lattice
+import gpu_smooth
+# A shell that starts the tests in the background lets its processes ignore the signal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+points, triangles = lattice(100)
+gpu_smooth.smooth(points, triangles, max_sweeps=2)
+if {forks}:
+    child = os.fork()
+    if child:
+        code = os.waitpid(child, 0)[1]
+        os._exit(os.waitstatus_to_exitcode(code))
+threading.Thread(target=lambda: (time.sleep(0.5), os.kill(os.getpid(), signal.SIGINT)), daemon=True).start()
+try:
+    gpu_smooth.smooth(points, triangles, tolerance=0, max_sweeps=10**9, method="relaxed", engine={engine!r}, time_limit=60)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    os._exit(7)
+os._exit(1)
+"""
+
+
+@pytest.mark.parametrize(("engine", "forks"), [("cpu", False), ("gpu", False), ("cpu", True)])
+def test_ctrl_c_ends_a_run(engine: str, forks: bool) -> None:
+    code = ENDLESS.format(tests=os.path.dirname(__file__), engine=engine, forks=forks)
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=50, check=False
+    )
+    assert done.returncode == 7, done.stderr
+    assert "interrupted" in done.stdout
+
+
+def test_signals_have_their_usual_handlers_after_a_run() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    smoothed(1)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def resident() -> int:
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_memory_is_flat_over_many_calls() -> None:
+    points, triangles = lattice(6)
+    bad = triangles.copy()
+    bad[3] = 99
+
+    def calls(count: int) -> None:
+        for _ in range(count):
+            gpu_smooth.smooth(points, triangles, engine="cpu", max_sweeps=2)
+            gpu_smooth.quality(points, triangles)
+            with pytest.raises(gpu_smooth.MeshError):
+                gpu_smooth.smooth(points, bad)
+
+    calls(1000)
+    before = resident()
+    calls(3000)
+    result = gpu_smooth.run(points, triangles)
+    for _ in range(100):
+        result = gpu_smooth.run(points, triangles)
+    assert result.stop == "converged"
+    # A leak of one array of this mesh per call would be 5 MB.
+    assert resident() - before < 2_000_000
