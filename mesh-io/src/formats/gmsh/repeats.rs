@@ -9,11 +9,8 @@ use crate::visit::visitor::MeshVisitor;
 /// element: gmsh writes a row for each group, with a tag of its own.
 #[derive(Default)]
 pub(super) struct ElementSender {
-    last: Option<Row>,
-}
-
-struct Row {
-    kind: CellKind,
+    /// Kind of the last element; `None` before the first one.
+    kind: Option<CellKind>,
     nodes: [u64; 4],
     region: [i64; 2],
 }
@@ -30,31 +27,39 @@ impl ElementSender {
         visitor: &mut dyn MeshVisitor,
         element: &Element,
     ) -> Result<(), ReadError> {
-        let &Element { kind, nodes, region: [physical, entity], .. } = element;
-        let is_further = self.last.as_ref().is_some_and(|last| {
-            last.nodes == nodes
-                && last.kind == kind
-                && last.region[1] == entity
-                && last.region[0] != physical
-        });
-        match is_further {
+        // Most elements differ in their first nodes, and need no further comparison.
+        match element.nodes[0] == self.nodes[0] && self.is_repeated(element) {
             // The element is in the group of its entity already.
-            true => visitor.further_region(kind, [physical, 0]),
+            true => visitor.further_region(element.kind, [element.region[0], 0]),
             false => visitor.element(cursor, element)?,
         }
-        self.last = Some(Row { kind, nodes, region: element.region });
+        (self.kind, self.nodes, self.region) = (Some(element.kind), element.nodes, element.region);
         Ok(())
+    }
+
+    #[cold]
+    fn is_repeated(&self, element: &Element) -> bool {
+        let &Element { kind, nodes, region: [physical, entity], .. } = element;
+        let [last_physical, last_entity] = self.region;
+        self.kind == Some(kind)
+            && self.nodes == nodes
+            && last_entity == entity
+            && last_physical != physical
     }
 
     /// Forgets the last element, after elements that the visitor has taken itself.
     pub(super) fn forget(&mut self) {
-        self.last = None;
+        self.kind = None;
     }
 }
 
-/// Returns whether adjacent records of `size` bytes have equal bytes from `start` to `end`.
+/// Returns whether adjacent records of `size` bytes have equal bytes from `start` to `end`, at least four bytes.
 pub(super) fn has_equal_neighbors(block: &[u8], size: usize, start: usize, end: usize) -> bool {
     let mut nodes = block.chunks_exact(size).map(|record| &record[start..end]);
-    let mut last = nodes.next();
-    nodes.any(|nodes| last.replace(nodes) == Some(nodes))
+    let Some(mut last) = nodes.next() else { return false };
+    // Most records differ in their first bytes, whose comparison is no call.
+    nodes.any(|nodes| {
+        let before = std::mem::replace(&mut last, nodes);
+        nodes.first_chunk::<4>() == before.first_chunk() && nodes == before
+    })
 }
