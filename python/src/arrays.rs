@@ -182,7 +182,7 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Returns the rows of an array. Fails for an index below 0, or not below the number of vertices.
+    /// Returns the rows of an array. Fails if an index is negative, or if no vertex has the index.
     fn of<T: Element + Copy + std::fmt::Display, const N: usize>(
         &self,
         array: &Bound<'_, PyArray2<T>>,

@@ -135,7 +135,7 @@ impl RunPlan {
     }
 }
 
-/// Returns the coordinates in which a run moves vertices. On a plane, all are those of the mesh.
+/// Returns the coordinates in which a run moves vertices. A mesh in the plane has no projection, whatever the result.
 fn coordinates(mesh: &MeshOptions, run: &RunOptions) -> Coordinates {
     match mesh.surface == Surface::Sphere && run.measures_in_coordinates() {
         true => Coordinates::OfMesh,

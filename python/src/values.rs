@@ -7,7 +7,7 @@ use pyo3::types::{PyBool, PyString};
 
 use crate::error;
 
-/// Name and value of an option of a call.
+/// An option that a caller passed: its name and its value.
 #[derive(Clone, Copy)]
 pub(crate) struct Given<'a, 'py> {
     pub(crate) name: &'a str,

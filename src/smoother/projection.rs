@@ -10,7 +10,7 @@ use crate::topology::Topology;
 pub(super) struct Projection {
     /// The projected mesh, in degrees of longitude at the equator.
     pub(super) mesh: Mesh,
-    /// Largest latitude that is projected. Vertices nearer to a pole are projected as if they were there.
+    /// Largest latitude that is projected. Vertices at larger latitudes are projected to this latitude.
     most: f64,
 }
 

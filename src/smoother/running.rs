@@ -9,6 +9,7 @@ use crate::error::{MeshError, SmoothError};
 use crate::metric::Metric;
 use crate::options::{Feature, Goal, Options};
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::precision::Precision;
 use crate::quality::Quality;
 use crate::resume;
 use crate::run::{
@@ -184,6 +185,11 @@ impl Smoother<'_> {
             low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
             returned += low + self.certify(&mut points)?;
         }
+        // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
+        let is_as_swept =
+            returned == 0 && self.sliding.is_none() && matches!(options.stored, Precision::Double);
+        let exact = (!is_as_swept)
+            .then(|| base.ideal_squared() + mean_excess(base, &problem, &ended.positions));
         let judged = self.positions_of(&points, ended.positions);
         stages.set_targets_at(&mut problem, &judged)?;
         let problem = &problem;
@@ -202,7 +208,7 @@ impl Smoother<'_> {
         }
         // A device sums in single precision, and so cannot find a gain below the error of its f.
         let error = match improving {
-            None => (written - swept).abs() / written.max(MIN_SCALE),
+            None => (exact.unwrap_or(written) - swept).abs() / written.max(MIN_SCALE),
             Some(_) => 0.0,
         };
         let slid = stages.slid(gains, &points);

@@ -216,7 +216,7 @@ pub(crate) struct SweepReport {
     pub(crate) all: BTreeMap<&'static str, f64>,
 }
 
-/// The duration of the parts of a run, in seconds.
+/// Durations of the stages of a run in seconds.
 #[derive(Clone, Copy, Serialize)]
 pub(crate) struct Seconds {
     pub(crate) read: f64,

@@ -92,8 +92,8 @@ impl GroupSupport {
 }
 
 impl Capabilities {
-    /// Lists the kinds of groups in a dimension whose groups the format stores for each element, most important first:
-    /// one kind, or all if an element may have several groups. Entities of gmsh's formats are not listed.
+    /// Lists the kinds of groups in a dimension whose groups the format stores for each element, most important first.
+    /// Formats of one group per element store one kind, other formats all kinds. Entities of gmsh's formats are not listed.
     pub(crate) fn stored_kinds<'c>(&self, content: &'c Content, dimension: u8) -> Vec<&'c str> {
         let kinds = content.group_kinds(dimension);
         let Some(&main) = kinds.first() else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! XDMF with mesh tags, as DOLFINx writes it: grids with a Topology of their own, and the Geometry of the mesh.
+//! XDMF files with mesh tags, in the layout of DOLFINx. Grids of mesh tags refer to the Geometry of the mesh.
 
 use super::Folder;
 use mesh_io::{CellKind, MeshFile};

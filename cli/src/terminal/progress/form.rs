@@ -12,10 +12,10 @@ use crate::terminal::tell;
 /// Time before progress is shown. Shorter runs show none.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(700);
 
-/// The bar that was made last, which a signal removes.
+/// The progress bar of the current command. A signal removes the bar.
 static LAST_BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// Removes the bar of this process from the terminal, if there is one. No later update draws the bar again.
+/// Removes the progress bar from the terminal for good. Does nothing without a progress bar.
 pub(crate) fn remove_bar() {
     let bar = LAST_BAR.lock().unwrap_or_else(PoisonError::into_inner).take();
     if let Some(bar) = bar {

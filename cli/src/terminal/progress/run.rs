@@ -240,8 +240,9 @@ impl State {
         text
     }
 
-    /// Estimates the remaining seconds: of the stage before the sweeps, and of the run from the sweeps on. `None` for
-    /// stages without an estimate, and for a stage that has exceeded its estimate, as its end is unknown.
+    /// Estimates the remaining seconds. Before the sweeps, the estimate covers the current stage. From the sweeps on, the
+    /// estimate covers the rest of the run. `None` for stages without an estimate, and for stages that have exceeded
+    /// their estimate.
     fn left(&self) -> Option<f64> {
         let seconds = self.stage_began.elapsed().as_secs_f64();
         let of_stage = match (self.stage, &self.sweeps) {

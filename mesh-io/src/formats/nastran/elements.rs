@@ -155,8 +155,8 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     })
 }
 
-/// Returns the ids of all property cards (`PSHELL`, `PCOMP` and so on). An element with a blank property has the property
-/// with the number of the element, and no property if the file does not have that one.
+/// Returns the ids of all property cards (`PSHELL`, `PCOMP` and so on). A blank property stands for the property with the
+/// number of the element. If the file has no property with this number, the element has no property.
 #[cold]
 fn property_ids(rows: &Cursor<'_>) -> HashSet<u64> {
     let cursor = &mut rows.clone();

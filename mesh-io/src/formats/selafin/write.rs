@@ -3,7 +3,7 @@
 use crate::export::writer_input::WriterInput;
 use crate::precision::Precision;
 use crate::visit::items::CellKind;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The variable of the height of the bed, by its name in TELEMAC.
 pub(crate) const BED: &str = "BOTTOM";
@@ -51,16 +51,16 @@ fn boundary_numbers(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<i32> {
     let at = |v: u32| points[v as usize];
     let cross =
         |[a, b, c]: [[f64; 2]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    let mut edges: HashMap<[u32; 2], ()> = HashMap::new();
+    let mut edges: HashSet<[u32; 2]> = HashSet::new();
     for &[a, b, c] in triangles {
         let [b, c] = if cross([a, b, c].map(at)) < 0.0 { [c, b] } else { [b, c] };
         for [from, to] in [[a, b], [b, c], [c, a]] {
-            if edges.remove(&[to, from]).is_none() {
-                edges.insert([from, to], ());
+            if !edges.remove(&[to, from]) {
+                edges.insert([from, to]);
             }
         }
     }
-    let next: HashMap<u32, u32> = edges.into_keys().map(|[from, to]| (from, to)).collect();
+    let next: HashMap<u32, u32> = edges.into_iter().map(|[from, to]| (from, to)).collect();
     let mut starts: Vec<u32> = next.keys().copied().collect();
     let place = |v: u32| at(v)[0] + at(v)[1];
     starts.sort_by(|&a, &b| place(a).total_cmp(&place(b)).then(a.cmp(&b)));

@@ -1,4 +1,5 @@
-//! Mesh tags of DOLFINx: numbers of some cells, in a grid with a Topology of its own and the Geometry of the mesh.
+//! Mesh tags of DOLFINx. A grid with mesh tags lists some cells in its own Topology, gives a number to each of these cells,
+//! and refers to the Geometry of the mesh.
 
 use super::File;
 use super::cells::TagRegions;
@@ -76,15 +77,21 @@ impl File<'_> {
         Ok((regions, lines))
     }
 
-    /// Reads the cells of mesh tags: VTK's cell type, the number of nodes of a cell, the nodes of all cells, and the tag
-    /// of each cell.
-    fn tagged_cells(&self, tags: MeshTags<'_>) -> Result<TaggedCells, ReadError> {
-        let (cell_type, corners) = self.uniform(tags.topology, &tags.topology.kind)?;
-        let words = &mut self.words(tags.topology)?;
+    /// Returns the nodes of all cells of a Topology of one type.
+    fn all_nodes(&self, topology: &Item) -> Result<Vec<u64>, ReadError> {
+        let words = &mut self.words(topology)?;
         let mut nodes = Vec::new();
         while words.has_next() {
             nodes.push(words.take("a node of a cell")?);
         }
+        Ok(nodes)
+    }
+
+    /// Reads the cells of mesh tags: VTK's cell type, the number of nodes of a cell, the nodes of all cells, and the tag
+    /// of each cell.
+    fn tagged_cells(&self, tags: MeshTags<'_>) -> Result<TaggedCells, ReadError> {
+        let (cell_type, corners) = self.uniform(tags.topology, &tags.topology.kind)?;
+        let nodes = self.all_nodes(tags.topology)?;
         let values = self.integers(tags.values)?;
         if corners == 0 || nodes.len() as u64 != corners.saturating_mul(values.len() as u64) {
             let problem = format!(
@@ -110,11 +117,7 @@ impl File<'_> {
         if tags.topology.kind != "triangle" || mesh.kind != "triangle" {
             return Ok(None);
         }
-        let words = &mut self.words(mesh)?;
-        let mut nodes = Vec::new();
-        while words.has_next() {
-            nodes.push(words.take("a node of a cell")?);
-        }
+        let nodes = self.all_nodes(mesh)?;
         let key = |corners: &[u64]| {
             let mut key = [corners[0], corners[1], corners[2]];
             key.sort_unstable();
