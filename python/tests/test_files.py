@@ -91,9 +91,9 @@ def test_a_file_is_converted(tmp_path: Path) -> None:
     source = gmsh_file(tmp_path / "in.msh")
     losses = gpu_smooth.convert(source, tmp_path / "out.vtk", lossy=True)
     assert np.array_equal(gpu_smooth.MeshFile(tmp_path / "out.vtk").points, gpu_smooth.MeshFile(source).points)
-    if losses:
-        with pytest.raises(FileError, match="lossy=True"):
-            gpu_smooth.convert(source, tmp_path / "other.vtk")
+    assert any("inlet" in loss for loss in losses)
+    with pytest.raises(FileError, match="lossy=True"):
+        gpu_smooth.convert(source, tmp_path / "other.vtk")
     with pytest.raises(FileError, match="the ending belongs to no format"):
         gpu_smooth.convert(source, tmp_path / "out.docx")
     gpu_smooth.convert(source, tmp_path / "out.vtu", lossy=True, encoding="compressed")
