@@ -312,10 +312,6 @@ impl MeshVisitor for ContentBuilder {
             return;
         };
         let PointNumbers { numbers, nodes, .. } = numbers;
-        if is_height {
-            self.content.z_values = numbers;
-            return;
-        }
         let values = match nodes {
             None => numbers,
             Some(nodes) => {
@@ -323,6 +319,10 @@ impl MeshVisitor for ContentBuilder {
                 scatter(&numbers, components, self.content.points.len(), nodes.iter().map(index))
             }
         };
+        if is_height {
+            self.content.z_values = values;
+            return;
+        }
         // Parts of a mesh may list the values of their own vertices in separate arrays of equal name.
         let same = |data: &&mut DataArray| data.name == name && data.components == components;
         if let Some(data) = self.content.point_data.iter_mut().find(same)

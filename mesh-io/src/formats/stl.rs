@@ -1,7 +1,8 @@
-//! STL, as text and in binary, for a mesh in the plane.
+//! STL, as text and in binary, for a mesh in a plane.
 //!
 //! The format: <https://www.fabbers.com/tech/STL_Format>. An STL lists the corners of each triangle, and has no
-//! vertices. A mesh is read only if the user asks to join corners with equal coordinates. Normals are not read.
+//! vertices. A mesh is read only if the user asks to join corners with equal coordinates. Normals are not read, as they
+//! stay right where vertices move in the plane of the mesh.
 
 use crate::binary::byte_order::ByteOrder;
 use crate::content::group_label::GroupLabel;
@@ -13,11 +14,12 @@ use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::token::quoted;
-use crate::visit::items::{CellKind, Element, GroupScope, PointNumbers};
+use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::{all_rows, volume};
+use crate::visit::rows::all_rows;
 use crate::visit::storage::{CoordinateStorage, RepeatedVertices};
 use crate::visit::visitor::MeshVisitor;
+use crate::visit::z_values::ZValues;
 use std::collections::HashMap;
 
 pub(crate) struct Stl;
@@ -37,9 +39,9 @@ struct TriangleSoup<'a> {
     triangles: Vec<(usize, u32)>,
     /// The offset of each corner's x, ascending, three for each triangle.
     x_at: Vec<usize>,
-    corners: Vec<[f64; 2]>,
-    /// The common third coordinate of all corners; `None` before the first corner.
-    z: Option<f64>,
+    corners: Vec<[f64; 3]>,
+    /// The offset of each corner's z, in the order of `x_at`.
+    z_at: Vec<usize>,
     /// The names of the solids.
     solids: Vec<&'a [u8]>,
 }
@@ -48,7 +50,8 @@ struct TriangleSoup<'a> {
 enum Row<'a> {
     Solid(&'a [u8]),
     Facet(usize),
-    Vertex(usize, [f64; 2], f64),
+    /// The offsets of x and z, and the coordinates.
+    Vertex(usize, usize, [f64; 3]),
     EndFacet,
     EndSolid,
     Other,
@@ -72,7 +75,7 @@ impl FormatReader for Stl {
             }
             false => (text(source, visitor)?, Format::Stl, CoordinateEncoding::TEXT),
         };
-        let copies = send_mesh(source, soup, is_binary, visitor)?;
+        let copies = send_mesh(source, soup, numbers, visitor)?;
         Ok(CoordinateStorage {
             repeated_vertices: Some(copies),
             ..CoordinateStorage::in_place(format, numbers)
@@ -124,7 +127,7 @@ fn binary<'a>(
                 let problem = format!("a corner of triangle {} is not finite", index + 1);
                 return Err(place.error(problem, "Write the mesh again"));
             }
-            soup.corner(&place, start + corner, [x, y], z)?;
+            soup.corner(start + corner, start + corner + 8, [x, y, z]);
         }
         has_attributes |= triangle[48..] != [0, 0];
     }
@@ -148,7 +151,7 @@ fn text<'a>(
             Row::Vertex(..) if missing == 0 => {
                 return Err(cursor.error("a vertex beyond the three of a facet", CORRECT));
             }
-            Row::Vertex(x_at, at, z) => soup.corner(cursor, x_at, at, z)?,
+            Row::Vertex(x_at, z_at, corner) => soup.corner(x_at, z_at, corner),
             _ if missing > 0 => {
                 let problem = format!("the facet has {} vertices, not three", 3 - missing);
                 return Err(cursor.error(problem, CORRECT));
@@ -179,8 +182,9 @@ fn row<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
     let word = cursor.token().unwrap_or_default();
     let is = |name: &str| word.eq_ignore_ascii_case(name.as_bytes());
     if is("vertex") {
-        let (x_at, at) = cursor.point("a vertex")?;
-        return Ok(Row::Vertex(x_at, at, cursor.coordinate('z', "a vertex")?));
+        let (x_at, [x, y]) = cursor.point("a vertex")?;
+        let z_at = cursor.at();
+        return Ok(Row::Vertex(x_at, z_at, [x, y, cursor.coordinate('z', "a vertex")?]));
     }
     match () {
         () if is("facet") => Ok(Row::Facet(start)),
@@ -196,26 +200,17 @@ fn row<'a>(cursor: &mut Cursor<'a>) -> Result<Row<'a>, ReadError> {
 }
 
 impl TriangleSoup<'_> {
-    /// Adds the next corner. Returns an error if its z differs from that of earlier corners.
+    /// Adds the next corner, with the offsets of its first and third coordinate.
     #[inline]
-    fn corner(
-        &mut self,
-        cursor: &Cursor<'_>,
-        x_at: usize,
-        at: [f64; 2],
-        z: f64,
-    ) -> Result<(), ReadError> {
-        if *self.z.get_or_insert(z) != z {
-            return Err(volume(cursor, "corners with different z"));
-        }
+    fn corner(&mut self, x_at: usize, z_at: usize, corner: [f64; 3]) {
         self.x_at.push(x_at);
-        self.corners.push(at);
-        Ok(())
+        self.z_at.push(z_at);
+        self.corners.push(corner);
     }
 }
 
 /// Returns for each corner the index of the first corner with equal coordinates.
-fn first_equal_corners(corners: &[[f64; 2]]) -> Vec<u32> {
+fn first_equal_corners(corners: &[[f64; 3]]) -> Vec<u32> {
     let mut first = HashMap::new();
     // Adding zero makes a negative zero positive, so both zeros are one place.
     let places = corners.iter().map(|corner| corner.map(|x| (x + 0.0).to_bits()));
@@ -227,13 +222,13 @@ fn first_equal_corners(corners: &[[f64; 2]]) -> Vec<u32> {
 fn send_mesh(
     source: &Source,
     soup: TriangleSoup<'_>,
-    is_binary: bool,
+    encoding: CoordinateEncoding,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<RepeatedVertices, ReadError> {
-    let TriangleSoup { triangles, x_at, corners, z, solids } = soup;
-    let mut place = match is_binary {
-        true => Cursor::at_byte_offset(source, 0),
-        false => Cursor::new(source),
+    let TriangleSoup { triangles, x_at, corners, z_at, solids } = soup;
+    let mut place = match encoding {
+        CoordinateEncoding::Binary { .. } => Cursor::at_byte_offset(source, 0),
+        _ => Cursor::new(source),
     };
     place.check_vertex_count(corners.len() as u64)?;
     let first = first_equal_corners(&corners);
@@ -246,7 +241,8 @@ fn send_mesh(
             place.seek(x_at[corner]);
             vertices.push(next);
             next += 1;
-            visitor.node(&place, u64::from(next), 2, x_at[corner], corners[corner]);
+            let [x, y, _] = corners[corner];
+            visitor.node(&place, u64::from(next), 2, x_at[corner], [x, y]);
         } else {
             vertices.push(vertices[first as usize]);
         }
@@ -254,14 +250,10 @@ fn send_mesh(
     visitor
         .remark(Remark::Text(format!("{} corners are joined to {count} vertices", corners.len())));
     visitor.end_nodes(&place)?;
-    if let Some(z) = z.filter(|&z| z != 0.0)
-        && visitor.asks_for_data()
-        && visitor.z_array(b"z")
-    {
-        // All corners have this z, so z never has to be replaced.
-        let numbers = vec![z; count];
-        visitor.point_numbers(PointNumbers { numbers, nodes: None, location: None });
-    }
+    let mut z_values = ZValues::new(visitor);
+    z_at.into_iter().zip(&corners).for_each(|(at, corner)| z_values.push((at, corner[2])));
+    let nodes = || vertices.iter().map(|&vertex| u64::from(vertex) + 1).collect();
+    z_values.of_nodes(nodes).send("z", encoding.into(), visitor);
     visitor.expect_elements(triangles.len());
     place.seek(0);
     let mut last = None;

@@ -19,12 +19,14 @@ pub(crate) struct ZValues {
     collected: Option<(Vec<usize>, Vec<f64>)>,
     /// Whether some points have no third coordinate.
     is_partial: bool,
+    /// The node id of each point; `None` if point `i` is node `i`.
+    nodes: Option<Vec<u64>>,
 }
 
 impl ZValues {
     pub(crate) fn new(visitor: &dyn MeshVisitor) -> ZValues {
         let collected = visitor.asks_for_data().then(Default::default);
-        ZValues { first: None, differ: false, collected, is_partial: false }
+        ZValues { first: None, differ: false, collected, is_partial: false, nodes: None }
     }
 
     /// Adds the third coordinate of the next point, with its byte offset; [`NO_Z`] for a point without z.
@@ -51,6 +53,12 @@ impl ZValues {
             let first = *self.first.get_or_insert(own);
             self.differ |= !z.all_real(count, |z| z == first);
         }
+    }
+
+    /// Sets the node id of each point, for files that repeat nodes. `nodes` is called if points are collected.
+    pub(crate) fn of_nodes(self, nodes: impl FnOnce() -> Vec<u64>) -> ZValues {
+        let nodes = self.collected.is_some().then(nodes);
+        ZValues { nodes, ..self }
     }
 
     /// Announces third coordinates of the main file as an array `name`, and passes the numbers if the visitor wants
@@ -84,7 +92,7 @@ impl ZValues {
                 space: home,
                 file_index,
             });
-            visitor.point_numbers(PointNumbers { numbers, nodes: None, location: stored });
+            visitor.point_numbers(PointNumbers { numbers, nodes: self.nodes, location: stored });
         }
     }
 }
