@@ -36,7 +36,7 @@ const fn row(
 const ROWS: &[Row] = &[
     row(
         &[Format::Triangle],
-        "text, with the `.poly` beside it",
+        "text, with the `.poly` beside it; vertices of two or three coordinates, `convert` writes two",
         [
             "vertices and segments of the `.poly`",
             "attributes of the `.ele`",
@@ -207,7 +207,7 @@ const ROWS: &[Row] = &[
     row(
         &[Format::Stl, Format::StlBinary],
         "with `--weld` only, which joins corners at the same place to vertices; every copy of a corner is written, normals and attributes are kept",
-        ["–", "solid", "solids by name", "planar in x and y; no other elements"],
+        ["–", "solid", "solids by name", "no other elements"],
     ),
     row(
         &[Format::Xdmf],

@@ -199,6 +199,28 @@ fn attributes_of_triangle_are_data() {
     assert_eq!(folder.text("out.node"), expected);
 }
 
+#[test]
+fn third_coordinates_of_triangle_are_data_before_the_attributes() {
+    let node = "4 3 1 1\n0 0 7 .50 5 1\n1 1 7 2e0 5 1\n2 0 7 3 5 1 # up\n3 .2 7 .2 5 0\n";
+    let folder = Folder::new(&[("in.node", node), ("in.ele", "3 3\n0 0 1 3\n1 1 2 3\n2 2 0 3\n")]);
+    let file = folder.read("in.node");
+    assert!(file.has_third_coordinates());
+    assert_eq!(file.points()[3], [0.2, 7.0]);
+    assert_eq!(file.data_names(), ["z", "attribute"]);
+    assert_eq!(file.groups().unwrap().find("1").unwrap().vertices(), [0, 1, 2]);
+    let mut fields = file.point_fields(None).unwrap();
+    assert_eq!(fields[0].values(), [0.5, 2.0, 3.0, 0.2]);
+    assert_eq!(fields[1].values(), [5.0; 4]);
+    fields[0].set(vec![0.5, 2.0, -1.0, 0.25]).unwrap();
+    let mut points = file.points().to_vec();
+    points[3][0] = 0.125;
+    file.write_with_fields(&folder.path("out.node"), &points, &fields).unwrap();
+    let expected = node.replace("7 3 5", "7 -1.0 5").replace(".2 7 .2", "0.125 7 0.25");
+    assert_eq!(folder.text("out.node"), expected);
+    let converted = Conversion::new(&file, Format::Obj).unwrap().unwrap().text().unwrap();
+    assert!(converted.contains("v 0.2 7.0 0.2\n"), "{converted}");
+}
+
 /// Every variable of SELAFIN is read and replaced in every time step, in both byte orders.
 #[test]
 fn variables_of_selafin_are_data_in_every_step() {

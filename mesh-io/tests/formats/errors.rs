@@ -38,7 +38,7 @@ fn triangle_errors_name_line_and_remedy() {
     node(&changed("4 0. ", "4 0,5 "), &["m.node:7: x of vertex 4 is `0,5`, not a finite"]);
     node(&changed("4 0. ", "-4 0. "), &["m.node:7: the number of a vertex is `-4`, not a whole"]);
     node(&changed("5 2 1 1", "9 2 1 1"), &["m.node:10: the file ends after 5 of 9", "cut off"]);
-    node(&changed("5 2 1 1", "5 3 1 1"), &["m.node:3: the vertices have 3 coordinates", "plane"]);
+    node(&changed("5 2 1 1", "5 4 1 1"), &["m.node:3: the dimension is 4, not 2 or 3"]);
     node(&changed("5 2 1 1", "5000000000 2"), &["m.node:3: 5000000000 vertices", "4294967295"]);
     node(&changed("5 2 1 1", "0 2"), &["m.node:3: no vertices"]);
     node("# nothing\n", &["m.node:1: the file ends before the number of vertices"]);
@@ -70,6 +70,7 @@ fn triangle_errors_name_line_and_remedy() {
     poly("0 2\n", &["m.poly:1: the file ends before the number of segments"]);
     let own = "6 2\n1 0 0\n2 0 0\n3 0 0\n4 0 0\n5 0 0\n6 0 0\n0\n";
     poly(own, &["m.poly:7: more vertices than the 5 of m.node", "files of one mesh"]);
+    poly("0 3 0 1\n1 1\n", &["m.poly:1: the vertices have 3 coordinates", "TetGen"]);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::content::group_label::GroupLabel;
 use crate::content::regions::Interner;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
-use crate::edit::numbers;
+use crate::edit::numbers::CoordinateEncoding;
 use crate::error::{ReadError, WriteError};
 use crate::format::Format;
 use crate::formats::triangle::files;
@@ -21,7 +21,7 @@ use crate::visit::reader::FormatReader;
 use crate::visit::rows::each_row;
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
-use crate::visit::z_values::TextNumbers;
+use crate::visit::z_values::{TextNumbers, ZValues};
 use std::path::{Path, PathBuf};
 
 /// The reader of Triangle meshes. The source is the `.node`; its companions are the `.ele` and the optional `.poly`.
@@ -51,15 +51,15 @@ impl FormatReader for Triangle {
         if let Some(poly) = poly {
             segments(poly, node, &vertices.numbers, visitor)?;
         }
-        Ok(CoordinateStorage::in_place(Format::Triangle, numbers::CoordinateEncoding::TEXT))
+        Ok(CoordinateStorage::in_place(Format::Triangle, CoordinateEncoding::TEXT))
     }
 }
 
 /// The list of vertices of a `.node`.
 struct Vertices<'s> {
     numbers: VertexNumbering,
-    /// The number of attributes of each vertex.
-    attributes: u64,
+    /// The number of coordinates and attributes of each vertex.
+    columns: u64,
     has_markers: bool,
     /// The cursor before the first vertex.
     before: Cursor<'s>,
@@ -73,7 +73,7 @@ impl<'s> Vertices<'s> {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<Self, ReadError> {
         let cursor = &mut rows(node);
-        let count = vertex_header(cursor)?;
+        let (count, coordinates) = vertex_header(cursor)?;
         if count == 0 {
             return Err(cursor.error("no vertices are announced", "Write the mesh again"));
         }
@@ -81,6 +81,7 @@ impl<'s> Vertices<'s> {
         let attributes = cursor.integer_or(0, "the number of attributes per vertex").unwrap_or(0);
         // A row cannot hold more attributes than the file has bytes.
         let attributes = cursor.capacity(attributes, 1) as u64;
+        let columns = coordinates + attributes;
         let has_markers = cursor.integer_or(0, "whether vertices have markers").unwrap_or(0) != 0;
         let before = cursor.clone();
         visitor.expect_nodes(cursor.capacity(count, "1 0 0\n".len()));
@@ -91,31 +92,36 @@ impl<'s> Vertices<'s> {
             if cursor.next_row() {
                 numbers.first = cursor.integer("the number of a vertex")?;
             }
-            return Ok(Vertices { numbers, attributes, has_markers, before });
+            return Ok(Vertices { numbers, columns, has_markers, before });
         }
         let read = |cursor: &mut Cursor<'_>| {
             let number = cursor.integer("the number of a vertex")?;
-            Ok((number, cursor.point(format_args!("vertex {number}"))?))
+            let owner = format_args!("vertex {number}");
+            let point = cursor.point(owner)?;
+            Ok((number, point, if coordinates == 3 { Some(cursor.z(owner)?) } else { None }))
         };
+        let mut z_values = ZValues::new(visitor);
         each_row(cursor, count, "vertices", visitor, read, |cursor, visitor, row, vertex| {
-            let (number, (x_at, at)) = vertex;
+            let (number, (x_at, at), z) = vertex;
             numbers.check(cursor, row, number)?;
             // A vertex of the outline is a point of the model, which has the dimension 0.
             let dimension = if row < listed { 0 } else { 2 };
             visitor.node(cursor, number, dimension, x_at, at);
+            z.into_iter().for_each(|z| z_values.push(z));
             Ok(())
         })?;
         visitor.end_nodes(cursor)?;
+        z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         for (column, name) in
             (0..attributes).map(|column| (column, column_name(column, attributes)))
         {
             if visitor.point_array(name.as_bytes(), 1, true) {
                 let mut values = TextNumbers::default();
-                values.column(before.clone(), count, 3 + column)?;
+                values.column(before.clone(), count, 1 + coordinates + column)?;
                 visitor.point_numbers(values.finish(Precision::Double, None));
             }
         }
-        Ok(Vertices { numbers, attributes, has_markers, before })
+        Ok(Vertices { numbers, columns, has_markers, before })
     }
 
     /// Hands the markers of vertices to a visitor that asks for groups.
@@ -126,7 +132,7 @@ impl<'s> Vertices<'s> {
         let mut cursor = self.before.clone();
         for row in 0..self.numbers.count {
             cursor.row(row, self.numbers.count, "vertices")?;
-            cursor.tokens(self.attributes.saturating_add(3));
+            cursor.tokens(self.columns.saturating_add(1));
             if let Some(label) = cursor.token().and_then(marker) {
                 visitor.node_group(row as u32, "marker", &label);
             }

@@ -75,16 +75,12 @@ pub(super) fn header(cursor: &mut Cursor<'_>, what: &str) -> Result<(), ReadErro
     Err(cursor.error(format!("the file ends before the number of {what}"), CUT_OFF))
 }
 
-/// Reads the number of vertices, and checks that vertices have two coordinates.
-pub(super) fn vertex_header(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
+/// Reads the number of vertices, and the number of their coordinates: 2 as in Triangle, or 3 as in TetGen.
+pub(super) fn vertex_header(cursor: &mut Cursor<'_>) -> Result<(u64, u64), ReadError> {
     header(cursor, "vertices")?;
     let count = cursor.vertex_count()?;
     match cursor.integer_or(2, "the dimension")? {
-        2 => Ok(count),
-        3 => {
-            Err(cursor
-                .error("the vertices have 3 coordinates", "Only meshes of the plane are read"))
-        }
-        other => Err(cursor.error(format!("the dimension is {other}, not 2"), CORRECT)),
+        coordinates @ 2..=3 => Ok((count, coordinates)),
+        other => Err(cursor.error(format!("the dimension is {other}, not 2 or 3"), CORRECT)),
     }
 }

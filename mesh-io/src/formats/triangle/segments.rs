@@ -8,7 +8,7 @@ use crate::text::cursor::Cursor;
 /// Returns the number of vertices in a `.poly`, or 0 for a damaged first row. The mesh starts with the vertices of the
 /// `.poly`.
 pub(super) fn listed_vertices(poly: &Source) -> u64 {
-    vertex_header(&mut rows(poly)).unwrap_or(0)
+    vertex_header(&mut rows(poly)).map_or(0, |(count, _)| count)
 }
 
 /// Reads the segments of a `.poly` row by row.
@@ -33,7 +33,12 @@ impl<'s> Segments<'s> {
         numbers: &VertexNumbering,
     ) -> Result<Self, ReadError> {
         let mut cursor = rows(poly);
-        let listed = vertex_header(&mut cursor)?;
+        let (listed, coordinates) = vertex_header(&mut cursor)?;
+        if coordinates == 3 {
+            let problem =
+                "the vertices have 3 coordinates, as in TetGen, whose facets are not read";
+            return Err(cursor.error(problem, "Rename the .poly, or write it as Triangle does"));
+        }
         // The `.poly` may count its vertices from 1 and the `.node` from 0, or the reverse.
         let mut own = VertexNumbering { first: numbers.first, count: numbers.count };
         for row in 0..listed {
