@@ -76,6 +76,11 @@ impl LoadedMesh {
         self.plane.as_ref()
     }
 
+    /// Returns the names of the two coordinates in which the mesh is smoothed: x and y, or those of its plane.
+    pub(crate) fn axes(&self) -> [&'static str; 2] {
+        self.plane().map_or(["x", "y"], Plane::axes)
+    }
+
     /// Returns the precision with which the file stores the coordinates of the mesh. Coordinates in a tilted plane are
     /// not stored, so that a run does not round them.
     pub(crate) fn precision(&self) -> Precision {

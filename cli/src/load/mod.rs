@@ -18,4 +18,5 @@ pub(crate) use fields::InterpolatedFields;
 pub(crate) use fixed::FixedBy;
 pub(crate) use mesh::LoadedMesh;
 pub(crate) use movable::MovableSelection;
+pub(crate) use plane::Plane;
 pub(crate) use surface::{as_in_file, lay_out};

@@ -106,12 +106,27 @@ impl Plane {
         self.frame.strays(&self.space, &after.space, stored)
     }
 
+    /// Returns the names of the two coordinates in the plane: two of x, y and z, or u and v in a tilted plane.
+    pub(crate) fn axes(&self) -> [&'static str; 2] {
+        match self.frame {
+            Frame::Axes(axes) => axes.map(|axis| ["x", "y", "z"][axis]),
+            Frame::Tilted { .. } => ["u", "v"],
+        }
+    }
+
+    /// Names the axes of a view of the mesh; `None` for the plane of x and y.
+    pub(crate) fn legend(&self) -> Option<String> {
+        let [across, up] = self.axes();
+        let plane = if self.is_tilted() { " in a tilted plane" } else { "" };
+        (!self.is_of_xy()).then(|| format!("{across} to the right, {up} upward{plane}"))
+    }
+
     /// Describes the plane for the user; `None` for the plane of x and y.
     pub(crate) fn remark(&self) -> Option<String> {
         match self.frame {
             Frame::Axes([0, 1]) => None,
-            Frame::Axes(axes) => {
-                let [a, b] = axes.map(|axis| ["x", "y", "z"][axis]);
+            Frame::Axes(_) => {
+                let [a, b] = self.axes();
                 Some(format!(
                     "the mesh lies in the plane of {a} and {b}, and is smoothed in it: positions in options, pictures and reports are {a} and {b}"
                 ))
@@ -119,7 +134,7 @@ impl Plane {
             Frame::Tilted { .. } => {
                 let [x, y, z] = self.frame.normal().map(sig6);
                 Some(format!(
-                    "the mesh lies in a tilted plane with the normal ({x}, {y}, {z}), and is smoothed in it: positions in options, pictures and reports are lengths in this plane, from the mean of all vertices"
+                    "the mesh lies in a tilted plane with the normal ({x}, {y}, {z}), and is smoothed in it: positions in options, pictures and reports are lengths u and v in this plane, from the mean of all vertices"
                 ))
             }
         }

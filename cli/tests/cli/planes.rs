@@ -2,7 +2,7 @@
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
 use gpu_smooth::Mesh;
-use mesh_io::MeshFile;
+use mesh_io::ReadOptions;
 use std::fmt::Write;
 
 type Point = [f64; 3];
@@ -20,9 +20,37 @@ fn obj(place: impl Fn([f64; 2]) -> Point) -> String {
     text
 }
 
+/// Returns the mesh as an STL, with the normal of its plane in each facet.
+fn stl(place: impl Fn([f64; 2]) -> Point, [n, m, l]: Point) -> String {
+    let mesh = disturbed();
+    let mut text = String::from("solid made for a test\n");
+    for triangle in &mesh.triangles {
+        writeln!(text, "facet normal {n} {m} {l}\nouter loop").unwrap();
+        for [x, y, z] in triangle.map(|v| place(mesh.points[v as usize])) {
+            writeln!(text, "vertex {x} {y} {z}").unwrap();
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid\n"
+}
+
+/// Returns the vertices of the mesh as a `.node` of three coordinates, and its triangles.
+fn node_and_ele(place: impl Fn([f64; 2]) -> Point) -> [String; 2] {
+    let mesh = disturbed();
+    let mut node = format!("{} 3 0 0\n", mesh.points.len());
+    for (v, [x, y, z]) in mesh.points.iter().map(|&point| place(point)).enumerate() {
+        writeln!(node, "{v} {x} {y} {z}").unwrap();
+    }
+    let mut ele = format!("{} 3 0\n", mesh.triangles.len());
+    for (t, [a, b, c]) in mesh.triangles.iter().enumerate() {
+        writeln!(ele, "{t} {a} {b} {c}").unwrap();
+    }
+    [node, ele]
+}
+
 /// Returns the vertices of a file in space.
 fn space(folder: &Folder, name: &str) -> Vec<Point> {
-    let file = MeshFile::read(&folder.path(name)).unwrap();
+    let file = ReadOptions::new().weld(true).read(&folder.path(name)).unwrap();
     let z = file.point_fields(Some(&["z".into()])).unwrap();
     file.points().iter().zip(z[0].values()).map(|(&[x, y], &z)| [x, y, z]).collect()
 }
@@ -65,6 +93,92 @@ fn a_mesh_in_the_plane_of_any_two_axes_is_smoothed_as_in_x_and_y() {
     let (before, after) = (folder.text("xz.obj"), folder.text("xz_out.obj"));
     let same = before.lines().zip(after.lines()).filter(|(a, b)| a == b).count();
     assert!(same > before.lines().count() - 100 && before != after);
+}
+
+/// Formats that `convert` does not write with third coordinates.
+#[test]
+fn an_stl_and_a_node_file_in_the_plane_of_any_two_axes_are_smoothed_as_in_x_and_y() {
+    type Place = fn([f64; 2]) -> Point;
+    let planes: [(&str, Place, [usize; 2], Point); 3] = [
+        ("xy", |[x, y]| [x, y, 5.5], [0, 1], [0.0, 0.0, 1.0]),
+        ("xz", |[x, y]| [x, 5.5, y], [0, 2], [0.0, -1.0, 0.0]),
+        ("yz", |[x, y]| [5.5, x, y], [1, 2], [1.0, 0.0, 0.0]),
+    ];
+    let folder = Folder::new(&[]);
+    let put = |name: String, text: String| std::fs::write(folder.path(&name), text).unwrap();
+    for (name, place, _, normal) in planes {
+        put(format!("{name}.stl"), stl(place, normal));
+        let [node, ele] = node_and_ele(place);
+        put(format!("{name}.node"), node);
+        put(format!("{name}.ele"), ele);
+    }
+    for ending in ["stl", "node"] {
+        let mut expected = None;
+        for (name, _, axes, normal) in planes {
+            let file = format!("{name}.{ending}");
+            let line = format!("{file} {name}_out.{ending} --weld --engine cpu --report r.json");
+            let run = folder.line(&line);
+            assert_eq!(run.code, Some(0), "{file}: {}", run.err);
+            assert_eq!(run.err.contains("the mesh lies in the plane of"), name != "xy");
+            let certificate = &folder.json("r.json")["certificate"];
+            assert_eq!([&certificate["inverted"], &certificate["fixed_moved"]], [0, 0], "{file}");
+            let after = space(&folder, &format!("{name}_out.{ending}"));
+            let held = (0..3).find(|k| !axes.contains(k)).unwrap();
+            assert!(after.iter().all(|point| point[held] == 5.5), "{file}");
+            let flat = by(&after, axes);
+            assert!(*expected.get_or_insert(flat.clone()) == flat, "{file}");
+            folder.line(&format!("compare {file} {name}_out.{ending} --weld -q")).clean();
+            // Each facet keeps its normal, which is that of its moved corners by the right-hand rule.
+            let text = if ending == "stl" {
+                folder.text(&format!("{name}_out.stl"))
+            } else {
+                String::new()
+            };
+            for rows in text.lines().skip(1).collect::<Vec<_>>().chunks_exact(7) {
+                let numbers = |row: usize| -> Vec<f64> {
+                    rows[row].split(' ').filter_map(|word| word.parse().ok()).collect()
+                };
+                let [a, b, c] = [2, 3, 4].map(numbers);
+                let (ab, ac) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
+                let across = |k: usize, l: usize| ab[k] * ac[l] - ab[l] * ac[k];
+                let across = [across(1, 2), across(2, 0), across(0, 1)];
+                let length = across.iter().map(|x| x * x).sum::<f64>().sqrt();
+                assert_eq!(across.map(|x| x / length), normal, "{rows:?}");
+                assert_eq!(numbers(0), normal);
+            }
+        }
+    }
+}
+
+#[test]
+fn views_of_a_mesh_in_a_plane_name_its_axes() {
+    let folder = Folder::new(&[
+        ("xy.obj", &obj(|[x, y]| [x, y, 5.5])),
+        ("xz.obj", &obj(|[x, y]| [x, 5.5, y])),
+        ("yz.obj", &obj(|[x, y]| [5.5, x, y])),
+        ("tilted.obj", &obj(tilted)),
+    ]);
+    for (name, axes, legend) in [
+        ("xy", ["x", "y"], None),
+        ("xz", ["x", "z"], Some("x to the right, z upward")),
+        ("yz", ["y", "z"], Some("y to the right, z upward")),
+        ("tilted", ["u", "v"], Some("u to the right, v upward in a tilted plane")),
+    ] {
+        let [a, b] = axes;
+        let run = format!("{name}.obj {name}_out.obj --engine cpu");
+        for (line, views) in [(run, 2), (format!("quality {name}.obj"), 1)] {
+            let run = folder.line(&format!("{line} --picture p.svg --html p.html"));
+            assert_eq!(run.code, Some(0), "{}", run.err);
+            let [picture, page] = ["p.svg", "p.html"].map(|file| folder.text(file));
+            assert_eq!(picture.matches("upward").count(), legend.map_or(0, |_| views), "{line}");
+            assert_eq!(page.contains(" upward"), legend.is_some(), "{line}");
+            if let Some(legend) = legend {
+                assert!(picture.contains(&format!("; {legend}<")), "{line}");
+                assert_holds(&page, &[&format!("Axes: {legend}.")]);
+            }
+            assert_holds(&page, &[&format!("<th>{a}</th><th>{b}</th>")]);
+        }
+    }
 }
 
 /// Places a point in a plane that slopes in x and in y, with unequal lengths of the axes.

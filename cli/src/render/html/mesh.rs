@@ -1,7 +1,7 @@
 //! The mesh data for the page's script: the whole mesh, or a picture and the triangles around the worst ones.
 
 use crate::error::CliError;
-use crate::load::LoadedMesh;
+use crate::load::{LoadedMesh, Plane};
 use std::collections::HashSet;
 
 use base64::Engine;
@@ -154,7 +154,10 @@ pub(crate) fn viewer_mesh(
         "states": both,
         "spots": corners,
     });
-    let caption = caption(topology.triangles().len(), &faces, is_whole);
+    let mut caption = caption(topology.triangles().len(), &faces, is_whole);
+    if let Some(axes) = file.plane().and_then(Plane::legend) {
+        caption += &format!(" Axes: {axes}.");
+    }
     Ok(ViewerMesh { caption, faces: faces.name(), data })
 }
 

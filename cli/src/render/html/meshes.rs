@@ -77,7 +77,7 @@ impl MeshPart {
         Ok(Self {
             sentences,
             view,
-            worst: worst::list_of_mesh(&spots, by, is_alone),
+            worst: worst::list_of_mesh(&spots, by, file.axes(), is_alone),
             charts: format!("<div class=\"charts\">{charts}</div>"),
         })
     }

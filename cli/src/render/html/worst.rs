@@ -108,9 +108,14 @@ fn located(
     listed.iter().map(spot).collect()
 }
 
-/// Writes the worst triangles of one mesh, found by `measure`, as an HTML table. With `links`, each triangle has a link that
-/// shows it in the viewer.
-pub(crate) fn list_of_mesh(spots: &[WorstTriangle], measure: Measure, links: bool) -> String {
+/// Writes the worst triangles of one mesh, found by `measure`, as an HTML table. `axes` are the names of the coordinates.
+/// With `links`, each triangle has a link that shows it in the viewer.
+pub(crate) fn list_of_mesh(
+    spots: &[WorstTriangle],
+    measure: Measure,
+    [a, b]: [&str; 2],
+    links: bool,
+) -> String {
     if spots.is_empty() {
         return String::new();
     }
@@ -124,7 +129,7 @@ pub(crate) fn list_of_mesh(spots: &[WorstTriangle], measure: Measure, links: boo
     for measure in &measures[..shown] {
         let _ = write!(text, "<th>{}</th>", escape(&measure_name(*measure)));
     }
-    text += "<th>x</th><th>y</th></tr></thead><tbody>";
+    let _ = write!(text, "<th>{a}</th><th>{b}</th></tr></thead><tbody>");
     for (i, spot) in spots.iter().enumerate() {
         let WorstTriangle { label, place, at_in_file, size, can_move, .. } = spot;
         let held = if *can_move { "" } else { " (fixed)" };
@@ -147,8 +152,8 @@ pub(crate) fn list_of_mesh(spots: &[WorstTriangle], measure: Measure, links: boo
     text + if links { " Click a triangle to see it in the mesh.</p>" } else { "</p>" }
 }
 
-/// Writes the lists as HTML tables.
-pub(crate) fn lists(spots: &[WorstTriangle]) -> String {
+/// Writes the lists as HTML tables. `axes` are the names of the coordinates.
+pub(crate) fn lists(spots: &[WorstTriangle], [a, b]: [&str; 2]) -> String {
     let mut text = String::from("<div class=\"lists\">");
     for (list, (title, ..)) in LISTS.iter().enumerate() {
         let of_list = || spots.iter().enumerate().filter(|(_, spot)| spot.list == list);
@@ -158,7 +163,7 @@ pub(crate) fn lists(spots: &[WorstTriangle]) -> String {
         let _ = write!(
             text,
             "{}<table><caption>{title}</caption><thead><tr><th>triangle</th>\
-             <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>x</th><th>y</th></tr></thead><tbody>",
+             <th colspan=\"2\">shape</th><th colspan=\"2\">min angle</th><th>{a}</th><th>{b}</th></tr></thead><tbody>",
             wide(title)
         );
         for (i, spot) in of_list() {

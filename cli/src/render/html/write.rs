@@ -45,7 +45,7 @@ fn page(task: &SmoothJob<'_>, done: &Done<'_>, began: Instant) -> Result<String,
     }
     page.section("Summary", &tables::summary(&done.report));
     page.mesh(&mesh::viewer_mesh(done.file, &states, &spots, &mesh::BOUNDS)?, View::Run);
-    page.section("Worst triangles", &worst::lists(&spots));
+    page.section("Worst triangles", &worst::lists(&spots, done.file.axes()));
     page.section("Distribution", &histograms(states));
     page.section("Convergence", &convergence(done));
     page.section("Statistics", &tables::statistics(states));

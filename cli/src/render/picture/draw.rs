@@ -1,7 +1,7 @@
 //! The picture of `--picture`: a mesh colored by quality, before and after a run.
 
 use crate::error::CliError;
-use crate::load::LoadedMesh;
+use crate::load::{LoadedMesh, Plane};
 use crate::render::picture::{color, png, svg};
 use crate::request::{PictureFormat, PictureRequest};
 
@@ -148,5 +148,10 @@ fn panel<'a>(
             all.filter(|(t, _)| has_middle(*t)).take(CANDIDATES).collect()
         }
     };
-    Ok(Panel { title: [state.title.clone(), numbers], points: state.points, goodness, worst })
+    let axes = mesh.file.plane().and_then(Plane::legend);
+    let title = match axes {
+        Some(axes) => format!("{}; {axes}", state.title),
+        None => state.title.clone(),
+    };
+    Ok(Panel { title: [title, numbers], points: state.points, goodness, worst })
 }
