@@ -7,6 +7,7 @@ use gpu_smooth::Scheme;
 
 use crate::args::EngineChoice;
 use crate::args::ReadArgs;
+use crate::args::SurfaceArgs;
 use crate::args::{names, parse};
 
 #[derive(Args)]
@@ -45,6 +46,8 @@ pub(crate) struct BenchArgs {
     /// Compare with the measurements in FILE, the output of `bench --json`
     #[arg(long, value_name = "FILE")]
     pub(crate) baseline: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
 }

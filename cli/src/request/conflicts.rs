@@ -6,7 +6,7 @@ use mesh_io::Format;
 use crate::args::names;
 use crate::args::{
     BenchArgs, CompareArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, MoveArgs,
-    QualityArgs, ReadArgs, SmoothArgs, SurfaceArg, Target,
+    QualityArgs, ReadArgs, SmoothArgs, SurfaceArg, Target, ZArg,
 };
 use crate::request::smooth::options;
 use crate::request::target::TargetRequest;
@@ -92,10 +92,15 @@ pub(super) const OF_QUALITY: &[Conflict<QualityArgs>] = &[
 ];
 
 /// Conflicts between options of `bench`.
-pub(super) const OF_BENCH: &[Conflict<BenchArgs>] =
-    &[row(["--engine cpu", "--adapter"], idle, |a| {
+pub(super) const OF_BENCH: &[Conflict<BenchArgs>] = &[
+    row(["--engine cpu", "--adapter"], idle, |a| {
         a.engine == EngineChoice::Cpu && a.adapter.is_some()
-    })];
+    }),
+    row(["--surface sphere", "a MESH"], without, |a| {
+        a.surface.surface == SurfaceArg::Sphere && a.mesh.is_none()
+    }),
+    row(["--z data", "a MESH"], without, |a| a.surface.z == ZArg::Data && a.mesh.is_none()),
+];
 
 /// Conflicts between options of `convert`.
 pub(super) const OF_CONVERT: &[Conflict<ConvertArgs>] =

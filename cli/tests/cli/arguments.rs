@@ -189,6 +189,9 @@ fn options_without_effect_are_refused() {
     for (options, told) in cases {
         assert_usage(&folder, &format!("in out {options}"), &[told]);
     }
+    let told = "--surface sphere has no effect without a MESH";
+    assert_usage(&folder, "bench --surface sphere", &[told]);
+    assert_usage(&folder, "bench --z data", &["--z data has no effect without a MESH"]);
     let line = "in out --engine cpu --target keep-shape --target-rings 1 --report r.json";
     folder.line(line).clean();
     assert_eq!(folder.json("r.json")["target"]["rings"], 1);

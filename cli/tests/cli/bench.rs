@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{assert_holds, small};
+use super::{Folder, assert_holds, small};
 
 /// The rows printed as JSON.
 fn rows(text: &str) -> Vec<Value> {
@@ -63,6 +63,31 @@ fn a_mesh_of_the_user_is_measured_and_printed_as_text() {
     // Only an application copies objectives to a buffer of its own.
     assert!(!run.out.contains("write_objective"), "{}", run.out);
     assert!(!run.out.contains("cpu, "), "{}", run.out);
+}
+
+/// A run smooths each of these meshes in its plane.
+#[test]
+fn a_mesh_in_any_plane_is_measured_in_its_plane() {
+    let rows = |place: fn([f64; 2]) -> [f64; 3]| -> String {
+        let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 2.0]].map(place);
+        let faces = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+        points.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect::<String>() + faces
+    };
+    let folder = Folder::new(&[
+        ("xz.obj", &rows(|[x, y]| [x, 5.5, y])),
+        ("yz.obj", &rows(|[x, y]| [5.5, x, y])),
+        ("tilted.obj", &rows(|[x, y]| [x, y, x - 2.0 * y])),
+        ("curved.obj", &rows(|[x, y]| [x, y, x * y])),
+    ]);
+    for (name, plane) in [("xz", "the plane of x and z"), ("yz", "y and z"), ("tilted", "tilted")] {
+        let run = folder.line(&format!("bench {name}.obj --engine cpu --seconds 0"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.err, &["the mesh lies in", plane]);
+    }
+    let line = "bench curved.obj --engine cpu --seconds 0 --json";
+    folder.line(line).refused(&["the mesh is not planar", "add --z data"]);
+    let run = folder.line(&format!("{line} --z data")).clean();
+    assert_eq!(self::rows(&run.out)[0]["free"], 1);
 }
 
 /// The rows of a Markdown table, split into fields.

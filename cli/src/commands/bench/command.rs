@@ -1,9 +1,12 @@
 //! The command `gpu-smooth bench`, which measures the speed of sweeps on this machine.
 
+use std::path::Path;
+
 use gpu_smooth::{
     Mesh, Options, SmoothError, Stopping,
     gpu::Kernel,
     internal::{Plan, Problem, Stepwise, prepare, run_on_cpu, run_on_gpu},
+    targets::Surface,
 };
 
 use crate::args::BenchArgs;
@@ -13,8 +16,9 @@ use crate::commands::bench::machine::Place;
 use crate::commands::bench::report::{Form, KernelRow, Row};
 use crate::commands::bench::{kernels, lattice, machine, rates, sweeps};
 use crate::error::CliError;
-use crate::load::explain;
 use crate::load::streams::read;
+use crate::load::{LoadedMesh, explain, lay_out};
+use crate::request::ThirdCoordinate;
 use crate::run::engine;
 use crate::terminal::tell;
 
@@ -22,7 +26,7 @@ use crate::terminal::tell;
 type Explain<'a> = dyn Fn(SmoothError) -> CliError + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
-    let file = args.mesh.as_deref().map(|mesh| read(mesh, &(&args.reading).into())).transpose()?;
+    let file = args.mesh.as_deref().map(|mesh| laid_out(mesh, args, quiet)).transpose()?;
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let places = places(args, quiet)?;
     let form = Form::new(args);
@@ -56,6 +60,16 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
         tell::say(&form.kernels(&rows));
     }
     Ok(())
+}
+
+/// Reads a mesh, and lays it out as a run does: in its plane, or on the sphere.
+fn laid_out(path: &Path, args: &BenchArgs, quiet: bool) -> Result<LoadedMesh, CliError> {
+    let mut file = read(path, &(&args.reading).into())?;
+    let z = ThirdCoordinate::of(&args.surface, &[]);
+    for remark in lay_out(&mut file, Surface::from(&args.surface), z)? {
+        tell::note(args.json || quiet, &remark);
+    }
+    Ok(file)
 }
 
 fn measure_all(
