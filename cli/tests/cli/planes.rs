@@ -150,6 +150,33 @@ fn an_stl_and_a_node_file_in_the_plane_of_any_two_axes_are_smoothed_as_in_x_and_
     }
 }
 
+/// HDF5 stores the axes of both formats one after another.
+#[test]
+fn meshes_of_med_and_cgns_in_the_plane_of_x_and_z_are_smoothed_as_in_x_and_y() {
+    let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../mesh-io/tests/formats/h5");
+    for ending in ["med", "cgns"] {
+        let folder = Folder::new(&[]);
+        let [flat, upright] = ["xy", "xz"].map(|name| format!("{name}.{ending}"));
+        let sample = std::path::Path::new(samples).join(format!("gmsh.{ending}"));
+        std::fs::copy(&sample, folder.path(&flat)).unwrap();
+        let file = ReadOptions::new().read(&sample).unwrap();
+        let points: Vec<_> = file.points().iter().map(|&[x, _]| [x, 5.5]).collect();
+        let mut z = file.point_fields(Some(&["z".into()])).unwrap();
+        z[0].set(file.points().iter().map(|point| point[1]).collect()).unwrap();
+        file.write_with_fields(&folder.path(&upright), &points, &z).unwrap();
+        for (name, is_upright) in [(&flat, false), (&upright, true)] {
+            let run = folder.line(&format!("{name} out-{name} --engine cpu --report r.json"));
+            assert_eq!(run.code, Some(0), "{}", run.err);
+            assert_eq!(run.err.contains("the plane of x and z"), is_upright, "{}", run.err);
+            let certificate = &folder.json("r.json")["certificate"];
+            assert!(number(&certificate["moved"]) > 5.0, "{certificate}");
+        }
+        let [flat, upright] = [flat, upright].map(|name| space(&folder, &format!("out-{name}")));
+        assert!(by(&flat, [0, 1]) == by(&upright, [0, 2]), "{ending}");
+        assert!(upright.iter().all(|point| point[1] == 5.5), "{ending}");
+    }
+}
+
 #[test]
 fn views_of_a_mesh_in_a_plane_name_its_axes() {
     let folder = Folder::new(&[
