@@ -62,7 +62,7 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Reads a mesh, and lays it out as a run does: in its plane, or on the sphere.
+/// Reads a mesh, and lays the mesh out in its plane or on the sphere, as a run does.
 fn laid_out(path: &Path, args: &BenchArgs, quiet: bool) -> Result<LoadedMesh, CliError> {
     let mut file = read(path, &(&args.reading).into())?;
     let z = ThirdCoordinate::of(&args.surface, &[]);

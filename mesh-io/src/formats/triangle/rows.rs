@@ -75,7 +75,7 @@ pub(super) fn header(cursor: &mut Cursor<'_>, what: &str) -> Result<(), ReadErro
     Err(cursor.error(format!("the file ends before the number of {what}"), CUT_OFF))
 }
 
-/// Reads the number of vertices, and the number of their coordinates: 2 as in Triangle, or 3 as in TetGen.
+/// Reads the number of vertices, and the coordinates per vertex: two as in Triangle, or three as in TetGen.
 pub(super) fn vertex_header(cursor: &mut Cursor<'_>) -> Result<(u64, u64), ReadError> {
     header(cursor, "vertices")?;
     let count = cursor.vertex_count()?;
