@@ -177,7 +177,8 @@ fn third_coordinates_of_every_copy_are_written() {
         }
         bytes
     };
-    let made: [&dyn Fn(&[[f64; 3]]) -> Vec<u8>; 2] = [&text, &binary];
+    type Make<'m> = dyn Fn(&[[f64; 3]]) -> Vec<u8> + 'm;
+    let made: [&Make<'_>; 2] = [&text, &binary];
     for make in made {
         let (folder, file) = read("in.stl", &make(&upright));
         assert!(file.has_third_coordinates());
