@@ -6,6 +6,7 @@ pip install ./python
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
 import time
@@ -60,9 +61,12 @@ def of_import() -> float:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--large", action="store_true", help="also measure 1,000,000 vertices, which takes a minute")
+    is_large = parser.parse_args().large
     print(f"| `import gpu_smooth`, after NumPy | {1e3 * of_import():.1f} ms |")
     sizes = [(9, 3000), (99, 100)]
-    if "--large" in sys.argv:
+    if is_large:
         sizes.append((999, 25))
     for side, rounds in sizes:
         beyond, library = overhead(side, rounds)

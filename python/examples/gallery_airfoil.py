@@ -5,7 +5,7 @@ Run: python gallery_airfoil.py [airfoil.png]; needs gmsh and matplotlib.
 
 from __future__ import annotations
 
-import sys
+import argparse
 
 import gmsh
 import numpy as np
@@ -36,16 +36,19 @@ def mesh() -> None:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("picture", nargs="?", help="file for the picture; without it, nothing is drawn")
+    picture = parser.parse_args().picture
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     mesh()
     result = gpu_smooth.smooth_gmsh_model(target="keep-shape")
     print(result)
-    if len(sys.argv) > 1:
+    if picture:
         figure = result.plot(vmax=4)
         for axes in figure.axes[:2]:
             axes.set(xlim=(-0.1, 0.4), ylim=(-0.13, 0.15))
-        figure.savefig(sys.argv[1], dpi=110)
+        figure.savefig(picture, dpi=110)
     gmsh.finalize()
 
 

@@ -5,7 +5,7 @@ Run: python gallery_coast.py [coast.png]; needs gmsh and matplotlib.
 
 from __future__ import annotations
 
-import sys
+import argparse
 
 import gmsh
 import numpy as np
@@ -43,13 +43,16 @@ def mesh() -> None:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("picture", nargs="?", help="file for the picture; without it, nothing is drawn")
+    picture = parser.parse_args().picture
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     mesh()
     result = gpu_smooth.smooth_gmsh_model(target="keep-size")
     print(result)
-    if len(sys.argv) > 1:
-        result.plot(measure="min-angle", cmap="viridis", vmin=20, vmax=60).savefig(sys.argv[1], dpi=110)
+    if picture:
+        result.plot(measure="min-angle", cmap="viridis", vmin=20, vmax=60).savefig(picture, dpi=110)
     gmsh.finalize()
 
 

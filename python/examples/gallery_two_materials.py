@@ -5,7 +5,7 @@ Run: python gallery_two_materials.py [part.png]; needs gmsh and matplotlib.
 
 from __future__ import annotations
 
-import sys
+import argparse
 
 import gmsh
 import numpy as np
@@ -39,12 +39,15 @@ def rows_of(tags: npt.NDArray[np.uint64]) -> npt.NDArray[np.int64]:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("picture", nargs="?", help="file for the picture; without it, nothing is drawn")
+    picture = parser.parse_args().picture
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     mesh()
     result = gpu_smooth.smooth_gmsh_model(slide=True)
     print(f"{result}, {result.slid} vertices have slid")
-    if len(sys.argv) > 1:
+    if picture:
         figure = result.plot(vmax=1.6)
         for _, curve in gmsh.model.getEntities(1):
             lines = gmsh.model.mesh.getElements(1, curve)[2]
@@ -54,7 +57,7 @@ def main() -> None:
                 points = result.points_before if axes.get_title() == "before" else result.points
                 ends = points[rows_of(lines[0])].reshape(-1, 2, 3)
                 axes.plot(ends[:, :, 0].T, ends[:, :, 1].T, color="black", linewidth=1)
-        figure.savefig(sys.argv[1], dpi=110)
+        figure.savefig(picture, dpi=110)
     gmsh.finalize()
 
 

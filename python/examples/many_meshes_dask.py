@@ -32,7 +32,7 @@ def smoothed(seed: int, side: int) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser()
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--meshes", type=int, default=1000)
     parser.add_argument("--side", type=int, default=30)
     parser.add_argument("--scheduler")

@@ -5,6 +5,8 @@ Run: python replace_optimesh.py
 
 from __future__ import annotations
 
+import argparse
+
 import numpy as np
 import numpy.typing as npt
 
@@ -50,6 +52,7 @@ def disk(rings: int, seed: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__).parse_args()
     points, cells = disk(20, seed=1)
     before = gpu_smooth.quality(points, cells, "min-angle")
     points, cells = optimize_points_cells(points, cells)

@@ -6,6 +6,7 @@ Without Slurm, the only task smooths all meshes: python slurm_array.py meshes sm
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from pathlib import Path
@@ -14,7 +15,11 @@ import gpu_smooth
 
 
 def main() -> int:
-    source, destination = map(Path, sys.argv[1:3])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("source", type=Path, help="directory of meshes")
+    parser.add_argument("destination", type=Path, help="directory for the smoothed meshes")
+    arguments = parser.parse_args()
+    source, destination = arguments.source, arguments.destination
     destination.mkdir(parents=True, exist_ok=True)
     task = int(os.environ.get("SLURM_ARRAY_TASK_ID", 0)) - int(os.environ.get("SLURM_ARRAY_TASK_MIN", 0))
     tasks = int(os.environ.get("SLURM_ARRAY_TASK_COUNT", 1))

@@ -29,6 +29,14 @@ def output(name: str, *words: str | Path, **variables: str) -> str:
     return done.stdout
 
 
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", sorted(path.name for path in EXAMPLES.glob("*.py")))
+def test_help_is_printed_in_place_of_a_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert output(name, "--help").startswith("usage: ")
+    assert not list(tmp_path.iterdir())
+
+
 def test_optimesh_is_replaced() -> None:
     before, after = map(float, re.findall(r"least angle (\S+) -> (\S+) ", output("replace_optimesh.py"))[0])
     assert before < 20 < 30 < after
