@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -56,6 +57,21 @@ class Cells(NamedTuple):
         if self.regions is not None:
             found["regions"] = self.regions
         return {**found, **{name: value for name, value in given.items() if name not in ("fixed", "lines")}}
+
+
+def named(fixed: Any, groups: dict[str, Callable[[], Any]]) -> Any:
+    """Return the vertices of groups that `fixed` names: a name, or a list of names. Other values are returned as they are.
+
+    `groups` has a function for each name, which returns the vertices of the group.
+    """
+    names = [fixed] if isinstance(fixed, str) else fixed
+    if not isinstance(names, (list, tuple, set)) or not names or not all(isinstance(name, str) for name in names):
+        return fixed
+    unknown = [name for name in names if name not in groups]
+    if unknown:
+        known = ", ".join(sorted(groups)) or "none"
+        raise MeshError(f"fixed: the mesh has no group {unknown[0]!r}. Its groups are: {known}")
+    return np.unique(np.concatenate([np.asarray(groups[name](), np.int64).ravel() for name in names]))
 
 
 def whole(values: npt.NDArray[Any]) -> npt.NDArray[Any] | None:

@@ -34,5 +34,8 @@ def trial() -> str | None:
         return f"no answer within {PATIENCE} s"
     except OSError:
         return None
-    # A negative code is the signal by which the process has ended.
-    return None if done.returncode >= 0 else f"ended by signal {-done.returncode}"
+    # Exit codes of the command line are 0 to 5. A negative code is the signal by which the process has ended.
+    if 0 <= done.returncode <= 5:
+        return None
+    code = done.returncode
+    return f"ended by signal {-code}" if code < 0 else f"ended with code {code}"

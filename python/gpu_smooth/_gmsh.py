@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gpu_smooth._cells import Cells
+from gpu_smooth._cells import Cells, named
 from gpu_smooth._errors import GpuSmoothError, MeshError
 from gpu_smooth._smooth import run
 
@@ -30,7 +32,8 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     Parameters
     ----------
     **options
-        The options of `smooth`. Vertices are numbered by the rows of `gmsh.model.mesh.getNodes()`.
+        The options of `smooth`. Vertices are numbered by the rows of `gmsh.model.mesh.getNodes()`. `fixed` may also be the
+        name of a physical group, or a list of names.
 
     Returns
     -------
@@ -56,7 +59,10 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     rows = np.full(int(tags.max(initial=0)) + 1, -1)
     rows[tags] = np.arange(len(tags))
     cells = _cells(gmsh, rows)
-    given: dict[str, Any] = cells.options(dict(options), len(points))
+    given: dict[str, Any] = dict(options)
+    if "fixed" in given:
+        given["fixed"] = named(given["fixed"], _groups(gmsh, rows))
+    given = cells.options(given, len(points))
     if np.ptp(points[cells.triangles, 2]) != 0.0:
         raise MeshError(
             "mesh: the triangles are not in a plane of constant z. Rotate the model into the plane of x and y"
@@ -101,6 +107,16 @@ def _cells(gmsh: Any, rows: Integers) -> Cells:
     return Cells(
         np.concatenate(triangles), np.concatenate(lines), np.concatenate(anchored), np.concatenate(regions)
     )
+
+
+def _groups(gmsh: Any, rows: Integers) -> dict[str, Callable[[], Any]]:
+    """Return the named physical groups of the model."""
+
+    def nodes(dimension: int, tag: int) -> Any:
+        return rows[np.asarray(gmsh.model.mesh.getNodesForPhysicalGroup(dimension, tag)[0], np.int64)]
+
+    groups = {gmsh.model.getPhysicalName(*pair): pair for pair in gmsh.model.getPhysicalGroups()}
+    return {name: functools.partial(nodes, *pair) for name, pair in groups.items() if name}
 
 
 def _periodic(gmsh: Any, rows: Integers) -> Integers:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import copy
+import functools
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
 from gpu_smooth import _native
-from gpu_smooth._cells import REGIONS, Cells, whole
+from gpu_smooth._cells import REGIONS, Cells, named, whole
 
 
 def cells_of(mesh: Any) -> Cells:
@@ -35,10 +37,38 @@ def cells_of(mesh: Any) -> Cells:
     )
 
 
+def groups_of(mesh: Any) -> dict[str, Callable[[], Any]]:
+    """Return the named groups of a `meshio.Mesh`: sets of points, sets of cells and gmsh's physical groups."""
+
+    def of_cells(chosen: Iterable[Any]) -> Any:
+        pairs = [(block, own) for block, own in zip(mesh.cells, chosen) if own is not None]
+        own = [np.asarray(block.data)[np.asarray(own)].ravel() for block, own in pairs if len(own)]
+        return np.concatenate([np.empty(0, np.int64), *own])
+
+    def of_tag(tag: int, dimension: int) -> Any:
+        numbers = mesh.cell_data["gmsh:physical"]
+        return of_cells(
+            np.flatnonzero(np.asarray(own) == tag) if block.dim == dimension else None
+            for block, own in zip(mesh.cells, numbers)
+        )
+
+    groups: dict[str, Callable[[], Any]] = {}
+    if "gmsh:physical" in mesh.cell_data:
+        for name, (tag, dimension) in mesh.field_data.items():
+            groups[name] = functools.partial(of_tag, tag, dimension)
+    for name, chosen in mesh.cell_sets.items():
+        groups[name] = functools.partial(of_cells, chosen)
+    for name, points in mesh.point_sets.items():
+        groups[name] = functools.partial(np.asarray, points)
+    return groups
+
+
 def smooth(mesh: Any, options: dict[str, Any]) -> Any:
     """Return a copy of a `meshio.Mesh` with moved vertices. The copy shares cells and data with the mesh."""
     cells = cells_of(mesh)
     points = np.asarray(mesh.points)
+    if "fixed" in options:
+        options = {**options, "fixed": named(options["fixed"], groups_of(mesh))}
     smoothed = copy.copy(mesh)
     smoothed.points = _native.smooth(points, cells.triangles, **cells.options(options, len(points)))
     return smoothed

@@ -71,6 +71,9 @@ class RunOptions(TypedDict, total=False):
     keep_altitude: bool | None
     history: Literal["base", "all"] | None
     on_sweep: Callable[[Progress], object] | None
+    checkpoint: Path | None
+    checkpoint_every: float | None
+    resume: Path | None
 
 
 class SmoothOptions(MeshOptions, RunOptions, total=False):

@@ -24,11 +24,10 @@ WIDTH = 360.0
 
 def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, Any]) -> Any:
     """Draw a result by matplotlib; see `Result.plot`."""
-    import matplotlib.pyplot as plt
-
+    plt = _pyplot()
     states = {"before": result.points_before, "after": result.points}
     if which not in ("before", "after", "both"):
-        raise _native_option_error(which)
+        raise _which_error(which)
     names = list(states) if which == "both" else [which]
     if ax is None:
         width, height = np.ptp(result.points[np.unique(result.triangles), :2], axis=0)
@@ -67,13 +66,28 @@ def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, A
     return figure
 
 
+def show(result: Result, which: str, measure: str, options: dict[str, Any]) -> None:
+    """Draw a result in a window, and wait until the window is closed; see `Result.show`."""
+    plot(result, which, measure, None, options)
+    _pyplot().show()
+
+
+def _pyplot() -> Any:
+    try:
+        import matplotlib.pyplot as plt
+    except ModuleNotFoundError as missing:
+        text = "pictures are drawn by matplotlib, which is not installed: pip install matplotlib"
+        raise ModuleNotFoundError(text, name=missing.name) from missing
+    return plt
+
+
 def _finite(values: Doubles) -> Doubles:
     largest = np.max(values[np.isfinite(values)], initial=0.0)
     finite: Doubles = np.where(np.isfinite(values), values, largest)
     return finite
 
 
-def _native_option_error(which: str) -> Exception:
+def _which_error(which: str) -> Exception:
     from gpu_smooth._errors import OptionError
 
     return OptionError(f'which: the value is {which!r}, and must be "before" or "after" or "both"')

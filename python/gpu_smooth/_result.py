@@ -70,7 +70,7 @@ class Result:
 
     @property
     def engine(self) -> str:
-        """`"cpu"`, or the name of the GPU adapter."""
+        """`"cpu"`, or the name of the GPU adapter on which the run began."""
         return self._outcome.engine
 
     @property
@@ -81,6 +81,11 @@ class Result:
         `time_limit`) or `"not-finite"`.
         """
         return self._outcome.stop
+
+    @property
+    def fault(self) -> str | None:
+        """Failure of the GPU after which the run continued on the CPU; None if no GPU failed."""
+        return self._outcome.fault
 
     @property
     def sweeps(self) -> int:
@@ -154,6 +159,34 @@ class Result:
             No measure has the name.
         """
         return _picture.plot(self, which, measure, ax, options)
+
+    def show(
+        self,
+        which: Literal["before", "after", "both"] = "both",
+        measure: str = "imr",
+        **options: Any,
+    ) -> None:
+        """Draw the mesh as `plot` does, in a window, and wait until the window is closed.
+
+        A notebook shows the picture below the cell.
+
+        Parameters
+        ----------
+        which : {"before", "after", "both"}
+            The mesh before the run, after the run, or both side by side in equal colors.
+        measure : str
+            Name of a measure; see `measures`.
+        **options
+            Passed to `matplotlib.axes.Axes.tripcolor`.
+
+        Raises
+        ------
+        ImportError
+            matplotlib is not installed.
+        OptionError
+            No measure has the name.
+        """
+        _picture.show(self, which, measure, options)
 
     def _repr_html_(self) -> str:
         return _picture.html(self)

@@ -67,7 +67,8 @@ class Smoother:
         **options
             Options of a run: `scheme`, `engine`, `adapter`, `max_sweeps`, `tolerance`, `fraction`, `desired`,
             `time_limit`, `method`, `omega`, `inner`, `derivatives`, `edge_norm`, `guard`, `improve_worst`, `max_move`,
-            `keep_altitude`, `history` and `on_sweep`. `smooth` describes each.
+            `keep_altitude`, `history`, `on_sweep`, `checkpoint`, `checkpoint_every` and `resume`. `smooth` describes
+            each.
 
         Returns
         -------
@@ -114,7 +115,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0, in either winding.
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
-        Vertices that neither move nor slide.
+        Vertices that neither move nor slide. For a `meshio.Mesh`, also the name of a group, or a list of names.
     lines : array_like of int, shape (k, 2), optional
         Edges of triangles, such as those on a line between two materials. Their vertices stay, or slide along the lines.
     regions : array_like of int, shape (m,), optional
@@ -186,6 +187,15 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     on_sweep : callable, optional
         Called with a `Progress` between sweeps, about ten times a second. A true result or `StopIteration` ends the run
         with the best points so far; any other exception ends the run and is raised.
+    checkpoint : str or path-like, optional
+        File to which the state of the run is saved, from which `resume` continues. A completed run removes the file.
+    checkpoint_every : float, default 300
+        With `checkpoint` or `resume`: seconds between two checkpoints. A run that is ended by `time_limit`, `on_sweep` or
+        an exception saves its state too.
+    resume : str or path-like, optional
+        Continue the run that saved this checkpoint, on the same mesh with the same options. The state is saved to the
+        same file, unless `checkpoint` names another. On the CPU, or on the GPU of the saved run, the new points have the
+        bits of an uninterrupted run.
 
     Returns
     -------
@@ -197,9 +207,12 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     MeshError
         The arrays have a wrong shape or type, or are no mesh that can be smoothed. A `ValueError`.
     OptionError
-        An option has a wrong value, or two options exclude each other. A `ValueError`.
+        An option has a wrong value, two options exclude each other, or the checkpoint is of another run. A `ValueError`.
+    FileError
+        The checkpoint cannot be read, or its file is another run's. An `OSError`.
     DeviceError
-        The GPU cannot be used, or has failed. A `RuntimeError`.
+        The GPU that `engine` or `adapter` names cannot be used, or has failed. A `RuntimeError`. With `engine="auto"`, the
+        run continues on the CPU.
     KeyboardInterrupt
         The user has pressed Ctrl-C. The run ends between two sweeps.
 

@@ -1,8 +1,9 @@
 //! Arrays of NumPy: points, triangles, lists of vertices and numbers per vertex, checked and copied to the types of the
 //! library, and results in the form of the arguments.
 //!
-//! Arrays are copied while Python's lock is held. The library then works without the lock, and other threads may write
-//! to the arrays meanwhile.
+//! Arrays are converted in one pass, without an array in between, before the library works without Python's lock: other
+//! threads may write to the arrays meanwhile. Exact predicates and bounds of indices then hold for the numbers that were
+//! read.
 
 use gpu_smooth::precision::Precision;
 use numpy::ndarray::ArrayView2;
@@ -198,10 +199,9 @@ impl Rows<'_> {
         // Indices out of range become the largest number, and are looked for only if there are any.
         let read: Vec<[u32; N]> =
             rows(view, |row: [T; N]| row.map(|v| known(v).unwrap_or(u32::MAX)));
-        if read.as_flattened().contains(&u32::MAX)
-            && let Some((row, column)) =
-                view.indexed_iter().find(|(_, v)| known(**v).is_none()).map(|(at, _)| at)
-        {
+        if let Some(at) = read.as_flattened().iter().position(|&v| v == u32::MAX) {
+            let (row, column) = (at / N, at % N);
+            // Without Python's global lock, another thread may have changed the number since.
             let value = view[[row, column]];
             let at = if N == 1 { row.to_string() } else { format!("{row}, {column}") };
             let text = format!(

@@ -1,18 +1,22 @@
 //! The engine of a run: the CPU, or a device that is opened once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
+use gpu_smooth::choice::BackendChooser;
 use gpu_smooth::options::Options;
-use gpu_smooth::{Backend, Gpu, GpuError, MeshSize};
+use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize};
 use pyo3::prelude::*;
 
 use crate::error;
 use crate::run_options::EngineChoice;
 use crate::threads;
 
-/// Open devices, each with the requested text in the adapter's name. Locked only by threads that hold Python's lock.
-static OPEN: Mutex<Vec<(Option<String>, Arc<Backend>)>> = Mutex::new(Vec::new());
+// A process that was forked after drivers were started uses neither of these, as another thread may have held the lock.
+/// The device of runs that choose their engine.
+static CHOOSER: BackendChooser = BackendChooser::new();
+/// Open devices of runs that name their engine, each with the requested text in the adapter's name.
+static OPEN: Mutex<Vec<(Option<String>, Gpu)>> = Mutex::new(Vec::new());
 /// Whether this process, or a parent before a fork, has started a driver of a GPU.
 static HAS_STARTED: AtomicBool = AtomicBool::new(false);
 
@@ -41,42 +45,46 @@ pub(crate) fn open(
     choice: &EngineChoice,
     size: MeshSize,
     options: &Options,
-) -> PyResult<Arc<Backend>> {
+) -> PyResult<Backend> {
     match choice {
-        EngineChoice::Cpu => Ok(Arc::new(Backend::Cpu)),
-        EngineChoice::Auto if check_fork(py).is_err() => Ok(Arc::new(Backend::Cpu)),
+        EngineChoice::Cpu => Ok(Backend::Cpu),
+        EngineChoice::Auto if check_fork(py).is_err() => Ok(Backend::Cpu),
         EngineChoice::Auto => {
-            let (backend, _) =
-                threads::detached(py, || Backend::auto_tried(size, options, try_drivers))?;
-            Ok(Arc::new(backend))
+            let choose = || CHOOSER.choose(size, options, try_drivers);
+            threads::detached(py, choose).map(|(backend, _)| backend)
         }
         EngineChoice::Gpu(name) => {
             start_drivers(py)?;
-            opened(py, name.as_deref())
+            let gpu = threads::detached(py, || opened(name.as_deref()))?;
+            gpu.map(Backend::Gpu).map_err(|error| error::of_gpu(py, &error))
         }
     }
 }
 
-/// Opens the device of an adapter, or returns the device if it is open.
-fn opened(py: Python<'_>, name: Option<&str>) -> PyResult<Arc<Backend>> {
-    let of_name = |open: &[(Option<String>, Arc<Backend>)]| {
-        let found = open.iter().find(|(own, _)| own.as_deref() == name);
-        found.map(|(_, backend)| Arc::clone(backend))
-    };
-    let locked = || OPEN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(backend) = of_name(&locked()) {
-        return Ok(backend);
+/// Returns the engine of a checkpoint's last sweep, or the CPU if that engine cannot be used.
+pub(crate) fn of_checkpoint(py: Python<'_>, checkpoint: &Checkpoint) -> PyResult<Backend> {
+    match checkpoint.adapter() {
+        Some(name) if check_fork(py).is_ok() => {
+            let gpu = threads::detached(py, || try_drivers().and_then(|()| opened(Some(name))))?;
+            Ok(gpu.map_or(Backend::Cpu, Backend::Gpu))
+        }
+        _ => Ok(Backend::Cpu),
     }
-    let gpu = threads::detached(py, || Gpu::open(name))?;
-    let gpu = gpu.map_err(|error| error::of_gpu(py, &error))?;
-    let mut open = locked();
-    // Another thread may have opened the device meanwhile.
-    if let Some(backend) = of_name(&open) {
-        return Ok(backend);
+}
+
+/// Returns the device of an adapter, opened unless it is open. A lost device is replaced. Threads that wait here must be
+/// detached from Python.
+fn opened(name: Option<&str>) -> Result<Gpu, GpuError> {
+    let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(at) = open.iter().position(|(own, _)| own.as_deref() == name) {
+        if !open[at].1.is_lost() {
+            return Ok(open[at].1.clone());
+        }
+        open.swap_remove(at).1.discard();
     }
-    let backend = Arc::new(Backend::Gpu(gpu));
-    open.push((name.map(str::to_owned), Arc::clone(&backend)));
-    Ok(backend)
+    let gpu = Gpu::open(name)?;
+    open.push((name.map(str::to_owned), gpu.clone()));
+    Ok(gpu)
 }
 
 /// Tries the drivers of all GPUs in another process, as a driver that crashes would end this one.

@@ -15,6 +15,7 @@ mod movement;
 mod observer;
 mod outcome;
 mod prepared;
+mod recovery;
 mod run_options;
 mod smoother;
 mod tables;
@@ -23,8 +24,9 @@ mod values;
 
 use pyo3::prelude::*;
 
-/// The native part of the package `gpu_smooth`.
-#[pymodule]
+/// The native part of the package `gpu_smooth`. Interpreters without a global lock may use it from all threads at once: all
+/// classes are frozen, and statics are atomic or locked.
+#[pymodule(gil_used = false)]
 mod _native {
     use pyo3::prelude::*;
 

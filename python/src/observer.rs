@@ -35,7 +35,10 @@ impl<'a> RunObserver<'a> {
     /// Ends the run with an exception.
     pub(crate) fn cancel(&self, raised: PyErr) {
         let mut kept = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.get_or_insert(raised);
+        let later = if kept.is_none() { kept.replace(raised) } else { Some(raised) };
+        // Python code may run when an exception is dropped, so that the lock is released before.
+        drop(kept);
+        drop(later);
         self.is_canceled.store(true, Ordering::Relaxed);
     }
 

@@ -98,6 +98,12 @@ impl Outcome {
         self.outcome.stop.name()
     }
 
+    /// The failure of the device after which the run continued on the CPU; None if the device did not fail.
+    #[getter]
+    fn fault(&self) -> Option<String> {
+        self.outcome.device_fault.as_ref().map(|fault| fault.error.to_string())
+    }
+
     /// Number of sweeps done.
     #[getter]
     fn sweeps(&self) -> u32 {

@@ -1,5 +1,6 @@
 //! The options of a run, by the names of the command line.
 
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use gpu_smooth::options::{
@@ -10,6 +11,7 @@ use gpu_smooth::{Goal, Guard, Method, Metric, Scheme, Stopping};
 use pyo3::prelude::*;
 
 use crate::error;
+use crate::recovery::CheckpointPlan;
 use crate::values::{self, Given};
 
 /// Names of the options of a run.
@@ -33,6 +35,9 @@ pub(crate) const NAMES: &[&str] = &[
     "keep_altitude",
     "history",
     "on_sweep",
+    "checkpoint",
+    "checkpoint_every",
+    "resume",
 ];
 
 /// The processor on which a run computes.
@@ -77,6 +82,9 @@ pub(crate) struct RunOptions {
     keep_altitude: bool,
     tracks_all: bool,
     on_sweep: Option<Py<PyAny>>,
+    checkpoint: Option<PathBuf>,
+    checkpoint_every: Option<Duration>,
+    resume: Option<PathBuf>,
 }
 
 impl RunOptions {
@@ -106,11 +114,7 @@ impl RunOptions {
                 let number = || given.number_in("a finite number or \"auto\"", f64::is_finite);
                 self.desired = Some(if is_searched { None } else { Some(number()?) });
             }
-            "time_limit" => {
-                let range = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
-                let seconds = given.number_in("a number of seconds, 0 or above", range)?;
-                self.time_limit = Some(Duration::from_secs_f64(seconds));
-            }
+            "time_limit" => self.time_limit = Some(given.seconds()?),
             "method" => {
                 self.method = Some(given.word(&[
                     ("auto", MethodChoice::Auto),
@@ -144,6 +148,9 @@ impl RunOptions {
                 }
                 self.on_sweep = Some(given.value.clone().unbind());
             }
+            "checkpoint" => self.checkpoint = Some(given.path()?),
+            "checkpoint_every" => self.checkpoint_every = Some(given.seconds()?),
+            "resume" => self.resume = Some(given.path()?),
             _ => return Ok(false),
         }
         Ok(true)
@@ -193,6 +200,10 @@ impl RunOptions {
             (
                 self.adapter.is_some() && self.engine == Some(EngineChoice::Cpu),
                 "adapter does not go with engine=\"cpu\": it names a GPU. Drop one of them",
+            ),
+            (
+                self.checkpoint_every.is_some() && self.checkpoint_plan().is_none(),
+                "checkpoint_every needs checkpoint or resume. Pass the file of the checkpoints, or drop checkpoint_every",
             ),
         ];
         match refusals.iter().find(|(is_refused, _)| *is_refused) {
@@ -262,6 +273,19 @@ impl RunOptions {
     /// Returns the time after which the run ends.
     pub(crate) fn time_limit(&self) -> Option<Duration> {
         self.time_limit
+    }
+
+    /// Returns the file of the run's checkpoints. A continued run saves its checkpoints to the file that it continues
+    /// from, unless another file is named.
+    pub(crate) fn checkpoint_plan(&self) -> Option<CheckpointPlan> {
+        const USUAL: Duration = Duration::from_secs(300);
+        let file = self.checkpoint.as_ref().or(self.resume.as_ref())?.clone();
+        Some(CheckpointPlan { file, every: self.checkpoint_every.unwrap_or(USUAL) })
+    }
+
+    /// Returns the file of the checkpoint from which the run continues.
+    pub(crate) fn resume(&self) -> Option<&Path> {
+        self.resume.as_deref()
     }
 
     /// Returns the function that is called during the run.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gpu_smooth::options::Feature;
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Backend, Mesh, Options, Smoother as PreparedMesh};
+use gpu_smooth::{Backend, Checkpoint, Mesh, Options, Smoother as PreparedMesh};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -16,7 +16,8 @@ use crate::mesh_options::{CallOptions, MeshOptions};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
 use crate::prepared::{Prepared, given};
-use crate::run_options::RunOptions;
+use crate::recovery::{self, CheckpointPlan, Recovery};
+use crate::run_options::{EngineChoice, RunOptions};
 use crate::threads;
 
 /// A mesh prepared once for any number of runs.
@@ -104,10 +105,14 @@ impl Call {
     }
 }
 
-/// The options and the engine of a run.
+/// The options, the engine and the checkpoints of a run.
 struct RunPlan {
     options: Options,
-    backend: Arc<Backend>,
+    backend: Backend,
+    /// Whether the run goes on on the CPU if the device fails: only where the caller has left the engine open.
+    falls_back: bool,
+    checkpoints: Option<CheckpointPlan>,
+    resumed: Option<Checkpoint>,
 }
 
 impl RunPlan {
@@ -121,8 +126,18 @@ impl RunPlan {
         let options = run.library(form.precision(), mesh.default_metric());
         let untangle = if mesh.untangles { &[Feature::Untangle][..] } else { &[] };
         options.check_with(untangle).map_err(|error| error::of_option(py, &error))?;
-        let backend = engine::open(py, &run.engine(), smoother.size(), &options)?;
-        Ok(Self { options, backend })
+        let checkpoints = run.checkpoint_plan();
+        let resumed = run.resume().map(|path| recovery::resumed(py, path)).transpose()?;
+        if let Some(plan) = &checkpoints {
+            recovery::check(py, plan, run.resume())?;
+        }
+        let engine = run.engine();
+        let backend = match (&resumed, &engine) {
+            (Some(checkpoint), EngineChoice::Auto) => engine::of_checkpoint(py, checkpoint)?,
+            _ => engine::open(py, &engine, smoother.size(), &options)?,
+        };
+        let falls_back = engine == EngineChoice::Auto;
+        Ok(Self { options, backend, falls_back, checkpoints, resumed })
     }
 
     fn run(
@@ -131,7 +146,11 @@ impl RunPlan {
         observer: &RunObserver<'_>,
     ) -> Result<gpu_smooth::Outcome, Failure> {
         let observe = |progress: &gpu_smooth::Progress| observer.sweep(progress);
-        Ok(smoother.run(&self.options).on(&self.backend).observe(observe).block()?)
+        let recovery = Recovery::new(self.checkpoints.as_ref(), self.falls_back, observer);
+        let run = smoother.run(&self.options).on(&self.backend).observe(observe);
+        let outcome = run.checkpoints(recovery).resume(&self.resumed).block()?;
+        recovery::clear(self.checkpoints.as_ref(), outcome.stop);
+        Ok(outcome)
     }
 }
 

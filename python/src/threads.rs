@@ -13,8 +13,9 @@ use crate::observer::RunObserver;
 /// The process that first computed, and whose threads rayon's global pool has; 0 before the first computation.
 static OWNER: AtomicU32 = AtomicU32::new(0);
 
-/// The thread pool of a forked process, and the identifier of the process. Locked only by threads that hold Python's lock, so that
-/// no other thread can hold this lock when a process is forked.
+/// The thread pool of a forked process, and the identifier of the process. A thread that holds this lock is attached to
+/// Python and calls nothing of Python. A fork waits for such threads, also without Python's global lock, so that no other
+/// thread holds this lock when a process is forked.
 static OF_FORK: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
 /// Returns whether this process was forked from a process that had computed.
@@ -33,19 +34,21 @@ pub(crate) fn of_fork(py: Python<'_>) -> PyResult<Option<Arc<ThreadPool>>> {
         return Ok(None);
     }
     let own = std::process::id();
-    let mut kept = OF_FORK.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((process, pool)) = &*kept
-        && *process == own
-    {
-        return Ok(Some(Arc::clone(pool)));
-    }
-    let pool = ThreadPoolBuilder::new().build().map_err(|refused| {
+    let built = {
+        let mut kept = OF_FORK.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*kept {
+            Some((process, pool)) if *process == own => Ok(Arc::clone(pool)),
+            _ => ThreadPoolBuilder::new().build().map(|pool| {
+                let pool = Arc::new(pool);
+                // The pool of the parent has no threads here. Dropping it would wait for their locks.
+                std::mem::forget(kept.replace((own, Arc::clone(&pool))));
+                pool
+            }),
+        }
+    };
+    built.map(Some).map_err(|refused| {
         error::device(py, &format!("no threads can be started in the forked process: {refused}"))
-    })?;
-    let pool = Arc::new(pool);
-    // The pool of the parent has no threads here. Dropping it would wait for their locks.
-    std::mem::forget(kept.replace((own, Arc::clone(&pool))));
-    Ok(Some(pool))
+    })
 }
 
 /// Runs `work` without Python's lock, so that other threads of Python go on.

@@ -1,5 +1,8 @@
 //! Values of options: numbers, flags and words, checked, with messages that name the option.
 
+use std::path::PathBuf;
+use std::time::Duration;
+
 use gpu_smooth::options::OptionRange;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -67,6 +70,17 @@ impl Given<'_, '_> {
                 Err(self.refused(&names.join(" or ")))
             }
         }
+    }
+
+    /// Returns a duration that is given in seconds.
+    pub(crate) fn seconds(&self) -> PyResult<Duration> {
+        let range = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
+        self.number_in("a number of seconds, 0 or above", range).map(Duration::from_secs_f64)
+    }
+
+    /// Returns a path that is given as a text or a path-like object.
+    pub(crate) fn path(&self) -> PyResult<PathBuf> {
+        self.value.extract().map_err(|_| self.refused("the path of a file"))
     }
 
     /// Returns a text.

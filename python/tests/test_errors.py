@@ -217,3 +217,62 @@ def test_random_arguments_raise_exceptions_of_python() -> None:
         except MeshError:
             pass
     assert accepted > 20
+
+
+def test_random_options_raise_exceptions_of_python() -> None:
+    """Options of random values never end the process, nor raise anything else than these exceptions."""
+    from gpu_smooth import _native
+
+    random = np.random.default_rng(11)
+    values: list[Any] = [
+        None, True, False, 0, 1, -1, 3, 2**70, 0.5, -2.5, 1e-300, 1e300, np.nan, np.inf, "", "auto", "cpu", "imr", "edge+rms",
+        "keep-size", "place", "\0", "é" * 300, b"x", [], [0], [[0, 1]], [0, 99], [[0, 5], [5, 0]], (), (1, 2, 3), {}, set(),
+        np.zeros(16), np.ones(16), np.ones((16, 3)), np.eye(3), np.full(16, np.nan), np.ones(16, bool), np.zeros(0),
+        np.arange(16), np.arange(18), np.zeros((2, 2, 2)), np.array("x"), np.float32(2), np.int8(-3), object(), int, len,
+        (POINTS, TRIANGLES, np.ones(16)), (POINTS, TRIANGLES, np.ones((16, 3))), (POINTS, None, 1), (INVERTED, TRIANGLES, 1),
+    ]
+    # Files would be written by these, and a GPU would be searched for in each call by these.
+    left_out = {"checkpoint", "resume", "adapter", "engine"}
+    names = sorted({*_native.mesh_options(), *_native.run_options()} - left_out)
+    accepted = 0
+    for _ in range(4000):
+        chosen = random.choice(names, size=random.integers(1, 4), replace=False)
+        options = {name: values[random.integers(len(values))] for name in chosen.tolist()}
+        options.setdefault("max_sweeps", 3)
+        try:
+            smoothed = gpu_smooth.smooth(POINTS, TRIANGLES, engine="cpu", **options)
+            assert np.isfinite(smoothed).all()
+            accepted += 1
+        except GpuSmoothError as error:
+            assert str(error)
+        except TypeError as error:
+            # A class or a function of Python as `on_sweep` may refuse its argument.
+            assert "on_sweep" in options, error
+    assert accepted > 50
+
+
+def test_random_arguments_of_functions_raise_exceptions_of_python() -> None:
+    """Functions on arrays never end the process, nor raise anything else than these exceptions."""
+    random = np.random.default_rng(5)
+    fine: list[Any] = [POINTS, POINTS.astype("f4"), np.column_stack([POINTS, POINTS[:, 0]]), TRIANGLES, np.arange(16.0)]
+    wrong: list[Any] = [
+        None, 3, "x", [], [[]], [[1, 2], [3]], np.zeros((0, 3)), np.zeros((3, 0)), np.zeros((16, 2)), np.full((16, 2), np.nan),
+        np.full((16, 2), 1e308), TRIANGLES * -1, TRIANGLES + 14, TRIANGLES.astype("u1"), TRIANGLES[::-2], POINTS[::2],
+        POINTS.T, POINTS[:, ::-1], np.ma.masked_all((16, 2)), np.asfortranarray(TRIANGLES), np.zeros((2, 2, 2)), INVERTED, 1j,
+    ]
+    functions: list[Any] = [gpu_smooth.quality, gpu_smooth.untangle, gpu_smooth.interpolate, gpu_smooth.compare]
+    counts = [2, 2, 4, 3]
+    accepted = 0
+    for _ in range(4000):
+        which = random.integers(len(functions))
+        of_function = {2: [POINTS, TRIANGLES], 3: [POINTS, POINTS, TRIANGLES], 4: [POINTS, TRIANGLES, POINTS, np.arange(16.0)]}
+        arguments: list[Any] = list(of_function[counts[which]])
+        for _ in range(random.integers(0, 3)):
+            pool = wrong if random.random() < 0.7 else fine
+            arguments[random.integers(len(arguments))] = pool[random.integers(len(pool))]
+        try:
+            functions[which](*arguments)
+            accepted += 1
+        except MeshError as error:
+            assert str(error)
+    assert accepted > 100

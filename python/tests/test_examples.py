@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -84,6 +85,26 @@ def test_a_result_is_plotted(mesh: Mesh) -> None:
     with pytest.raises(gpu_smooth.OptionError, match="which: the value is 'then'"):
         result.plot("then")  # type: ignore[arg-type]
     pyplot.close("all")
+
+
+@pytest.mark.heavy
+def test_a_result_is_shown(mesh: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    shown: list[Any] = []
+    monkeypatch.setattr(pyplot, "show", lambda: shown.extend(pyplot.gcf().axes))
+    gpu_smooth.run(*mesh).show(measure="min-angle")
+    assert [axes.get_title() for axes in shown[:2]] == ["before", "after"]
+    pyplot.close("all")
+
+
+def test_pictures_without_matplotlib_name_the_remedy(mesh: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(ImportError, match="pip install matplotlib"):
+        gpu_smooth.run(*mesh).show()
 
 
 def test_a_notebook_shows_the_mesh_before_and_after(mesh: Mesh) -> None:

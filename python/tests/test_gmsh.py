@@ -93,6 +93,19 @@ def test_nodes_slide_along_curves_and_periodic_nodes_in_pairs(gmsh: Any) -> None
     assert pairs > 3
 
 
+def test_physical_groups_are_fixed_by_name(gmsh: Any) -> None:
+    square(gmsh)
+    curves = [tag for _, tag in gmsh.model.getEntities(1)]
+    gmsh.model.setPhysicalName(1, gmsh.model.addPhysicalGroup(1, curves), "walls")
+    before = nodes(gmsh)
+    with pytest.raises(gpu_smooth.MeshError, match="no group 'wall'. Its groups are: walls"):
+        gpu_smooth.smooth_gmsh_model(slide=True, fixed="wall")
+    result = gpu_smooth.smooth_gmsh_model(slide=True, fixed=["walls"])
+    assert result.slid == 0
+    moved = {tag for tag, place in nodes(gmsh).items() if before[tag] != place}
+    assert moved and not moved & of_dimension(gmsh, 1)
+
+
 def test_models_that_cannot_be_smoothed_are_refused(gmsh: Any) -> None:
     with pytest.raises(gpu_smooth.MeshError, match="no triangles"):
         gpu_smooth.smooth_gmsh_model()

@@ -61,6 +61,29 @@ def test_vertices_of_other_cells_and_between_regions_stay(mesh: Mesh) -> None:
     assert np.array_equal(gpu_smooth.smooth(given, regions=None, lines=None).points, smoothed.points)
 
 
+def test_groups_are_fixed_by_name(mesh: Mesh) -> None:
+    points, triangles = mesh
+    line = np.array([[30, 31], [31, 32]])
+    cells: Any = [("triangle", triangles), ("line", line)]
+    numbers: Any = {"gmsh:physical": [np.where(triangles[:, 0] // 13 >= 8, 4, 3), np.array([4, 4])]}
+    given = meshio.Mesh(
+        points, cells, cell_data=numbers, field_data={"top": np.array([4, 2]), "wall": np.array([4, 1])},
+        point_sets={"gauges": np.array([40, 41])}, cell_sets={"first": [np.array([0, 50]), np.array([], int)]},
+    )
+    of_names = {
+        "top": triangles[triangles[:, 0] // 13 >= 8], "wall": line, "gauges": [40, 41], "first": triangles[[0, 50]],
+    }
+    for name, vertices in of_names.items():
+        expected = gpu_smooth.smooth(given, fixed=np.unique(vertices)).points
+        assert np.array_equal(gpu_smooth.smooth(given, fixed=name).points, expected), name
+        assert np.array_equal(gpu_smooth.smooth(given, fixed=[name, name]).points, expected), name
+    assert not np.array_equal(gpu_smooth.smooth(given, fixed="gauges").points, gpu_smooth.smooth(given).points)
+    with pytest.raises(gpu_smooth.MeshError, match="no group 'bottom'. Its groups are: first, gauges, top, wall"):
+        gpu_smooth.smooth(given, fixed=["top", "bottom"])
+    with pytest.raises(gpu_smooth.MeshError, match="fixed: "):
+        gpu_smooth.smooth(points, triangles, fixed="top")
+
+
 def test_a_file_of_meshio_is_smoothed_as_by_the_command_line(tmp_path: Any) -> None:
     from conftest import command_line
 

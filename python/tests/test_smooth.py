@@ -85,7 +85,7 @@ def test_options_act_as_those_of_the_command_line(
 
 def test_every_option_is_one_of_the_command_line() -> None:
     known = command_line("--help").stdout
-    only_here = {"fixed", "lines", "regions", "on_sweep"}
+    only_here = {"fixed", "lines", "regions", "on_sweep", "resume"}
     from gpu_smooth import _native
     from gpu_smooth._options import MeshOptions, RunOptions
 

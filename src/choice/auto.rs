@@ -1,7 +1,7 @@
 //! The choice of a backend.
 
 #[cfg(feature = "gpu")]
-use crate::choice::estimate::choose;
+use crate::choice::kept::Kept;
 use crate::choice::reason::Reason;
 use crate::error::GpuError;
 use crate::mesh::MeshSize;
@@ -29,14 +29,55 @@ impl Backend {
         options: &Options,
         try_drivers: impl FnOnce() -> Result<(), GpuError>,
     ) -> (Self, Reason) {
-        choose(size, options, try_drivers)
+        BackendChooser::new().choose(size, options, try_drivers)
     }
 }
 
-/// Returns the CPU, the only engine of a build without the feature `gpu`.
-#[cfg(not(feature = "gpu"))]
-fn choose(_: MeshSize, _: &Options, _: impl FnOnce() -> Result<(), GpuError>) -> (Backend, Reason) {
-    (Backend::Cpu, Reason::OnlyCpu)
+/// Chooses backends for many runs. The best adapter and its device are kept: each choice of the GPU returns a handle to
+/// the same [`Gpu`](crate::Gpu), so that drivers start once, and kernels are compiled once.
+///
+/// Any thread may choose. A choice waits while another thread starts the drivers. A process that was forked from a
+/// process with an open device must not choose, as drivers do not survive a fork.
+#[derive(Default)]
+pub struct BackendChooser {
+    #[cfg(feature = "gpu")]
+    kept: Kept,
+}
+
+impl BackendChooser {
+    /// Creates a chooser without an adapter. No driver is started.
+    pub const fn new() -> Self {
+        Self {
+            #[cfg(feature = "gpu")]
+            kept: Kept::new(),
+        }
+    }
+
+    /// Chooses like [`Backend::auto_tried`]. Equal arguments have equal results, whether or not a device is open: the
+    /// estimate always includes the start of the driver, so that a mesh does not get other bits because of earlier runs.
+    ///
+    /// `try_drivers` is called before drivers are started, and not again after adapters were found. A device that was
+    /// lost is replaced: adapters are searched anew.
+    #[cfg(feature = "gpu")]
+    pub fn choose(
+        &self,
+        size: MeshSize,
+        options: &Options,
+        try_drivers: impl FnOnce() -> Result<(), GpuError>,
+    ) -> (Backend, Reason) {
+        crate::choice::estimate::choose(&self.kept, size, options, try_drivers)
+    }
+
+    /// Returns the CPU, the only engine of a build without the feature `gpu`.
+    #[cfg(not(feature = "gpu"))]
+    pub fn choose(
+        &self,
+        _: MeshSize,
+        _: &Options,
+        _: impl FnOnce() -> Result<(), GpuError>,
+    ) -> (Backend, Reason) {
+        (Backend::Cpu, Reason::OnlyCpu)
+    }
 }
 
 #[cfg(all(test, not(feature = "gpu")))]

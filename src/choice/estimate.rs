@@ -1,9 +1,8 @@
 //! Estimates the duration of a run on the CPU and on a GPU, and chooses the faster backend.
 
-use crate::adapter::AdapterSummary;
+use crate::choice::kept::Kept;
 use crate::choice::reason::Reason;
 use crate::error::GpuError;
-use crate::gpu::{Gpu, ranked_adapters};
 use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::smoother::Backend;
@@ -24,8 +23,10 @@ const CORRECTED_SWEEPS: f64 = 20.0;
 /// Sweeps of a run without corrections: over-relaxed imr takes this many to come within 1e-6 of its limit.
 const PLAIN_SWEEPS: f64 = 130.0;
 
-/// Returns the backend on which a run is estimated to end soonest, and the reason; see [`Backend::auto_tried`].
+/// Returns the backend on which a run is estimated to end soonest, and the reason; see
+/// [`Backend::auto_tried`]. The adapter and its device are those of `kept`.
 pub(super) fn choose(
+    kept: &Kept,
     size: MeshSize,
     options: &Options,
     try_drivers: impl FnOnce() -> Result<(), GpuError>,
@@ -38,28 +39,22 @@ pub(super) fn choose(
     if best.is_none_or(|least| size.vertices < least) {
         return (Backend::Cpu, Reason::CpuIsFaster { adapter: None, pays_from: best });
     }
-    if let Err(error) = try_drivers() {
-        return (Backend::Cpu, Reason::GpuFails(error));
-    }
-    let adapters = ranked_adapters();
-    let Some(adapter) = adapters.first() else {
-        let none = GpuError::NoAdapter { wanted: None, available: String::new() };
-        return (Backend::Cpu, Reason::GpuFails(none));
-    };
-    let summary = AdapterSummary::new(&adapter.get_info());
-    if summary.is_software() {
-        return (Backend::Cpu, Reason::OnlySoftware(summary));
-    }
-    match pays_from(summary.kind, cores, sweeps) {
-        Some(pays_from) if size.vertices >= pays_from => {
-            let fitting = |gpu: Gpu| gpu.check_size(size).map(|()| gpu);
-            match Gpu::start(adapter).and_then(fitting) {
-                Ok(gpu) => (Backend::Gpu(gpu), Reason::GpuIsFaster { pays_from }),
-                Err(error) => (Backend::Cpu, Reason::GpuFails(error)),
-            }
+    let chosen = kept.best(try_drivers, |adapter| {
+        let summary = adapter.summary();
+        if summary.is_software() {
+            return (Backend::Cpu, Reason::OnlySoftware(summary));
         }
-        pays_from => (Backend::Cpu, Reason::CpuIsFaster { adapter: Some(summary), pays_from }),
-    }
+        match pays_from(summary.kind, cores, sweeps) {
+            Some(pays_from) if size.vertices >= pays_from => {
+                match adapter.gpu().and_then(|gpu| gpu.check_size(size).map(|()| gpu)) {
+                    Ok(gpu) => (Backend::Gpu(gpu), Reason::GpuIsFaster { pays_from }),
+                    Err(error) => (Backend::Cpu, Reason::GpuFails(error)),
+                }
+            }
+            pays_from => (Backend::Cpu, Reason::CpuIsFaster { adapter: Some(summary), pays_from }),
+        }
+    });
+    chosen.unwrap_or_else(|error| (Backend::Cpu, Reason::GpuFails(error)))
 }
 
 /// The adapter kind with the highest assumed speed. Meshes too small for this kind start no driver.
@@ -143,7 +138,8 @@ mod tests {
     fn a_run_without_sweeps_is_on_the_cpu_for_that_reason() {
         let size = MeshSize { vertices: 100_000_000, triangles: 200_000_000 };
         let options = Options { max_sweeps: 0, ..Options::default() };
-        let (backend, reason) = choose(size, &options, || panic!("no driver is needed"));
+        let (backend, reason) =
+            choose(&Kept::new(), size, &options, || panic!("no driver is needed"));
         assert!(matches!((backend, &reason), (Backend::Cpu, Reason::NoSweeps)), "{reason}");
     }
 

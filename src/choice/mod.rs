@@ -3,6 +3,9 @@
 mod auto;
 #[cfg(feature = "gpu")]
 mod estimate;
+#[cfg(feature = "gpu")]
+mod kept;
 mod reason;
 
+pub use auto::BackendChooser;
 pub use reason::Reason;

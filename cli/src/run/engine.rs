@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use gpu_smooth::{
-    Backend, Checkpoint, Gpu, GpuError, MeshSize, SmoothError, choice::Reason, precision::Precision,
-};
+use gpu_smooth::choice::{BackendChooser, Reason};
+use gpu_smooth::precision::Precision;
+use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, SmoothError};
 
 use crate::error::CliError;
 use crate::request::{EngineRequest, SmoothRequest};
@@ -78,25 +78,17 @@ pub(crate) struct Engines<'a> {
     request: &'a SmoothRequest,
     /// The engine determined by the command line; `None` if meshes determine it.
     asked: Option<OpenEngine>,
-    found: Mutex<EngineChoices>,
-}
-
-/// The results of earlier automatic choices.
-#[derive(Default)]
-struct EngineChoices {
-    /// An open device, and the smallest number of vertices for which the device is faster.
-    gpu: Option<(OpenEngine, usize)>,
-    /// The CPU, and the largest number of vertices for which the CPU was found faster.
-    small: Option<(OpenEngine, usize)>,
-    /// The CPU, and the smallest number of vertices for which no usable GPU was found.
-    large: Option<(OpenEngine, usize)>,
+    chooser: BackendChooser,
+    /// Lock that the runs on a chosen device hold in turn.
+    turn: Arc<Mutex<()>>,
 }
 
 impl<'a> Engines<'a> {
     /// Opens the engine that the command line determines, if any.
     pub(crate) fn new(request: &'a SmoothRequest) -> Result<Self, CliError> {
-        let asked = open(&request.engine)?.map(in_turns);
-        Ok(Self { request, asked, found: Mutex::default() })
+        let (chooser, turn) = (BackendChooser::new(), Arc::default());
+        let asked = open(&request.engine)?.map(|asked| in_turns(asked, &turn));
+        Ok(Self { request, asked, chooser, turn })
     }
 
     /// Returns the engine for a mesh of a given size. The choice counts rayon's threads, so the caller must not be on
@@ -105,44 +97,17 @@ impl<'a> Engines<'a> {
         if let Some(asked) = &self.asked {
             return asked.clone();
         }
-        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        let EngineChoices { gpu, small, large } = &mut *found;
-        if let Some((taken, least)) = gpu
-            && size.vertices >= *least
-            && let Backend::Gpu(gpu) = &*taken.backend
-            && gpu.check_size(size).is_ok()
-        {
-            return taken.clone();
-        }
-        if let Some((taken, _)) = small.as_ref().filter(|(_, most)| size.vertices <= *most) {
-            return taken.clone();
-        }
-        if let Some((taken, _)) = large.as_ref().filter(|(_, least)| size.vertices >= *least) {
-            return taken.clone();
-        }
-        let (backend, reason) =
-            Backend::auto_tried(size, &self.request.options(Precision::Double), try_best);
-        let taken = in_turns(OpenEngine::new(backend, Some(describe(&reason))));
-        let known = (taken.clone(), size.vertices);
-        match reason {
-            Reason::GpuIsFaster { pays_from } => *gpu = Some((taken.clone(), pays_from)),
-            Reason::CpuIsFaster { .. } => *small = Some(known),
-            Reason::OnlySoftware(_)
-            | Reason::GpuFails(GpuError::NoAdapter { .. } | GpuError::Crashed(_)) => {
-                *large = Some(known);
-            }
-            // The GPU may have enough memory for smaller meshes, so this choice is not reused.
-            _ => {}
-        }
-        taken
+        let options = self.request.options(Precision::Double);
+        let (backend, reason) = self.chooser.choose(size, &options, try_best);
+        in_turns(OpenEngine::new(backend, Some(describe(&reason))), &self.turn)
     }
 }
 
 /// Makes the runs on a shared device take turns. The CPU needs no turns.
-fn in_turns(taken: OpenEngine) -> OpenEngine {
+fn in_turns(taken: OpenEngine, turn: &Arc<Mutex<()>>) -> OpenEngine {
     match &*taken.backend {
         Backend::Cpu => taken,
-        Backend::Gpu(_) => OpenEngine { turn: Some(Arc::default()), ..taken },
+        Backend::Gpu(_) => OpenEngine { turn: Some(Arc::clone(turn)), ..taken },
     }
 }
 

@@ -223,3 +223,22 @@ fn after_a_driver_has_ended_the_process_the_run_goes_on_from_its_checkpoint() {
     let run = finish(command.args("in out --tolerance 0 --max-sweeps 40 --continue c".split(' ')));
     assert_holds(&run.clean().out, &["which cannot be opened: the driver of the GPU failed when"]);
 }
+
+#[test]
+fn a_device_that_was_chosen_serves_all_meshes_of_a_command() {
+    let [node, ele] = support::triangle_text(&support::lattice(200, 200), "");
+    let files = ["a.node", "b.node", "c.node"].map(|name| (name, &*node));
+    let elements = ["a.ele", "b.ele", "c.ele"].map(|name| (name, &*ele));
+    let folder = Folder::new(&[files, elements].concat());
+    let count = folder.path("count");
+    fs::write(&count, "").unwrap();
+    let mut command = folder.command();
+    // The software driver says that it is a graphics card.
+    with_fault(&mut command, "vkCreateDevice", usize::MAX >> 40, LOST);
+    command.env("FAULT_KIND", "2").env("FAULT_COUNT", &count).env("RAYON_NUM_THREADS", "1");
+    let words = "a.node b.node c.node --out-dir d --scheme edge --desired 1e6";
+    let run = finish(command.args(words.split(' ')));
+    let out = run.clean().out;
+    assert_eq!(out.matches("llvmpipe").count(), 3, "{out}");
+    assert_eq!(fs::read(&count).unwrap().len(), 1, "devices that were opened");
+}

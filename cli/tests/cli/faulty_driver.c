@@ -3,6 +3,9 @@
    0), ends the process ("crash"), or never returns ("hang"). If FAULT_COUNT names a file, each call of the function adds a byte to
    it. Calls of a process that only tries drivers (GPU_SMOOTH_IS_TRIAL) are not counted there.
 
+   If FAULT_KIND is a number, the driver says that its adapters are of this VkPhysicalDeviceType: 1 is an integrated GPU, 2 a
+   discrete GPU, 4 the CPU.
+
    The function may have up to six arguments, each an integer or a pointer, and must return a VkResult. Names and types are those
    of the interface between Vulkan's loader and its drivers, so no header is needed. */
 #define _GNU_SOURCE
@@ -47,6 +50,21 @@ static int faulty(void *a, void *b, void *c, void *d, void *e, void *f) {
     return atoi(result);
 }
 
+/* VkPhysicalDeviceProperties begins with the versions of interface and driver, two identifiers and the type.
+   VkPhysicalDeviceProperties2 has a type of its own and a pointer before. */
+typedef void (*description)(void *, uint32_t *);
+static description describe, describe2;
+
+static void described(void *adapter, uint32_t *properties) {
+    describe(adapter, properties);
+    properties[4] = (uint32_t)atoi(setting("FAULT_KIND"));
+}
+
+static void described2(void *adapter, uint32_t *properties) {
+    describe2(adapter, properties);
+    properties[4 + 4] = (uint32_t)atoi(setting("FAULT_KIND"));
+}
+
 static function of_device(void *device, const char *name);
 
 static function wrapped(const char *name, function found) {
@@ -54,6 +72,14 @@ static function wrapped(const char *name, function found) {
     if (!strcmp(name, "vkGetDeviceProcAddr")) {
         device_lookup = (lookup)found;
         return (function)of_device;
+    }
+    if (*setting("FAULT_KIND") && !strcmp(name, "vkGetPhysicalDeviceProperties")) {
+        describe = (description)found;
+        return (function)described;
+    }
+    if (*setting("FAULT_KIND") && !strncmp(name, "vkGetPhysicalDeviceProperties2", 30)) {
+        describe2 = (description)found;
+        return (function)described2;
     }
     if (strcmp(name, setting("FAULT_FUNCTION"))) return found;
     real = (six)found;

@@ -11,7 +11,7 @@ use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::row::User;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::scope::{WatchedDevice, check_alive, poll};
+use crate::gpu::scope::{WatchedDevice, caught, check_alive, poll};
 use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::run::Plan;
@@ -114,6 +114,18 @@ impl Gpu {
         }
         // Kernels that were compiled earlier need no call of wgpu, which would fail.
         Ok(check_alive(&self.device)?)
+    }
+
+    /// Returns whether the device is lost, so that every further run on the device fails. Never waits for the device. In
+    /// a browser, returns false: there an error reports the loss.
+    pub fn is_lost(&self) -> bool {
+        check_alive(&self.device).is_err()
+    }
+
+    /// Drops a device that has failed or is lost. A plain drop may panic in wgpu, because of resources that were never
+    /// created.
+    pub fn discard(self) {
+        let _ = caught(|| drop(self));
     }
 
     /// Returns the device, a handle that the caller may clone.

@@ -68,8 +68,7 @@ impl Gpu {
         let browser = cfg!(target_arch = "wasm32");
         let waiting = if browser { Waiting::Await } else { Waiting::Block };
         if let Err(error) = gpu.arithmetic_checked(waiting).await {
-            // When a device that has failed is dropped, wgpu may panic because of resources that were never created.
-            let _ = caught(|| drop(gpu));
+            gpu.discard();
             return Err(error);
         }
         Ok(gpu)

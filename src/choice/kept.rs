@@ -1,0 +1,73 @@
+//! The best adapter of the machine and its device, kept for later choices.
+
+use std::sync::{Mutex, PoisonError};
+
+use crate::adapter::AdapterSummary;
+use crate::error::GpuError;
+use crate::gpu::{Gpu, ranked_adapters};
+
+/// The best adapter of the machine, from the first search on. `None` before the search. The lock is held while drivers
+/// start.
+#[derive(Default)]
+pub(super) struct Kept(Mutex<Option<Found>>);
+
+/// The result of a search for adapters: the first in order of preference, or `None` on a machine without adapters.
+type Found = Option<KeptAdapter>;
+
+/// An adapter, and its device once the device is open.
+pub(super) struct KeptAdapter {
+    adapter: wgpu::Adapter,
+    gpu: Option<Gpu>,
+}
+
+impl Kept {
+    pub(super) const fn new() -> Self {
+        Self(Mutex::new(None))
+    }
+
+    /// Calls `choose` with the best adapter. Adapters are searched in the first call, and again after the device was
+    /// lost; `try_drivers` is called before each search.
+    ///
+    /// # Errors
+    /// The error of `try_drivers`, or [`GpuError::NoAdapter`].
+    pub(super) fn best<T>(
+        &self,
+        try_drivers: impl FnOnce() -> Result<(), GpuError>,
+        choose: impl FnOnce(&mut KeptAdapter) -> T,
+    ) -> Result<T, GpuError> {
+        let mut found = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if found.as_ref().and_then(Option::as_ref).is_some_and(KeptAdapter::is_lost)
+            && let Some(Some(KeptAdapter { gpu: Some(gpu), .. })) = found.take()
+        {
+            gpu.discard();
+        }
+        if found.is_none() {
+            try_drivers()?;
+        }
+        let found = found.get_or_insert_with(|| {
+            let best = ranked_adapters().into_iter().next();
+            best.map(|adapter| KeptAdapter { adapter, gpu: None })
+        });
+        let none = || GpuError::NoAdapter { wanted: None, available: String::new() };
+        found.as_mut().map(choose).ok_or_else(none)
+    }
+}
+
+impl KeptAdapter {
+    pub(super) fn summary(&self) -> AdapterSummary {
+        AdapterSummary::new(&self.adapter.get_info())
+    }
+
+    /// Returns the device of the adapter. The first call opens and checks the device.
+    pub(super) fn gpu(&mut self) -> Result<Gpu, GpuError> {
+        if let Some(gpu) = &self.gpu {
+            return Ok(gpu.clone());
+        }
+        let gpu = Gpu::start(&self.adapter)?;
+        Ok(self.gpu.insert(gpu).clone())
+    }
+
+    fn is_lost(&self) -> bool {
+        self.gpu.as_ref().is_some_and(Gpu::is_lost)
+    }
+}
