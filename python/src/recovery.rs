@@ -2,8 +2,8 @@
 
 use std::fs;
 use std::io::Read;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::time::Instant;
 
 use gpu_smooth::{Checkpoint, CheckpointPolicy, GpuError, Stop};
 use mesh_io::atomic;
@@ -12,12 +12,7 @@ use pyo3::prelude::*;
 
 use crate::error;
 use crate::observer::RunObserver;
-
-/// The file of a run's checkpoints, and the time between two checkpoints.
-pub(crate) struct CheckpointPlan {
-    pub(crate) file: PathBuf,
-    pub(crate) every: Duration,
-}
+use crate::run_options::CheckpointPlan;
 
 /// Reads the checkpoint from which a run continues.
 pub(crate) fn resumed(py: Python<'_>, path: &Path) -> PyResult<Checkpoint> {

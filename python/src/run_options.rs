@@ -11,7 +11,6 @@ use gpu_smooth::{Goal, Guard, Method, Metric, Scheme, Stopping};
 use pyo3::prelude::*;
 
 use crate::error;
-use crate::recovery::CheckpointPlan;
 use crate::values::{self, Given};
 
 /// Names of the options of a run.
@@ -39,6 +38,12 @@ pub(crate) const NAMES: &[&str] = &[
     "checkpoint_every",
     "resume",
 ];
+
+/// The file of a run's checkpoints, and the time between two checkpoints.
+pub(crate) struct CheckpointPlan {
+    pub(crate) file: PathBuf,
+    pub(crate) every: Duration,
+}
 
 /// The processor on which a run computes.
 #[derive(Clone, Debug, PartialEq, Eq)]

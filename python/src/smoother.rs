@@ -16,8 +16,8 @@ use crate::mesh_options::{CallOptions, MeshOptions};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
 use crate::prepared::{Prepared, given};
-use crate::recovery::{self, CheckpointPlan, Recovery};
-use crate::run_options::{EngineChoice, RunOptions};
+use crate::recovery::{self, Recovery};
+use crate::run_options::{CheckpointPlan, EngineChoice, RunOptions};
 use crate::threads;
 
 /// A mesh prepared once for any number of runs.

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::adapter::AdapterSummary;
 use crate::error::GpuError;
-use crate::gpu::{Gpu, ranked_adapters};
+use crate::gpu::{Adapter, Gpu, ranked_adapters};
 
 /// The best adapter of the machine, from the first search on. `None` before the search. The lock is held while drivers
 /// start.
@@ -16,7 +16,7 @@ type Found = Option<KeptAdapter>;
 
 /// An adapter, and its device once the device is open.
 pub(super) struct KeptAdapter {
-    adapter: wgpu::Adapter,
+    adapter: Adapter,
     gpu: Option<Gpu>,
 }
 

@@ -24,6 +24,7 @@ pub use embed::{
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
 pub use kernels::{BindLayout, Kernel};
 pub(crate) use run::GpuEngine;
+pub(crate) use wgpu::Adapter;
 
 pub use crate::adapter::AdapterSummary;
 pub use crate::error::GpuError;
