@@ -23,7 +23,9 @@ def large() -> tuple[Points, Triangles]:
 
 def interrupted(mesh: tuple[Points, Triangles], checkpoint: Path, **options: Any) -> gpu_smooth.Result:
     """Return the result of a run that is ended after its first sweeps."""
-    return gpu_smooth.run(*mesh, **OPTIONS, **options, checkpoint=checkpoint, on_sweep=lambda progress: progress.sweep > 0)
+    points, triangles = mesh
+    given: dict[str, Any] = {**OPTIONS, **options, "checkpoint": checkpoint, "on_sweep": lambda progress: progress.sweep > 0}
+    return gpu_smooth.run(points, triangles, **given)
 
 
 @pytest.mark.parametrize("engine", ["cpu", "gpu"])

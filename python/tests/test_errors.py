@@ -258,7 +258,7 @@ def test_random_arguments_of_functions_raise_exceptions_of_python() -> None:
     wrong: list[Any] = [
         None, 3, "x", [], [[]], [[1, 2], [3]], np.zeros((0, 3)), np.zeros((3, 0)), np.zeros((16, 2)), np.full((16, 2), np.nan),
         np.full((16, 2), 1e308), TRIANGLES * -1, TRIANGLES + 14, TRIANGLES.astype("u1"), TRIANGLES[::-2], POINTS[::2],
-        POINTS.T, POINTS[:, ::-1], np.ma.masked_all((16, 2)), np.asfortranarray(TRIANGLES), np.zeros((2, 2, 2)), INVERTED, 1j,
+        POINTS.T, POINTS[:, ::-1], np.ma.masked_array(POINTS, POINTS > 1), np.asfortranarray(TRIANGLES), np.zeros((2, 2, 2)), INVERTED, 1j,
     ]
     functions: list[Any] = [gpu_smooth.quality, gpu_smooth.untangle, gpu_smooth.interpolate, gpu_smooth.compare]
     counts = [2, 2, 4, 3]

@@ -70,7 +70,7 @@ def test_groups_are_fixed_by_name(mesh: Mesh) -> None:
         points, cells, cell_data=numbers, field_data={"top": np.array([4, 2]), "wall": np.array([4, 1])},
         point_sets={"gauges": np.array([40, 41])}, cell_sets={"first": [np.array([0, 50]), np.array([], int)]},
     )
-    of_names = {
+    of_names: dict[str, Any] = {
         "top": triangles[triangles[:, 0] // 13 >= 8], "wall": line, "gauges": [40, 41], "first": triangles[[0, 50]],
     }
     for name, vertices in of_names.items():
