@@ -31,8 +31,7 @@ pub(crate) fn resumed(py: Python<'_>, path: &Path) -> PyResult<Checkpoint> {
     })
 }
 
-/// Checks that checkpoints may be saved to a file: that the file does not exist, or is the checkpoint from which the run
-/// continues.
+/// Refuses to replace an existing file by checkpoints, unless the run continues from this file.
 pub(crate) fn check(
     py: Python<'_>,
     plan: &CheckpointPlan,

@@ -56,8 +56,8 @@ impl BackendChooser {
     /// Chooses like [`Backend::auto_tried`]. Equal arguments have equal results, whether or not a device is open: the
     /// estimate always includes the start of the driver, so that a mesh does not get other bits because of earlier runs.
     ///
-    /// `try_drivers` is called before drivers are started, and not again after adapters were found. A device that was
-    /// lost is replaced: adapters are searched anew.
+    /// `try_drivers` is called before each search for adapters: in the first choice that considers a GPU, and after the
+    /// loss of the device, which a new device replaces.
     #[cfg(feature = "gpu")]
     pub fn choose(
         &self,
