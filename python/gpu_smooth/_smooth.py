@@ -134,12 +134,14 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     rings : int, default 2
         With `only_bad`: number of rings of triangles that count as near.
     target : str, array_like or tuple, default "equilateral"
-        Wanted elements: `"equilateral"` of any size, `"keep-size"` or `"keep-shape"` as in the given mesh; an array of
+        Wanted elements: `"equilateral"` of any size, `"keep-size"` or `"keep-shape"` as in the given mesh (with
+        `"keep-shape"`, the first layer of vertices at the boundary is fixed, which keeps the spacing at walls); an array of
         shape (n,) with edge lengths, or of shape (n, 3) with tensors (xx, xy, yy) under which elements are equilateral
         with edges of length 1; or a tuple (points, triangles, array) with such an array on another mesh. Only ratios of
         sizes matter.
-    target_rings : int, default 2
-        With `"keep-size"` and `"keep-shape"`: number of rings over which sizes and shapes are averaged.
+    target_rings : int, optional
+        With `"keep-size"` and `"keep-shape"`: number of rings over which sizes and shapes are averaged. The default is 0
+        for sizes and 2 for shapes.
     target_of : {"vertex", "place"}, optional
         Whether targets move with the vertices, or belong to places. The default is "place" for targets of another mesh,
         else "vertex".
@@ -149,7 +151,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         Untangle the mesh first if triangles are inverted or flat.
     scheme : str or sequence of str, optional
         A metric, or several metrics in turn, such as `"imr"` or `"edge+imr"`; `metrics` lists them. The default is
-        `"imr"`, and `"soft-size"` for targets that are sizes.
+        `"imr"`, `"tmop-94"` for `"keep-size"`, and `"soft-size"` for given sizes.
     engine : {"auto", "cpu", "gpu"}, default "auto"
         Where to compute. "auto" takes a GPU if the run is estimated to end sooner, and never a software adapter.
     adapter : str, optional

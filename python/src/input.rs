@@ -82,6 +82,7 @@ impl Input {
             constraints.held.extend_from_slice(chart.held());
             mesh = chart.mesh().clone();
         }
+        movement::fix_first_layer(&mut mesh, options, &mut constraints)?;
         let mut tangled = None;
         if options.untangles {
             let done = untangled(&mesh, stored, observer)?;
@@ -180,7 +181,7 @@ impl Layout {
     ) -> Result<Option<Chosen>, MeshError> {
         let (points, topology, surface) =
             (&smoother.mesh().points, smoother.topology(), options.surface);
-        let rings = options.target_rings.unwrap_or(2);
+        let rings = options.target_rings();
         // Shapes are kept as they appear in coordinates, also on the sphere.
         let mut measured_on = surface;
         let targets = match &options.target {

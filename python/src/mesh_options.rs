@@ -152,12 +152,19 @@ impl MeshOptions {
 
     /// Returns the metric of a run without a scheme. A metric of shapes alone would ignore targets of sizes.
     pub(crate) fn default_metric(&self) -> Metric {
-        let is_of_sizes = match &self.target {
-            Target::KeepSize => true,
-            Target::Given(values) | Target::Background { values, .. } => values.each == 1,
-            Target::Equilateral | Target::KeepShape => false,
-        };
-        if is_of_sizes { Metric::SoftSize } else { Metric::Imr }
+        match &self.target {
+            Target::KeepSize => Metric::Tmop94,
+            Target::Given(values) | Target::Background { values, .. } if values.each == 1 => {
+                Metric::SoftSize
+            }
+            _ => Metric::Imr,
+        }
+    }
+
+    /// Returns the number of rings over which sizes or shapes are averaged.
+    pub(crate) fn target_rings(&self) -> u32 {
+        let default = if matches!(self.target, Target::KeepSize) { 0 } else { 2 };
+        self.target_rings.unwrap_or(default)
     }
 
     /// Returns whether targets belong to places. By default, targets of another mesh do.

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use gpu_smooth::slide::Periodic;
-use gpu_smooth::{Mesh, MeshError, Slide, Topology, select};
+use gpu_smooth::{Mesh, MeshError, Slide, Targets, Topology, select};
 
-use crate::mesh_options::MeshOptions;
+use crate::mesh_options::{MeshOptions, Target};
 
 /// Edges between triangles of different regions. `regions` has a number per triangle, and is empty without regions.
 fn interface_edges(triangles: &[[u32; 3]], regions: &[i64]) -> Vec<[u32; 2]> {
@@ -46,6 +46,26 @@ pub(crate) fn fix(mesh: &mut Mesh, options: &MeshOptions) -> Result<Constraints,
     }
     mesh.fixed = [&held, lines.as_flattened()].concat();
     Ok(Constraints { lines, held })
+}
+
+/// Fixes the first layer of vertices at the boundary, if the target is `"keep-shape"` and all triangles can be smoothed.
+pub(crate) fn fix_first_layer(
+    mesh: &mut Mesh,
+    options: &MeshOptions,
+    constraints: &mut Constraints,
+) -> Result<(), MeshError> {
+    if !matches!(options.target, Target::KeepShape) {
+        return Ok(());
+    }
+    let topology = Topology::new(mesh)?;
+    // A tangled mesh is refused or untangled before the run.
+    if topology.check_smoothable(&mesh.points).is_ok() {
+        let targets = Targets::keep_shape(&topology, &mesh.points, options.target_rings())?;
+        let layer = targets.first_layer(&topology, &mesh.points)?;
+        constraints.held.extend_from_slice(&layer);
+        mesh.fixed.extend(layer);
+    }
+    Ok(())
 }
 
 /// Returns the curves along which vertices slide.

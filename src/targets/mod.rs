@@ -2,6 +2,7 @@
 
 mod adaptation;
 mod field;
+mod first_layer;
 mod keep;
 mod surface;
 mod tensor;
@@ -66,7 +67,9 @@ impl Targets {
     }
 
     /// Makes targets for equilateral elements with the sizes of the mesh's triangles on a surface, averaged over
-    /// `rings` rings of neighbors.
+    /// `rings` rings of neighbors. With 0 rings, the size at a vertex depends on the triangles within two edges of the
+    /// vertex. The metric should weigh sizes: [`Metric::Tmop94`](crate::Metric::Tmop94) keeps the sizes of graded meshes
+    /// within a factor of 1.3.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -81,7 +84,8 @@ impl Targets {
     }
 
     /// Makes targets for elements with the size, stretching and orientation of the mesh's triangles, averaged over
-    /// `rings` rings of neighbors. These targets keep boundary layers and anisotropic adaptation, and remove noise.
+    /// `rings` rings of neighbors. These targets keep boundary layers and anisotropic adaptation, and remove noise. Fix
+    /// the vertices of [`Self::first_layer`] to keep the spacing at walls.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -92,6 +96,28 @@ impl Targets {
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         Ok(Self { maps: keep::shapes(topology.triangles(), points, rings) })
+    }
+
+    /// Returns the free vertices of the first layer at the boundary, ascending: the vertices opposite boundary edges. Runs
+    /// keep the spacing at walls if [`Mesh::fixed`](crate::Mesh::fixed) has these vertices. Call the method on the targets
+    /// of [`Self::keep_shape`].
+    ///
+    /// The list omits vertices whose triangle at the boundary is an outlier. An outlier has an inverse mean ratio above 2
+    /// under the targets, and either less than half or more than twice the height of the targets, or an apex beyond the
+    /// ends of the edge by more than half the edge. The list is empty if it would have all free vertices.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] or [`MeshError::ValueCount`] if `points` or the targets do not have one entry per vertex
+    /// of `topology`.
+    pub fn first_layer(
+        &self,
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+    ) -> Result<Vec<u32>, MeshError> {
+        topology.check_count(points)?;
+        self.check_count(points.len())?;
+        let layer = first_layer::vertices(topology, points, &self.maps);
+        Ok(if layer.len() < topology.free_count() { layer } else { Vec::new() })
     }
 
     /// Converts targets in lengths on a surface to targets in its coordinates, with the vertices at `points`. Do not

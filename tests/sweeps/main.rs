@@ -3,6 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod adapted;
 mod agreement;
 mod altitude;
 mod coloring;

@@ -66,7 +66,7 @@ pub(crate) fn scheme_help() -> String {
     let names = metrics(|_| true).join(", ");
     format!(
         "The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first judges \
-         convergence. Metrics: {names} (see `gpu-smooth metrics`) [default: imr; soft-size with --target keep-size or size=SOURCE]"
+         convergence. Metrics: {names} (see `gpu-smooth metrics`) [default: imr; tmop-94 with --target keep-size, soft-size with size=SOURCE]"
     )
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{MeshError, Topology, select};
+use gpu_smooth::{MeshError, Targets, Topology, select};
 use mesh_io::{Group, Groups};
 
 use crate::load::explain;
@@ -40,18 +40,30 @@ impl MovableRequest {
         }
         let mut choice = MovableSelection::default();
         choice.notes.extend(self.free_interfaces.then(|| held_interfaces(file)).flatten());
-        if !self.restricts() {
-            return Ok(choice);
+        if self.restricts() {
+            self.restrict(file, &mut choice)?;
         }
+        if let Some(rings) = self.first_layer {
+            choice.notes.extend(fix_first_layer(file, rings)?);
+        }
+        Ok(choice)
+    }
+
+    /// Fixes the vertices of a mesh that `--fix…` and `--only…` exclude.
+    fn restrict(
+        &self,
+        file: &mut LoadedMesh,
+        choice: &mut MovableSelection,
+    ) -> Result<(), CliError> {
         let resolver = SelectionResolver::new(file)?;
         choice.free_without = resolver.topology.free_count();
-        let fixed = resolver.fixed(self, &mut choice)?;
-        let movers = resolver.movers(self, &mut choice)?;
+        let fixed = resolver.fixed(self, choice)?;
+        let movers = resolver.movers(self, choice)?;
         file.fix(&fixed)?;
         for movers in movers {
             file.fix_all_but(&movers)?;
         }
-        Ok(choice)
+        Ok(())
     }
 }
 
@@ -66,6 +78,31 @@ impl MovableSelection {
                 .with_remedy("--fix, --only and the like leave nothing to smooth: let more move")
         })
     }
+}
+
+/// Fixes the first layer of vertices at the boundary, if all triangles can be smoothed. Returns a note on the number of
+/// vertices; `None` if no vertex was fixed.
+fn fix_first_layer(file: &mut LoadedMesh, rings: u32) -> Result<Option<String>, CliError> {
+    let mesh = file.mesh();
+    // The preparation of the run reports errors of the mesh, and untangles a tangled mesh.
+    let Ok(topology) = Topology::new(mesh) else { return Ok(None) };
+    if topology.check_smoothable(&mesh.points).is_err() {
+        return Ok(None);
+    }
+    let layer = Targets::keep_shape(&topology, &mesh.points, rings)
+        .and_then(|targets| targets.first_layer(&topology, &mesh.points))
+        .map_err(|error| explain::mesh_error(file, &error))?;
+    let free = topology.free_count();
+    drop(topology);
+    file.fix(&layer)?;
+    let count = match layer.len() {
+        0 => return Ok(None),
+        1 => "1 vertex stays".to_owned(),
+        n => format!("{n} vertices stay"),
+    };
+    Ok(Some(format!(
+        "--target keep-shape: {count} fixed in the first layer at the boundary, of {free} free ones, to keep the spacing there"
+    )))
 }
 
 /// Returns a note on vertices between regions that remain fixed for another reason; `None` if all were freed.

@@ -20,6 +20,8 @@ pub(crate) struct MovableRequest {
     pub(crate) only: Vec<String>,
     /// Only vertices near bad triangles may move; `None` for no such limit.
     pub(crate) near_bad: Option<NearBad>,
+    /// With `--target keep-shape`, whose first layer of vertices stays: the number of rings of the target.
+    pub(crate) first_layer: Option<u32>,
 }
 
 /// The neighborhood of bad triangles.
@@ -35,7 +37,8 @@ impl From<MoveArgs> for MovableRequest {
     fn from(args: MoveArgs) -> Self {
         let MoveArgs { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, .. } = args;
         let near_bad = args.only_bad.map(|above| NearBad { above, rings: args.rings });
-        Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad }
+        let first_layer = None;
+        Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad, first_layer }
     }
 }
 

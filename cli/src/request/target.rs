@@ -85,7 +85,7 @@ pub(crate) enum TargetSource {
 impl From<&TargetArgs> for TargetRequest {
     fn from(args: &TargetArgs) -> Self {
         let is_of_places = args.is_of_places();
-        let keep = |what| Self::Keep { what, rings: args.target_rings.unwrap_or(2), is_of_places };
+        let keep = |what| Self::Keep { what, rings: args.rings_of(what), is_of_places };
         let given = |what, text: &String| {
             let (text, source) = (text.clone(), TargetSource::of(text));
             Self::Given { what, text, source, is_of_places }
@@ -158,7 +158,24 @@ fn is_view(path: &Path) -> bool {
 impl TargetArgs {
     /// Returns the metric of a run without `--scheme`.
     pub(crate) fn default_metric(&self) -> Metric {
-        if self.is_of_sizes() { Metric::SoftSize } else { Metric::Imr }
+        match self.target {
+            Target::KeepSize => Metric::Tmop94,
+            Target::Size { .. } => Metric::SoftSize,
+            Target::Equilateral | Target::KeepShape | Target::Metric { .. } => Metric::Imr,
+        }
+    }
+
+    /// Returns the number of rings of neighbors over which a kept property is averaged.
+    fn rings_of(&self, what: ElementProperty) -> u32 {
+        self.target_rings.unwrap_or(match what {
+            ElementProperty::Size => 0,
+            ElementProperty::Shape => 2,
+        })
+    }
+
+    /// Returns the number of rings of `--target keep-shape`; `None` for other targets.
+    pub(crate) fn shape_rings(&self) -> Option<u32> {
+        (self.target == Target::KeepShape).then(|| self.rings_of(ElementProperty::Shape))
     }
 
     /// Returns whether the target has sizes but no shapes. A metric that sees no sizes would ignore such a

@@ -193,8 +193,10 @@ fn options_without_effect_are_refused() {
     assert_usage(&folder, "bench --surface sphere", &[told]);
     assert_usage(&folder, "bench --z data", &["--z data has no effect without a MESH"]);
     let line = "in out --engine cpu --target keep-shape --target-rings 1 --report r.json";
-    folder.line(line).clean();
+    assert_eq!(folder.line(line).code, Some(0));
     assert_eq!(folder.json("r.json")["target"]["rings"], 1);
+    folder.line("in out --engine cpu --target keep-size --report r.json").clean();
+    assert_eq!(folder.json("r.json")["target"]["rings"], 0);
     folder.line("in out --engine cpu --surface sphere --report r.json").clean();
     assert!(folder.json("r.json")["target"].get("rings").is_none(), "none are averaged over");
 }

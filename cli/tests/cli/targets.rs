@@ -33,10 +33,11 @@ fn listed(values: &[f64], per_row: usize) -> String {
 #[test]
 fn targets_are_kept_and_reported_on_both_engines() {
     for engine in ["cpu", "gpu"] {
-        for (target, scheme) in [("keep-size", "soft-size"), ("keep-shape", "imr")] {
+        for (target, scheme) in [("keep-size", "tmop-94"), ("keep-shape", "imr")] {
             let folder = folder(&[]);
             let line = format!("in out --engine {engine} --target {target} --report r.json");
-            let run = folder.line(&line).clean();
+            let run = folder.line(&line);
+            assert_eq!(run.code, Some(0), "{}", run.err);
             assert_smoothed(&folder.mesh("in.node"), &folder.mesh("out.node"));
             assert_holds(&run.out, &[scheme, "f of targets", "f imr", "vertices moved"]);
             let report = folder.json("r.json");
@@ -68,6 +69,36 @@ fn the_target_that_keeps_an_adapted_mesh_is_named_before_the_run() {
         let run = folder.line(&format!("in out --engine cpu --target {target} --force"));
         assert!(!run.err.contains("the mesh is "), "{}", run.err);
     }
+}
+
+#[test]
+fn keep_shape_fixes_the_first_layer_and_counts_it() {
+    let mesh = support::layered(24, 60.0);
+    let [node, ele] = node_ele(&mesh);
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    let run = folder.line("in out --engine cpu --target keep-shape --report r.json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let is_boundary = support::boundary(&mesh);
+    let after = folder.mesh("out.node").points;
+    let is_first = |v: u32| {
+        let touches = |t: &&[u32; 3]| {
+            t.contains(&v) && t.iter().filter(|&&w| is_boundary[w as usize]).count() == 2
+        };
+        !is_boundary[v as usize] && mesh.triangles.iter().any(|t| touches(&t))
+    };
+    let layer: Vec<u32> = (0..mesh.points.len() as u32).filter(|&v| is_first(v)).collect();
+    assert!(layer.iter().all(|&v| after[v as usize] == mesh.points[v as usize]));
+    assert!(after != mesh.points);
+    let note = format!("--target keep-shape: {} vertices stay fixed", layer.len());
+    assert_holds(&run.err, &[&note]);
+    let free = is_boundary.iter().filter(|on| !**on).count() - layer.len();
+    assert_eq!(number(&folder.json("r.json")["mesh"]["free"]) as usize, free);
+    // A mesh without further free vertices is smoothed all the same.
+    let [node, ele] = node_ele(&support::perturb_random(&support::lattice(3, 3), 0.5, 2));
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    let run = folder.line("in out --engine cpu --target keep-shape");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert!(!run.err.contains("stay fixed"), "{}", run.err);
 }
 
 #[test]
