@@ -141,7 +141,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         sizes matter.
     target_rings : int, optional
         With `"keep-size"` and `"keep-shape"`: number of rings over which sizes and shapes are averaged. The default is 0
-        for sizes and 2 for shapes.
+        for sizes and 1 for shapes.
     target_of : {"vertex", "place"}, optional
         Whether targets move with the vertices, or belong to places. The default is "place" for targets of another mesh,
         else "vertex".

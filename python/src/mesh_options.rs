@@ -163,7 +163,7 @@ impl MeshOptions {
 
     /// Returns the number of rings over which sizes or shapes are averaged.
     pub(crate) fn target_rings(&self) -> u32 {
-        let default = if matches!(self.target, Target::KeepSize) { 0 } else { 2 };
+        let default = if matches!(self.target, Target::KeepSize) { 0 } else { 1 };
         self.target_rings.unwrap_or(default)
     }
 

@@ -144,7 +144,7 @@ fn keep_shape_keeps_the_spacing_at_walls_of_adapted_meshes_within_1_1() {
     for mesh in [graded, of_several_solutions(60, 0.1), curved_layer()] {
         assert!(support::is_valid(&mesh) && support::is_ccw(&mesh));
         let topology = Topology::new(&mesh).unwrap();
-        let targets = Targets::keep_shape(&topology, &mesh.points, 2).unwrap();
+        let targets = Targets::keep_shape(&topology, &mesh.points, 1).unwrap();
         let fixed = targets.first_layer(&topology, &mesh.points).unwrap();
         let mesh = Mesh { fixed, ..mesh.clone() };
         let smoother = smoother(&mesh, &targets);
@@ -162,7 +162,7 @@ fn keep_shape_keeps_the_spacing_at_walls_of_adapted_meshes_within_1_1() {
     // If the first layer is free, the spacing at the curved wall changes.
     let mesh = curved_layer();
     let topology = Topology::new(&mesh).unwrap();
-    let targets = Targets::keep_shape(&topology, &mesh.points, 2).unwrap();
+    let targets = Targets::keep_shape(&topology, &mesh.points, 1).unwrap();
     let outcome = run(&smoother(&mesh, &targets), &by(Metric::Imr), &backends()[0]);
     let change = spacing_change(&mesh, &outcome.points);
     assert!(change > 1.2, "{change}");
@@ -173,7 +173,7 @@ fn the_first_layer_omits_outliers() {
     let mesh = of_several_solutions(40, 0.2);
     let layer = |mesh: &Mesh| {
         let topology = Topology::new(mesh).unwrap();
-        let targets = Targets::keep_shape(&topology, &mesh.points, 2).unwrap();
+        let targets = Targets::keep_shape(&topology, &mesh.points, 1).unwrap();
         targets.first_layer(&topology, &mesh.points).unwrap()
     };
     let all = layer(&mesh);

@@ -18,7 +18,7 @@ pub(crate) struct TargetArgs {
     /// of gmsh (.pos) of scalars on triangles
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
     pub(crate) target: Target,
-    /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 2 for keep-shape, 0 for keep-size]
+    /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 1 for keep-shape, 0 for keep-size]
     #[arg(long, value_name = "N", help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) target_rings: Option<u32>,
     /// Owner of targets: vertices, which carry them along, or places, so that targets are evaluated again at the new

@@ -169,7 +169,7 @@ impl TargetArgs {
     fn rings_of(&self, what: ElementProperty) -> u32 {
         self.target_rings.unwrap_or(match what {
             ElementProperty::Size => 0,
-            ElementProperty::Shape => 2,
+            ElementProperty::Shape => 1,
         })
     }
 
