@@ -1,20 +1,20 @@
-// Transforms edges and triangles by target maps, and derivatives back to the plane.
+// Transforms edges and triangles by maps, and derivatives back to the plane.
 
 fn mapped(map: vec3<f32>, e: vec2<f32>) -> vec2<f32> {
     return vec2(map.x * e.x + map.y * e.y, map.y * e.x + map.z * e.y);
 }
 
-// Returns the shape of a vertex's target map: the map scaled to keep areas. The coarser levels use coordinates
+// Returns the shape of a vertex's map: the map scaled to keep areas. The coarser levels use coordinates
 // transformed by these shapes, in which neighbors across a layer of stretched triangles are as near as neighbors along
 // the layer.
 fn shape_of(v: u32) -> vec3<f32> {
-    let map = target_of(v);
+    let map = map_at(v);
     return map * inverseSqrt(map.x * map.z - map.y * map.y);
 }
 
 // Returns a triangle transformed by a target map, the argument of metrics.
 fn transformed(t: Corner, map: vec3<f32>) -> Corner {
-    if MAPPED {
+    if HAS_TARGETS {
         return Corner(mapped(map, t.a), mapped(map, t.b), t.mean_area);
     }
     return t;

@@ -54,7 +54,7 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     }
     let inverse = inverse_of(p.own * p.map_unit);
     // The eigenvalue floor is meant for nearly equilateral triangles, so the floor is applied in the coordinates of the
-    // vertex's target map.
+    // vertex's map.
     let sum = pulled_back(Derivatives(value, gradient, hessian), inverse);
     var down = descent(sum.gradient, sum.hessian);
     if MAPPED {

@@ -8,7 +8,7 @@ struct Patch {
     at: vec4<f32>,
     unit: f32,
     mean_area: vec2<f32>,
-    // The target map of the vertex, and the factor that brings its entries near one.
+    // The target map or local map of the vertex, and the factor that brings its entries near one.
     own: vec3<f32>,
     map_unit: f32,
 }
@@ -33,24 +33,24 @@ fn patch_of(vertex: u32) -> Patch {
     p.end = ring_place(ring_start[vertex + 1u]);
     p.at = position(vertex);
     p.unit = unit_of(edge(p.at, position(ring[p.start])));
-    p.own = target_of(vertex);
+    p.own = map_at(vertex);
     p.map_unit = 1.0;
     if MAPPED {
         p.map_unit = unit_of(p.own.xz);
     }
-    let scale = p.unit * p.map_unit;
+    let scale = p.unit * select(1.0, p.map_unit, HAS_TARGETS);
     p.mean_area = params.mean_area * scale * scale;
     return p;
 }
 
 // Returns the target map of the triangle between neighbor i and the previous neighbor: the mean of three maps, scaled
-// near one.
+// near one. Without targets, the map is the identity.
 fn map_around(p: Patch, i: u32) -> vec3<f32> {
-    if !MAPPED {
-        return p.own;
+    if !HAS_TARGETS {
+        return vec3(1.0, 0.0, 1.0);
     }
     let before = select(i - 1u, p.end - 1u, i == p.start);
-    let sum = p.own + target_of(ring[before]) + target_of(ring[i]);
+    let sum = p.own + map_at(ring[before]) + map_at(ring[i]);
     return sum * (p.map_unit / 3.0);
 }
 

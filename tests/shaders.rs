@@ -22,10 +22,17 @@ fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
-/// Returns the modules of each kernel: for meshes bound as a whole, for large meshes, and for meshes with targets.
+/// Returns the modules of each kernel: for meshes bound as a whole, for large meshes, for meshes with targets, and for
+/// strongly stretched meshes.
 fn modules() -> impl Iterator<Item = (Kernel, Module)> {
     let both = |kernel: Kernel| {
-        [kernel.wgsl(), kernel.wgsl_for_large_meshes(), kernel.wgsl_for_targets()].map(|wgsl| {
+        [
+            kernel.wgsl(),
+            kernel.wgsl_for_large_meshes(),
+            kernel.wgsl_for_targets(),
+            kernel.wgsl_for_stretched_meshes(),
+        ]
+        .map(|wgsl| {
             let (module, _) =
                 validated(&wgsl).unwrap_or_else(|error| panic!("{}: {error}", kernel.label()));
             (kernel.clone(), module)

@@ -7,7 +7,7 @@ fn length_along() -> f32 {
     return vectors[LENGTHS].x;
 }
 
-// Returns the displacement of a free vertex. The correction is in the coordinates of the shape of the vertex's target
+// Returns the displacement of a free vertex. The correction is in the coordinates of the shape of the vertex's
 // map, and is mapped back.
 fn move_of(v: u32) -> vec2<f32> {
     var d = direction[v];

@@ -1,4 +1,4 @@
-// Computes the gradient of the sum of q² by each free vertex, in the coordinates of the shape of the vertex's target
+// Computes the gradient of the sum of q² by each free vertex, in the coordinates of the shape of the vertex's
 // map. The gradient is zero at held vertices. If each correction fits the levels, the square root of the stiffness is
 // computed too.
 

@@ -1,4 +1,4 @@
-// Computes the square root of the stiffness at each free vertex, in the coordinates of the shape of its target map.
+// Computes the square root of the stiffness at each free vertex, in the coordinates of the shape of its map.
 // Both components of `gradient` receive the root.
 
 @compute @workgroup_size(WORKGROUP)

@@ -15,7 +15,7 @@ fn ring_place(start: u32) -> u32 {
 // Returns the desired area of a triangle after the transformation by its target map.
 fn wanted_area(corners: vec3<u32>, map: vec3<f32>) -> f32 {
     let sum = vertices[corners.x].area + vertices[corners.y].area + vertices[corners.z].area;
-    if MAPPED {
+    if HAS_TARGETS {
         return sum / 3.0 * abs(map.x * map.z - map.y * map.y);
     }
     return sum / 3.0;

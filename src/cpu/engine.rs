@@ -145,12 +145,12 @@ fn set_to_zero(vectors: &mut [Vec2], held: &[bool]) {
     }
 }
 
-/// Returns vectors at the free vertices, transformed by the inverse shapes of the target maps. The coarser levels work
+/// Returns vectors at the free vertices, transformed by the inverse shapes of the maps. The coarser levels work
 /// in these coordinates: in a layer of stretched triangles, neighbors are then as near across the layer as along it.
 fn as_transformed(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
-    let targets = problem.targets().unwrap_or_default();
+    let maps = problem.maps().unwrap_or_default();
     collect(vectors.len(), |v| {
-        let map = TargetMap(targets[v].map(f64::from));
+        let map = TargetMap(maps[v].map(f64::from));
         let transformed = map.inverse().shape().apply(vectors[v].as_dvec2().to_array());
         DVec2::from(transformed).as_vec2()
     })
@@ -198,8 +198,9 @@ impl Engine for CpuEngine {
         Ok(())
     }
 
-    fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
+    fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
+        self.secants = None;
         Ok(())
     }
 
@@ -287,6 +288,7 @@ impl Engine for CpuEngine {
         };
         if whole {
             state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
+            state.add_local_maps(&self.problem);
             if let Some(secants) = &self.secants {
                 secants.save(&mut state);
             }
@@ -303,6 +305,7 @@ impl Engine for CpuEngine {
             return Ok(false);
         }
         self.positions.clone_from(&state.positions);
+        state.restore_local_maps(&mut self.problem);
         if let Some((kept, least)) = &mut self.best {
             kept.clone_from(best);
             *least = self.base.ideal_squared() + mean_excess(self.base, &self.problem, kept);

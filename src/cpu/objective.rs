@@ -6,7 +6,7 @@ use glam::{DVec2, Vec2};
 use crate::layout::Problem;
 use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
 use crate::parallel::{collect, map_parts};
-use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, target_maps, with_lanes};
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, vertex_maps, with_lanes};
 use crate::patch::{is_kept, is_no_worse, is_positive, is_within};
 use crate::run::SweepParams;
 
@@ -37,7 +37,7 @@ fn mean(
     positions: &[DVec2],
 ) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(problem, metric, simd, formulas, MAPPED => {
+        with_lanes!(problem.targets(), metric, simd, formulas, MAPPED => {
             excess::<_, MAPPED>(simd, formulas, smoothing, problem, positions, chunk)
         })
     };
@@ -62,7 +62,7 @@ pub(crate) fn mean_excess_along(
     along: &Along<'_>,
 ) -> Option<f64> {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(problem, step.metric, simd, formulas, MAPPED => {
+        with_lanes!(problem.targets(), step.metric, simd, formulas, MAPPED => {
             excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
         })
     };
@@ -136,9 +136,9 @@ fn map_of<S: Simd>(
     [t, u, v, w]: &[[u32; 3]; LANES],
 ) -> TargetMap<Lanes<S>> {
     TargetMap::mean([
-        target_maps(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
-        target_maps(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
-        target_maps(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
+        vertex_maps(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
+        vertex_maps(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
+        vertex_maps(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
     ])
 }
 

@@ -95,7 +95,7 @@ pub(crate) fn gradient(
 
 /// Returns the square root of the stiffness at each free vertex. The stiffness is the mean absolute eigenvalue of the
 /// Hessian of Σ q² with respect to the vertex, divided by the number of its neighbors. The Hessian is taken in
-/// coordinates transformed by the shape of the target map at the vertex.
+/// coordinates transformed by the shape of the map at the vertex.
 pub(crate) fn stiffness_roots(
     metric: Metric,
     problem: &Problem,
@@ -175,7 +175,7 @@ fn visit<T: VisitOutput>(
 ) {
     for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
-        with_lanes!(problem, step.metric, simd, formulas, MAPPED => {
+        with_lanes!(problem.maps(), step.metric, simd, formulas, MAPPED => {
             visit_all::<_, _, MAPPED>(simd, formulas, problem, positions, first, step, sought, found);
         });
     });

@@ -32,17 +32,41 @@ const LONG: usize = 1 << 14;
 /// their coordinates. Single precision then suffices for meshes of any size and position, and areas far below or above
 /// the mean neither underflow nor overflow.
 ///
-/// A clone shares the layout and the target maps.
+/// A clone shares the layout and the maps.
 #[derive(Clone, Debug)]
 pub struct Problem {
     layout: Arc<Layout>,
-    /// Target map of each vertex, `None` if the mesh has no targets. Single precision, so that both engines use equal
+    /// Map of each vertex, of the kind `map_kind`. Empty without maps. Single precision, so that both engines use equal
     /// values.
-    targets: Option<Arc<[[f32; 3]]>>,
-    /// Whether some target map is anisotropic. Coarse levels then work in coordinates transformed by the maps, in which
+    maps: Arc<[[f32; 3]]>,
+    map_kind: MapKind,
+    /// Whether some map is anisotropic. Coarse levels then work in coordinates transformed by the maps, in which
     /// neighbors across a layer are as near as neighbors along the layer.
     is_stretched: bool,
     mean_area: f64,
+}
+
+/// The linear maps that a problem has at its vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MapKind {
+    /// No maps.
+    None,
+    /// Target maps: metrics measure triangles transformed by the maps at their corners. Newton directions and coarser
+    /// levels use the coordinates of the maps.
+    Targets,
+    /// Local maps: Newton directions and coarser levels use the coordinates of the maps. Metrics measure triangles of
+    /// the plane.
+    Local,
+}
+
+impl MapKind {
+    #[cfg(all(test, feature = "gpu"))]
+    pub(crate) const ALL: [Self; 3] = [MapKind::None, MapKind::Targets, MapKind::Local];
+
+    /// Returns whether there are maps at the vertices.
+    pub(crate) fn is_some(self) -> bool {
+        self != MapKind::None
+    }
 }
 
 /// Layout of a [`Problem`]: positions, order and connectivity, independent of targets.
@@ -106,7 +130,8 @@ impl Problem {
         };
         let layout =
             Layout { positions, colors, ring_start, ring, triangles, vertices, center, scale };
-        Self { layout: Arc::new(layout), targets: None, is_stretched: false, mean_area }
+        let (maps, map_kind) = (Arc::default(), MapKind::None);
+        Self { layout: Arc::new(layout), maps, map_kind, is_stretched: false, mean_area }
     }
 
     /// Sets the target maps of all vertices of the mesh, in any unit. A common factor scales the maps so that the mean
@@ -130,23 +155,29 @@ impl Problem {
             (sum(&self.layout.triangles, area) / self.layout.triangles.len() as f64).sqrt().recip();
         let scaled = |v: u32| map(v).map(|x| (x * scale) as f32);
         let maps = collect(self.layout.vertices.len(), |i| scaled(self.layout.vertices[i]));
-        self.targets = Some(maps.into());
         let is_longer = |&[xx, xy, yy]: &[f32; 3]| xx != yy || xy != 0.0;
-        self.is_stretched = self.targets().is_some_and(|maps| maps.iter().any(is_longer));
+        self.is_stretched = maps.iter().any(is_longer);
+        (self.maps, self.map_kind) = (maps.into(), MapKind::Targets);
         let transformed_area =
             |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
         self.mean_area =
             sum(&self.layout.triangles, transformed_area) / self.layout.triangles.len() as f64;
     }
 
+    /// Sets the local maps, one for each vertex in the order of the positions, in place of targets or older local maps.
+    pub(crate) fn set_local_maps(&mut self, maps: Vec<[f32; 3]>) {
+        (self.maps, self.map_kind, self.is_stretched) = (maps.into(), MapKind::Local, true);
+    }
+
     /// Copies the targets of another problem of the same mesh. `number` has the index in `other` of each vertex of the
     /// mesh.
     #[cfg(feature = "gpu")]
     pub(crate) fn take_targets(&mut self, other: &Self, number: &[u32]) {
-        self.targets = other.targets().map(|maps| {
+        if let Some(maps) = other.targets() {
             let of = |&v: &u32| maps[number[v as usize] as usize];
-            self.layout.vertices.iter().map(of).collect()
-        });
+            self.maps = self.layout.vertices.iter().map(of).collect();
+        }
+        self.map_kind = other.map_kind;
         (self.is_stretched, self.mean_area) = (other.is_stretched, other.mean_area);
     }
 
@@ -197,10 +228,23 @@ impl Problem {
     /// Returns the target map of each vertex, in the order of the positions, `None` if the mesh has no targets.
     #[inline(always)]
     pub(crate) fn targets(&self) -> Option<&[[f32; 3]]> {
-        self.targets.as_deref()
+        (self.map_kind == MapKind::Targets).then_some(&self.maps)
     }
 
-    /// Returns whether some target map is anisotropic.
+    /// Returns the target map or the local map of each vertex, in the order of the positions. `None` if the mesh has
+    /// neither.
+    #[inline(always)]
+    pub(crate) fn maps(&self) -> Option<&[[f32; 3]]> {
+        self.map_kind.is_some().then_some(&self.maps)
+    }
+
+    /// Returns the kind of the maps at the vertices.
+    #[inline(always)]
+    pub(crate) fn map_kind(&self) -> MapKind {
+        self.map_kind
+    }
+
+    /// Returns whether some map of the vertices is anisotropic.
     pub(crate) fn is_stretched(&self) -> bool {
         self.is_stretched
     }
@@ -219,7 +263,7 @@ impl Problem {
     /// Returns the target map of a triangle, the mean over its vertices, or `None` if the mesh has no targets.
     #[inline(always)]
     pub(crate) fn target_map(&self, t: &[u32; 3]) -> Option<TargetMap<f64>> {
-        let maps = self.targets.as_ref()?;
+        let maps = self.targets()?;
         Some(TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))))
     }
 

@@ -18,10 +18,10 @@ use crate::patch::numbers::{self, Numbers};
 /// the general copy. The general copy serves all other cases. It looks up the metric for each triangle, which costs imr
 /// nothing measurable, and gives meshes without targets identity maps.
 macro_rules! with_lanes {
-    ($problem:expr, $metric:expr, $simd:ident, $f:ident, $mapped:ident => $body:expr) => {
+    ($maps:expr, $metric:expr, $simd:ident, $f:ident, $mapped:ident => $body:expr) => {
         'done: {
             let level = fearless_simd::Level::new();
-            if $problem.targets().is_none() {
+            if $maps.is_none() {
                 #[allow(dead_code)]
                 const $mapped: bool = false;
                 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -42,7 +42,7 @@ macro_rules! with_lanes {
             const $mapped: bool = true;
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             if let (Some($simd), Some(_), $crate::metric::Metric::SoftSize) =
-                (level.as_avx2(), $problem.targets(), $metric)
+                (level.as_avx2(), $maps, $metric)
             {
                 #[allow(non_upper_case_globals)]
                 const $f: $crate::metric::OfInvariants = $crate::metric::OfInvariants::SoftSize;
@@ -182,18 +182,18 @@ pub(crate) fn numbers<S: Simd>(simd: S, numbers: &[f64], vertices: [u32; LANES])
 
 /// Gathers the target maps of four vertices into lanes; identities if the mesh has no targets.
 #[inline(always)]
-pub(crate) fn target_maps<S: Simd>(
+pub(crate) fn vertex_maps<S: Simd>(
     simd: S,
-    targets: Option<&[[f32; 3]]>,
+    maps: Option<&[[f32; 3]]>,
     vertices: [u32; LANES],
 ) -> [Lanes<S>; 3] {
-    let Some(targets) = targets else {
+    let Some(maps) = maps else {
         let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
         return [one, zero, one];
     };
     let [a, b, c, d] = vertices;
-    let (a, b) = (&targets[a as usize], &targets[b as usize]);
-    let (c, d) = (&targets[c as usize], &targets[d as usize]);
+    let (a, b) = (&maps[a as usize], &maps[b as usize]);
+    let (c, d) = (&maps[c as usize], &maps[d as usize]);
     // A loop over lanes instead of `map` of arrays, which is not inlined here and would take a third of a sweep.
     let lane = |i: usize| {
         let numbers = [f64::from(a[i]), f64::from(b[i]), f64::from(c[i]), f64::from(d[i])];

@@ -7,16 +7,16 @@ use crate::layout::Problem;
 use crate::metric::{Corner, Dual, Own, TargetMap};
 use crate::patch::corners::Corners;
 use crate::patch::direction::{Direction, newton_direction};
-use crate::patch::lanes::{LANES, Lanes, Points, points, target_maps};
+use crate::patch::lanes::{LANES, Lanes, Points, points, vertex_maps};
 
-/// One-rings of four free vertices of equal degree. If `MAPPED`, target maps transform the triangles.
+/// One-rings of four free vertices of equal degree. If `MAPPED`, the vertices have target maps or local maps.
 #[derive(Clone, Copy)]
 pub(crate) struct Rings<'a, S: Simd, const MAPPED: bool> {
     /// Positions of the neighbors, counter-clockwise, with the first repeated at the end.
     ring: &'a [Points<S>],
-    /// Target map of each triangle; unused if not `MAPPED`.
+    /// Target map of each triangle, the identity without targets; unused if not `MAPPED`.
     maps: &'a [TargetMap<Lanes<S>>],
-    /// Inverse of the target map of each visited vertex; `None` if not `MAPPED`.
+    /// Inverse of the target map or local map of each visited vertex; `None` if not `MAPPED`.
     inverse_map: Option<TargetMap<Lanes<S>>>,
     /// Mean area of the mesh's triangles, after their target maps are applied.
     mean_area: f64,
@@ -59,22 +59,23 @@ impl<'a, S: Simd, const MAPPED: bool> Rings<'a, S, MAPPED> {
         let mut inverse_map = None;
         if MAPPED {
             let targets = problem.targets();
-            let own = target_maps(simd, targets, vertices);
-            let mut before = target_maps(simd, targets, [a[0], b[0], c[0], d[0]]);
+            let own = vertex_maps(simd, targets, vertices);
+            let mut before = vertex_maps(simd, targets, [a[0], b[0], c[0], d[0]]);
             let first = before;
             maps.clear();
             for i in 1..degree {
-                let next = target_maps(simd, targets, [a[i], b[i], c[i], d[i]]);
+                let next = vertex_maps(simd, targets, [a[i], b[i], c[i], d[i]]);
                 maps.push(TargetMap::mean([own, before, next]));
                 before = next;
             }
             maps.push(TargetMap::mean([own, before, first]));
+            let own = vertex_maps(simd, problem.maps(), vertices);
             inverse_map = Some(TargetMap(own).inverse());
         }
         Self { ring, maps, inverse_map, mean_area: problem.mean_area() }
     }
 
-    /// Returns the inverse of the target map of each visited vertex, `None` if not `MAPPED`.
+    /// Returns the inverse of the target map or local map of each visited vertex, `None` if not `MAPPED`.
     #[inline(always)]
     pub(crate) fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
         &self.inverse_map
@@ -119,8 +120,7 @@ impl<S: Simd, const MAPPED: bool> Corners<Lanes<S>> for Rings<'_, S, MAPPED> {
     fn direction(&self, sum: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
         match &self.inverse_map {
             Some(inverse) if MAPPED => {
-                // The floor is meant for nearly equilateral triangles, so it is applied in the coordinates of the target
-                // map.
+                // The floor is meant for nearly equilateral triangles, so it is applied in the coordinates of the map.
                 let mapped = newton_direction(&inverse.pull_back(*sum), eigenvalue_floor);
                 Direction { vector: inverse.apply(mapped.vector), ..mapped }
             }

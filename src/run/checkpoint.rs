@@ -49,7 +49,7 @@ impl Checkpoint {
     }
 
     /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex, up to 76 once sweeps are
-    /// corrected from coarser levels, and up to 128 more if vertices slide.
+    /// corrected from coarser levels, 12 more on strongly stretched meshes, and up to 128 more if vertices slide.
     ///
     /// The bytes are [`MAGIC`](Self::MAGIC), the version, records, and a CRC-32 of all bytes before. A record consists
     /// of name and content, each after its length in bytes. Numbers are little-endian.

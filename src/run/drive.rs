@@ -196,12 +196,12 @@ impl<E: Engine> Session<E> {
         }
     }
 
-    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
-    pub(crate) fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
+    /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the run's problem.
+    pub(crate) fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         if let Strategy::Corrected(corrections) = &mut self.strategy {
-            corrections.set_targets(problem);
+            corrections.set_maps(problem);
         }
-        self.engine.set_targets(problem)
+        self.engine.set_maps(problem)
     }
 
     /// Returns the counts of sweeps and corrections for the report.

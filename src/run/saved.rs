@@ -3,10 +3,14 @@
 use bytemuck::Pod;
 use glam::DVec2;
 
+use crate::layout::{MapKind, Problem};
 use crate::run::objectives::Objectives;
 
 /// Name of the CPU engine in [`EngineState::engine`].
 pub(crate) const CPU: &str = "cpu";
+
+/// Name of the local maps of the vertices in [`EngineState::own`].
+const LOCAL_MAPS: &str = "local maps";
 
 /// The state of a run between two sweeps: log, corrections and engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +68,22 @@ impl EngineState {
     /// Adds named data for engines of the same kind.
     pub(crate) fn add<T: Pod>(&mut self, name: &str, values: &[T]) {
         self.own.push((name.to_owned(), bytemuck::cast_slice(values).to_vec()));
+    }
+
+    /// Adds the local maps of a problem, if it has any.
+    pub(crate) fn add_local_maps(&mut self, problem: &Problem) {
+        if let (MapKind::Local, Some(maps)) = (problem.map_kind(), problem.maps()) {
+            self.add(LOCAL_MAPS, maps);
+        }
+    }
+
+    /// Sets the local maps of a problem to the saved maps. Returns false, and changes nothing, if the state has none for
+    /// this problem.
+    pub(crate) fn restore_local_maps(&self, problem: &mut Problem) -> bool {
+        let maps = self.own::<[f32; 3]>(LOCAL_MAPS, problem.positions().len());
+        let maps = maps.filter(|maps| maps.as_flattened().iter().all(|x| x.is_finite()));
+        let maps = maps.filter(|_| problem.map_kind() == MapKind::Local);
+        maps.map(|maps| problem.set_local_maps(maps)).is_some()
     }
 
     /// Returns the data called `name`. `None` for an unknown name, or for data of another length than `count` values.

@@ -42,7 +42,12 @@ pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) ->
 /// Returns the logarithm of the map under which a triangle is equilateral with edges of length 1. `lengths` are the
 /// lengths of a unit of each coordinate.
 pub(super) fn shape_logarithm(t: &[u32; 3], points: &[[f64; 2]], lengths: [f64; 2]) -> Tensor {
-    let [a, b] = edges(t, points).map(|[x, y]| [x * lengths[0], y * lengths[1]]);
+    shape_logarithm_of(edges(t, points).map(|[x, y]| [x * lengths[0], y * lengths[1]]))
+}
+
+/// Returns the logarithm of the map under which a triangle is equilateral with edges of length 1, given the two edges
+/// that start at its first corner.
+pub(crate) fn shape_logarithm_of([a, b]: [[f64; 2]; 2]) -> Tensor {
     // A W⁻¹ maps the equilateral triangle to the given triangle, so the target map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
     let second = [(2.0 * b[0] - a[0]) * W, (2.0 * b[1] - a[1]) * W];
     let square = Tensor::of_columns([a, second]);

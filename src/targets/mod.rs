@@ -11,6 +11,7 @@ use crate::error::MeshError;
 use crate::topology::Topology;
 pub use adaptation::Adaptation;
 pub use field::{OutsideReport, TargetField};
+pub(crate) use keep::shape_logarithm_of;
 pub use surface::Surface;
 pub(crate) use tensor::Tensor;
 

@@ -56,8 +56,8 @@ impl Engine for AnyEngine<'_> {
         on!(self, engine => engine.hold(held))
     }
 
-    fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
-        on!(self, engine => engine.set_targets(problem))
+    fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
+        on!(self, engine => engine.set_maps(problem))
     }
 
     async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {

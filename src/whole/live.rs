@@ -46,7 +46,7 @@ struct Point {
 
 /// A run in progress, on a single engine unless that engine fails.
 pub(crate) struct Live<'s> {
-    /// Layout of the mesh, with the present targets.
+    /// Layout of the mesh, with the present targets, or with local maps if the mesh is strongly stretched.
     pub(crate) problem: Problem,
     pub(crate) plan: Plan,
     spec: Spec<'s>,
@@ -109,8 +109,15 @@ impl<'s> Live<'s> {
             }
             None => (Point { log: Vec::new(), positions }, Vec::new(), is_refused.then_some(0)),
         };
+        let mut problem = spec.problem.clone();
+        if spec.options.is_multilevel()
+            && problem.targets().is_none()
+            && problem.is_strongly_stretched(from)
+        {
+            problem.set_local_maps_at(from);
+        }
         Ok(Self {
-            problem: spec.problem.clone(),
+            problem,
             plan,
             spec,
             device,
@@ -274,7 +281,7 @@ impl<'s> Live<'s> {
         }
         let mut changed = || -> Result<(), GpuError> {
             if let Some(problem) = targets {
-                session.set_targets(problem)?;
+                session.set_maps(problem)?;
             }
             if is_held_anew {
                 session.engine.hold(held)?;

@@ -146,12 +146,14 @@ fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
 /// and levels are fitted again.
 #[test]
 fn a_hard_run_goes_on_to_the_same_bits() {
-    let stretched = |mesh: &Mesh| -> Vec<[f64; 2]> {
-        mesh.points.iter().map(|&[x, y]| [100.0 * x, y]).collect()
-    };
     let lattice = support::perturb_random(&support::lattice(24, 24), 0.6, 4);
-    let thin = with_points(&lattice, &stretched(&lattice));
-    for (mesh, accelerated) in [(perturbed().clone(), false), (thin, true)] {
+    let stretched = |ratio: f64| {
+        let points: Vec<_> = lattice.points.iter().map(|&[x, y]| [ratio * x, y]).collect();
+        with_points(&lattice, &points)
+    };
+    // The last mesh has local maps.
+    let meshes = [(perturbed().clone(), false), (stretched(40.0), true), (stretched(100.0), false)];
+    for (mesh, accelerated) in meshes {
         let smoother = Smoother::new(&mesh).unwrap();
         for backend in backends() {
             let options = Options::default();

@@ -123,8 +123,8 @@ impl UntanglingSweeps {
         let areas = target_areas(problem, problem.positions());
         let vertices = areas.iter().map(|&area| TangledVertex { area: area as f32, reached: 0 });
         let vertices: Vec<TangledVertex> = vertices.collect();
-        let targets = problem.positions().len() as u32;
-        let params = Params::outside_runs(targets);
+        let maps = problem.positions().len() as u32;
+        let params = Params::outside_runs(maps);
         // Vertices are marked by numbers of sweeps, from 1 on. No vertex is marked yet.
         let tangle = Tangle { valid: 0, inverted: 0, depth: 0, epsilon: 0.0, sweep: 1, since: 1 };
         let bind_groups = scoped(&gpu.device, || {

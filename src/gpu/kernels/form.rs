@@ -1,5 +1,7 @@
 //! The form of a mesh on a device, for which kernels are composed.
 
+use crate::layout::MapKind;
+
 /// The bindings by which kernels access the positions of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Positions {
@@ -24,13 +26,13 @@ impl Positions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MeshForm {
     pub(crate) positions: Positions,
-    /// Whether target maps follow the positions in their buffer.
-    pub(crate) has_targets: bool,
+    /// Kind of the maps that follow the positions in their buffer.
+    pub(crate) maps: MapKind,
 }
 
 impl From<Positions> for MeshForm {
-    /// Returns the form of a mesh without targets.
+    /// Returns the form of a mesh without maps.
     fn from(positions: Positions) -> Self {
-        Self { positions, has_targets: false }
+        Self { positions, maps: MapKind::None }
     }
 }

@@ -139,10 +139,11 @@ mod tests {
 
     use super::*;
     use crate::gpu::kernels::layouts::Access;
+    use crate::layout::MapKind;
 
     #[test]
     fn every_kernel_declares_the_bindings_of_its_layout() {
-        let form = |positions| [false, true].map(|has_targets| MeshForm { positions, has_targets });
+        let form = |positions| MapKind::ALL.map(|maps| MeshForm { positions, maps });
         let forms = Positions::ALL.map(form).concat();
         let each =
             |kernel: Kernel| forms.clone().into_iter().map(move |form| (kernel.clone(), form));

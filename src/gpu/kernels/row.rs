@@ -12,8 +12,8 @@ pub(crate) struct Row {
     pub(crate) layout: BindLayout,
     /// Number of invocations in a workgroup.
     pub(crate) width: u32,
-    /// Whether the kernel's source differs for meshes with target maps.
-    pub(crate) sees_targets: bool,
+    /// Whether the kernel's source differs for meshes with maps at the vertices.
+    pub(crate) sees_maps: bool,
     pub(crate) user: User,
     /// Sources of the kernel, appended to the files of its layout.
     pub(crate) source: &'static [Source],

@@ -9,6 +9,7 @@ use crate::gpu::kernels::uniforms::{
     FINISH_WORKGROUP, HELD, HISTORY, INVERTED, MIN_NORMAL, NO_GUARD, SEARCH_TRIALS, SHARED_STRUCTS,
     SLOT_VECTORS, SLOTS, WORKGROUP, WORST,
 };
+use crate::layout::MapKind;
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
 use crate::options::Derivatives;
@@ -23,8 +24,9 @@ use crate::run::{JITTER, MIN_SCALE, NOISE, line_search, regularization};
 
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
 const POSITIONS_IN_TWO: &str = include_str!("../../../shaders/positions_in_two.wgsl");
-const TARGETS: &str = include_str!("../../../shaders/targets.wgsl");
-const NO_TARGETS: &str = include_str!("../../../shaders/no_targets.wgsl");
+const NO_MAPS: &str = include_str!("../../../shaders/no_maps.wgsl");
+const TARGET_MAPS: &str = include_str!("../../../shaders/target_maps.wgsl");
+const LOCAL_MAPS: &str = include_str!("../../../shaders/local_maps.wgsl");
 const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
 const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
 const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
@@ -44,11 +46,16 @@ impl Kernel {
 
     /// Returns the complete WGSL module for a mesh with targets.
     pub fn wgsl_for_targets(&self) -> String {
-        self.composed(MeshForm { positions: Positions::Whole, has_targets: true })
+        self.composed(MeshForm { positions: Positions::Whole, maps: MapKind::Targets })
+    }
+
+    /// Returns the complete WGSL module for a strongly stretched mesh.
+    pub fn wgsl_for_stretched_meshes(&self) -> String {
+        self.composed(MeshForm { positions: Positions::Whole, maps: MapKind::Local })
     }
 
     /// Composes the WGSL module: constants, structs and bindings that Rust declares, then the files of the bind layout,
-    /// the access to positions and target maps, and the sources of the kernel's row.
+    /// the access to positions and maps, and the sources of the kernel's row.
     pub(crate) fn composed(&self, form: MeshForm) -> String {
         let mut source = constants();
         let layout = self.layout();
@@ -62,8 +69,12 @@ impl Kernel {
                 Positions::InTwo => POSITIONS_IN_TWO,
             });
         }
-        if self.row().sees_targets {
-            source.push_str(if form.has_targets { TARGETS } else { NO_TARGETS });
+        if self.row().sees_maps {
+            source.push_str(match form.maps {
+                MapKind::None => NO_MAPS,
+                MapKind::Targets => TARGET_MAPS,
+                MapKind::Local => LOCAL_MAPS,
+            });
             source.push_str(MAPS);
         }
         let composition = self.composition();

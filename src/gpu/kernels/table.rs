@@ -7,6 +7,7 @@ use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::layouts::BindLayout;
 use crate::gpu::kernels::row::{Arguments, Composition, Row, Source, User};
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, SLOTS, WORKGROUP};
+use crate::layout::MapKind;
 use crate::metric::Metric;
 use crate::options::Derivatives;
 use crate::run::Plan;
@@ -30,7 +31,7 @@ macro_rules! kernels {
             entry_point: $entry_point:literal,
             layout: $layout:ident,
             width: $width:expr,
-            sees_targets: $sees_targets:literal,
+            sees_maps: $sees_maps:literal,
             user: $user:ident,
             source: [$($source:tt),*],
         }
@@ -47,7 +48,7 @@ macro_rules! kernels {
                         entry_point: $entry_point,
                         layout: BindLayout::$layout,
                         width: $width,
-                        sees_targets: $sees_targets,
+                        sees_maps: $sees_maps,
                         user: User::$user,
                         source: &[$(source!($source)),*],
                     } },)*
@@ -85,7 +86,7 @@ kernels! {
         entry_point: "sweep",
         layout: Run,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Sweeps,
         source: ["patch.wgsl", "one_ring.wgsl", ActiveMetric, "descent.wgsl", "newton.wgsl"],
     }
@@ -95,7 +96,7 @@ kernels! {
         entry_point: "objective",
         layout: Run,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Sweeps,
         source: ["patch.wgsl", TrackedMetrics, "objective.wgsl"],
     }
@@ -105,7 +106,7 @@ kernels! {
         entry_point: "finish",
         layout: Run,
         width: FINISH_WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: [TrackedSlots, "finish.wgsl"],
     }
@@ -115,7 +116,7 @@ kernels! {
         entry_point: "keep_best",
         layout: Run,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["keep_best.wgsl"],
     }
@@ -125,7 +126,7 @@ kernels! {
         entry_point: "import_positions",
         layout: Exchange,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["import.wgsl"],
     }
@@ -135,7 +136,7 @@ kernels! {
         entry_point: "export_positions",
         layout: Exchange,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["export.wgsl"],
     }
@@ -145,7 +146,7 @@ kernels! {
         entry_point: "write_objective",
         layout: WriteObjective,
         width: SLOTS as u32,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["write_objective.wgsl"],
     }
@@ -156,7 +157,7 @@ kernels! {
         entry_point: "restart_if_changed",
         layout: RestartIfChanged,
         width: 1,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["judged/restart_if_changed.wgsl"],
     }
@@ -166,7 +167,7 @@ kernels! {
         entry_point: "resume",
         layout: RestartIfChanged,
         width: 1,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["judged/resume.wgsl"],
     }
@@ -176,7 +177,7 @@ kernels! {
         entry_point: "restore_last_valid",
         layout: Restore,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["restore.wgsl"],
     }
@@ -186,7 +187,7 @@ kernels! {
         entry_point: "hold_by_mask",
         layout: Mask,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["mask.wgsl"],
     }
@@ -197,7 +198,7 @@ kernels! {
         entry_point: "find_share",
         layout: Move,
         width: FINISH_WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["clamp/find_share.wgsl"],
     }
@@ -207,7 +208,7 @@ kernels! {
         entry_point: "move_vertices",
         layout: Move,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Sweeps,
         source: ["clamp/move_vertices.wgsl"],
     }
@@ -217,7 +218,7 @@ kernels! {
         entry_point: "find_inverted",
         layout: Untangle,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Sweeps,
         source: ["untangle/find_inverted.wgsl"],
     }
@@ -227,7 +228,7 @@ kernels! {
         entry_point: "regularize",
         layout: Untangle,
         width: 1,
-        sees_targets: true,
+        sees_maps: true,
         user: Sweeps,
         source: ["untangle/regularize.wgsl"],
     }
@@ -237,7 +238,7 @@ kernels! {
         entry_point: "untangle",
         layout: Untangle,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Sweeps,
         source: [
             UntanglingEnergy, "one_ring.wgsl", "descent.wgsl", "untangle/energy.wgsl",
@@ -250,7 +251,7 @@ kernels! {
         entry_point: "find_gradient",
         layout: Fine,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Corrections,
         source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/gradient.wgsl"],
     }
@@ -260,7 +261,7 @@ kernels! {
         entry_point: "smooth_gradient",
         layout: Transfer,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/neighbors.wgsl", "levels/smooth_gradient.wgsl"],
     }
@@ -270,7 +271,7 @@ kernels! {
         entry_point: "restrict_gradient",
         layout: Transfer,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/restrict.wgsl"],
     }
@@ -280,7 +281,7 @@ kernels! {
         entry_point: "prolong_solution",
         layout: Transfer,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/neighbors.wgsl", "levels/prolong.wgsl"],
     }
@@ -290,7 +291,7 @@ kernels! {
         entry_point: "matrix_vector",
         layout: Coarse,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/matrix_vector.wgsl"],
     }
@@ -300,7 +301,7 @@ kernels! {
         entry_point: "chebyshev",
         layout: Coarse,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/chebyshev.wgsl"],
     }
@@ -310,7 +311,7 @@ kernels! {
         entry_point: "coarsest_solve",
         layout: Coarse,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/coarsest_solve.wgsl"],
     }
@@ -320,7 +321,7 @@ kernels! {
         entry_point: "objective_along_correction",
         layout: Fine,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Corrections,
         source: [
             "one_ring.wgsl", ActiveMetric, "levels/along.wgsl", "levels/moved.wgsl",
@@ -333,7 +334,7 @@ kernels! {
         entry_point: "sum_along_correction",
         layout: Coarse,
         width: FINISH_WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/sum_along_correction.wgsl"],
     }
@@ -343,7 +344,7 @@ kernels! {
         entry_point: "move_along_correction",
         layout: Fine,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Corrections,
         source: ["levels/along.wgsl", "levels/move_along_correction.wgsl"],
     }
@@ -353,7 +354,7 @@ kernels! {
         entry_point: "find_broken",
         layout: Fine,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Corrections,
         source: [
             "one_ring.wgsl", "levels/along.wgsl", "levels/moved.wgsl", "levels/find_broken.wgsl"
@@ -365,7 +366,7 @@ kernels! {
         entry_point: "exclude_broken",
         layout: Fine,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["levels/exclude_broken.wgsl"],
     }
@@ -375,7 +376,7 @@ kernels! {
         entry_point: "begin_search",
         layout: Search,
         width: 1,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["search/begin_search.wgsl"],
     }
@@ -385,7 +386,7 @@ kernels! {
         entry_point: "judge_trial",
         layout: Search,
         width: 1,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["search/judge_trial.wgsl"],
     }
@@ -395,7 +396,7 @@ kernels! {
         entry_point: "find_stiffness",
         layout: Fine,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Corrections,
         source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/stiffness.wgsl"],
     }
@@ -405,7 +406,7 @@ kernels! {
         entry_point: "complete_pair",
         layout: Secants,
         width: WORKGROUP,
-        sees_targets: true,
+        sees_maps: true,
         user: Corrections,
         source: ["secants/complete_pair.wgsl"],
     }
@@ -415,7 +416,7 @@ kernels! {
         entry_point: "sum_secants",
         layout: Secants,
         width: FINISH_WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["secants/sum_secants.wgsl"],
     }
@@ -425,7 +426,7 @@ kernels! {
         entry_point: "bend_gradient",
         layout: Secants,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["secants/bend_gradient.wgsl"],
     }
@@ -435,7 +436,7 @@ kernels! {
         entry_point: "multiply_correction",
         layout: Secants,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["secants/multiply_correction.wgsl"],
     }
@@ -445,7 +446,7 @@ kernels! {
         entry_point: "begin_pair",
         layout: Secants,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Corrections,
         source: ["secants/begin_pair.wgsl"],
     }
@@ -455,7 +456,7 @@ kernels! {
         entry_point: "check_arithmetic",
         layout: Arithmetic,
         width: WORKGROUP,
-        sees_targets: false,
+        sees_maps: false,
         user: Check,
         source: ["check_arithmetic.wgsl"],
     }
@@ -479,7 +480,8 @@ impl Kernel {
     /// Returns `form` without the properties on which the kernel does not depend, so that meshes share pipelines.
     pub(crate) fn sees(&self, form: MeshForm) -> MeshForm {
         let positions = self.layout().sees(form.positions);
-        MeshForm { positions, has_targets: form.has_targets && self.row().sees_targets }
+        let maps = if self.row().sees_maps { form.maps } else { MapKind::None };
+        MeshForm { positions, maps }
     }
 
     /// Returns the name of the entry point.

@@ -122,8 +122,8 @@ shared_structs! {
         tolerance: f32,
         /// A pair of floats: the mean area rounded to single precision, and the rounding error.
         mean_area: vec2f,
-        /// Index of the first target map in the positions.
-        targets: u32,
+        /// Index of the first map in the positions.
+        maps: u32,
         padding: u32,
     }
 
@@ -407,9 +407,8 @@ shared_structs! {
 }
 
 impl Params {
-    /// Returns the constants for kernels outside of a run, which use only `zero` and the index `targets` of the first
-    /// target map.
-    pub(crate) fn outside_runs(targets: u32) -> Self {
+    /// Returns the constants for kernels outside of a run, which use only `zero` and the index `maps` of the first map.
+    pub(crate) fn outside_runs(maps: u32) -> Self {
         Self {
             zero: 0,
             triangles: 0,
@@ -423,7 +422,7 @@ impl Params {
             ideal_sum: 0.0,
             tolerance: 0.0,
             mean_area: [0.0; 2],
-            targets,
+            maps,
             padding: 0,
         }
     }

@@ -30,7 +30,7 @@ impl MeshBuffers {
     /// Uploads a problem with its vertices at `positions`.
     pub(crate) fn new(gpu: &Gpu, problem: &Problem, positions: &[DVec2]) -> Result<Self, GpuError> {
         let parts = Parts::new(problem, &gpu.device.limits())?;
-        let positions = laid_out(positions, problem.targets(), parts.low_positions);
+        let positions = laid_out(positions, problem.maps(), parts.low_positions);
         scoped(&gpu.device, || Self {
             positions: filled(
                 gpu,
@@ -61,7 +61,7 @@ impl MeshBuffers {
         problem: &Problem,
         positions: &[DVec2],
     ) -> Result<Self, GpuError> {
-        let positions = laid_out(positions, problem.targets(), self.parts.low_positions);
+        let positions = laid_out(positions, problem.maps(), self.parts.low_positions);
         scoped(&gpu.device, || {
             self.at(gpu, filled(gpu, "further positions", &positions, Usage::STORAGE))
         })
@@ -142,10 +142,9 @@ impl MeshBuffers {
         })
     }
 
-    /// Overwrites the target maps with the maps of another problem of the same layout. Does nothing for a problem
-    /// without targets.
-    pub(crate) fn write_targets(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
-        let Some(maps) = problem.targets() else { return Ok(()) };
+    /// Overwrites the maps with the maps of another problem of the same layout. Does nothing for a problem without maps.
+    pub(crate) fn write_maps(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
+        let Some(maps) = problem.maps() else { return Ok(()) };
         let first = problem.positions().len() as u64;
         scoped(&gpu.device, || match self.parts.low_positions {
             None => {
@@ -188,17 +187,17 @@ impl MeshBuffers {
 const PART: u64 = POSITION / 2;
 
 /// Returns the content of the buffer of positions. Without `low`, the low parts of each vertex follow its high parts.
-/// With `low`, all high parts come first, and all low parts start at byte `low`. Target maps follow the positions in
-/// the same form.
-fn laid_out(positions: &[DVec2], targets: Option<&[[f32; 3]]>, low: Option<u64>) -> Vec<[f32; 2]> {
-    let count = positions.len() + targets.map_or(0, <[_]>::len);
+/// With `low`, all high parts come first, and all low parts start at byte `low`. Maps follow the positions in the
+/// same form.
+fn laid_out(positions: &[DVec2], maps: Option<&[[f32; 3]]>, low: Option<u64>) -> Vec<[f32; 2]> {
+    let count = positions.len() + maps.map_or(0, <[_]>::len);
     let (step, low, length) = match low {
         None => (2, 1, 2 * count),
         Some(low) => (1, (low / PART) as usize, (low / PART) as usize + count),
     };
     let mut parts = vec![[0.0; 2]; length];
     let positions = positions.iter().map(|&p| split(p));
-    let maps = targets.unwrap_or_default().iter().map(|&[xx, xy, yy]| [xx, xy, yy, 0.0]);
+    let maps = maps.unwrap_or_default().iter().map(|&[xx, xy, yy]| [xx, xy, yy, 0.0]);
     for (row, [a, b, c, d]) in positions.chain(maps).enumerate() {
         parts[step * row] = [a, b];
         parts[step * row + low] = [c, d];

@@ -13,7 +13,7 @@ use crate::gpu::device::size::{
 };
 use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::uniforms::WORKGROUP;
-use crate::layout::Problem;
+use crate::layout::{MapKind, Problem};
 use crate::mesh::MeshSize;
 
 /// Ranges of a mesh's data that a device can bind at once. Data smaller than a binding form a single part.
@@ -21,8 +21,8 @@ use crate::mesh::MeshSize;
 pub(crate) struct Parts {
     /// Byte offset of the low parts in the buffer of positions. `None` if positions take a single binding.
     pub(crate) low_positions: Option<u64>,
-    /// Whether target maps follow the positions in their buffer.
-    has_targets: bool,
+    /// Kind of the maps that follow the positions in their buffer.
+    maps: MapKind,
     /// Parts of the one-rings, cut between vertices.
     pub(crate) rings: Vec<RingPart>,
     /// Parts of the triangles, as ranges of triangle numbers.
@@ -53,8 +53,8 @@ impl Parts {
         let triangles = problem.triangles().len();
         let size = MeshSize { vertices: problem.positions().len(), triangles };
         size.check(limits)?;
-        let has_targets = problem.targets().is_some();
-        let rows = if has_targets { 2 * size.vertices } else { size.vertices };
+        let maps = problem.map_kind();
+        let rows = if maps.is_some() { 2 * size.vertices } else { size.vertices };
         check_rows(rows, limits)?;
         let free = problem.free_count() as u32;
         // A part consists of whole rounds of the objective's invocations, so that the sums do not depend on the parts.
@@ -63,7 +63,7 @@ impl Parts {
         let round = objective_invocations(triangles);
         Ok(Self {
             low_positions: low_positions(rows, limits),
-            has_targets,
+            maps,
             rings: rings(problem.ring_start(), limits)?,
             triangles: ranges(triangles as u32, TRIANGLE, round, limits),
             free: ranges(free, POSITION, WORKGROUP, limits),
@@ -81,7 +81,7 @@ impl Parts {
     pub(crate) fn form(&self) -> MeshForm {
         let in_two = self.low_positions.is_some();
         let positions = if in_two { Positions::InTwo } else { Positions::Whole };
-        MeshForm { positions, has_targets: self.has_targets }
+        MeshForm { positions, maps: self.maps }
     }
 }
 

@@ -278,7 +278,7 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         ideal_sum: ideal_sum as f32,
         tolerance: plan.stop.tolerance as f32,
         mean_area: pair(problem.mean_area()),
-        targets: problem.positions().len() as u32,
+        maps: problem.positions().len() as u32,
         padding: 0,
     }
 }

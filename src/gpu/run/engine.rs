@@ -227,9 +227,11 @@ impl Engine for GpuEngine<'_> {
         self.mesh.hold(self.gpu, &self.problem, held)
     }
 
-    fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
+    fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
-        self.mesh.write_targets(self.gpu, problem)?;
+        self.mesh.write_maps(self.gpu, problem)?;
+        // Secant pairs are in the coordinates of the earlier maps.
+        self.secants = None;
         self.dispatches.write_params(self.gpu, problem)
     }
 
@@ -354,6 +356,7 @@ impl Engine for GpuEngine<'_> {
                 readback::read(gpu, &self.dispatches.control, 1, waiting).await?;
             state.add(CONTROL, &control);
             state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
+            state.add_local_maps(&self.problem);
             if let Some(secants) = &self.secants {
                 secants.save(gpu, &mut state, waiting).await?;
             }
@@ -377,6 +380,9 @@ impl Engine for GpuEngine<'_> {
             return Ok(false);
         }
         self.mesh.write_positions(gpu, &positions)?;
+        if state.restore_local_maps(&mut self.problem) {
+            self.mesh.write_maps(gpu, &self.problem)?;
+        }
         self.evaluated = control.evaluated;
         let best = match self.dispatches.plan.is_monotone() {
             true => None,

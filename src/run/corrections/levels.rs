@@ -1,7 +1,7 @@
 //! Decides when the coarser levels are built, and when they are fitted to a mesh that has changed.
 
 use super::plan_steps::OMEGA_BETWEEN;
-use super::state::Corrections;
+use super::state::{Corrections, ESTIMATES};
 use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;
@@ -22,6 +22,11 @@ const REBUILD_IF: f64 = 0.5;
 /// Number of doublings of EDGE's exponent between two fits of the levels. Without fits, the last exponents took ten
 /// times the sweeps. With a fit after each doubling, they took slightly fewer sweeps.
 const REFIT_EVERY: u32 = 3;
+
+/// Number of corrections after which the levels of a strongly stretched mesh are built again, and then after each
+/// doubling of the number. f stays far above its lower limit on such a mesh, and its excess does not tell how far vertices
+/// have moved and local maps have changed.
+const REBUILD_LOCAL_FROM: u32 = 4;
 
 /// How the levels adapt to the present stiffness of the mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -46,6 +51,9 @@ impl Corrections {
         };
         match proposed {
             _ if !self.has_levels => Some(Change::Build),
+            REBUILD_LOCAL_FROM.. if self.has_local_maps() && proposed.is_power_of_two() => {
+                Some(Change::Build)
+            }
             0 if self.has_levels && !self.metric().is_smooth() => {
                 self.sharpness.is_multiple_of(REFIT_EVERY).then_some(Change::Fit)
             }
@@ -78,6 +86,13 @@ impl Corrections {
         self.fitted = now;
         if before.is_none() {
             self.built = now;
+        }
+        if self.has_local_maps() {
+            // The levels fit the stiffness in local coordinates, which follow the triangles.
+            self.problem.set_local_maps_at(&engine.positions().await?);
+            engine.set_maps(&self.problem)?;
+            // Gains by other levels predict nothing.
+            self.estimates = [f64::INFINITY; ESTIMATES];
         }
         let roots = engine.stiffness_roots(self.step(OMEGA_BETWEEN).smoothing()).await?;
         let hierarchy = match before {

@@ -52,7 +52,8 @@ impl Corrections {
             self.estimates.rotate_left(1);
             self.estimates[ESTIMATES - 1] = remaining.map_or(f64::INFINITY, |left| CAUTION * left);
             let asked = match self.metric().is_smooth() {
-                _ if decays_steadily(of_stage) => 1,
+                // New levels on a strongly stretched mesh gain much at first, and slow modes remain.
+                _ if decays_steadily(of_stage) && !self.has_local_maps() => 1,
                 true => ESTIMATES,
                 false => ESTIMATES_FOR_EDGE,
             };

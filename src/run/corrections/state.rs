@@ -2,7 +2,7 @@
 
 use super::plan_steps::exponents;
 use crate::error::GpuError;
-use crate::layout::Problem;
+use crate::layout::{MapKind, Problem};
 use crate::metric::Metric;
 use crate::run::history::History;
 use crate::run::plan::Plan;
@@ -161,9 +161,14 @@ impl Corrections {
         }
     }
 
-    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
-    pub(crate) fn set_targets(&mut self, problem: &Problem) {
+    /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the run's problem.
+    pub(crate) fn set_maps(&mut self, problem: &Problem) {
         self.problem = problem.clone();
+    }
+
+    /// Returns whether the mesh has local maps, which follow its triangles.
+    pub(super) fn has_local_maps(&self) -> bool {
+        self.problem.map_kind() == MapKind::Local
     }
 
     /// Returns the lower limit of f.

@@ -2,13 +2,14 @@
 // the positions. A metric sees a triangle transformed by the mean of the maps at its corners.
 
 const MAPPED: bool = true;
+const HAS_TARGETS: bool = true;
 
-fn target_of(v: u32) -> vec3<f32> {
-    return position(params.targets + v).xyz;
+fn map_at(v: u32) -> vec3<f32> {
+    return position(params.maps + v).xyz;
 }
 
 fn map_of(corners: vec3<u32>) -> vec3<f32> {
-    return (target_of(corners.x) + target_of(corners.y) + target_of(corners.z)) / 3.0;
+    return (map_at(corners.x) + map_at(corners.y) + map_at(corners.z)) / 3.0;
 }
 
 fn inverse_of(map: vec3<f32>) -> vec3<f32> {

@@ -1,8 +1,9 @@
-// Replaces targets.wgsl for a mesh without targets, whose triangles metrics measure untransformed.
+// Replaces target_maps.wgsl for a mesh without maps, whose triangles metrics measure untransformed.
 
 const MAPPED: bool = false;
+const HAS_TARGETS: bool = false;
 
-fn target_of(v: u32) -> vec3<f32> {
+fn map_at(v: u32) -> vec3<f32> {
     return vec3(1.0, 0.0, 1.0);
 }
 
